@@ -51,6 +51,14 @@ peers:
 header:
     cd core/c/header && cargo run
 
+# Build the web page
+web folder="target/web":
+    host/web/build "{{folder}}"
+
+# Test the web page in a browser
+web-test: web
+    GRIDEL_WEB="$PWD/target/web" GRIDEL_REQUIRE_BROWSER=1 cargo test --workspace --test web -- --nocapture
+
 # Check that the crates can be packaged
 package:
     cargo package --workspace --exclude gridel-tests --no-verify --allow-dirty

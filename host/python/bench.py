@@ -1,4 +1,5 @@
-"""Measures this package beside trimesh with embreex and Open3D: the same rays, one thread each, in turns.
+"""Measures this package beside trimesh with embreex and Open3D: the same rays, one thread each, in turns. Seconds are those
+of the processor, so that other programs count little.
 
 python bench.py MESH [--rays N] [--repeats N]
 
@@ -49,9 +50,9 @@ def race(contenders, count, repeats):
     seconds = {name: [] for name in contenders}
     for _ in range(repeats):
         for name, work in contenders.items():
-            started = time.perf_counter()
+            started = time.process_time()
             work()
-            seconds[name].append(time.perf_counter() - started)
+            seconds[name].append(time.process_time() - started)
     return {name: count / statistics.median(times) / 1e6 for name, times in seconds.items()}
 
 

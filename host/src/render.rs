@@ -96,6 +96,9 @@ pub fn render(
 
 /// Returns the code that traces pixels, compiled for the job's number format and structure and for the scene's
 /// effects. The structure is chosen in the scene: see [`chosen`].
+///
+/// Inline, so that a crate that draws by itself compiles this code, and by its own profile.
+#[inline]
 pub(crate) fn tracer<'s>(scene: &'s Scene<'_>, job: &Job) -> NewTracer<'s> {
     match job.format {
         Format::Fixed => with_format::<Fixed>(scene, job),
@@ -119,10 +122,15 @@ const SHADOWED: u32 = Effects::SHADOW.0;
 pub(crate) const OPAQUE: u32 = Effects::ALL.without(Effects::FILTERING).0;
 pub(crate) const ALL: u32 = Effects::ALL.0;
 
+/// WebAssembly is sent to pages, so it has no code for what other code does as well: what counts draws all pictures.
+pub(crate) const PAGE: bool = cfg!(target_family = "wasm");
+
+/// Whether no structure has code of its own. The library's own tests compile all of it again.
+const COMPACT: bool = PAGE || cfg!(test);
+
 fn with_format<'s, N: Number>(scene: &'s Scene<'_>, job: &Job) -> NewTracer<'s> {
-    // Pictures are made through these; the others are there to be compared. The library's own tests,
-    // for which all of it is compiled again, do without.
-    if !cfg!(test) && !job.count {
+    // Pictures are made through these; the others are there to be compared.
+    if !COMPACT && !job.count {
         match job.structure {
             Structure::DualSplit => return fast::<N, DualSplit>(scene, job),
             Structure::Wide => return fast::<N, Wide>(scene, job),
@@ -130,12 +138,16 @@ fn with_format<'s, N: Number>(scene: &'s Scene<'_>, job: &Job) -> NewTracer<'s> 
         }
     }
     let opaque = Effects(OPAQUE).contains(scene.effects());
-    match (job.count, opaque) {
-        (true, true) => counted_rows::<N, OPAQUE>(scene, job),
-        (true, false) => counted_rows::<N, ALL>(scene, job),
-        (false, true) => rows::<N, DynAccel, OPAQUE>(scene, job),
-        (false, false) => rows::<N, DynAccel, ALL>(scene, job),
+    if !PAGE && !job.count {
+        return match opaque {
+            true => rows::<N, DynAccel, OPAQUE>(scene, job),
+            false => rows::<N, DynAccel, ALL>(scene, job),
+        };
     }
+    if !PAGE && opaque {
+        return counted_rows::<N, OPAQUE>(scene, job);
+    }
+    counted_rows::<N, ALL>(scene, job)
 }
 
 /// The scene with a structure chosen for [`DynAccel`] to walk.
@@ -164,8 +176,10 @@ fn counted_rows<'s, N: Number, const EFFECTS: u32>(
     job: &Job,
 ) -> NewTracer<'s> {
     let renderer = Renderer::<N, DynAccel, EFFECTS>::with_settings(scene, job.settings)?;
+    let count = job.count;
     Ok(Box::new(move |first, pixels| {
-        Some(counted_row(&renderer, first, pixels))
+        let cost = counted_row(&renderer, first, pixels);
+        count.then_some(cost)
     }))
 }
 

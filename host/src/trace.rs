@@ -380,6 +380,29 @@ impl Frame {
         scene: &Scene<'_>,
         ray: &SceneRay,
     ) -> Result<(Ray<N>, DirectionScale), Rejection> {
+        let origin = (ray.origin - self.origin) * self.per_unit;
+        let direction_scale = DirectionScale::of_ordinary(ray.direction, self.per_unit);
+        // NaN and infinity are not ordinary. Apart from the others, few values wait in memory.
+        let Some(direction_scale) = direction_scale.filter(|_| is_near(origin)) else {
+            return self.extreme_ray(scene, ray);
+        };
+        let start = Start {
+            origin,
+            tmin: direction_scale.length(ray.tmin),
+            tmax: direction_scale.length(ray.tmax),
+            begin: 0.0,
+        };
+        Ok((start.ray(scene, ray.direction)?, direction_scale))
+    }
+
+    /// A ray whose direction is very long or short, or none, or whose origin is far from the scene.
+    #[cold]
+    #[inline(never)]
+    fn extreme_ray<N: Number>(
+        &self,
+        scene: &Scene<'_>,
+        ray: &SceneRay,
+    ) -> Result<(Ray<N>, DirectionScale), Rejection> {
         // Multiples of the direction become lengths along its largest component.
         let (mut direction_scale, direction) =
             DirectionScale::of(ray.direction, self.unit, self.per_unit);
@@ -389,8 +412,7 @@ impl Frame {
             tmax: direction_scale.length(ray.tmax),
             begin: 0.0,
         };
-        // Here only numbers are chosen: a ray that is chosen goes through memory, and is waited for.
-        if start.origin.abs().max_element() > carry::FAR {
+        if !is_near(start.origin) {
             start = self.far_start::<N>(scene, ray, start, direction)?;
             direction_scale.begin_at(start.begin);
         }
@@ -398,8 +420,6 @@ impl Frame {
     }
 
     /// The start of a ray from an origin far from the scene.
-    #[cold]
-    #[inline(never)]
     fn far_start<N: Number>(
         &self,
         scene: &Scene<'_>,
@@ -429,6 +449,12 @@ impl Frame {
         let is_ray = carried.ray::<N>(scene, direction).is_ok();
         Ok(if is_ray { carried } else { start })
     }
+}
+
+/// Whether an origin in units is near the scene; one with NaN need not be.
+#[inline(always)]
+fn is_near(origin: DVec3) -> bool {
+    origin.abs().max_element() <= carry::FAR
 }
 
 /// Where a ray starts, and its interval, in units.

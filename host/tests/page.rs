@@ -5,17 +5,15 @@
 #[path = "cli/program.rs"]
 mod program;
 
+#[allow(dead_code)]
+#[path = "browser/mod.rs"]
+mod browser;
+
+use browser::Browser;
 use libtest_mimic::{Arguments, Failed, Trial};
 use program::Folder;
 use serde_json::{Value, json};
-use std::env;
-use std::io::{BufRead, BufReader, Read, Write};
-use std::net::TcpStream;
-use std::process::{Child, Command, Stdio};
 use std::time::Duration;
-
-/// How long an answer may take.
-const LIMIT: Duration = Duration::from_secs(90);
 
 /// Keys, as WebDriver names them.
 const TAB: &str = "\u{e004}";
@@ -24,164 +22,19 @@ const LEFT: &str = "\u{e012}";
 const RIGHT: &str = "\u{e014}";
 
 fn main() {
-    let is_missing = ["chromedriver", "chromium"].iter().any(|tool| {
-        let paths = env::var_os("PATH").unwrap_or_default();
-        !env::split_paths(&paths).any(|path| path.join(tool).is_file())
-    });
-    let required = env::var_os("GRIDEL_REQUIRE_BROWSER").is_some_and(|value| value == "1");
-    let needs = "needs chromium and chromedriver";
+    let is_missing = browser::is_missing();
     let trial = Trial::test("accuracy_page_answers_mouse_and_keyboard", move || {
         if is_missing {
-            return Err(Failed::from(needs));
+            return Err(Failed::from(browser::NEEDS));
         }
         page_answers();
         Ok(())
     });
-    let kind = if is_missing { needs } else { "" };
+    let kind = if is_missing { browser::NEEDS } else { "" };
     let trial = trial
         .with_kind(kind)
-        .with_ignored_flag(is_missing && !required);
+        .with_ignored_flag(is_missing && !browser::is_required());
     libtest_mimic::run(&Arguments::from_args(), vec![trial]).exit();
-}
-
-/// A browser, and the session of its driver.
-struct Browser {
-    driver: Child,
-    port: u16,
-    session: String,
-}
-
-impl Browser {
-    fn open() -> Self {
-        // The driver chooses a port, and names it when it is ready.
-        let mut driver = Command::new("chromedriver")
-            .arg("--port=0")
-            .stdout(Stdio::piped())
-            .stderr(Stdio::null())
-            .spawn()
-            .unwrap();
-        let mut lines = BufReader::new(driver.stdout.take().unwrap()).lines();
-        let ready = lines.find_map(|line| {
-            let line = line.unwrap();
-            let (_, port) = line.split_once("successfully on port ")?;
-            port.trim_end_matches('.').parse().ok()
-        });
-        // What it writes later is read, so that it never waits.
-        std::thread::spawn(move || lines.for_each(drop));
-        let mut browser = Self {
-            driver,
-            port: ready.unwrap(),
-            session: String::new(),
-        };
-        let switches = [
-            "--headless",
-            "--no-sandbox",
-            "--disable-gpu",
-            "--no-first-run",
-            "--disable-background-networking",
-            "--window-size=1280,1000",
-        ];
-        let wanted = json!({"capabilities": {"alwaysMatch": {
-            "goog:chromeOptions": {"args": switches},
-            "goog:loggingPrefs": {"browser": "ALL"},
-        }}});
-        let session = browser.call("POST", "/session", &wanted);
-        browser.session = format!("/session/{}", session["sessionId"].as_str().unwrap());
-        browser
-    }
-
-    /// One request of the WebDriver protocol.
-    fn call(&self, method: &str, path: &str, body: &Value) -> Value {
-        let body = body.to_string();
-        let mut stream = TcpStream::connect(("127.0.0.1", self.port)).unwrap();
-        stream.set_read_timeout(Some(LIMIT)).unwrap();
-        write!(
-            stream,
-            "{method} {}{path} HTTP/1.1\r\nHost: localhost\r\nConnection: close\r\n\
-             Content-Type: application/json\r\nContent-Length: {}\r\n\r\n{body}",
-            self.session,
-            body.len()
-        )
-        .unwrap();
-        let mut reader = BufReader::new(stream);
-        let (mut line, mut length) = (String::new(), 0);
-        while reader.read_line(&mut line).unwrap() > 2 {
-            let lower = line.to_ascii_lowercase();
-            if let Some(bytes) = lower.strip_prefix("content-length:") {
-                length = bytes.trim().parse().unwrap();
-            }
-            line.clear();
-        }
-        let mut answer = vec![0; length];
-        reader.read_exact(&mut answer).unwrap();
-        let mut answer: Value = serde_json::from_slice(&answer).unwrap();
-        let value = answer["value"].take();
-        assert!(value["error"].is_null(), "{method} {path}: {value}");
-        value
-    }
-
-    fn post(&self, path: &str, body: &Value) -> Value {
-        self.call("POST", path, body)
-    }
-
-    fn script(&self, script: &str) -> Value {
-        self.post("/execute/sync", &json!({"script": script, "args": []}))
-    }
-
-    fn text(&self, script: &str) -> String {
-        let value = self.script(script);
-        value
-            .as_str()
-            .map_or_else(|| value.to_string(), str::to_owned)
-    }
-
-    fn keys(&self, keys: &[&str]) {
-        let presses = keys
-            .iter()
-            .flat_map(|key| ["keyDown", "keyUp"].map(|kind| json!({"type": kind, "value": key})));
-        let presses: Vec<_> = presses.collect();
-        let source = json!({"type": "key", "id": "keys", "actions": presses});
-        self.post("/actions", &json!({"actions": [source]}));
-    }
-
-    fn element(&self, xpath: &str) -> Value {
-        self.post("/element", &json!({"using": "xpath", "value": xpath}))
-    }
-
-    /// Moves the pointer to an element, and clicks on it if asked to.
-    fn point(&self, element: &Value, click: bool) {
-        let mut moves =
-            vec![json!({"type": "pointerMove", "duration": 0, "origin": element, "x": 0, "y": 0})];
-        if click {
-            moves.push(json!({"type": "pointerDown", "button": 0}));
-            moves.push(json!({"type": "pointerUp", "button": 0}));
-        }
-        let source = json!({"type": "pointer", "id": "mouse",
-            "parameters": {"pointerType": "mouse"}, "actions": moves});
-        self.post("/actions", &json!({"actions": [source]}));
-    }
-
-    fn click(&self, xpath: &str) {
-        let element = self.element(xpath);
-        self.post(
-            "/execute/sync",
-            &json!({
-                "script": "arguments[0].scrollIntoView({block: 'center'})", "args": [element],
-            }),
-        );
-        self.point(&element, true);
-    }
-}
-
-impl Drop for Browser {
-    fn drop(&mut self) {
-        // The driver ends the browser with the session.
-        if !self.session.is_empty() && !std::thread::panicking() {
-            self.call("DELETE", "", &json!({}));
-        }
-        drop(self.driver.kill());
-        drop(self.driver.wait());
-    }
 }
 
 const SHOWN: &str = "return document.querySelector('#card h3').textContent";
@@ -286,10 +139,7 @@ fn page_answers() {
     assert_eq!(browser.text(back), "rgb(21, 23, 26)");
 
     // Everything that can be reached has a name, and nothing went wrong.
-    let unnamed = "return [...document.querySelectorAll('button, select, input, canvas, img, [role=button], [role=region]')]
-        .filter((it) => !(it.ariaLabel || it.alt || it.labels?.length || it.textContent.trim()
-            || it.getAttribute('aria-labelledby'))).length";
-    assert_eq!(browser.text(unnamed), "0");
+    assert_eq!(browser.text(browser::UNNAMED), "0");
     assert_eq!(
         browser.post("/se/log", &json!({"type": "browser"})),
         json!([])

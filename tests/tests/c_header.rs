@@ -14,7 +14,7 @@ fn header() -> String {
 
 /// The library's declarations, in one text.
 fn source() -> String {
-    let files = ["status", "types", "load", "cast", "render"];
+    let files = ["status", "types", "load", "camera", "cast", "render"];
     let read = |name: &&str| fs::read_to_string(library().join(format!("src/{name}.rs")));
     files
         .iter()
@@ -144,6 +144,7 @@ fn field(name: &str, kind: &str) -> String {
     }
     let kind = match kind {
         "i32" => "int32_t ",
+        "i64" => "int64_t ",
         "u16" => "uint16_t ",
         "u32" => "uint32_t ",
         "u64" => "uint64_t ",

@@ -1,5 +1,5 @@
-/* Casts rays into a scene and renders its picture, in the number format that FORMAT names. Prints what the rays hit on
- * standard error, and the picture as PPM on standard output. Runs on a board under semihosting, and on a host. */
+/* Casts rays into a scene and renders it by its own camera and by one of the program's, in the number format that FORMAT
+ * names. Prints what the rays hit on standard error, and the pictures as PPM on standard output. Runs on a board under semihosting, and on a host. */
 #include "gridel.h"
 #include <stdio.h>
 
@@ -10,7 +10,7 @@
 #endif
 #define CAST NAME(gridel_cast_, FORMAT)
 #define ANY NAME(gridel_any_, FORMAT)
-#define RENDER NAME(gridel_render_, FORMAT)
+#define RENDER NAME(gridel_render_from_, FORMAT)
 #define WORKSPACE_BYTES NAME(gridel_workspace_bytes_, FORMAT)
 /* Rays in steps are named after what they count in, unless that is all that a format has. */
 #define gridel_cast_f32 gridel_cast_steps_f32
@@ -39,14 +39,28 @@ static int failed(const char *what, gridel_status status) {
   return 1;
 }
 
+/* Renders a picture row by row; 0 if that fails. */
+static int print_picture(const gridel_picture *picture, const gridel_camera *camera) {
+  const gridel_buffer for_pictures = {workspace, sizeof workspace};
+  const gridel_buffer pixels = {row, sizeof row};
+  gridel_rectangle line = {0, 0, 0, 1};
+  printf("P6\n%u %u\n255\n", picture->width, picture->height);
+  line.width = picture->width;
+  for (; line.y < picture->height; line.y++) {
+    const gridel_status status = RENDER(&scene, camera, picture, &line, pixels, for_pictures);
+    if (status != GRIDEL_STATUS_OK) return !failed("render", status);
+    fwrite(row, 3, picture->width, stdout);
+  }
+  return 1;
+}
+
 int main(void) {
   const size_t blob_bytes = (size_t)(blob_end - blob_start);
   gridel_buffer for_rays = {stack, sizeof stack};
-  gridel_buffer for_pictures = {workspace, sizeof workspace};
-  gridel_buffer pixels = {row, sizeof row};
+  gridel_circle circle = {{0, 0, 0}, 0, (uint32_t)1 << 29, (uint32_t)1 << 28, (uint32_t)1 << 29, 1};
+  gridel_camera camera;
   gridel_info info;
   gridel_picture picture;
-  gridel_rectangle line = {0, 0, 0, 1};
   size_t needed;
   gridel_status status = gridel_load(&scene, blob_start, blob_bytes);
   if (status != GRIDEL_STATUS_OK) return failed("gridel_load", status);
@@ -72,13 +86,15 @@ int main(void) {
   status = WORKSPACE_BYTES(&scene, &picture, &needed);
   if (status != GRIDEL_STATUS_OK) return failed("workspace bytes", status);
   if (needed > sizeof workspace || picture.width > WIDEST) return failed("picture", GRIDEL_STATUS_BUFFER_TOO_SMALL);
-  printf("P6\n%u %u\n255\n", picture.width, picture.height);
-  line.width = picture.width;
-  for (; line.y < picture.height; line.y++) {
-    status = RENDER(&scene, &picture, &line, pixels, for_pictures);
-    if (status != GRIDEL_STATUS_OK) return failed("render", status);
-    fwrite(row, 3, picture.width, stdout);
-  }
+  status = gridel_camera_of(&scene, &camera);
+  if (status != GRIDEL_STATUS_OK) return failed("gridel_camera_of", status);
+  if (!print_picture(&picture, &camera)) return 1;
+
+  /* An eighth of a turn around the scene's middle, raised by a sixteenth; the height is seen under an eighth. */
+  circle.distance = (uint32_t)8 << -info.coordinate_exponent;
+  status = gridel_orbit(&scene, &circle, &camera);
+  if (status != GRIDEL_STATUS_OK) return failed("gridel_orbit", status);
+  if (!print_picture(&picture, &camera)) return 1;
   fflush(stdout);
   return 0;
 }

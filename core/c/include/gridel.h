@@ -90,6 +90,16 @@ enum gridel_status
   GRIDEL_STATUS_PICTURE_RESOLUTION = 44,
   // A row or a rectangle leaves the picture.
   GRIDEL_STATUS_PICTURE_RECTANGLE = 45,
+  // The field of view is 0, or half a turn or more.
+  GRIDEL_STATUS_CAMERA_FIELD_OF_VIEW = 50,
+  // Eye and target of a camera are the same place.
+  GRIDEL_STATUS_CAMERA_DIRECTION = 51,
+  // The camera looks along the direction that points up.
+  GRIDEL_STATUS_CAMERA_ALONG_UP = 52,
+  // The camera's eye is beyond the range of coordinates.
+  GRIDEL_STATUS_CAMERA_EYE = 53,
+  // A camera's numbers are out of range: it was not made by this library.
+  GRIDEL_STATUS_CAMERA_INVALID = 54,
 };
 #ifndef __cplusplus
 #if __STDC_VERSION__ >= 202311L
@@ -124,6 +134,48 @@ typedef struct gridel_scene {
   // The library's own.
   size_t memory[GRIDEL_SCENE_WORDS];
 } gridel_scene;
+
+// A camera for the scene that it was made for; `gridel_camera_of` gives that of the scene file.
+typedef struct gridel_camera {
+  // The eye, in the library's own units.
+  int64_t eye[3];
+  // From the eye to the middle of the picture; the three vectors have one scale.
+  int32_t forward[3];
+  // From the middle to the right, by half of the picture's height.
+  int32_t right[3];
+  // From the middle to the upper edge.
+  int32_t up[3];
+  // 0.
+  uint32_t reserved;
+} gridel_camera;
+
+// A camera at one place that looks at another, in steps.
+typedef struct gridel_look {
+  // Where the camera is.
+  int32_t eye[3];
+  // What is in the middle of its picture.
+  int32_t target[3];
+  // The direction that is upwards in the picture, of any length.
+  int32_t up[3];
+  // The angle under which the picture's height is seen, in 2^-32 turn: above 0 and below half a turn.
+  uint32_t field_of_view;
+} gridel_look;
+
+// A camera on a circle around a place, for a dial.
+typedef struct gridel_circle {
+  // What is in the middle of its picture, in steps.
+  int32_t target[3];
+  // How far away the camera is, in steps.
+  uint32_t distance;
+  // How far it is turned around the axis that points up, counterclockwise as seen from above, in 2^-32 turn.
+  uint32_t azimuth;
+  // How far it is raised, in 2^-32 turn; it may pass over the pole.
+  uint32_t elevation;
+  // The angle under which the picture's height is seen, in 2^-32 turn: above 0 and below half a turn.
+  uint32_t field_of_view;
+  // The axis that points up: 2 for z, else y.
+  uint32_t up_axis;
+} gridel_circle;
 
 // A ray in steps of scene coordinates, without floating point: see `gridel_info`.
 typedef struct gridel_ray {
@@ -269,6 +321,28 @@ typedef struct gridel_rectangle {
 extern "C" {
 #endif // __cplusplus
 
+// Writes the camera of the scene file.
+//
+// # Safety
+// Pointers are null, or lead to what they say.
+gridel_status gridel_camera_of(const struct gridel_scene *loaded, struct gridel_camera *camera);
+
+// Makes a camera at one place that looks at another.
+//
+// # Safety
+// Pointers are null, or lead to what they say.
+gridel_status gridel_look_at(const struct gridel_scene *loaded,
+                             const struct gridel_look *look,
+                             struct gridel_camera *camera);
+
+// Makes a camera on a circle around a place.
+//
+// # Safety
+// Pointers are null, or lead to what they say.
+gridel_status gridel_orbit(const struct gridel_scene *loaded,
+                           const struct gridel_circle *circle,
+                           struct gridel_camera *camera);
+
 // Finds what a ray hits first, in integers. `stack` is memory of `gridel_stack_bytes` bytes.
 //
 // # Safety
@@ -451,6 +525,42 @@ gridel_status gridel_render_f64(const struct gridel_scene *loaded,
                                 const struct gridel_rectangle *rectangle,
                                 struct gridel_buffer pixels,
                                 struct gridel_buffer workspace);
+
+// Renders a rectangle of a picture as a camera sees it that was made for this scene, in integers: see
+// `gridel_render_fixed`.
+//
+// # Safety
+// Pointers are null, or lead to what they say.
+gridel_status gridel_render_from_fixed(const struct gridel_scene *loaded,
+                                       const struct gridel_camera *camera,
+                                       const struct gridel_picture *picture,
+                                       const struct gridel_rectangle *rectangle,
+                                       struct gridel_buffer pixels,
+                                       struct gridel_buffer workspace);
+
+// Renders a rectangle of a picture as a camera sees it that was made for this scene, in single precision: see
+// `gridel_render_fixed`.
+//
+// # Safety
+// Pointers are null, or lead to what they say.
+gridel_status gridel_render_from_f32(const struct gridel_scene *loaded,
+                                     const struct gridel_camera *camera,
+                                     const struct gridel_picture *picture,
+                                     const struct gridel_rectangle *rectangle,
+                                     struct gridel_buffer pixels,
+                                     struct gridel_buffer workspace);
+
+// Renders a rectangle of a picture as a camera sees it that was made for this scene, in double precision: see
+// `gridel_render_fixed`.
+//
+// # Safety
+// Pointers are null, or lead to what they say.
+gridel_status gridel_render_from_f64(const struct gridel_scene *loaded,
+                                     const struct gridel_camera *camera,
+                                     const struct gridel_picture *picture,
+                                     const struct gridel_rectangle *rectangle,
+                                     struct gridel_buffer pixels,
+                                     struct gridel_buffer workspace);
 
 // Returns the sentence for a code, which says what to do; it lives forever.
 const char *gridel_text(uint32_t status);
@@ -640,6 +750,42 @@ gridel_status gridel_render_f64(const struct gridel_scene *loaded,
                                 const struct gridel_rectangle *rectangle,
                                 struct gridel_buffer pixels,
                                 struct gridel_buffer workspace);
+
+// Renders a rectangle of a picture as a camera sees it that was made for this scene, in integers: see
+// `gridel_render_fixed`.
+//
+// # Safety
+// Pointers are null, or lead to what they say.
+gridel_status gridel_render_from_fixed(const struct gridel_scene *loaded,
+                                       const struct gridel_camera *camera,
+                                       const struct gridel_picture *picture,
+                                       const struct gridel_rectangle *rectangle,
+                                       struct gridel_buffer pixels,
+                                       struct gridel_buffer workspace);
+
+// Renders a rectangle of a picture as a camera sees it that was made for this scene, in single precision: see
+// `gridel_render_fixed`.
+//
+// # Safety
+// Pointers are null, or lead to what they say.
+gridel_status gridel_render_from_f32(const struct gridel_scene *loaded,
+                                     const struct gridel_camera *camera,
+                                     const struct gridel_picture *picture,
+                                     const struct gridel_rectangle *rectangle,
+                                     struct gridel_buffer pixels,
+                                     struct gridel_buffer workspace);
+
+// Renders a rectangle of a picture as a camera sees it that was made for this scene, in double precision: see
+// `gridel_render_fixed`.
+//
+// # Safety
+// Pointers are null, or lead to what they say.
+gridel_status gridel_render_from_f64(const struct gridel_scene *loaded,
+                                     const struct gridel_camera *camera,
+                                     const struct gridel_picture *picture,
+                                     const struct gridel_rectangle *rectangle,
+                                     struct gridel_buffer pixels,
+                                     struct gridel_buffer workspace);
 
 #ifdef __cplusplus
 }  // extern "C"

@@ -6,6 +6,7 @@
 //! | `types.rs` | what goes in and comes out |
 //! | `load.rs` | from a blob to a scene |
 //! | `cast.rs` | rays |
+//! | `camera.rs` | cameras of the caller's |
 //! | `render.rs` | pictures |
 //! | `memory.rs` | memory of the caller's: the one place that trusts pointers |
 //!
@@ -18,6 +19,7 @@
 )]
 #![allow(non_camel_case_types)]
 
+mod camera;
 mod cast;
 mod load;
 mod memory;
@@ -25,6 +27,7 @@ mod render;
 mod status;
 mod types;
 
+pub use camera::*;
 pub use cast::*;
 pub use load::*;
 pub use render::*;

@@ -1,10 +1,11 @@
 //! Pictures.
 
+use crate::camera::view_from;
 use crate::load::{read, status};
 use crate::memory::{elements, output, scene, workspace, workspace_bytes};
 use crate::{
-    Accel, gridel_buffer, gridel_picture, gridel_pixel_format, gridel_rectangle, gridel_scene,
-    gridel_status,
+    Accel, gridel_buffer, gridel_camera, gridel_picture, gridel_pixel_format, gridel_rectangle,
+    gridel_scene, gridel_status,
 };
 use gridel_core::render::Pixel;
 use gridel_core::{Effects, Fixed, NoCount, Number, Renderer, Rgb565, Rgb888, Scene, Settings};
@@ -130,6 +131,60 @@ pub unsafe extern "C" fn gridel_render_f64(
     status(unsafe { render::<f64>(loaded, picture, rectangle, pixels, workspace) })
 }
 
+/// Renders a rectangle of a picture as a camera sees it that was made for this scene, in integers: see
+/// `gridel_render_fixed`.
+///
+/// # Safety
+/// Pointers are null, or lead to what they say.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn gridel_render_from_fixed(
+    loaded: *const gridel_scene,
+    camera: *const gridel_camera,
+    picture: *const gridel_picture,
+    rectangle: *const gridel_rectangle,
+    pixels: gridel_buffer,
+    workspace: gridel_buffer,
+) -> gridel_status {
+    // SAFETY: the caller's promise.
+    status(unsafe { render_from::<Fixed>(loaded, camera, picture, rectangle, pixels, workspace) })
+}
+
+/// Renders a rectangle of a picture as a camera sees it that was made for this scene, in single precision: see
+/// `gridel_render_fixed`.
+///
+/// # Safety
+/// Pointers are null, or lead to what they say.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn gridel_render_from_f32(
+    loaded: *const gridel_scene,
+    camera: *const gridel_camera,
+    picture: *const gridel_picture,
+    rectangle: *const gridel_rectangle,
+    pixels: gridel_buffer,
+    workspace: gridel_buffer,
+) -> gridel_status {
+    // SAFETY: the caller's promise.
+    status(unsafe { render_from::<f32>(loaded, camera, picture, rectangle, pixels, workspace) })
+}
+
+/// Renders a rectangle of a picture as a camera sees it that was made for this scene, in double precision: see
+/// `gridel_render_fixed`.
+///
+/// # Safety
+/// Pointers are null, or lead to what they say.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn gridel_render_from_f64(
+    loaded: *const gridel_scene,
+    camera: *const gridel_camera,
+    picture: *const gridel_picture,
+    rectangle: *const gridel_rectangle,
+    pixels: gridel_buffer,
+    workspace: gridel_buffer,
+) -> gridel_status {
+    // SAFETY: the caller's promise.
+    status(unsafe { render_from::<f64>(loaded, camera, picture, rectangle, pixels, workspace) })
+}
+
 /// Entries of the stack, and places for rays that wait. What a build has no code for takes no place.
 fn depths(scene: &Scene<'_>, depth: u8) -> [usize; 2] {
     [scene.stack_depth(), Effects(EFFECTS).work_depth(depth)]
@@ -170,6 +225,38 @@ unsafe fn render<N: Number>(
 ) -> Result<(), gridel_status> {
     // SAFETY: the caller's promise.
     let (scene, picture, rectangle) = unsafe { (scene(loaded)?, read(picture)?, read(rectangle)?) };
+    // SAFETY: the caller's promise.
+    unsafe { render_scene::<N>(scene, (picture, rectangle), pixels, memory) }
+}
+
+/// # Safety
+/// Pointers are null, or lead to what they say.
+unsafe fn render_from<N: Number>(
+    loaded: *const gridel_scene,
+    camera: *const gridel_camera,
+    picture: *const gridel_picture,
+    rectangle: *const gridel_rectangle,
+    pixels: gridel_buffer,
+    memory: gridel_buffer,
+) -> Result<(), gridel_status> {
+    // SAFETY: the caller's promise.
+    let (scene, picture, rectangle) = unsafe { (scene(loaded)?, read(picture)?, read(rectangle)?) };
+    // SAFETY: the caller's promise.
+    let view = view_from(scene, &unsafe { read(camera) }?);
+    let seen = scene.with_view(&view);
+    let seen = seen.map_err(|_| gridel_status::CameraInvalid)?;
+    // SAFETY: the caller's promise.
+    unsafe { render_scene::<N>(&seen, (picture, rectangle), pixels, memory) }
+}
+
+/// # Safety
+/// Pointers are null, or lead to what they say.
+unsafe fn render_scene<N: Number>(
+    scene: &Scene<'_>,
+    (picture, rectangle): (gridel_picture, gridel_rectangle),
+    pixels: gridel_buffer,
+    memory: gridel_buffer,
+) -> Result<(), gridel_status> {
     let settings = settings(&picture)?;
     let renderer = Renderer::<N, Accel, EFFECTS>::with_settings(scene, settings)?;
     let end = |first: u16, count: u16| u32::from(first).saturating_add(count.into());
@@ -208,12 +295,12 @@ enum Target<'p> {
 }
 
 /// A rectangle of a picture.
-struct Rows<'s, N: Number> {
-    renderer: Renderer<'s, 'static, N, Accel, EFFECTS>,
+struct Rows<'s, 'a, N: Number> {
+    renderer: Renderer<'s, 'a, N, Accel, EFFECTS>,
     rectangle: gridel_rectangle,
 }
 
-impl<N: Number> Rows<'_, N> {
+impl<N: Number> Rows<'_, '_, N> {
     fn fill<P: Pixel>(
         &self,
         pixels: &mut [P],

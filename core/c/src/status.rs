@@ -1,7 +1,7 @@
 //! The codes that functions return, and their texts.
 
 use core::ffi::{CStr, c_char};
-use gridel_core::render::RenderError;
+use gridel_core::render::{CameraError, RenderError};
 use gridel_core::{BlobError, RayError};
 
 /// What a function returns: 0, or why it did nothing. `gridel_text` gives the sentence.
@@ -60,6 +60,16 @@ pub enum gridel_status {
     PictureResolution = 44,
     /// A row or a rectangle leaves the picture.
     PictureRectangle = 45,
+    /// The field of view is 0, or half a turn or more.
+    CameraFieldOfView = 50,
+    /// Eye and target of a camera are the same place.
+    CameraDirection = 51,
+    /// The camera looks along the direction that points up.
+    CameraAlongUp = 52,
+    /// The camera's eye is beyond the range of coordinates.
+    CameraEye = 53,
+    /// A camera's numbers are out of range: it was not made by this library.
+    CameraInvalid = 54,
 }
 
 impl From<BlobError> for gridel_status {
@@ -87,6 +97,17 @@ impl From<RayError> for gridel_status {
             RayError::Origin => Self::RayOrigin,
             RayError::Distance => Self::RayDistance,
             RayError::Interval => Self::RayInterval,
+        }
+    }
+}
+
+impl From<CameraError> for gridel_status {
+    fn from(error: CameraError) -> Self {
+        match error {
+            CameraError::FieldOfView(_) => Self::CameraFieldOfView,
+            CameraError::NoDirection => Self::CameraDirection,
+            CameraError::AlongUp => Self::CameraAlongUp,
+            CameraError::EyeOutOfRange => Self::CameraEye,
         }
     }
 }
@@ -139,6 +160,11 @@ fn text(status: u32) -> &'static CStr {
         43 => c"the format of the pixels is unknown: use one of gridel_pixel_format",
         44 => c"the pixels are too narrow for the number format: use fewer pixels, or gridel_render_f64",
         45 => c"the rectangle leaves the picture",
+        50 => c"the camera's field of view must be above 0 and below half a turn",
+        51 => c"the camera looks nowhere: move its eye or its target",
+        52 => c"the camera looks along the direction that points up: give one across the view",
+        53 => c"the camera's eye is beyond the range of scene coordinates",
+        54 => c"the camera's numbers are out of range: make it by gridel_look_at or gridel_orbit",
         _ => c"unknown status",
     }
 }

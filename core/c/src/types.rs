@@ -154,6 +154,54 @@ pub struct gridel_hit_f64 {
     pub front: u32,
 }
 
+/// A camera for the scene that it was made for; `gridel_camera_of` gives that of the scene file.
+#[repr(C)]
+#[derive(Clone, Copy)]
+pub struct gridel_camera {
+    /// The eye, in the library's own units.
+    pub eye: [i64; 3],
+    /// From the eye to the middle of the picture; the three vectors have one scale.
+    pub forward: [i32; 3],
+    /// From the middle to the right, by half of the picture's height.
+    pub right: [i32; 3],
+    /// From the middle to the upper edge.
+    pub up: [i32; 3],
+    /// 0.
+    pub reserved: u32,
+}
+
+/// A camera at one place that looks at another, in steps.
+#[repr(C)]
+#[derive(Clone, Copy)]
+pub struct gridel_look {
+    /// Where the camera is.
+    pub eye: [i32; 3],
+    /// What is in the middle of its picture.
+    pub target: [i32; 3],
+    /// The direction that is upwards in the picture, of any length.
+    pub up: [i32; 3],
+    /// The angle under which the picture's height is seen, in 2^-32 turn: above 0 and below half a turn.
+    pub field_of_view: u32,
+}
+
+/// A camera on a circle around a place, for a dial.
+#[repr(C)]
+#[derive(Clone, Copy)]
+pub struct gridel_circle {
+    /// What is in the middle of its picture, in steps.
+    pub target: [i32; 3],
+    /// How far away the camera is, in steps.
+    pub distance: u32,
+    /// How far it is turned around the axis that points up, counterclockwise as seen from above, in 2^-32 turn.
+    pub azimuth: u32,
+    /// How far it is raised, in 2^-32 turn; it may pass over the pole.
+    pub elevation: u32,
+    /// The angle under which the picture's height is seen, in 2^-32 turn: above 0 and below half a turn.
+    pub field_of_view: u32,
+    /// The axis that points up: 2 for z, else y.
+    pub up_axis: u32,
+}
+
 /// A picture's settings; `gridel_picture_of` gives those of the scene file.
 #[repr(C)]
 #[derive(Clone, Copy)]

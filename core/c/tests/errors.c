@@ -34,6 +34,8 @@ typedef gridel_status (*cast_steps)(const gridel_scene *, const gridel_ray *, gr
 typedef gridel_status (*any_steps)(const gridel_scene *, const gridel_ray *, gridel_buffer, uint32_t *);
 typedef gridel_status (*render)(const gridel_scene *, const gridel_picture *, const gridel_rectangle *, gridel_buffer,
                                 gridel_buffer);
+typedef gridel_status (*render_from)(const gridel_scene *, const gridel_camera *, const gridel_picture *,
+                                     const gridel_rectangle *, gridel_buffer, gridel_buffer);
 typedef gridel_status (*count)(const gridel_scene *, const gridel_picture *, size_t *);
 
 /* Memory at a multiple of 16 bytes. */
@@ -82,6 +84,12 @@ int main(int count_of_arguments, char **arguments) {
   const cast_steps casts[] = {gridel_cast_fixed, gridel_cast_steps_f32};
   const any_steps anys[] = {gridel_any_fixed, gridel_any_steps_f32};
   const render renders[] = {gridel_render_fixed, gridel_render_f32, gridel_render_f64};
+  const render_from renders_from[] = {gridel_render_from_fixed, gridel_render_from_f32, gridel_render_from_f64};
+  static uint64_t for_pictures[GRIDEL_WORKSPACE_BYTES_MAX_F64 / sizeof(uint64_t)];
+  const gridel_buffer large = buffer(for_pictures, sizeof for_pictures);
+  gridel_camera camera;
+  gridel_look look = {{0, 0, 0}, {0, 0, 0}, {0, 1, 0}, (uint32_t)1 << 29};
+  gridel_circle circle = {{0, 0, 0}, 0, 0, 0, (uint32_t)1 << 29, 1};
   const count counts[] = {gridel_workspace_bytes_fixed, gridel_workspace_bytes_f32, gridel_workspace_bytes_f64};
   if (count_of_arguments != 3) return 2;
   blob = load(arguments[1], &blob_bytes);
@@ -237,6 +245,49 @@ int main(int count_of_arguments, char **arguments) {
   /* Every code has a text of its own. */
   for (k = 0; k < 50; k++) CHECK(strlen(gridel_text((gridel_status)k)) > 3);
   CHECK(strcmp(gridel_text((gridel_status)999), "unknown status") == 0);
+  /* Cameras. */
+  EXPECT(NOT_LOADED, gridel_camera_of(&fresh, &camera));
+  EXPECT(NULL_POINTER, gridel_camera_of(&scene, NULL));
+  EXPECT(GRIDEL_STATUS_OK, gridel_camera_of(&scene, &camera));
+  EXPECT(NOT_LOADED, gridel_look_at(&fresh, &look, &camera));
+  EXPECT(NULL_POINTER, gridel_look_at(&scene, NULL, &camera));
+  EXPECT(NULL_POINTER, gridel_look_at(&scene, &look, NULL));
+  EXPECT(GRIDEL_STATUS_CAMERA_DIRECTION, gridel_look_at(&scene, &look, &camera));
+  look.eye[1] = 1000;
+  EXPECT(GRIDEL_STATUS_CAMERA_ALONG_UP, gridel_look_at(&scene, &look, &camera));
+  look.eye[0] = 1000;
+  look.field_of_view = 0;
+  EXPECT(GRIDEL_STATUS_CAMERA_FIELD_OF_VIEW, gridel_look_at(&scene, &look, &camera));
+  look.field_of_view = (uint32_t)1 << 31;
+  EXPECT(GRIDEL_STATUS_CAMERA_FIELD_OF_VIEW, gridel_look_at(&scene, &look, &camera));
+  look.field_of_view -= 2;
+  EXPECT(GRIDEL_STATUS_OK, gridel_look_at(&scene, &look, &camera));
+  EXPECT(NOT_LOADED, gridel_orbit(&fresh, &circle, &camera));
+  EXPECT(NULL_POINTER, gridel_orbit(&scene, NULL, &camera));
+  EXPECT(NULL_POINTER, gridel_orbit(&scene, &circle, NULL));
+  EXPECT(GRIDEL_STATUS_CAMERA_DIRECTION, gridel_orbit(&scene, &circle, &camera));
+  circle.distance = 0xffffffffu;
+  EXPECT(GRIDEL_STATUS_CAMERA_EYE, gridel_orbit(&scene, &circle, &camera));
+  circle.distance = 1000;
+  EXPECT(GRIDEL_STATUS_OK, gridel_orbit(&scene, &circle, &camera));
+  EXPECT(GRIDEL_STATUS_OK, gridel_picture_of(&scene, &picture));
+  picture.width = picture.height = 4;
+  rectangle.x = rectangle.y = 0;
+  rectangle.width = rectangle.height = 4;
+  for (k = 0; k < 3; k++) {
+    gridel_camera wrong = camera;
+    EXPECT(NOT_LOADED, renders_from[k](&fresh, &camera, &picture, &rectangle, buffer(pixels, 48), large));
+    EXPECT(NULL_POINTER, renders_from[k](&scene, NULL, &picture, &rectangle, buffer(pixels, 48), large));
+    EXPECT(NULL_POINTER, renders_from[k](&scene, &camera, NULL, &rectangle, buffer(pixels, 48), large));
+    EXPECT(TOO_SMALL, renders_from[k](&scene, &camera, &picture, &rectangle, buffer(pixels, 47), large));
+    EXPECT(GRIDEL_STATUS_OK, renders_from[k](&scene, &camera, &picture, &rectangle, buffer(pixels, 48), large));
+    wrong.right[2] = ((int32_t)1 << 28) + 1;
+    EXPECT(GRIDEL_STATUS_CAMERA_INVALID, renders_from[k](&scene, &wrong, &picture, &rectangle, buffer(pixels, 48), large));
+    wrong = camera;
+    wrong.eye[0] = ((int64_t)1 << 50) + 1;
+    EXPECT(GRIDEL_STATUS_CAMERA_INVALID, renders_from[k](&scene, &wrong, &picture, &rectangle, buffer(pixels, 48), large));
+  }
+
   if (failures == 0) printf("scene %u bytes\n", (unsigned)sizeof scene);
   return failures != 0;
 }

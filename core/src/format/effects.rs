@@ -68,6 +68,7 @@ pub(crate) use enable;
 /// The compiler writes into a blob the set that its scene requires. The ray loop is compiled for
 /// a set given as a constant, and each effect's code can be left out by its Cargo feature.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Effects(pub u32);
 
 macro_rules! sets {

@@ -6,6 +6,7 @@ use core::fmt;
 
 /// The reason for which [`Scene::from_bytes`](crate::scene::Scene::from_bytes) rejects a blob.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[non_exhaustive]
 // A plain tag: a tag that shares a word with a field costs boards two to six percent of their code.
 #[repr(u32)]
@@ -103,6 +104,7 @@ pub enum BlobError {
 
 /// A part of a blob.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[repr(u32)]
 pub enum Location {
     /// The header.

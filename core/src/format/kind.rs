@@ -44,6 +44,7 @@ macro_rules! kinds {
     ) => {
         /// The kinds of primitives, in the order of their slots.
         #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+        #[cfg_attr(feature = "defmt", derive(defmt::Format))]
         #[repr(u32)]
         pub enum Kind {
             $($(#[doc = $form_doc])* $form = $form_number,)*

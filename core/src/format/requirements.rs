@@ -26,6 +26,7 @@ use core::mem::offset_of;
 /// };
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Requirements {
     /// Entries of the traversal stack.
     pub stack_depth: usize,

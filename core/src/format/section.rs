@@ -9,6 +9,7 @@ macro_rules! kinds {
     )*) => {
         /// The content of a section. The order of the numbers is the order of the sections in a blob.
         #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+        #[cfg_attr(feature = "defmt", derive(defmt::Format))]
         #[repr(u16)]
         pub enum SectionKind {
             $($(#[doc = $doc])* $kind = $number,)*

@@ -69,6 +69,7 @@ macro_rules! names {
     )*) => {
         /// The name of a structure.
         #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+        #[cfg_attr(feature = "defmt", derive(defmt::Format))]
         #[repr(u32)]
         pub enum Structure {
             $($(#[doc = $doc])* $variant = $number,)*

@@ -2,6 +2,7 @@
 
 /// An angle: a part of a turn with 32 fraction bits, so that sums wrap around as angles do.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Angle(pub u32);
 
 impl Angle {

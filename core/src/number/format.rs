@@ -2,6 +2,7 @@
 
 /// Which arithmetic a kernel runs in.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub enum Format {
     /// Integers only: no floating-point instruction from the camera to the pixel.
     Fixed,

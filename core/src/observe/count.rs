@@ -69,6 +69,7 @@ impl Observer for NoCount {}
 
 /// Counts everything.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Counters {
     /// Planes of boxes that were tested.
     pub planes: u64,

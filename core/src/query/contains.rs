@@ -9,6 +9,7 @@ use crate::scene::Scene;
 
 /// An object that may contain points: one of the scene's own, or one of an instance.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Solid {
     /// The object, counted in scene-file order.
     pub object: u32,

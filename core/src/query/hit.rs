@@ -334,3 +334,43 @@ fn placed_inside<N: Number>(hit: &Hit<N>, index: u32, scene: &Scene<'_>) -> [N; 
     let axis = |k: usize| hit.point[k] + way[k];
     [axis(0), axis(1), axis(2)]
 }
+
+#[cfg(feature = "defmt")]
+impl<N: Number + defmt::Format> defmt::Format for PrimitiveHit<N>
+where
+    N::Wide: defmt::Format,
+{
+    fn format(&self, to: defmt::Formatter<'_>) {
+        let instance = self.instance();
+        defmt::write!(
+            to,
+            "PrimitiveHit {{ t: {}, primitive: {=u32}, instance: {} }}",
+            self.t,
+            self.primitive,
+            instance
+        );
+    }
+}
+
+#[cfg(feature = "defmt")]
+impl<N: Number + defmt::Format> defmt::Format for Hit<N>
+where
+    N::Wide: defmt::Format,
+{
+    fn format(&self, to: defmt::Formatter<'_>) {
+        let instance = self.instance();
+        defmt::write!(
+            to,
+            "Hit {{ t: {}, point: {}, normal: {}, front: {=bool}, object: {=u32}, primitive: {=u32}, error: {}, \
+             instance: {} }}",
+            self.t,
+            self.point,
+            self.normal,
+            self.front,
+            self.object,
+            self.primitive,
+            self.error,
+            instance
+        );
+    }
+}

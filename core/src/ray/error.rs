@@ -6,6 +6,7 @@ use core::fmt;
 // As wide as a number in single precision: what shares its place in a `Result` is then loaded as it was stored.
 #[repr(u32)]
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub enum RayError {
     /// The direction is zero, infinite or NaN.
     Direction,

@@ -35,6 +35,7 @@ use core::fmt;
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Camera {
     eye: Position,
     /// To the middle of the picture, from there to its right by half of its height, and to its upper edge;
@@ -44,6 +45,7 @@ pub struct Camera {
 
 /// Which axis of a scene points up.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub enum Up {
     /// y, as in most formats; the camera of an orbit begins in front, on the side of z.
     #[default]
@@ -54,6 +56,7 @@ pub enum Up {
 
 /// Why there is no such camera.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub enum CameraError {
     /// The field of view is 0, or half a turn or more.
     FieldOfView(Angle),

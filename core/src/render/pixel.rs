@@ -22,11 +22,13 @@ pub trait Pixel: Copy + Default {
 
 /// Eight bits per channel: red, green, blue.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, bytemuck::Pod, bytemuck::Zeroable)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[repr(transparent)]
 pub struct Rgb888(pub [u8; 3]);
 
 /// Sixteen bits: five of red (the uppermost), six of green, five of blue.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, bytemuck::Pod, bytemuck::Zeroable)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[repr(transparent)]
 pub struct Rgb565(pub u16);
 

@@ -18,6 +18,7 @@ use core::marker::PhantomData;
 
 /// The settings of a picture; [`Settings::of`] returns those of the scene file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Settings {
     /// Pixels from left to right, above 0.
     pub width: u16,
@@ -56,6 +57,7 @@ impl Settings {
 
 /// Why there is no picture of this scene with these settings.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub enum RenderError {
     /// The picture has no pixels, or is more than 64 times as wide as high.
     Size {

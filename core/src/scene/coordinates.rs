@@ -14,6 +14,7 @@ use crate::scene::Scene;
 /// `gridel inspect` says so. They reach at least 4 times as far as the scene, its eye and its lights, or to
 /// [`FARTHEST`](crate::format::limits::FARTHEST) where that is nearer.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Position(pub [i32; 3]);
 
 /// Fraction bits of lengths.

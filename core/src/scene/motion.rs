@@ -30,6 +30,7 @@ const SCALE_BITS: u32 = 24;
 /// assert_eq!(hand, Position([-1000, 1000, 0]));
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Motion {
     /// Row by row, with 30 fraction bits.
     rotation: [[i32; 3]; 3],

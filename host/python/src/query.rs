@@ -1,15 +1,20 @@
 //! Queries of many rays and points, spread over threads.
 
-use crate::rays::{Points, Rays};
+use crate::rays::{Points, Rays, Ready};
 use glam::DVec3;
+#[cfg(target_arch = "x86_64")]
+use gridel_core::SimdLevel;
 use gridel_core::accel::DynAccel;
 use gridel_core::format::limits::MAX_STACK_DEPTH;
 use gridel_core::{
     Accel, Fixed, Format, HitList, NoCount, Number, PrimitiveHit, Ray, Scene, Solid, Stack,
     Structure, Wide, all_hits, any_hit, closest_primitive, containment_ray,
 };
-use gridel_host::trace::{DirectionScale, Frame, Rejection, SceneRay};
+#[cfg(target_arch = "x86_64")]
+use gridel_host::simd;
+use gridel_host::trace::{DirectionScale, Frame, SceneRay};
 use rayon::prelude::*;
+use std::ops::Range;
 
 /// Rays whose steps are taken together, as `gridel trace` takes them.
 const BATCH: usize = 16;
@@ -170,6 +175,49 @@ impl Question for Closest {
     }
 }
 
+/// The first hit without its normal.
+pub struct Nearest;
+
+impl Question for Nearest {
+    type Answer = Found;
+    const MISS: Found = Found::MISS;
+    const REJECTED: Found = Closest::REJECTED;
+
+    #[inline(always)]
+    fn hit<N: Number>(met: Met<'_, '_, N>) -> Found {
+        match met.hit {
+            Some(hit) => bare(met.scene, (met.ray, met.scale), hit),
+            None => Found::MISS,
+        }
+    }
+}
+
+/// A hit as arrays hold it, without its normal: for less.
+#[inline(always)]
+fn bare<N: Number>(
+    scene: &Scene<'_>,
+    (ray, scale): (&Ray<N>, &DirectionScale),
+    hit: &PrimitiveHit<N>,
+) -> Found {
+    let error = || {
+        let whole = hit.hit(scene, ray);
+        whole.map_or(0.0, |whole| whole.error.length_to_f64())
+    };
+    let Ok(t) = scale.multiple(N::far_to_f64(hit.t), error) else {
+        return Closest::REJECTED;
+    };
+    let instance = hit.instance();
+    let instance = instance.and_then(|index| scene.instances().get(index as usize));
+    Found {
+        t,
+        object: scene.object(hit.primitive),
+        primitive: hit.primitive,
+        instance: instance.map_or(NONE, |instance| instance.number),
+        leaves: hit.leaves(),
+        normal: [0.0; 3],
+    }
+}
+
 /// A hit as arrays hold it.
 #[inline(always)]
 fn found<N: Number>(
@@ -180,27 +228,41 @@ fn found<N: Number>(
     let Some(whole) = hit.hit(scene, ray) else {
         return Found::MISS;
     };
-    let error = || whole.error.length_to_f64();
-    let Ok(t) = scale.multiple(N::far_to_f64(hit.t), error) else {
-        return Closest::REJECTED;
-    };
-    let instance = hit.instance();
-    let instance = instance.and_then(|index| scene.instances().get(index as usize));
-    Found {
-        t,
-        object: whole.object,
-        primitive: whole.primitive,
-        instance: instance.map_or(NONE, |instance| instance.number),
-        leaves: hit.leaves(),
-        normal: whole.normal.map(|x| x.ratio_to_f64() as f32),
+    let mut found = bare(scene, (ray, scale), hit);
+    if found.primitive != NONE {
+        found.normal = whole.normal.map(|x| x.ratio_to_f64() as f32);
     }
+    found
 }
 
 /// Answers a question about each ray.
 pub fn ask<Q: Question>(scene: &Scene<'_>, rays: Rays<'_>, how: How) -> Vec<Q::Answer> {
     fill(how, rays.len(), Q::MISS, |start, answers| {
-        dispatch!(how, ask_chunk, [Q], (scene, rays, start, answers));
+        ask_some::<Q>(scene, rays, how, (start, answers));
     })
+}
+
+/// Answers a question about some rays, given the number of the first and room for the answers.
+fn ask_some<Q: Question>(
+    scene: &Scene<'_>,
+    rays: Rays<'_>,
+    how: How,
+    (start, answers): (usize, &mut [Q::Answer]),
+) {
+    // What most ask, with the instructions of newer processors all along.
+    #[cfg(target_arch = "x86_64")]
+    if let (Format::F32, Structure::Wide, SimdLevel::Avx2(avx2)) =
+        (how.format, how.structure, simd::level())
+    {
+        return avx2.call(
+            #[inline(always)]
+            |_, scene, rays, start, answers, ()| {
+                ask_inline::<f32, Wide, Q>(scene, rays, start, answers);
+            },
+            (scene, rays, start, answers, ()),
+        );
+    }
+    dispatch!(how, ask_chunk, [Q], (scene, rays, start, answers));
 }
 
 fn ask_chunk<N: Number, A: Accel, Q: Question>(
@@ -209,17 +271,23 @@ fn ask_chunk<N: Number, A: Accel, Q: Question>(
     start: usize,
     answers: &mut [Q::Answer],
 ) {
+    ask_inline::<N, A, Q>(scene, rays, start, answers);
+}
+
+#[inline(always)]
+fn ask_inline<N: Number, A: Accel, Q: Question>(
+    scene: &Scene<'_>,
+    rays: Rays<'_>,
+    start: usize,
+    answers: &mut [Q::Answer],
+) {
     let frame = Frame::of(scene);
     let mut stack = Stack::<MAX_STACK_DEPTH>::new();
-    let mut ready: Vec<Result<(Ray<N>, DirectionScale), Rejection>> = Vec::with_capacity(BATCH);
+    let mut ready: Vec<Ready<N>> = Vec::with_capacity(BATCH);
     let mut met = Vec::with_capacity(BATCH);
     for (batch, answers) in answers.chunks_mut(BATCH).enumerate() {
         let first = start + batch * BATCH;
-        ready.clear();
-        ready.extend((first..first + answers.len()).map(
-            #[inline(always)]
-            |number| frame.ray::<N>(scene, &rays.get(number)),
-        ));
+        rays.fill((scene, &frame), first..first + answers.len(), &mut ready);
         if Q::ANY {
             for (ready, answer) in ready.iter().zip(answers) {
                 let Ok((ray, scale)) = ready else {
@@ -239,10 +307,15 @@ fn ask_chunk<N: Number, A: Accel, Q: Question>(
             continue;
         }
         met.clear();
-        met.extend(ready.iter().map(|ready| {
-            let (ray, _) = ready.as_ref().ok()?;
-            closest_primitive::<N, A, _>(scene, ray, stack.as_view(), &mut NoCount)
-        }));
+        // A loop, not `extend`, which is not inlined and then is not compiled for this processor.
+        for ready in &ready {
+            met.push(match ready {
+                Ok((ray, _)) => {
+                    closest_primitive::<N, A, _>(scene, ray, stack.as_view(), &mut NoCount)
+                }
+                Err(_) => None,
+            });
+        }
         for ((ready, met), answer) in ready.iter().zip(&met).zip(answers) {
             match ready {
                 Ok((ray, scale)) => {
@@ -259,6 +332,98 @@ fn ask_chunk<N: Number, A: Accel, Q: Question>(
                 Err(_) => *answer = Q::REJECTED,
             }
         }
+    }
+}
+
+/// The first hits of some rays, as arrays hold them.
+pub struct Columns<'c, T> {
+    pub t: &'c mut [T],
+    pub object: &'c mut [u32],
+    pub primitive: &'c mut [u32],
+    /// Empty where nobody asks.
+    pub instance: &'c mut [u32],
+    pub normal: &'c mut [[f32; 3]],
+    pub uv: &'c mut [[f32; 2]],
+}
+
+impl<'c, T> Columns<'c, T> {
+    /// The first so many rows, and the others.
+    fn split(self, at: usize) -> (Self, Self) {
+        let (t, more_t) = self.t.split_at_mut(at);
+        let (object, more_objects) = self.object.split_at_mut(at);
+        let (primitive, more_primitives) = self.primitive.split_at_mut(at);
+        let instances = at.min(self.instance.len());
+        let (instance, more_instances) = self.instance.split_at_mut(instances);
+        let (normal, more_normals) = self.normal.split_at_mut(at);
+        let (uv, more_uvs) = self.uv.split_at_mut(at);
+        let first = Self {
+            t,
+            object,
+            primitive,
+            instance,
+            normal,
+            uv,
+        };
+        let rest = Self {
+            t: more_t,
+            object: more_objects,
+            primitive: more_primitives,
+            instance: more_instances,
+            normal: more_normals,
+            uv: more_uvs,
+        };
+        (first, rest)
+    }
+}
+
+/// Rays whose hits are found before they are written: as many as a processor's nearest memory holds.
+const WRITTEN: usize = 256;
+
+/// Finds the first hit of each ray and writes it to arrays of as many rows.
+///
+/// `place` gives the t and the weights of corners of a hit, and `number` its t and its primitive as the arrays have them.
+pub fn cast<T: Send + Copy>(
+    scene: &Scene<'_>,
+    rays: Rays<'_>,
+    how: How,
+    mut columns: Columns<'_, T>,
+    place: impl Fn(&SceneRay, &Found) -> (f64, [f32; 2]) + Sync,
+    number: impl Fn(&Found) -> (T, u32) + Sync,
+) {
+    let mut chunks = Vec::with_capacity(rays.len().div_ceil(CHUNK));
+    for start in (0..rays.len()).step_by(CHUNK) {
+        let (chunk, rest) = columns.split(CHUNK.min(rays.len() - start));
+        chunks.push((start, chunk));
+        columns = rest;
+    }
+    let write = |(start, mut columns): (usize, Columns<'_, T>)| {
+        let mut hits = [Found::MISS; WRITTEN];
+        let mut start = start;
+        while !columns.t.is_empty() {
+            let count = WRITTEN.min(columns.t.len());
+            let (rows, rest) = columns.split(count);
+            let hits = &mut hits[..count];
+            hits.fill(Found::MISS);
+            ask_some::<Closest>(scene, rays, how, (start, hits));
+            for (row, hit) in hits.iter_mut().enumerate() {
+                if hit.primitive != NONE {
+                    (hit.t, rows.uv[row]) = place(&rays.get(start + row), hit);
+                }
+                (rows.t[row], rows.primitive[row]) = number(hit);
+                rows.object[row] = hit.object;
+                rows.normal[row] = hit.normal;
+                if let Some(instance) = rows.instance.get_mut(row) {
+                    *instance = hit.instance;
+                }
+            }
+            start += WRITTEN;
+            columns = rest;
+        }
+    };
+    if how.threads == 1 || chunks.len() <= 1 {
+        chunks.into_iter().for_each(write);
+    } else {
+        with_threads(how.threads, || chunks.into_par_iter().for_each(write));
     }
 }
 
@@ -307,7 +472,7 @@ pub fn all(scene: &Scene<'_>, rays: Rays<'_>, how: How) -> Vec<Vec<(usize, Found
     let chunks = rays.len().div_ceil(CHUNK);
     let chunk = |number: usize| {
         let numbers = number * CHUNK..rays.len().min((number + 1) * CHUNK);
-        dispatch!(how, all_chunk, [], (scene, rays, numbers))
+        all_of::<Closest>(scene, rays, how, numbers)
     };
     if how.threads == 1 || chunks == 1 {
         return (0..chunks).map(chunk).collect();
@@ -317,17 +482,57 @@ pub fn all(scene: &Scene<'_>, rays: Rays<'_>, how: How) -> Vec<Vec<(usize, Found
     })
 }
 
-fn all_chunk<N: Number, A: Accel>(
+/// All hits of some rays.
+fn all_of<Q: Question<Answer = Found>>(
     scene: &Scene<'_>,
     rays: Rays<'_>,
-    numbers: std::ops::Range<usize>,
+    how: How,
+    numbers: Range<usize>,
+) -> Vec<(usize, Found)> {
+    #[cfg(target_arch = "x86_64")]
+    if let (Format::F32, Structure::Wide, SimdLevel::Avx2(avx2)) =
+        (how.format, how.structure, simd::level())
+    {
+        return avx2.call(
+            #[inline(always)]
+            |_, scene, rays, numbers, (), ()| all_inline::<f32, Wide, Q>(scene, rays, numbers),
+            (scene, rays, numbers, (), ()),
+        );
+    }
+    dispatch!(how, all_chunk, [Q], (scene, rays, numbers))
+}
+
+fn all_chunk<N: Number, A: Accel, Q: Question<Answer = Found>>(
+    scene: &Scene<'_>,
+    rays: Rays<'_>,
+    numbers: Range<usize>,
+) -> Vec<(usize, Found)> {
+    all_inline::<N, A, Q>(scene, rays, numbers)
+}
+
+#[inline(always)]
+fn all_inline<N: Number, A: Accel, Q: Question<Answer = Found>>(
+    scene: &Scene<'_>,
+    rays: Rays<'_>,
+    numbers: Range<usize>,
 ) -> Vec<(usize, Found)> {
     let frame = Frame::of(scene);
     let mut all = Vec::with_capacity(2 * numbers.len());
-    for number in numbers {
-        if let Ok((ray, scale)) = frame.ray::<N>(scene, &rays.get(number)) {
-            each_hit::<N, A>(scene, &ray, |hit| {
-                all.push((number, found(scene, (&ray, &scale), hit)));
+    let mut ready: Vec<Ready<N>> = Vec::with_capacity(BATCH);
+    for first in numbers.clone().step_by(BATCH) {
+        let batch = first..numbers.end.min(first + BATCH);
+        rays.fill((scene, &frame), batch.clone(), &mut ready);
+        for (number, ready) in batch.zip(&ready) {
+            let Ok((ray, scale)) = ready else { continue };
+            each_hit::<N, A>(scene, ray, |hit| {
+                let hit = Some(hit);
+                let met = Met {
+                    scene,
+                    ray,
+                    scale,
+                    hit,
+                };
+                all.push((number, Q::hit(met)));
             });
         }
     }
@@ -398,26 +603,10 @@ fn contains_chunk<N: Number, A: Accel>(
     }
 }
 
-/// Changes each of many hits, and collects what comes of it.
-pub fn map<T: Send, R: Send>(
-    how: How,
-    items: &mut [T],
-    change: impl Fn(usize, &mut T) -> R + Sync,
-) -> Vec<R> {
-    if how.threads == 1 || items.len() <= CHUNK {
-        let items = items.iter_mut().enumerate();
-        return items.map(|(number, item)| change(number, item)).collect();
-    }
-    with_threads(how.threads, || {
-        let items = items.par_iter_mut().enumerate().with_min_len(CHUNK);
-        items.map(|(number, item)| change(number, item)).collect()
-    })
-}
-
 /// Places, numbers of rays and triangles.
-type Locations = (Vec<[f64; 3]>, Vec<i64>, Vec<i64>);
+pub type Locations = (Vec<[f64; 3]>, Vec<i64>, Vec<i64>);
 
-/// Where rays meet triangles: at most so many of each ray, or the first alone.
+/// Where rays meet triangles: at most so many of each ray, or the first alone. Chunk by chunk.
 pub fn locations(
     scene: &Scene<'_>,
     rays: Rays<'_>,
@@ -425,16 +614,16 @@ pub fn locations(
     multiple_hits: bool,
     max_hits: Option<usize>,
     place: impl Fn(&SceneRay, &Found) -> [f64; 3] + Sync,
-) -> Locations {
+) -> Vec<Locations> {
     let most = max_hits.unwrap_or(usize::MAX);
     let one = |start: usize| -> Locations {
         let numbers = start..rays.len().min(start + CHUNK);
         let mut hits = Vec::with_capacity(2 * CHUNK);
         if multiple_hits {
-            hits = dispatch!(how, all_chunk, [], (scene, rays, numbers));
+            hits = all_of::<Nearest>(scene, rays, how, numbers);
         } else {
             let mut first = vec![Found::MISS; numbers.len()];
-            dispatch!(how, ask_chunk, [Closest], (scene, rays, start, &mut first));
+            ask_some::<Nearest>(scene, rays, how, (start, &mut first));
             let met = numbers.zip(first);
             hits.extend(met.filter(|(_, hit)| hit.primitive != NONE));
         }
@@ -453,20 +642,9 @@ pub fn locations(
         locations
     };
     let starts: Vec<usize> = (0..rays.len()).step_by(CHUNK).collect();
-    let chunks: Vec<Locations> = if how.threads == 1 || starts.len() <= 1 {
+    if how.threads == 1 || starts.len() <= 1 {
         starts.into_iter().map(one).collect()
     } else {
         with_threads(how.threads, || starts.into_par_iter().map(one).collect())
-    };
-    let mut all = Locations::default();
-    let length = chunks.iter().map(|chunk| chunk.1.len()).sum();
-    all.0.reserve_exact(length);
-    all.1.reserve_exact(length);
-    all.2.reserve_exact(length);
-    for (places, numbers, triangles) in chunks {
-        all.0.extend(places);
-        all.1.extend(numbers);
-        all.2.extend(triangles);
     }
-    all
 }

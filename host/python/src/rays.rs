@@ -1,10 +1,12 @@
 //! Rays and points as NumPy arrays hold them: read in place.
 
 use glam::DVec3;
-use gridel_host::trace::SceneRay;
+use gridel_core::{Number, Ray, Scene};
+use gridel_host::trace::{DirectionScale, Frame, Rejection, SceneRay};
 use numpy::{PyReadonlyArrayDyn, PyUntypedArray, PyUntypedArrayMethods};
 use pyo3::exceptions::{PyTypeError, PyValueError};
 use pyo3::prelude::*;
+use std::ops::Range;
 
 /// An array of single or double precision, kept from being written to by Rust while it is read.
 pub enum Array<'py> {
@@ -66,14 +68,8 @@ impl Values<'_> {
     #[inline(always)]
     fn three(&self, at: usize) -> DVec3 {
         match self {
-            Self::F32(values) => {
-                let values = &values[at..at + 3];
-                DVec3::new(values[0].into(), values[1].into(), values[2].into())
-            }
-            Self::F64(values) => {
-                let values = &values[at..at + 3];
-                DVec3::new(values[0], values[1], values[2])
-            }
+            Self::F32(values) => three(values, at),
+            Self::F64(values) => three(values, at),
         }
     }
 
@@ -131,16 +127,41 @@ impl<'a> Rays<'a> {
         }
     }
 
+    /// Makes rays ready for the core, by their numbers.
+    pub fn fill<N: Number>(
+        &self,
+        (scene, frame): (&Scene<'_>, &Frame),
+        numbers: Range<usize>,
+        ready: &mut Vec<Ready<N>>,
+    ) {
+        ready.clear();
+        let places = (scene, frame, numbers);
+        // A loop for each layout, so that no ray waits to learn its own.
+        match *self {
+            Self::Rows { values, width } => match (values, width) {
+                (Values::F32(values), 6) => fill(places, ready, |number| six(values, number)),
+                (Values::F64(values), 6) => fill(places, ready, |number| six(values, number)),
+                _ => fill(places, ready, |number| self.get(number)),
+            },
+            Self::Two {
+                origins,
+                directions,
+            } => match (origins, directions) {
+                (Values::F64(origins), Values::F64(directions)) => fill(places, ready, |number| {
+                    endless(three(origins, 3 * number), three(directions, 3 * number))
+                }),
+                _ => fill(places, ready, |number| self.get(number)),
+            },
+        }
+    }
+
     /// A ray, by its number.
     #[inline(always)]
     pub fn get(&self, number: usize) -> SceneRay {
         match self {
-            Self::Rows { values, width: 6 } => SceneRay {
-                origin: values.three(6 * number),
-                direction: values.three(6 * number + 3),
-                tmin: 0.0,
-                tmax: f64::INFINITY,
-            },
+            Self::Rows { values, width: 6 } => {
+                endless(values.three(6 * number), values.three(6 * number + 3))
+            }
             Self::Rows { values, .. } => SceneRay {
                 origin: values.three(8 * number),
                 tmin: values.one(8 * number + 3),
@@ -150,14 +171,47 @@ impl<'a> Rays<'a> {
             Self::Two {
                 origins,
                 directions,
-            } => SceneRay {
-                origin: origins.three(3 * number),
-                direction: directions.three(3 * number),
-                tmin: 0.0,
-                tmax: f64::INFINITY,
-            },
+            } => endless(origins.three(3 * number), directions.three(3 * number)),
         }
     }
+}
+
+/// A ray in the core's form, or why it is none.
+pub type Ready<N> = Result<(Ray<N>, DirectionScale), Rejection>;
+
+#[inline(never)]
+fn fill<N: Number>(
+    (scene, frame, numbers): (&Scene<'_>, &Frame, Range<usize>),
+    ready: &mut Vec<Ready<N>>,
+    ray: impl Fn(usize) -> SceneRay,
+) {
+    ready.extend(numbers.map(
+        #[inline(always)]
+        |number| frame.ray(scene, &ray(number)),
+    ));
+}
+
+/// A ray from its origin on.
+#[inline(always)]
+fn endless(origin: DVec3, direction: DVec3) -> SceneRay {
+    SceneRay {
+        origin,
+        direction,
+        tmin: 0.0,
+        tmax: f64::INFINITY,
+    }
+}
+
+/// A ray of a row of six numbers.
+#[inline(always)]
+fn six<T: Copy + Into<f64>>(values: &[T], number: usize) -> SceneRay {
+    endless(three(values, 6 * number), three(values, 6 * number + 3))
+}
+
+#[inline(always)]
+fn three<T: Copy + Into<f64>>(values: &[T], at: usize) -> DVec3 {
+    let values = &values[at..at + 3];
+    DVec3::new(values[0].into(), values[1].into(), values[2].into())
 }
 
 /// Points in rows of three numbers.

@@ -1,7 +1,7 @@
 //! Scenes as Python holds them.
 
 use crate::closed::closed;
-use crate::query::{self, Any, Closest, FirstPrimitive, Found, How, NONE};
+use crate::query::{self, Any, Columns, FirstPrimitive, Found, How, NONE};
 use crate::rays::{Array, Points, Rays};
 use glam::DVec3;
 use gridel_core::{BlobError, Format, Scene, Settings, Structure};
@@ -164,6 +164,8 @@ impl NativeScene {
 
     /// Where a ray meets a triangle as it was given, in double precision, and the weights of its second and third corner;
     /// by the hit's own t where the triangle is not a mesh's, or nearly parallel to the ray.
+    // Inlined, it computes what is used there, and nothing else.
+    #[inline(always)]
     fn place(&self, ray: &SceneRay, hit: &Found) -> (f64, DVec3, [f64; 2]) {
         let own = ray.origin + ray.direction * hit.t;
         if hit.instance != NONE {
@@ -202,6 +204,76 @@ type HitArrays<'py> = (
     Bound<'py, PyArray2<f32>>,
 );
 
+/// First hits as Open3D has them: t, object, primitive, normal, uv.
+type MeshHitArrays<'py> = (
+    Arrays<'py, f32>,
+    Arrays<'py, u32>,
+    Arrays<'py, u32>,
+    Bound<'py, PyArray2<f32>>,
+    Bound<'py, PyArray2<f32>>,
+);
+
+/// The first hits of rays, in memory of NumPy's, which takes large pages where there are some.
+struct Cast<'py, T> {
+    t: Arrays<'py, T>,
+    object: Arrays<'py, u32>,
+    primitive: Arrays<'py, u32>,
+    instance: Arrays<'py, u32>,
+    normal: Bound<'py, PyArray2<f32>>,
+    uv: Bound<'py, PyArray2<f32>>,
+}
+
+/// Zeros, which are not written to before they are filled in.
+fn zeros<T: numpy::Element>(py: Python<'_>, length: usize) -> Arrays<'_, T> {
+    PyArray1::zeros(py, length, false)
+}
+
+impl NativeScene {
+    /// Finds the first hit of each ray; `number` gives its t and its primitive as the caller has them.
+    fn cast_into<'py, T: numpy::Element + Send + Copy>(
+        &self,
+        py: Python<'py>,
+        (scene, rays, how): (&Scene<'_>, Rays<'_>, How),
+        has_instances: bool,
+        number: impl Fn(&Found) -> (T, u32) + Sync + Send,
+    ) -> PyResult<Cast<'py, T>> {
+        let length = rays.len();
+        let t = zeros(py, length);
+        let [object, primitive] = [length; 2].map(|length| zeros(py, length));
+        let instance = zeros(py, if has_instances { length } else { 0 });
+        let [normal, uv] = [3 * length, 2 * length].map(|length| zeros(py, length));
+        {
+            let mut t = t.readwrite();
+            let [mut object, mut primitive, mut instance] =
+                [&object, &primitive, &instance].map(|array| array.readwrite());
+            let [mut normal, mut uv] = [&normal, &uv].map(|array| array.readwrite());
+            let (normal, _) = normal.as_slice_mut().map_err(invalid)?.as_chunks_mut();
+            let (uv, _) = uv.as_slice_mut().map_err(invalid)?.as_chunks_mut();
+            let columns = Columns {
+                t: t.as_slice_mut().map_err(invalid)?,
+                object: object.as_slice_mut().map_err(invalid)?,
+                primitive: primitive.as_slice_mut().map_err(invalid)?,
+                instance: instance.as_slice_mut().map_err(invalid)?,
+                normal,
+                uv,
+            };
+            let place = |ray: &SceneRay, hit: &Found| {
+                let (t, _, uv) = self.place(ray, hit);
+                (t, uv.map(|weight| weight as f32))
+            };
+            py.detach(|| query::cast(scene, rays, how, columns, place, number));
+        }
+        Ok(Cast {
+            t,
+            object,
+            primitive,
+            instance,
+            normal: normal.reshape([length, 3])?,
+            uv: uv.reshape([length, 2])?,
+        })
+    }
+}
+
 /// Collects one number of each hit.
 fn column<'py, T: numpy::Element>(
     py: Python<'py>,
@@ -209,6 +281,13 @@ fn column<'py, T: numpy::Element>(
     number: impl Fn(&(usize, Found)) -> T,
 ) -> Arrays<'py, T> {
     hits.iter().map(number).collect::<Vec<_>>().into_pyarray(py)
+}
+
+/// Copies values to the start of a slice, and returns the rest of it.
+fn append<'s, T: Copy>(to: &'s mut [T], values: &[T]) -> &'s mut [T] {
+    let (first, rest) = to.split_at_mut(values.len());
+    first.copy_from_slice(values);
+    rest
 }
 
 fn rows<'py, T: numpy::Element, const WIDTH: usize>(
@@ -326,31 +405,48 @@ impl NativeScene {
             Array::borrow(rays, "rays")?,
         );
         let (scene, rays) = (self.chosen(how)?, Rays::rows(array.rows("rays")?)?);
-        let (hits, uvs) = py.detach(|| {
-            let mut hits = query::ask::<Closest>(&scene, rays, how);
-            let uvs = query::map(how, &mut hits, |number, hit| {
-                if hit.primitive == NONE {
-                    return [0.0; 2];
-                }
-                let (t, _, uv) = self.place(&rays.get(number), hit);
-                hit.t = t;
-                uv.map(|weight| weight as f32)
-            });
-            (hits, uvs)
-        });
-        let each = |number: fn(&Found) -> u32| -> Arrays<'py, u32> {
-            hits.iter().map(number).collect::<Vec<_>>().into_pyarray(py)
-        };
+        let number = |hit: &Found| (hit.t, hit.primitive);
+        let found = self.cast_into(py, (&scene, rays, how), true, number)?;
         Ok((
-            hits.iter()
-                .map(|hit| hit.t)
-                .collect::<Vec<_>>()
-                .into_pyarray(py),
-            each(|hit| hit.object),
-            each(|hit| hit.primitive),
-            each(|hit| hit.instance),
-            rows(py, hits.iter().map(|hit| hit.normal).collect())?,
-            rows(py, uvs)?,
+            found.t,
+            found.object,
+            found.primitive,
+            found.instance,
+            found.normal,
+            found.uv,
+        ))
+    }
+
+    /// The first hits as Open3D has them: t in single precision, object, primitive counted from its object's first,
+    /// normal, uv.
+    fn cast_rays<'py>(
+        &self,
+        py: Python<'py>,
+        rays: &Bound<'py, PyUntypedArray>,
+        threads: usize,
+    ) -> PyResult<MeshHitArrays<'py>> {
+        let (how, array) = (
+            self.how("f32", None, threads)?,
+            Array::borrow(rays, "rays")?,
+        );
+        let (scene, rays) = (self.chosen(how)?, Rays::rows(array.rows("rays")?)?);
+        let number = |hit: &Found| {
+            // A ray without a direction hits nothing there.
+            let t = if hit.t.is_nan() {
+                f32::INFINITY
+            } else {
+                hit.t as f32
+            };
+            let first = self.firsts.get(hit.object as usize).copied();
+            (t, first.map_or(NONE, |first| hit.primitive - first))
+        };
+        let found = self.cast_into(py, (&scene, rays, how), false, number)?;
+        Ok((
+            found.t,
+            found.object,
+            found.primitive,
+            found.normal,
+            found.uv,
         ))
     }
 
@@ -497,16 +593,28 @@ impl NativeScene {
         ];
         let rays = Rays::two(arrays[0].rows("origins")?, arrays[1].rows("directions")?)?;
         let scene = self.chosen(how)?;
-        let (places, numbers, triangles) = py.detach(|| {
+        let chunks = py.detach(|| {
             query::locations(&scene, rays, how, multiple_hits, max_hits, |ray, hit| {
                 self.place(ray, hit).1.to_array()
             })
         });
-        Ok((
-            rows(py, places)?,
-            numbers.into_pyarray(py),
-            triangles.into_pyarray(py),
-        ))
+        let length = chunks.iter().map(|chunk| chunk.0.len()).sum();
+        let places = zeros(py, 3 * length);
+        let [numbers, triangles] = [length; 2].map(|length| zeros(py, length));
+        {
+            let mut places = places.readwrite();
+            let [mut numbers, mut triangles] =
+                [&numbers, &triangles].map(|array| array.readwrite());
+            let mut places = places.as_slice_mut().map_err(invalid)?;
+            let mut numbers = numbers.as_slice_mut().map_err(invalid)?;
+            let mut triangles = triangles.as_slice_mut().map_err(invalid)?;
+            for chunk in chunks {
+                places = append(places, chunk.0.as_flattened());
+                numbers = append(numbers, &chunk.1);
+                triangles = append(triangles, &chunk.2);
+            }
+        }
+        Ok((places.reshape([length, 3])?, numbers, triangles))
     }
 
     /// Whether each point lies in a closed object, or with `closed_only` false in any object by parity.

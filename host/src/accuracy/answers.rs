@@ -1,7 +1,7 @@
 //! The answers at the top of the page: which setting for a given error, what the number format changes, and what to
 //! give up first.
 
-use super::{Cost, Parameter, Point, Results, cheapest};
+use super::{Cost, Parameter, Point, Results, Truth, cheapest};
 use crate::table::{counted, significant};
 use gridel_core::Format;
 
@@ -65,6 +65,11 @@ fn setting_text(results: &Results, point: &Point) -> String {
 
 /// What the other formats change at the scene file's own setting.
 fn format_answer(results: &Results, all: &Point) -> Option<String> {
+    let truth = results.reference.truth;
+    let from = match truth {
+        Truth::F64 => "`f64`",
+        Truth::Exact => "the exact picture",
+    };
     let clause = |format: Format| {
         let point = results.points.iter().find(|it| {
             it.setting.format == format
@@ -75,9 +80,12 @@ fn format_answer(results: &Results, all: &Point) -> Option<String> {
                     .all(|it| *it == Parameter::Format)
         })?;
         let apart = match point.parts.arithmetic_largest {
-            0.0 => String::from("draws the picture of `f64` exactly"),
+            0.0 => match truth {
+                Truth::F64 => String::from("draws the picture of `f64` exactly"),
+                Truth::Exact => String::from("draws the exact picture"),
+            },
             largest => format!(
-                "differs from `f64` by an RMSE of {} (largest difference {} of 255)",
+                "differs from {from} by an RMSE of {} (largest difference {} of 255)",
                 figure(point.parts.arithmetic),
                 (255.0 * largest).ceil()
             ),
@@ -93,7 +101,7 @@ fn format_answer(results: &Results, all: &Point) -> Option<String> {
     let base = results.base.format;
     let others = Format::ALL
         .into_iter()
-        .filter(|&it| it != base && it != Format::F64);
+        .filter(|&it| it != base && (it != Format::F64 || truth == Truth::Exact));
     let clauses: Vec<String> = [base]
         .into_iter()
         .chain(others)

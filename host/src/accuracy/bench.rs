@@ -1,6 +1,7 @@
 //! Builds and renders settings, and measures what is wrong with the pictures and what they cost.
 
 use super::setting::Setting;
+use super::truth::{Truth, exact_pixels};
 use crate::blob::Blob;
 use crate::compile::{self, CompileError, Quality};
 use crate::measure::board::instructions;
@@ -33,13 +34,16 @@ pub struct Point {
 /// one may cancel the other.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct ErrorParts {
-    /// The picture of `f64` with this setting against the reference: what samples, depth, cut-off, lattice and left-out
+    /// The true picture of this setting, of `f64` or exact, against the reference: what samples, depth, cut-off, lattice and left-out
     /// effects do.
     pub sampling: f64,
-    /// The picture of the setting's number format against that of `f64` with this setting.
+    /// The picture of the setting's number format against the true picture of this setting.
     pub arithmetic: f64,
     /// The largest difference between these two.
     pub arithmetic_largest: f64,
+    /// Pixels of an exact picture that are open.
+    #[serde(default)]
+    pub open: usize,
 }
 
 /// The cost of a picture.
@@ -103,6 +107,11 @@ impl Point {
 pub struct Reference {
     /// Samples a pixel.
     pub samples: u16,
+    #[serde(default)]
+    pub truth: Truth,
+    /// Pixels of an exact picture that are open.
+    #[serde(default)]
+    pub open: usize,
     /// Linear, 65535 being white.
     pub pixels: Vec<[u16; 3]>,
     /// One value per pixel; `None` on a miss.
@@ -118,6 +127,9 @@ pub enum MeasureError {
     #[error("the scene cannot be rendered: {0}")]
     #[diagnostic(help("change `[render]` in the scene file"))]
     Render(#[from] RenderError),
+    #[error(transparent)]
+    #[diagnostic(help("leave it out of the scene, or measure against `--reference f64`"))]
+    Unknown(#[from] crate::certify::Unknown),
     #[error("a compiled scene is rejected: {0}")]
     #[diagnostic(help("this is a fault of gridel: report it with the scene file"))]
     Blob(#[from] gridel_core::BlobError),
@@ -147,10 +159,14 @@ pub struct Bench<'s> {
     pub size: [u16; 2],
     /// Instances of the scene file that were [copied](crate::scene::Imported::copied), for the report.
     pub copied: usize,
+    /// What stands for the truth.
+    pub truth: Truth,
     blobs: HashMap<(u8, u64, u32), Blob>,
     hits: HashMap<(u8, u64, u32, &'static str), Vec<Option<FirstHit>>>,
     /// Pictures that others are measured against, by the names of their settings.
     pictures: HashMap<String, Vec<[u16; 3]>>,
+    /// Exact pictures, and how many of their pixels are open, by settings of `f64`.
+    exact: HashMap<String, (Vec<[u16; 3]>, usize)>,
 }
 
 /// How the reference is made: double precision, the finest lattice, all reflections that a picture
@@ -174,9 +190,11 @@ impl<'s> Bench<'s> {
             quality: Quality::default(),
             size,
             copied: 0,
+            truth: Truth::F64,
             blobs: HashMap::new(),
             hits: HashMap::new(),
             pictures: HashMap::new(),
+            exact: HashMap::new(),
         }
     }
 
@@ -242,9 +260,12 @@ impl<'s> Bench<'s> {
     /// Renders the reference, on all threads of the pool that this is called in.
     pub fn reference(&mut self, samples: u16) -> Result<Reference, MeasureError> {
         let setting = reference_setting(samples);
+        let (pixels, open) = self.true_picture(&setting)?;
         Ok(Reference {
             samples,
-            pixels: self.rendered(&setting, false)?.picture.pixels,
+            truth: self.truth,
+            open,
+            pixels,
             hits: self.first_hits(&setting)?,
         })
     }
@@ -265,6 +286,25 @@ impl<'s> Bench<'s> {
         Ok(pixels)
     }
 
+    /// The true picture of a setting in any format, and how many of its pixels are open.
+    fn true_picture(&mut self, setting: &Setting) -> Result<(Vec<[u16; 3]>, usize), MeasureError> {
+        let setting = Setting {
+            format: Format::F64,
+            ..*setting
+        };
+        if self.truth == Truth::F64 {
+            return Ok((self.picture(&setting)?, 0));
+        }
+        let name = setting.name();
+        if let Some(exact) = self.exact.get(&name) {
+            return Ok(exact.clone());
+        }
+        let settings = settings(self.size, &setting);
+        let exact = exact_pixels(&self.blob(&setting)?.scene()?, &settings)?;
+        self.exact.insert(name, exact.clone());
+        Ok(exact)
+    }
+
     /// Measures a setting but for its time; its pixels, too.
     pub fn measure(
         &mut self,
@@ -273,10 +313,7 @@ impl<'s> Bench<'s> {
     ) -> Result<(Point, Vec<[u16; 3]>), MeasureError> {
         let rendered = self.rendered(setting, true)?;
         let hits = self.first_hits(setting)?;
-        let exact = self.picture(&Setting {
-            format: Format::F64,
-            ..*setting
-        })?;
+        let (exact, open) = self.true_picture(setting)?;
         let full = match setting.without {
             Effects::NONE => None,
             _ => {
@@ -303,6 +340,7 @@ impl<'s> Bench<'s> {
                 sampling,
                 arithmetic,
                 arithmetic_largest,
+                open,
             },
             lost: full.map(|(pixels, hits)| Errors::of(self.size[0], (&pixels, &hits), found)),
             cost: Cost {

@@ -5,6 +5,7 @@
 //! |---|---|
 //! | `setting.rs` | what is swept |
 //! | `bench.rs` | renders and compares |
+//! | `truth.rs` | what pictures are compared with |
 //! | `effects.rs` | what each effect is worth |
 //! | `answers.rs` | the answers in three sentences |
 //! | `page.rs`, `page.html` | the page, and its template |
@@ -16,16 +17,20 @@ mod bench;
 mod effects;
 mod instances;
 mod page;
+#[cfg(not(target_family = "wasm"))]
 mod plot;
 mod setting;
+mod truth;
 
 pub use answers::answers;
 pub use bench::{Bench, Cost, ErrorParts, MeasureError, Point, Reference, reference_setting};
 pub use effects::{BOARD, Worth, given_up, worths};
 pub use instances::instance_notes;
 pub use page::{MOST_PICTURE_BYTES, PagePicture, page};
+#[cfg(not(target_family = "wasm"))]
 pub use plot::plot;
 pub use setting::{Parameter, Setting, least_reference_samples, sweep};
+pub use truth::Truth;
 
 use crate::measure::InstanceCount;
 use crate::table::significant;
@@ -376,6 +381,7 @@ mod tests {
                 sampling: rmse,
                 arithmetic: 0.0,
                 arithmetic_largest: 0.0,
+                open: 0,
             },
             lost: None,
             cost: Cost {

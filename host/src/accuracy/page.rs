@@ -3,8 +3,8 @@
 //! `page.html` is the template, with the page's style and script; its marks `{{NAME}}` are replaced here.
 
 use super::{
-    Parameter, Point, Results, Setting, Worth, answers, frontier, frontier_by, instance_notes,
-    sentences,
+    Parameter, Point, Results, Setting, Truth, Worth, answers, frontier, frontier_by,
+    instance_notes, sentences,
 };
 use crate::measure::board::core_names;
 use crate::picture::write_png;
@@ -41,12 +41,23 @@ pub fn page(
 ) -> io::Result<String> {
     let name = escape(scene);
     let mut about = format!(
-        "{} x {} pixels, one thread. The reference: <code>f64</code>, 24 lattice bits, ray depth 16, {} per pixel. \
+        "{} x {} pixels, one thread. The reference: {}, 24 lattice bits, ray depth 16, {} per pixel. \
          Errors are of display values from 0 to 1.",
         size[0],
         size[1],
+        match results.reference.truth {
+            Truth::F64 => "<code>f64</code>",
+            Truth::Exact => "the exact picture that <code>gridel certify</code> proves",
+        },
         counted(results.reference.samples.into(), "sample")
     );
+    if results.reference.open > 0 {
+        let open = grouped(results.reference.open);
+        let _ = write!(
+            about,
+            " Open pixels of it, which stand in the middle of what is known: {open}."
+        );
+    }
     if let Some(instances) = &results.instances {
         let notes = instance_notes(instances).join(" ");
         let _ = write!(about, " {}", code(&escape(&notes)));
@@ -58,8 +69,11 @@ pub fn page(
             .collect()
     };
     let notes = format!(
-        "<ul>\n{}</ul>\n{NOTES}",
-        list(sentences(&results.base, &results.points))
+        "<ul>\n{}</ul>\n<p>Sampling error: {truth} of a setting against the reference; it is what samples, depth, \
+         cut-off, lattice and left-out effects do. Arithmetic error: the picture of the setting's number format against \
+         {truth} of the same setting. Both are RMSEs, and need not add up.</p>\n{NOTES}",
+        list(sentences(&results.base, &results.points)),
+        truth = code(results.reference.truth.picture()),
     );
     let parts = [
         ("SCENE", name),
@@ -83,10 +97,7 @@ pub fn page(
     Ok(page)
 }
 
-const NOTES: &str = "<p>Sampling error: the picture of <code>f64</code> with a setting against the reference; it is \
-    what samples, depth, cut-off, lattice and left-out effects do. Arithmetic error: the picture of the setting's number \
-    format against that of <code>f64</code> with the same setting. Both are RMSEs, and need not add up.</p>\n\
-    <p>A bar spans the repeats of a time, or the least and the most instructions that rays of recorded pictures take. \
+const NOTES: &str = "<p>A bar spans the repeats of a time, or the least and the most instructions that rays of recorded pictures take. \
     A time is higher where all repeats of one take longer than all of the other; where repeats overlap, rays and tests \
     decide within a number format. t counts units of the last place of single precision. SSIM is structural similarity, \
     1 for equal pictures; FLIP is the mean difference that an eye sees.</p>\n";

@@ -22,6 +22,8 @@ pub enum Start {
         part: u8,
         /// The plane of a flat surface.
         plane: u32,
+        /// Planes of other surfaces that it lies in exactly.
+        also: [u32; 2],
         /// Whether it goes to the other side than that of the normal.
         inward: bool,
     },

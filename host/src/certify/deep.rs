@@ -273,6 +273,17 @@ impl Enclosure for Ball {
         })
     }
 
+    fn point(self) -> Self {
+        on_balls(|balls| {
+            let middle = balls.get(self).0.clone();
+            balls.push(middle, 0.0)
+        })
+    }
+
+    fn radius(self) -> f64 {
+        on_balls(|balls| balls.get(self).1)
+    }
+
     fn hull(self, other: Self) -> Self {
         on_balls(|balls| {
             let ((a, r), (b, s)) = (balls.get(self), balls.get(other));

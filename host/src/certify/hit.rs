@@ -20,6 +20,8 @@ pub struct Hit<N> {
     pub twin: u32,
     pub part: u8,
     pub plane: u32,
+    /// Planes of other surfaces that the point lies in exactly, at an edge.
+    pub also: [u32; 2],
 }
 
 impl<N: Enclosure> Hit<N> {
@@ -39,6 +41,7 @@ impl<N: Enclosure> Hit<N> {
             twin: self.twin,
             part: self.part,
             plane: self.plane,
+            also: self.also,
             inward: !outward,
         }
     }

@@ -227,6 +227,29 @@ impl Enclosure for Interval {
         Self::new((low - margin(low)).max(0.0), (high + margin(high)).min(1.0))
     }
 
+    fn point(self) -> Self {
+        let middle = self.low + (self.high - self.low) * 0.5;
+        Self::exact(if middle.is_finite() {
+            middle.clamp(self.low, self.high)
+        } else {
+            self.low.max(-f64::MAX).min(self.high)
+        })
+    }
+
+    fn radius(self) -> f64 {
+        ((self.high - self.low) * 0.5).next_up()
+    }
+
+    fn half(self) -> Self {
+        // Exact, but for numbers that are hardly floats.
+        let half = |x: f64| x * 0.5;
+        let is_exact = |x: f64| x == 0.0 || x.abs() > 1e-300;
+        if is_exact(self.low) && is_exact(self.high) {
+            return Self::new(half(self.low), half(self.high));
+        }
+        Self::new(down(half(self.low)), up(half(self.high)))
+    }
+
     fn hull(self, other: Self) -> Self {
         Self::new(self.low.min(other.low), self.high.max(other.high))
     }

@@ -13,7 +13,7 @@
 //! | `number.rs` | what a number that encloses another one can do |
 //! | `interval.rs`, `deep.rs` | intervals of double precision; balls of 128 and 256 bits |
 //! | `world.rs` | a blob's integers, and a hierarchy of boxes |
-//! | `crossing.rs`, `shapes.rs`, `cone.rs` | where rays cross primitives |
+//! | `crossing.rs`, `shapes.rs`, `cone.rs`, `torus.rs` | where rays cross primitives |
 //! | `hit.rs`, `search.rs` | hits, and every crossing that may be the nearest |
 //! | `trace.rs`, `light.rs`, `shade.rs` | the rays of a sample, and the rules of effects |
 //! | `reason.rs` | why a pixel is open |
@@ -35,11 +35,12 @@ mod report;
 mod search;
 mod shade;
 mod shapes;
+mod torus;
 mod trace;
 mod world;
 
 pub use page::{Pictures, page, sentence};
-pub use picture::{Enclosed, LEVELS, code, enclose, explain};
+pub use picture::{Enclosed, LEVELS, code, enclose, explain, linear};
 pub use reason::Reason;
 pub use report::{FormatReport, OpenPixel, OpenPixels, Report, Width, certify, exact_picture, map};
 pub use search::{Open, Step};

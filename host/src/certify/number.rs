@@ -33,6 +33,12 @@ pub trait Enclosure:
     /// e to the power of minus this number, which is not negative.
     fn exp_neg(self) -> Self;
 
+    /// One of the numbers that are enclosed, exactly.
+    fn point(self) -> Self;
+
+    /// At least how far numbers that are enclosed are from [`point`](Self::point).
+    fn radius(self) -> f64;
+
     /// Encloses what both enclose, and all in between.
     fn hull(self, other: Self) -> Self;
 

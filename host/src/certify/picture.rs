@@ -217,16 +217,45 @@ fn evaluate<N: Enclosure>(
     }
 }
 
-/// The 8-bit value of a bound.
-fn code_of(world: &World<'_>, linear: [f64; 3]) -> [u8; 3] {
-    code(linear.map(|x| {
-        let value = (x * 65535.0 + 0.5).clamp(0.0, 65535.0) as u16;
+/// The 16-bit values of the bounds.
+fn rounded(world: &World<'_>, linear: &[[f64; 2]; 3]) -> [[u16; 3]; 2] {
+    // What the sum and the product round does not reach the value that is cut off.
+    let value = |x: f64, by: f64| {
+        let value = ((x + by).clamp(0.0, 1.0) * 65535.0 + 0.5).clamp(0.0, 65535.0) as u16;
         if world.scene.view().display_values != 0 {
             from_display(value)
         } else {
             value
         }
-    }))
+    };
+    [
+        linear.map(|[low, _]| value(low, -1e-15)),
+        linear.map(|[_, high]| value(high, 1e-15)),
+    ]
+}
+
+/// Takes in what another evaluation encloses: both hold the exact value, so what both enclose does.
+fn narrow(known: &mut [[f64; 2]; 3], evaluated: &Evaluated) {
+    if let Some(linear) = evaluated.linear {
+        for (known, [low, high]) in known.iter_mut().zip(linear) {
+            *known = [known[0].max(low), known[1].min(high)];
+        }
+    }
+}
+
+/// The linear values of a pixel as a picture has them, 65535 being white, and whether they are proved: of those that
+/// are not, the middle.
+pub fn linear(world: &World<'_>, settings: &Settings, pixel: [u16; 2]) -> ([u16; 3], bool) {
+    let mut known = [[0.0, 1.0]; 3];
+    for level in 0..LEVELS.len() {
+        narrow(&mut known, &at_level(world, settings, pixel, level, None));
+        let [low, high] = rounded(world, &known);
+        if low == high {
+            return (low, true);
+        }
+    }
+    let [low, high] = rounded(world, &known);
+    ([0, 1, 2].map(|k| low[k].midpoint(high[k])), false)
 }
 
 /// Encloses a pixel: with more bits until its 8-bit values are proved.
@@ -241,20 +270,8 @@ pub fn enclose(world: &World<'_>, settings: &Settings, pixel: [u16; 2], levels: 
     for level in 0..levels.clamp(1, LEVELS.len()) {
         let evaluated = at_level(world, settings, pixel, level, None);
         enclosed.level = level as u8;
-        if let Some(linear) = evaluated.linear {
-            // Both hold the exact value, so what both enclose does.
-            for (known, [low, high]) in enclosed.linear.iter_mut().zip(linear) {
-                *known = [known[0].max(low), known[1].min(high)];
-            }
-        }
-        // What the sum and the product round does not reach the value that is cut off.
-        let margin = |x: f64, by: f64| (x + by).clamp(0.0, 1.0);
-        let rounded = 1e-15;
-        enclosed.low = code_of(world, enclosed.linear.map(|[low, _]| margin(low, -rounded)));
-        enclosed.high = code_of(
-            world,
-            enclosed.linear.map(|[_, high]| margin(high, rounded)),
-        );
+        narrow(&mut enclosed.linear, &evaluated);
+        [enclosed.low, enclosed.high] = rounded(world, &enclosed.linear).map(code);
         if enclosed.low == enclosed.high {
             enclosed.reason = 0;
             enclosed.on_boundary = 0;

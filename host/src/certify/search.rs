@@ -47,6 +47,8 @@ pub struct Candidate<N> {
     pub crossing: Crossing<N>,
     pub instance: u32,
     pub solid: u32,
+    /// Planes of other surfaces that are crossed at exactly the same t.
+    pub also: [u32; 2],
 }
 
 /// Follows the rays of one sample.
@@ -152,12 +154,16 @@ impl Tracer<'_, '_> {
             }
         };
         let beats = |a: &Candidate<N>, b: &Candidate<N>| {
-            if (a.instance, a.solid) == (b.instance, b.solid)
-                && b.crossing.leaves
-                && !a.crossing.leaves
-            {
-                // A solid is entered before it is left.
-                return a.crossing.sure;
+            if (a.instance, a.solid) == (b.instance, b.solid) {
+                let (first, second) = (&a.crossing, &b.crossing);
+                // A solid is entered before it is left. Those of tori are numbered along the ray.
+                if matches!(solid(a).form, Form::Torus { .. }) {
+                    let number = |it: &Crossing<N>| (it.part, it.leaves);
+                    return first.sure && number(first) < number(second);
+                }
+                if second.leaves && !first.leaves {
+                    return first.sure;
+                }
             }
             a.crossing.sure
                 && match order(a, b) {
@@ -192,6 +198,25 @@ impl Tracer<'_, '_> {
                 && is_plain(a)
                 && is_plain(b)
         };
+        // Where planes are crossed at one t, what starts there starts on all of them.
+        for candidate in &mut left {
+            for other in &found {
+                let Some((instance, other_plane)) = plane(other) else {
+                    continue;
+                };
+                let is_known = instance != candidate.instance
+                    || plane(candidate) == plane(other)
+                    || candidate.also.contains(&other_plane);
+                if is_known
+                    || compare(&candidate.crossing, &other.crossing) != Some(Ordering::Equal)
+                {
+                    continue;
+                }
+                if let Some(free) = candidate.also.iter_mut().find(|it| **it == NONE) {
+                    *free = other_plane;
+                }
+            }
+        }
         let mut index = 0;
         while index < left.len() {
             if (0..index).any(|before| alike(&left[before], &left[index])) {
@@ -280,6 +305,7 @@ impl Tracer<'_, '_> {
                         crossing,
                         instance,
                         solid: number,
+                        also: [NONE; 2],
                     };
                     end = visit(candidate, end);
                 }
@@ -316,6 +342,7 @@ impl Tracer<'_, '_> {
             crossing,
             instance,
             solid: number,
+            also,
         } = *candidate;
         let solid = &self.world.space(instance).solids[number as usize];
         let part = crossing.part;
@@ -360,6 +387,7 @@ impl Tracer<'_, '_> {
             twin: solid.twin,
             part,
             plane: solid.planes[usize::from(part)],
+            also,
         })
     }
 }

@@ -6,6 +6,7 @@
 use super::cone;
 use super::crossing::{Crossing, Grazes, Ray, Start, axis_of, compare, exact, flat_normal};
 use super::number::*;
+use super::torus;
 use super::world::{Form, NONE, Placed, Solid};
 use std::cmp::Ordering;
 
@@ -52,17 +53,21 @@ pub fn crossings<N: Enclosure>(
     ray: &Ray<N>,
     found: &mut Vec<Crossing<N>>,
 ) -> Result<(), Grazes> {
-    let (plane, itself) = match ray.start {
+    let (planes, itself) = match ray.start {
         Start::On {
             instance: from,
             twin,
             part,
             plane,
+            also: [second, third],
             inward,
-        } if from == instance => (plane, (solid.twin == twin).then_some((part, inward))),
-        _ => (NONE, None),
+        } if from == instance => (
+            [plane, second, third],
+            (solid.twin == twin).then_some((part, inward)),
+        ),
+        _ => ([NONE; 3], None),
     };
-    let same_plane = |of: u32| of != NONE && of == plane;
+    let same_plane = |of: u32| of != NONE && planes.contains(&of);
     match solid.form {
         Form::Triangle {
             corners, normal, ..
@@ -114,6 +119,7 @@ pub fn crossings<N: Enclosure>(
             ];
             cone::crossings(&solid.form, at, ray, found)
         }
+        Form::Torus { .. } => torus::crossings(&solid.form, itself.is_some(), ray, found),
     }
 }
 
@@ -343,6 +349,7 @@ pub fn normal<N: Enclosure>(form: &Form, part: u8, point: Three<N>) -> Option<Th
             Some(exact(normal))
         }
         Form::Cone { .. } => cone::normal(form, part, point),
+        Form::Torus { .. } => torus::normal(form, point),
     }
 }
 

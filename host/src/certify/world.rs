@@ -97,6 +97,13 @@ pub enum Form {
         base_radius: i64,
         apex_radius: i64,
     },
+    /// Of a major radius above 0.
+    Torus {
+        center: [i64; 3],
+        axis: [i64; 3],
+        major: i64,
+        minor: i64,
+    },
 }
 
 /// A place where a part stands.
@@ -269,7 +276,17 @@ fn form(scene: &Scene<'_>, slot: usize, geometry: Geometry) -> Option<Form> {
             base_radius: cone.base_radius.into(),
             apex_radius: cone.apex_radius.into(),
         },
-        _ => return None,
+        // Squares of spheres' quadratics have no simple roots.
+        Geometry::Torus(torus) if torus.major_radius == 0 => Form::Sphere {
+            center: wide(torus.center),
+            radius: torus.minor_radius.into(),
+        },
+        Geometry::Torus(torus) => Form::Torus {
+            center: wide(torus.center),
+            axis: reduced(wide(torus.axis)),
+            major: torus.major_radius.into(),
+            minor: torus.minor_radius.into(),
+        },
     })
 }
 
@@ -304,7 +321,7 @@ impl Planes {
                 planes[1] = self.number(base, axis);
                 planes[2] = self.number([0, 1, 2].map(|k| base[k] + axis[k]), axis);
             }
-            Form::Sphere { .. } => {}
+            Form::Sphere { .. } | Form::Torus { .. } => {}
         }
         planes
     }
@@ -322,6 +339,12 @@ impl Planes {
         let next = self.0.len() as u32;
         *self.0.entry((reduced, offset)).or_insert(next)
     }
+}
+
+/// The shortest vector of integers with the same direction.
+fn reduced(vector: [i64; 3]) -> [i64; 3] {
+    let divisor = vector.iter().fold(0, |a, &b| gcd(a, b.unsigned_abs()));
+    vector.map(|x| x / divisor.max(1) as i64)
 }
 
 fn gcd(a: u64, b: u64) -> u64 {

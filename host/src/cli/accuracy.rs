@@ -15,8 +15,8 @@ use super::source::import;
 use choice::{Choice, choice};
 use folder::{CSV, PAGE, PLOT, kept, pictures};
 use gridel_host::accuracy::{
-    Bench, MeasureError, Point, Worth, answers, frontier, least_reference_samples, page, plot,
-    sentences, sweep,
+    Bench, MeasureError, Point, Truth, Worth, answers, frontier, least_reference_samples, page,
+    plot, sentences, sweep,
 };
 use gridel_host::measure::InstanceCount;
 use gridel_host::table::{counted, grouped, significant};
@@ -35,6 +35,9 @@ struct Printed<'t> {
     size: [u16; 2],
     #[serde(skip_serializing_if = "Option::is_none")]
     instances: Option<InstanceCount>,
+    reference: &'static str,
+    /// Pixels of an exact reference that are open.
+    reference_open: usize,
     points: &'t [Point],
     /// Which points nothing beats in cost and RMSE.
     frontier: Vec<bool>,
@@ -86,6 +89,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let mut bench = Bench::new(&imported.scene, arguments.accel, size);
     bench.quality = arguments.quality.unwrap_or_default();
     bench.copied = imported.copied;
+    bench.truth = arguments.reference;
     let settings = sweep(bench.base(), bench.effects().map_err(failed)?);
     let least = least_reference_samples(&settings);
     if arguments.reference_samples < least {
@@ -98,10 +102,14 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         ));
     }
     let key = format!(
-        "gridel {} scene {:08x} size {size:?} structure {} reference {}",
+        "gridel {} scene {:08x} size {size:?} structure {} reference {}{}",
         env!("CARGO_PKG_VERSION"),
         bench.checksum().map_err(failed)?,
         arguments.accel.name(),
+        match arguments.reference {
+            Truth::F64 => "",
+            Truth::Exact => "exact ",
+        },
         arguments.reference_samples
     );
     let kept = kept(&folder, &key)?;
@@ -126,6 +134,8 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
             folder: folder.display().to_string(),
             size,
             instances: results.instances,
+            reference: results.reference.truth.name(),
+            reference_open: results.reference.open,
             points: &results.points,
             frontier: frontier(&results.points),
             answers: answers(&results),

@@ -2,10 +2,11 @@
 
 use super::arguments::{self, GeometryOptions, PictureOptions, distinct, quoted};
 use super::failure::Failure;
-use super::output::{print, print_json_warned, write_files};
+use super::output::{print, print_json_warned, warn, write_files};
 use super::progress::Progress;
 use super::source::Source;
 use clap::Args;
+use gridel_core::format::checksum;
 use gridel_core::{Format, Settings, Structure};
 use gridel_host::certify::{
     Enclosed, Pictures, Report, World, certify, exact_picture, map, page, sentence,
@@ -34,7 +35,7 @@ use std::time::{Duration, Instant};
 /// place.
 ///
 /// Writes certify.html (the page), certify.json, map.png and exact.png to the folder, and
-/// certify.state, from which an interrupted run continues.
+/// certify.state, from which an interrupted run of the same picture continues.
 #[derive(Args)]
 #[command(after_help = super::failure::EXIT_CODES)]
 pub struct Arguments {
@@ -68,6 +69,9 @@ const MAP: &str = "map.png";
 const EXACT: &str = "exact.png";
 const STATE: &str = "certify.state";
 
+/// Most pixels that are certified: their state takes 320 MiB.
+const MOST_PIXELS: usize = 1 << 22;
+
 /// How often the state is written.
 const OFTEN: Duration = Duration::from_secs(5);
 
@@ -92,6 +96,17 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     source.warn_of_collapsed();
     let structure = source.structure(&scene, None)?;
     let settings = arguments.picture.settings(&scene);
+    let count = usize::from(settings.width) * usize::from(settings.height);
+    if count > MOST_PIXELS {
+        return Err(Failure::usage(
+            format!(
+                "{} pixels exceed the largest size of {}",
+                grouped(count),
+                grouped(MOST_PIXELS)
+            ),
+            "ask for a smaller `--size`",
+        ));
+    }
     let world = World::of(&scene).map_err(|unknown| {
         Failure::rejected(
             format!("{}: {unknown}", input.display()),
@@ -126,7 +141,6 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         path: folder.join(STATE),
         key: key(scene.header().checksum, &settings),
     };
-    let count = usize::from(settings.width) * usize::from(settings.height);
     let mut pixels = state.read(count)?;
     let progress = Progress::steps("certifying", settings.height.into());
     let mut written = Instant::now();
@@ -168,12 +182,12 @@ fn key(checksum: u32, settings: &Settings) -> String {
         ..
     } = settings;
     format!(
-        "gridel {} certify 1 blob {checksum:08x} size {width}x{height} samples {samples} depth {depth}\n",
+        "gridel {} certify 2 blob {checksum:08x} size {width}x{height} samples {samples} depth {depth}\n",
         env!("CARGO_PKG_VERSION")
     )
 }
 
-/// The file from which an interrupted run continues: a line with the key, then the pixels.
+/// The file from which an interrupted run continues: a line with the key, the pixels, and a checksum of both.
 struct State {
     path: PathBuf,
     key: String,
@@ -188,22 +202,44 @@ impl State {
             Err(error) if error.kind() == io::ErrorKind::NotFound => return Ok(pixels),
             Err(error) => return Err(Failure::reading(&self.path, &error)),
         };
-        let kept: &mut [u8] = bytemuck::cast_slice_mut(&mut pixels);
-        if let Some(rest) = bytes.strip_prefix(self.key.as_bytes())
-            && rest.len() == kept.len()
-        {
-            kept.copy_from_slice(rest);
-        }
+        let cause = match self.kept(&bytes) {
+            Ok(kept) => {
+                let into: &mut [u8] = bytemuck::cast_slice_mut(&mut pixels);
+                if kept.len() == into.len() {
+                    into.copy_from_slice(kept);
+                    return Ok(pixels);
+                }
+                "is damaged"
+            }
+            Err(cause) => cause,
+        };
+        warn(format!(
+            "{} {cause}: every pixel is evaluated anew, and it is replaced",
+            self.path.display()
+        ));
         Ok(pixels)
     }
 
-    fn write(&self, pixels: &[Enclosed]) -> Result<(), Failure> {
-        let bytes: &[u8] = bytemuck::cast_slice(pixels);
-        let all = |out: &mut dyn io::Write| {
-            out.write_all(self.key.as_bytes())?;
-            out.write_all(bytes)
+    /// The bytes of the pixels.
+    fn kept<'b>(&self, bytes: &'b [u8]) -> Result<&'b [u8], &'static str> {
+        let Some(rest) = bytes.strip_prefix(self.key.as_bytes()) else {
+            return Err("is of another picture");
         };
-        write_whole(&self.path, all).map_err(|error| Failure::writing(&self.path, &error))
+        let (pixels, sum) = rest.split_last_chunk().ok_or("is damaged")?;
+        let all = &bytes[..bytes.len() - sum.len()];
+        if u32::from_le_bytes(*sum) == checksum(all) {
+            Ok(pixels)
+        } else {
+            Err("is damaged")
+        }
+    }
+
+    fn write(&self, pixels: &[Enclosed]) -> Result<(), Failure> {
+        let mut bytes = self.key.clone().into_bytes();
+        bytes.extend_from_slice(bytemuck::cast_slice(pixels));
+        bytes.extend(checksum(&bytes).to_le_bytes());
+        write_whole(&self.path, |out| out.write_all(&bytes))
+            .map_err(|error| Failure::writing(&self.path, &error))
     }
 }
 

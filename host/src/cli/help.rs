@@ -20,17 +20,19 @@ Topics (`gridel help TOPIC` prints a document):
   check       the manifest of `gridel check`: every table and key
   structures  acceleration structures, and when to use which
   python      the Python package: rays and points in NumPy arrays
+  web         the web page: scenes, errors and costs in a browser
   memory      bytes of blobs, of RAM and of flash on boards
   benchmarks  speed against other libraries, and what accuracy costs
   exact       the exact picture that `gridel certify` proves
   paper       the tables of the paper, measured again";
 
 /// The documents by their topics.
-const TOPICS: [(&str, &str); 8] = [
+const TOPICS: [(&str, &str); 9] = [
     ("scene", include_str!("../../docs/SCENE.md")),
     ("check", include_str!("../../docs/CHECK.md")),
     ("structures", include_str!("../../docs/STRUCTURES.md")),
     ("python", include_str!("../../docs/PYTHON.md")),
+    ("web", include_str!("../../docs/WEB.md")),
     ("memory", include_str!("../../docs/MEMORY.md")),
     ("benchmarks", include_str!("../../docs/BENCHMARKS.md")),
     ("exact", include_str!("../../docs/EXACT.md")),

@@ -13,7 +13,7 @@ use clap::Args;
 use glam::DVec3;
 use gridel_core::{Format, Kind, Scene, Structure};
 use gridel_host::compile::{self, Names};
-use gridel_host::measure::board::{Account, MemoryReport};
+use gridel_host::measure::board::MemoryReport;
 use gridel_host::measure::{Deforming, MemoryMap, WorkingMemory, working_memory};
 use gridel_host::table::{Align, Table, counted, grouped, power_of_two, printable};
 use joints::JointLine;
@@ -282,7 +282,11 @@ impl Inspection {
             "{map}\n{}\n{}",
             self.facts(),
             working_memory_table(&self.working_memory)
-        ) + &self.memory.as_ref().map(memory_table).unwrap_or_default()
+        ) + &self
+            .memory
+            .as_ref()
+            .map(|report| format!("\n{report}"))
+            .unwrap_or_default()
     }
 
     fn facts(&self) -> Table {
@@ -392,31 +396,6 @@ impl Inspection {
         }
         table
     }
-}
-
-/// The memory report: flash and RAM on a board, and what remains of each.
-fn memory_table(report: &MemoryReport) -> String {
-    let title = format!(
-        "{}, {}, {}, {}",
-        report.board, report.core, report.format, report.structure
-    );
-    let mut table = Table::new([(title.as_str(), Align::Left), ("bytes", Align::Right)]);
-    let mut account = |name: &str, account: &Account| {
-        let bytes = |bytes: Option<u64>| bytes.map_or(String::from("unknown"), grouped);
-        for item in &account.items {
-            table.row([format!("{name}  {}", item.what), bytes(item.bytes)]);
-        }
-        table.row([format!("{name}  in all"), bytes(account.used)]);
-        let missing = account.missing();
-        table.row(if missing > 0 {
-            [format!("{name}  MISSING"), grouped(missing)]
-        } else {
-            [format!("{name}  remains"), bytes(account.remains())]
-        });
-    };
-    account("flash", &report.flash);
-    account("RAM", &report.ram);
-    format!("\n{table}{}\n", report.holds_for())
 }
 
 fn working_memory_table(needs: &[WorkingMemory]) -> Table {

@@ -37,6 +37,7 @@ mod shell;
 mod trace;
 mod verify;
 mod view;
+mod web;
 
 use clap::{CommandFactory, Parser, Subcommand};
 use peak_alloc::PeakAlloc;
@@ -71,6 +72,7 @@ enum Command {
     Explain(explain::Arguments),
     Sample(sample::Arguments),
     Check(check::Arguments),
+    Web(web::Arguments),
     Help(help::Arguments),
     #[cfg(feature = "shell")]
     Completions(shell::CompletionArguments),
@@ -103,6 +105,7 @@ pub fn run(memory: &PeakAlloc) -> ExitCode {
         Command::Explain(arguments) => explain::run(&arguments),
         Command::Sample(arguments) => sample::run(&arguments),
         Command::Check(arguments) => check::run(&arguments),
+        Command::Web(arguments) => web::run(&arguments),
         Command::Help(arguments) => help::run(&arguments, Program::command()),
         #[cfg(feature = "shell")]
         Command::Completions(arguments) => shell::completions(&arguments, Program::command()),

@@ -7,6 +7,7 @@
 //!
 //! Instances are kept as the scene has them: each part is compiled for the contender's structure, too.
 
+#[cfg(not(target_family = "wasm"))]
 mod charts;
 mod comparison;
 mod findings;
@@ -15,6 +16,7 @@ mod judge;
 mod options;
 
 pub use crate::measure::rays::{Work, Works};
+#[cfg(not(target_family = "wasm"))]
 pub use charts::charts;
 pub use comparison::{Comparison, RayCounts, Rejected, Row};
 pub use findings::findings;

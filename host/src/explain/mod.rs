@@ -13,7 +13,7 @@ pub use explanation::{Explanation, Hit, LightOutcome, Lighting, Ray, Sample, Wei
 pub use text::Shown;
 pub use walk::{Candidate, Culled, Plane, Side, Step, Tested, Verdict, Walk};
 
-use crate::render::{ALL, OPAQUE, chosen};
+use crate::render::{ALL, OPAQUE, PAGE, chosen};
 use crate::trace::{Frame, Rejection, SceneRay};
 use gridel_core::accel::DynAccel;
 use gridel_core::format::limits::{MAX_RAY_DEPTH, MAX_STACK_DEPTH};
@@ -99,7 +99,7 @@ pub fn explain(
 type Recording = Result<([u16; 3], Recorder), ExplainError>;
 
 fn with_format<N: Number>(scene: &Scene<'_>, settings: Settings, subject: Subject) -> Recording {
-    if Effects(OPAQUE).contains(scene.effects()) {
+    if !PAGE && Effects(OPAQUE).contains(scene.effects()) {
         watch::<N, OPAQUE>(scene, settings, subject)
     } else {
         watch::<N, ALL>(scene, settings, subject)

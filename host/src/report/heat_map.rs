@@ -41,7 +41,7 @@ impl<'p> HeatMap<'p> {
 }
 
 /// The color of a pixel in a map.
-pub(crate) fn work_color(work: u32, maximum: u32) -> Rgb888 {
+pub fn work_color(work: u32, maximum: u32) -> Rgb888 {
     let share = f64::from(work) / f64::from(maximum.max(1));
     Rgb888::encode(color(share.sqrt()), None)
 }

@@ -5,13 +5,19 @@
 //! followed, so a link that leads outside is outside. Backslashes separate folders as slashes do,
 //! on every system.
 
-use std::path::{Component, Path, PathBuf};
+use super::SceneError;
+use super::files::{Files, lexical};
+use std::io;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
 /// The files that a scene may name.
 #[derive(Clone, Debug)]
 pub(super) struct Access {
     /// The scene's folder, all links followed; `None` where every file is allowed.
     folder: Option<PathBuf>,
+    /// The files in memory, which are all that there is; `None` for those of a disk.
+    files: Option<Arc<Files>>,
 }
 
 impl Access {
@@ -22,6 +28,55 @@ impl Access {
         let resolved = || folder.canonicalize().unwrap_or_else(|_| folder.to_owned());
         Self {
             folder: (!allow_outside).then(resolved),
+            files: None,
+        }
+    }
+
+    /// For a scene among files in memory.
+    pub(super) fn among(files: &Files) -> Self {
+        Self {
+            folder: None,
+            files: Some(Arc::new(files.clone())),
+        }
+    }
+
+    /// Reads a file; not a device, which may have no end.
+    pub(super) fn read(&self, path: &Path) -> Result<Vec<u8>, SceneError> {
+        let (bytes, remedy) = match &self.files {
+            Some(files) => (
+                files
+                    .find(path)
+                    .map(|(_, bytes)| bytes.to_vec())
+                    .ok_or_else(not_given),
+                "give that file too",
+            ),
+            None => {
+                let bytes = std::fs::metadata(path).and_then(|metadata| match metadata.is_file() {
+                    true => std::fs::read(path),
+                    false => Err(io::Error::other("it is not a file")),
+                });
+                (bytes, "check that the path names a file you may read")
+            }
+        };
+        bytes.map_err(|error| SceneError::new(path, format!("cannot be read: {error}"), remedy))
+    }
+
+    /// The one path of a file that is there.
+    pub(super) fn canonical(&self, path: &Path) -> io::Result<PathBuf> {
+        match &self.files {
+            Some(files) => files
+                .find(path)
+                .map(|(path, _)| path.to_owned())
+                .ok_or_else(not_given),
+            None => path.canonicalize(),
+        }
+    }
+
+    /// Returns whether a file is there.
+    pub(super) fn is_file(&self, path: &Path) -> bool {
+        match &self.files {
+            Some(files) => files.find(path).is_some(),
+            None => path.is_file(),
         }
     }
 
@@ -30,6 +85,9 @@ impl Access {
     /// # Errors
     /// If it lies outside of the scene's folder: the cause, which names the folder, and the remedy.
     pub(super) fn resolve(&self, file: &Path, name: &str) -> Result<PathBuf, [String; 2]> {
+        if self.files.is_some() {
+            return Ok(beside(file, &name.replace('\\', "/")));
+        }
         let Some(root) = &self.folder else {
             return Ok(beside(file, name));
         };
@@ -80,19 +138,11 @@ fn folder(file: &Path) -> &Path {
     }
 }
 
-/// The path without `.` and `..`.
-fn lexical(path: &Path) -> PathBuf {
-    let mut plain = PathBuf::new();
-    for component in path.components() {
-        match component {
-            Component::CurDir => {}
-            Component::ParentDir => {
-                plain.pop();
-            }
-            other => plain.push(other),
-        }
-    }
-    plain
+fn not_given() -> io::Error {
+    io::Error::new(
+        io::ErrorKind::NotFound,
+        "it is not among the files that were given",
+    )
 }
 
 #[cfg(test)]

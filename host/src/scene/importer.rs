@@ -2,7 +2,7 @@
 
 use super::access::Access;
 use super::gzip;
-use super::text::{Source, check_encoding, read_file};
+use super::text::{Source, check_encoding};
 use super::{Choice, ImportOptions, Imported, MoleculeOptions, SceneError};
 use gridel_core::Up;
 use std::fmt;
@@ -108,7 +108,7 @@ impl Importers {
     ) -> Result<(&'static Importer, Input<'a>), SceneError> {
         // A file that nothing can read is not worth reading.
         self.of_name(path)?;
-        self.input(path, read_file(path)?, choices, access)
+        self.input(path, access.read(path)?, choices, access)
     }
 
     /// Content that was read already.

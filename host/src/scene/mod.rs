@@ -13,6 +13,7 @@ mod bad;
 #[cfg(test)]
 mod damaged;
 mod error;
+mod files;
 mod flatten;
 mod gzip;
 mod image;
@@ -39,6 +40,7 @@ mod words;
 pub use crate::shape::Shape;
 pub use attributes::Attributes;
 pub use error::SceneError;
+pub use files::Files;
 pub use image::{Image, linear_of_srgb};
 pub use importer::Importer;
 pub(crate) use joint::JointTracks;
@@ -184,5 +186,31 @@ pub fn read(name: &Path, bytes: Vec<u8>, options: &ImportOptions) -> Result<Impo
     let access = Access::of(name, options.allow_outside);
     let (importer, input) =
         Importers(IMPORTERS).input(name, bytes, Choices::of(options), &access)?;
+    finish(importer.import(input)?, options)
+}
+
+/// Reads a scene from files in memory, of which `name` is the scene's. Files that the scene names are found by their
+/// paths, or else by their names alone if no two files share them; disks are not read.
+///
+/// # Errors
+/// As [`load_with`], and if a file that the scene needs is not among them.
+///
+/// ```
+/// use gridel_host::scene::{Files, ImportOptions, read_among};
+///
+/// let mut files = Files::new();
+/// files.insert("leaf.obj", b"v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n".to_vec());
+/// files.insert("tree.toml", b"[[object]]\nkind = 'import'\nfile = 'leaf.obj'\n".to_vec());
+/// let imported = read_among("tree.toml".as_ref(), &files, &ImportOptions::default())?;
+/// assert_eq!(imported.scene.objects.len(), 1);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+pub fn read_among(
+    name: &Path,
+    files: &Files,
+    options: &ImportOptions,
+) -> Result<Imported, SceneError> {
+    let access = Access::among(files);
+    let (importer, input) = Importers(IMPORTERS).open(name, Choices::of(options), &access)?;
     finish(importer.import(input)?, options)
 }

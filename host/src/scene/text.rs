@@ -1,6 +1,7 @@
 //! Text files as the importers read them: words that know their place, finite numbers, and
 //! warnings that do not flood.
 
+use super::access::Access;
 use super::{SceneError, SourceSpan, gzip};
 use std::collections::HashMap;
 use std::path::{Path, PathBuf};
@@ -15,8 +16,8 @@ pub(super) struct Source {
 }
 
 impl Source {
-    pub(super) fn read(path: &Path) -> Result<Self, SceneError> {
-        let bytes = gzip::inflate(path, read_file(path)?)?;
+    pub(super) fn read(path: &Path, access: &Access) -> Result<Self, SceneError> {
+        let bytes = gzip::inflate(path, access.read(path)?)?;
         check_encoding(path, &bytes)?;
         Ok(Self::from_bytes(path, bytes))
     }
@@ -85,21 +86,6 @@ impl Source {
             )),
         }
     }
-}
-
-/// Reads a file; not a device, which may have no end.
-pub(super) fn read_file(path: &Path) -> Result<Vec<u8>, SceneError> {
-    let bytes = std::fs::metadata(path).and_then(|metadata| match metadata.is_file() {
-        true => std::fs::read(path),
-        false => Err(std::io::Error::other("it is not a file")),
-    });
-    bytes.map_err(|error| {
-        SceneError::new(
-            path,
-            format!("cannot be read: {error}"),
-            "check that the path names a file you may read",
-        )
-    })
 }
 
 /// Rejects text in UTF-16 and UTF-32, which no scene format has: read as bytes, errors would quote

@@ -2,7 +2,6 @@
 
 use super::access::Access;
 use super::image::{Fault, Image};
-use super::text::read_file;
 use glam::{DAffine2, DVec2};
 use std::collections::HashMap;
 use std::path::{Path, PathBuf};
@@ -87,7 +86,10 @@ impl<'a> Images<'a> {
             return Ok(Arc::clone(image));
         }
         let of_file = |[cause, remedy]: Fault| [format!("{} {cause}", path.display()), remedy];
-        let bytes = read_file(&path).map_err(|error| of_file([error.cause, error.remedy]))?;
+        let bytes = self
+            .access
+            .read(&path)
+            .map_err(|error| of_file([error.cause, error.remedy]))?;
         let image = Arc::new(Image::decode(name, &bytes).map_err(of_file)?);
         self.files.insert(path, Arc::clone(&image));
         Ok(image)

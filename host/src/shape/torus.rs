@@ -242,7 +242,8 @@ impl Ring {
             of(4.0) * &square * &b,
             &square * &square,
         ];
-        let reach = (&self.major + minor) * of(1.0625) + of(1e-9);
+        // In lengths of the slope, which may be short.
+        let reach = ((&self.major + minor) * of(1.0625) + of(1e-9)) / square.sqrt();
         let mut ends = vec![-&reach];
         ends.extend(roots(&quartic, &reach));
         // Along the axis of a spindle torus both sheets are met at once, so no sign changes.
@@ -317,7 +318,12 @@ fn root(polynomial: &[Real], slope: &[Real], first: &Real, last: &Real) -> Real 
         let next = if steepness == Real::of(0.0) {
             middle
         } else {
-            let next = &x - y / steepness;
+            let step = y / steepness;
+            // Where the last steps are roundings, they may lead out.
+            if step.abs() < least {
+                break;
+            }
+            let next = &x - step;
             if next > low && next < high {
                 next
             } else {

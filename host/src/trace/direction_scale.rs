@@ -18,19 +18,24 @@ impl DirectionScale {
     const ORDINARY: std::ops::Range<f64> = 1.0 / (1_u128 << 100) as f64..(1_u128 << 100) as f64;
 
     /// The direction_scale of a direction, and the direction with its length brought near 1 where it is extreme.
-    #[inline(always)]
     pub(super) fn of(direction: DVec3, unit: f64, per_unit: f64) -> (Self, DVec3) {
+        Self::of_ordinary(direction, per_unit).map_or_else(
+            || Self::of_extremes(direction, unit),
+            |direction_scale| (direction_scale, direction),
+        )
+    }
+
+    /// The direction_scale of a direction that is not extreme.
+    #[inline(always)]
+    pub(super) fn of_ordinary(direction: DVec3, per_unit: f64) -> Option<Self> {
         let largest = direction.abs().max_element();
         let factor = largest * per_unit;
-        if Self::ORDINARY.contains(&factor) && Self::ORDINARY.contains(&largest) {
-            let direction_scale = Self {
-                factor,
-                exponent: 0,
-                begin: 0.0,
-            };
-            return (direction_scale, direction);
-        }
-        Self::of_extremes(direction, unit)
+        let is_ordinary = Self::ORDINARY.contains(&factor) && Self::ORDINARY.contains(&largest);
+        is_ordinary.then_some(Self {
+            factor,
+            exponent: 0,
+            begin: 0.0,
+        })
     }
 
     #[cold]

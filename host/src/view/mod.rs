@@ -5,6 +5,8 @@
 //! | `motion.rs` | orbits, pans and zooms of a camera |
 //! | `keys.rs` | keys and what they do |
 //! | `state.rs` | the camera and the settings that are shown |
+//! | `shot.rs` | a picture to draw |
+//! | `blocks.rs` | its pixels, one by one |
 //! | `refine.rs` | pictures from coarse to fine, drawn by threads of their own |
 //! | `frame.rs` | the pixels that are shown so far |
 //! | `summary.rs` | the explanation of a pixel in one line |
@@ -12,21 +14,25 @@
 //! | `terminal.rs` | half blocks in a terminal |
 //! | `window.rs` | a window, with the Cargo feature `view` |
 
+mod blocks;
 mod frame;
 mod keys;
 mod motion;
 mod refine;
 mod save;
+mod shot;
 mod state;
 mod summary;
 pub mod terminal;
 #[cfg(feature = "view")]
 pub mod window;
 
+pub use blocks::{Drawn, draw};
 pub use frame::Frame;
 pub use keys::{Action, KEYS, Key, action, key_help};
-pub use refine::{Refiner, Shot, ViewError};
+pub use refine::Refiner;
 pub use save::{save, saved};
+pub use shot::{Shot, ViewError};
 pub use state::{Effect, State};
 pub use summary::summary;
 

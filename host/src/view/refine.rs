@@ -4,11 +4,11 @@
 //! one that is drawn as soon as that one's coarsest blocks are all there, so that a camera that moves all the
 //! time is seen moving; or after [`PATIENCE`], so that a slow scene does not keep anybody waiting.
 
+use super::blocks::{Brush, with_brush};
 use super::frame::{Frame, packed};
-use crate::render::{Job, chosen, tracer};
-use gridel_core::format::record::View;
-use gridel_core::render::{Block, CoarseToFine, Pixel, RenderError};
-use gridel_core::{BlobError, Format, Rgb888, Scene, Settings, Structure};
+use super::shot::{Shot, ViewError};
+use gridel_core::render::{Block, CoarseToFine, Pixel};
+use gridel_core::{Rgb888, Scene};
 use std::ops::ControlFlow;
 use std::sync::{Condvar, Mutex, MutexGuard, PoisonError};
 use std::thread;
@@ -19,26 +19,6 @@ const PATIENCE: Duration = Duration::from_millis(250);
 
 /// How long a thread draws before it hands over what it has, and looks for something newer.
 const TURN: Duration = Duration::from_millis(2);
-
-/// A picture to draw.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Shot {
-    pub view: View,
-    pub format: Format,
-    pub structure: Structure,
-    pub settings: Settings,
-    /// Whether pixels show the boxes and primitives that they had tested.
-    pub heat_map: bool,
-}
-
-/// Why there is no picture.
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
-pub enum ViewError {
-    #[error(transparent)]
-    Render(#[from] RenderError),
-    #[error(transparent)]
-    Blob(#[from] BlobError),
-}
 
 /// Draws pictures of a scene, one after the other, from coarse to fine.
 pub struct Refiner<'s> {
@@ -177,24 +157,19 @@ impl<'s> Refiner<'s> {
 
     /// Draws blocks until none is left or another picture is drawn.
     fn draw(&self, number: u64, shot: &Shot, wake: &(dyn Fn() + Sync)) -> Result<(), ViewError> {
-        let scene = self.scene.with_view(&shot.view)?;
-        let scene = chosen(&scene, shot.structure)?;
-        let job = Job {
-            count: shot.heat_map,
-            ..Job::whole(shot.format, shot.structure, shot.settings)
-        };
-        let tracer = tracer(&scene, &job)?;
+        with_brush(self.scene, shot, |brush| self.paint(number, brush, wake))
+    }
+
+    fn paint(&self, number: u64, brush: &Brush<'_>, wake: &(dyn Fn() + Sync)) {
         let (mut blocks, mut values) = (Vec::new(), Vec::new());
         let mut size = 1;
         while self.take(number, size, &mut blocks).is_continue() {
             let begun = Instant::now();
             values.clear();
-            values.extend(blocks.iter().map(|block| {
-                let mut pixel = [[0; 3]];
-                let cost = tracer([block.x, block.y], &mut pixel);
-                let color = packed(Rgb888::encode(pixel[0], None));
-                cost.and_then(|(_, work)| work.first().copied())
-                    .unwrap_or(color)
+            values.extend(blocks.iter().map(|&block| {
+                let drawn = brush(block);
+                let color = || packed(Rgb888::encode(drawn.linear, None));
+                drawn.work.unwrap_or_else(color)
             }));
             if begun.elapsed() < TURN / 2 {
                 size *= 2;
@@ -203,7 +178,6 @@ impl<'s> Refiner<'s> {
             }
             self.put(number, &blocks, &values, wake);
         }
-        Ok(())
     }
 
     /// Takes blocks to draw.
@@ -297,10 +271,13 @@ impl Drop for Stop<'_, '_> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::render::{Picture, render};
+    use crate::render::{Job, Picture, render};
     use crate::report::work_color;
     use crate::scene::Camera;
     use crate::view::test_scene::quick;
+    use gridel_core::format::record::View;
+    use gridel_core::render::RenderError;
+    use gridel_core::{Format, Settings, Structure};
     use std::sync::atomic::{AtomicUsize, Ordering};
 
     fn shot(scene: &Scene<'_>, view: View) -> Shot {

@@ -1,7 +1,7 @@
 //! The camera and the settings that are shown.
 
 use super::keys::Action;
-use super::refine::Shot;
+use super::shot::Shot;
 use crate::blob::best_structures;
 use crate::scene::Camera;
 use gridel_core::format::limits::MAX_SAMPLES;
@@ -59,6 +59,12 @@ impl<'s> State<'s> {
             settings,
             heat_map: false,
         }
+    }
+
+    /// The scene from another camera, if it can be seen from there.
+    pub fn seen_from(mut self, camera: Camera) -> Self {
+        self.moved(camera);
+        self
     }
 
     /// The picture to draw.

@@ -2,8 +2,9 @@
 
 use super::frame::Frame;
 use super::keys::{Action, Key, action, key_help};
-use super::refine::{Refiner, ViewError};
+use super::refine::Refiner;
 use super::save::save;
+use super::shot::ViewError;
 use super::state::{Effect, State};
 use console::Term;
 use std::fmt::Write as _;

@@ -230,3 +230,37 @@ fn build_leaves_effects_out_and_says_what_is_lost() {
         run.stderr
     );
 }
+
+/// Against exact pictures `f64` has an error of its own, and sampling and arithmetic stand apart.
+#[test]
+fn the_exact_picture_is_a_reference() {
+    let folder = folder();
+    let run = [
+        &SMALL[..],
+        &["--reference", "exact", "--reference-samples", "128"],
+    ]
+    .concat();
+    let report = folder.json(&run);
+    assert_eq!(report["reference"], "exact");
+    assert_eq!(report["reference_open"], 0);
+    let points = report["points"].as_array().unwrap();
+    let part = |point: &serde_json::Value, part: &str| point["parts"][part].as_f64().unwrap();
+    // What sampling does is the same for every format: that of the exact pictures.
+    let of = |name: &str| {
+        points
+            .iter()
+            .find(|it| it["setting"]["format"] == name)
+            .unwrap()
+    };
+    assert_eq!(part(of("fixed"), "sampling"), part(of("f32"), "sampling"));
+    assert!(part(of("f64"), "arithmetic") <= part(of("f32"), "arithmetic"));
+    assert!(part(of("f32"), "arithmetic") < 0.01);
+    let page = String::from_utf8(folder.read("out/page.html")).unwrap();
+    assert!(page.contains("the exact picture that"), "no exact picture");
+    assert!(!page.contains("the picture of <code>f64</code>"));
+    // The measurements of one reference are not continued with another one.
+    let other = [&SMALL[..], &["--reference-samples", "128"]].concat();
+    folder.fails(2, &other, &["would be overwritten"]);
+    let wrong = [&SMALL[..], &["--reference", "fixed"]].concat();
+    folder.fails(2, &wrong, &["fixed"]);
+}

@@ -4,6 +4,7 @@ mod program;
 
 mod accuracy;
 mod build;
+mod certify;
 mod check;
 mod compare;
 mod ending;

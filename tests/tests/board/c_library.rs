@@ -6,7 +6,8 @@ use crate::firmware::board;
 use crate::plan::Plan;
 use crate::scenes::{self, Compiled, repository};
 use gridel_core::{
-    Fixed, Format, List, NoCount, Number, Position, Scene, Settings, Stack, Structure,
+    Angle, Camera, Fixed, Format, List, NoCount, Number, Position, Scene, Settings, Stack,
+    Structure, Up,
 };
 use gridel_core::{any_hit, closest_hit};
 use gridel_host::compile::{self, Options};
@@ -96,8 +97,14 @@ fn the_c_example_gives_the_hosts_bytes(board: &'static Board) {
     let output = run(&mut emulator);
     let view = scene.blob.scene().expect("the compiler's own blob");
     let settings = Settings::of(&view);
-    let mut expected = format!("P6\n{} {}\n255\n", settings.width, settings.height).into_bytes();
-    expected.extend(scene.picture(format));
+    let header = format!("P6\n{} {}\n255\n", settings.width, settings.height).into_bytes();
+    let expected = [
+        &header[..],
+        &scene.picture(format),
+        &header,
+        &orbited(&view, format),
+    ]
+    .concat();
     let rays = match format {
         Format::Fixed => rays::<Fixed>(&view),
         Format::F32 => rays::<f32>(&view),
@@ -123,6 +130,16 @@ fn the_c_example_gives_the_hosts_bytes(board: &'static Board) {
         assert!(float.is_empty(), "soft floats: {float:#?}");
     }
     println!("{}: {} bytes of flash", board.name, elf.flash_bytes());
+}
+
+/// The picture that the example renders by a camera of its own, through brute force.
+fn orbited(scene: &Scene<'_>, format: Format) -> Vec<u8> {
+    let [eighth, sixteenth] = [8, 16].map(|whole| Angle::of_turn(1, whole));
+    let distance = 8 << -scene.coordinate_exponent();
+    let camera = Camera::orbit(Up::Y, Position([0; 3]), distance, eighth, sixteenth, eighth);
+    let view = camera.expect("a camera").view(scene);
+    let seen = scene.with_view(&view).expect("a view in its ranges");
+    scenes::picture(&seen, Structure::List, format)
 }
 
 /// What the example prints of its rays, through brute force.
@@ -169,7 +186,8 @@ fn c_functions_answer_wrong_arguments_with_codes() {
         .expect("the target folder can be written to");
     // The example runs here, too.
     let output = run(&mut Command::new(example));
-    assert!(output.stdout.ends_with(&scene.picture(Format::Fixed)));
+    let view = scene.blob.scene().expect("the compiler's own blob");
+    assert!(output.stdout.ends_with(&orbited(&view, Format::Fixed)));
 
     let library = Path::new(env!("CARGO_TARGET_TMPDIR")).join("c-library");
     let source = repository().join("core/c");

@@ -1,31 +1,200 @@
 //! Pixels in 320 bits, by code that shares nothing with what it tests: no kernel, no shape's test and no rule of an
 //! effect. Rays meet the shapes of `verify`, one after the other.
 
+use gridel_core::format::instance::{Instance, MATRIX_BITS};
 use gridel_core::format::record::{Light, Material};
-use gridel_core::{Kind, Scene, Settings};
+use gridel_core::{Effects, Kind, Scene, Settings};
 use gridel_host::shape::Solid;
-use gridel_host::shape::exact::{Line, Real, Vector, along, dot, minus, norm, scaled, unit};
+use gridel_host::shape::exact::{
+    Line, Real, Vector, along, cross, dot, minus, norm, scaled, unit, vector,
+};
 
-/// A scene without instances and smooth normals.
+/// A scene.
 pub struct Exact<'s> {
     scene: &'s Scene<'s>,
     solids: Vec<Placed>,
     settings: Settings,
+    is_smooth: bool,
 }
 
 struct Placed {
     solid: Solid,
     primitive: u32,
-    /// In units.
+    object: u32,
+    /// The normals of a triangle's corners, as they are stored.
+    normals: Option<[[i16; 2]; 3]>,
+    /// In units of its part.
     bounds: Option<[[f64; 2]; 3]>,
+    /// Where its part stands, if it belongs to one.
+    map: Option<Map>,
 }
 
-struct Met {
+/// A matrix, and the place that becomes the part's origin.
+#[derive(Clone)]
+struct Map {
+    rows: [Vector; 3],
+    center: Vector,
+}
+
+impl Map {
+    fn of(instance: &Instance) -> Self {
+        let down = MATRIX_BITS as i32 - i32::from(instance.exponent);
+        Self {
+            rows: instance.matrix.map(|row| row.map(|x| fraction(x, down))),
+            center: instance.center.map(|x| fraction(x, 8)),
+        }
+    }
+
+    fn line(&self, line: &Line) -> Line {
+        let from_center = minus(&line.origin, &self.center);
+        let turned = |v: &Vector| [0, 1, 2].map(|k| dot(&self.rows[k], v));
+        Line {
+            origin: turned(&from_center),
+            slope: turned(&line.slope),
+        }
+    }
+
+    /// By the transposed matrix.
+    fn turned_back(&self, v: &Vector) -> Vector {
+        let column = |k: usize| [0, 1, 2].map(|row: usize| self.rows[row][k].clone());
+        [0, 1, 2].map(|k| dot(&column(k), v))
+    }
+
+    /// A normal of the part in the scene.
+    fn normal(&self, normal: &Vector) -> Vector {
+        unit(&self.turned_back(normal))
+    }
+}
+
+impl Placed {
+    /// The primitives of a scene or of a part, whose numbers begin with one.
+    fn all(scene: &Scene<'_>, first: u32, whole: &Scene<'_>, map: Option<&Map>) -> Vec<Self> {
+        let mut all = Vec::new();
+        for kind in Kind::ALL {
+            for slot in 0..scene.count(kind) {
+                let geometry = scene.geometry(kind, slot).expect("a primitive");
+                let bounds = scene.primitive_bounds(kind, slot);
+                let primitive = first + scene.primitive(kind, slot as u32);
+                all.push(Self {
+                    solid: Solid::of(geometry),
+                    primitive,
+                    object: whole.object(primitive),
+                    normals: match kind {
+                        Kind::Triangle => scene.corner_normals(slot),
+                        _ => None,
+                    },
+                    bounds: bounds
+                        .filter(|_| kind.is_bounded())
+                        .map(|bounds| bounds.0.map(|side| side.map(f64::from))),
+                    map: map.cloned(),
+                });
+            }
+        }
+        all
+    }
+
+    /// A line in its part; t stays.
+    fn line(&self, line: &Line) -> Line {
+        self.map
+            .as_ref()
+            .map_or_else(|| line.clone(), |map| map.line(line))
+    }
+}
+
+struct Met<'e> {
+    placed: &'e Placed,
     t: Real,
     point: Vector,
     normal: Vector,
     front: bool,
     object: u32,
+}
+
+/// The corners of a triangle as seen from a point, the parts of the area that are opposite to them, and their normals
+/// as they are stored.
+type Corners = ([Vector; 3], [Real; 3], [[i16; 2]; 3]);
+
+impl Met<'_> {
+    /// A vector on the side from which the ray came.
+    fn turned(&self, v: &Vector) -> Vector {
+        if self.front {
+            v.clone()
+        } else {
+            v.each_ref().map(|x| -x)
+        }
+    }
+
+    /// The corners of a triangle with normals, as seen from the point in its part, and their parts of the area.
+    fn corners(&self) -> Option<Corners> {
+        let normals = self.placed.normals?;
+        let Solid::Triangle(corners) = &self.placed.solid else {
+            return None;
+        };
+        let here = self.placed.line(&Line {
+            origin: self.point.clone(),
+            slope: black(),
+        });
+        let corners = corners.map(|corner| minus(&vector(corner.to_array()), &here.origin));
+        let [a, b, c] = &corners;
+        let whole = cross(&minus(b, a), &minus(c, a));
+        let area = |p: &Vector, q: &Vector| dot(&cross(p, q), &whole) / dot(&whole, &whole);
+        let areas = [area(b, c), area(c, a), area(a, b)];
+        Some((corners, areas, normals))
+    }
+
+    /// The interpolated normal on the side of the ray.
+    fn smooth_normal(&self) -> Option<Vector> {
+        let (_, areas, normals) = self.corners()?;
+        let mut result = black();
+        for (stored, area) in normals.into_iter().zip(areas) {
+            // Of nearly length 1, by a step of Newton's from a line: that is the rule.
+            let v = unfolded(stored).map(|x| fraction(x, 15));
+            let square = dot(&v, &v);
+            let root = fraction(2_128_961_606, 30) - fraction(1_114_232_640, 30) * &square;
+            let step = real(1.5) - &square * &root * &root * real(0.5);
+            result = along(&result, &area, &scaled(&v, &(root * step)));
+        }
+        let normal = unit(&result);
+        let map = self.placed.map.as_ref();
+        let normal = map.map_or(normal.clone(), |map| map.normal(&normal));
+        Some(self.turned(&normal))
+    }
+
+    /// The way out to the curved surface that a triangle stands for; `None` if that does not lie above it.
+    fn lift(&self) -> Option<Vector> {
+        let (corners, areas, normals) = self.corners()?;
+        let zero = || real(0.0);
+        let mut way = black();
+        for k in 0..3 {
+            let normal = self.turned(&unit(&unfolded(normals[k]).map(|x| fraction(x, 0))));
+            let depth = dot(&corners[k], &normal).max(zero());
+            way = along(&way, &(depth * areas[k].clone().max(zero())), &normal);
+        }
+        if let Some(map) = &self.placed.map {
+            let length = norm(&way);
+            if length.is_zero() {
+                return None;
+            }
+            let turned = map.turned_back(&scaled(&way, &(one() / &length)));
+            let square = dot(&turned, &turned);
+            way = scaled(&turned, &(length / square));
+        }
+        dot(&way, &self.turned(&self.normal))
+            .is_positive()
+            .then_some(way)
+    }
+}
+
+/// The coordinates of a stored normal: a point of an octahedron whose lower half is folded out.
+fn unfolded([x, y]: [i16; 2]) -> [i64; 3] {
+    let (x, y) = (i64::from(x), i64::from(y));
+    let largest = i64::from(gridel_core::geometry::smooth::LARGEST);
+    let z = largest - x.abs() - y.abs();
+    if z >= 0 {
+        return [x, y, z];
+    }
+    let folded = |of: i64, other: i64| (largest - other.abs()) * if of < 0 { -1 } else { 1 };
+    [folded(x, y), folded(y, x), z]
 }
 
 fn real(value: f64) -> Real {
@@ -87,24 +256,23 @@ fn nothing() -> Real {
 
 impl<'s> Exact<'s> {
     pub fn of(scene: &'s Scene<'s>, settings: Settings) -> Self {
-        let mut solids = Vec::new();
-        for kind in Kind::ALL {
-            for slot in 0..scene.count(kind) {
-                let geometry = scene.geometry(kind, slot).expect("a primitive");
-                let bounds = scene.primitive_bounds(kind, slot);
-                solids.push(Placed {
-                    solid: Solid::of(geometry),
-                    primitive: scene.primitive(kind, slot as u32),
-                    bounds: bounds
-                        .filter(|_| kind.is_bounded())
-                        .map(|bounds| bounds.0.map(|side| side.map(f64::from))),
-                });
-            }
+        let mut solids = Placed::all(scene, 0, scene, None);
+        for instance in scene.instances() {
+            let number = usize::from(instance.part);
+            let first = scene.first_primitive_of_part(number).expect("a part");
+            let map = Map::of(instance);
+            solids.extend(Placed::all(
+                &scene.parts()[number],
+                first,
+                scene,
+                Some(&map),
+            ));
         }
         Self {
             scene,
             solids,
             settings,
+            is_smooth: scene.effects().contains(Effects::SMOOTH),
         }
     }
 
@@ -128,23 +296,24 @@ impl<'s> Exact<'s> {
         seen.map(|x| x.max(real(0.0)).min(one()))
     }
 
-    fn material(&self, met: &Met) -> &Material {
+    fn material(&self, met: &Met<'_>) -> &Material {
         self.scene.material(met.object).expect("a material")
     }
 
     /// The crossings of a line between two t, in any order.
     fn crossings(&self, line: &Line, end: Option<&Real>) -> Vec<(Real, &Placed, bool)> {
-        let origin = line.origin.each_ref().map(Real::to_f64);
-        let slope = line.slope.each_ref().map(Real::to_f64);
         let mut all = Vec::new();
         for placed in &self.solids {
+            let line = placed.line(line);
+            let origin = line.origin.each_ref().map(Real::to_f64);
+            let slope = line.slope.each_ref().map(Real::to_f64);
             if placed
                 .bounds
                 .is_some_and(|it| !may_meet(origin, slope, &it))
             {
                 continue;
             }
-            for (enter, leave) in placed.solid.spans(line, &real(0.0)) {
+            for (enter, leave) in placed.solid.spans(&line, &real(0.0)) {
                 let mut keep = |t: Real, leaves: bool| {
                     if t > nothing() && end.is_none_or(|end| &t + nothing() < *end) {
                         all.push((t, placed, leaves));
@@ -161,7 +330,7 @@ impl<'s> Exact<'s> {
         all
     }
 
-    fn nearest(&self, line: &Line, end: Option<&Real>) -> Option<Met> {
+    fn nearest(&self, line: &Line, end: Option<&Real>) -> Option<Met<'_>> {
         let mut best: Option<(Real, &Placed, bool)> = None;
         for next in self.crossings(line, end) {
             let is_better = match &best {
@@ -177,11 +346,10 @@ impl<'s> Exact<'s> {
         }
         let (t, placed, leaves) = best?;
         let point = line.at(&t);
-        let mut normal = self.normal(placed, &point)?;
-        // The faces of a box without thickness lie in one plane: that counts which the ray comes from, or goes to.
-        let is_box = matches!(placed.solid, Solid::Box(_));
-        if is_box && dot(&normal, &line.slope).is_negative() == leaves {
-            normal = normal.map(|x| -x);
+        let line_there = placed.line(line);
+        let mut normal = self.normal(placed, (&line_there.at(&t), &line_there.slope), leaves)?;
+        if let Some(map) = &placed.map {
+            normal = map.normal(&normal);
         }
         let front = if placed.solid.is_flat() {
             dot(&normal, &line.slope).is_negative()
@@ -189,17 +357,22 @@ impl<'s> Exact<'s> {
             !leaves
         };
         Some(Met {
+            placed,
             t,
             point,
             normal,
             front,
-            object: self.scene.object(placed.primitive),
+            object: placed.object,
         })
     }
 
     /// The gradient of how far the surface lies inside of the point, by its definition.
-    fn normal(&self, placed: &Placed, point: &Vector) -> Option<Vector> {
-        use gridel_host::shape::exact::{cross, vector};
+    fn normal(
+        &self,
+        placed: &Placed,
+        (point, slope): (&Vector, &Vector),
+        leaves: bool,
+    ) -> Option<Vector> {
         Some(match &placed.solid {
             Solid::Triangle([a, b, c]) => {
                 let [a, b, c] = [a, b, c].map(|corner| vector(corner.to_array()));
@@ -209,15 +382,21 @@ impl<'s> Exact<'s> {
             Solid::Disc(disc) => unit(&vector(disc.normal.to_array())),
             Solid::Plane(plane) => unit(&vector(plane.normal.to_array())),
             Solid::Box(cuboid) => {
-                // The face that the point lies on.
+                // The face that the point lies on, of those that the line crosses in that direction; at an edge the
+                // first.
                 let (low, high) = (vector(cuboid.min.to_array()), vector(cuboid.max.to_array()));
                 let mut best: Option<(Real, usize, f64)> = None;
                 for k in 0..3 {
-                    for (side, sign) in [(&low, -1.0), (&high, 1.0)] {
-                        let off = (&point[k] - &side[k]).abs();
-                        if best.as_ref().is_none_or(|best| off < best.0) {
-                            best = Some((off, k, sign));
-                        }
+                    let towards = match (slope[k].is_positive(), slope[k].is_negative()) {
+                        (true, _) => 1.0,
+                        (_, true) => -1.0,
+                        _ => continue,
+                    };
+                    let sign = if leaves { towards } else { -towards };
+                    let side = if sign > 0.0 { &high } else { &low };
+                    let off = (&point[k] - &side[k]).abs();
+                    if best.as_ref().is_none_or(|best| &off + nothing() < best.0) {
+                        best = Some((off, k, sign));
                     }
                 }
                 let (_, axis, sign) = best?;
@@ -229,17 +408,33 @@ impl<'s> Exact<'s> {
                 let (height, axis) = (norm(&way), unit(&way));
                 let q = minus(point, &base);
                 let y = dot(&q, &axis);
-                if y.abs() < nothing() {
-                    return Some(axis.map(|x| -x));
+                // A cap counts at its rim if the line crosses it in that direction.
+                let crosses = |cap: &Vector| {
+                    let towards = dot(cap, slope);
+                    if leaves {
+                        towards.is_positive()
+                    } else {
+                        towards.is_negative()
+                    }
+                };
+                let below = axis.each_ref().map(|x| -x);
+                if y.abs() < nothing() && crosses(&below) {
+                    return Some(below);
                 }
-                if (&y - &height).abs() < nothing() {
+                if (&y - &height).abs() < nothing() && crosses(&axis) {
                     return Some(axis);
                 }
                 let out = unit(&along(&q, &-&y, &axis));
                 let narrows = real(cone.base_radius) - real(cone.apex_radius);
                 unit(&sum(&scaled(&out, &height), &scaled(&axis, &narrows)))
             }
-            _ => return None,
+            Solid::Torus(torus) => {
+                let axis = unit(&vector(torus.axis.to_array()));
+                let q = minus(point, &vector(torus.center.to_array()));
+                let y = dot(&q, &axis);
+                let outward = unit(&along(&q, &-&y, &axis));
+                unit(&along(&q, &real(-torus.major_radius), &outward))
+            }
         })
     }
 
@@ -256,11 +451,17 @@ impl<'s> Exact<'s> {
             weight = product(&weight, &self.absorbed(material, &length));
         }
         let direction = unit(&line.slope);
-        let normal = if met.front {
-            met.normal.clone()
-        } else {
-            met.normal.each_ref().map(|x| -x)
-        };
+        let mut normal = met.turned(&met.normal);
+        if self.is_smooth
+            && let Some(smooth) = met.smooth_normal()
+        {
+            normal = smooth;
+            let behind = dot(&normal, &direction);
+            // What reflects or refracts does not show its back.
+            if (is_glass || material.mirror != [0; 3]) && !behind.is_negative() {
+                normal = unit(&along(&normal, &-behind, &direction));
+            }
+        }
         let diffuse = self.diffuse(&met, material);
         let mut local = product(&color(view.ambient, 20), &diffuse);
         for light in self.scene.lights() {
@@ -287,7 +488,10 @@ impl<'s> Exact<'s> {
                 let parallel = (&cos - &ratio * &cos_out) / (&cos + &ratio * &cos_out);
                 reflected = (&perpendicular * &perpendicular + &parallel * &parallel) * real(0.5);
                 let lift = &ratio * &cos - &cos_out;
-                passing = Some(along(&scaled(&direction, &ratio), &lift, &normal));
+                let refracted = along(&scaled(&direction, &ratio), &lift, &normal);
+                // Lengths count where a triangle with normals lifts a direction: those of the rules.
+                let length = if met.front { one() } else { one() / &ratio };
+                passing = Some(scaled(&refracted, &length));
             }
             if material.inverse_ior == 1 << 30 {
                 (reflected, passing) = (real(0.0), Some(direction.clone()));
@@ -296,23 +500,35 @@ impl<'s> Exact<'s> {
             mirrored = sum(&mirrored, &more).map(|x| x.min(one()));
             if let Some(slope) = passing {
                 let part = scaled(&transmit, &(one() - &reflected));
-                result = sum(
-                    &result,
-                    &self.sent(&met, slope, product(&weight, &part), depth),
-                );
+                let part = product(&weight, &part);
+                result = sum(&result, &self.sent(&met, (slope, !met.front), part, depth));
             }
         }
-        let slope = along(&direction, &(real(2.0) * &cos), &normal);
+        let slope = along(&scaled(&direction, &real(0.5)), &cos, &normal);
         sum(
             &result,
-            &self.sent(&met, slope, product(&weight, &mirrored), depth),
+            &self.sent(&met, (slope, met.front), product(&weight, &mirrored), depth),
         )
     }
 
-    fn sent(&self, met: &Met, slope: Vector, weight: Vector, depth: u8) -> Vector {
+    fn sent(
+        &self,
+        met: &Met<'_>,
+        (slope, outward): (Vector, bool),
+        weight: Vector,
+        depth: u8,
+    ) -> Vector {
         let most = peak(&weight);
         if !most.is_positive() || most <= fraction(self.scene.view().cutoff, 20) {
             return black();
+        }
+        let mut slope = slope;
+        if self.is_smooth {
+            let normal = scaled(&met.normal, &real(if outward { 1.0 } else { -1.0 }));
+            let rise = dot(&slope, &normal);
+            if !rise.is_positive() {
+                slope = along(&slope, &(real(1.0 / 4096.0) - rise), &normal);
+            }
         }
         let line = Line {
             origin: met.point.clone(),
@@ -327,7 +543,7 @@ impl<'s> Exact<'s> {
             .map(|coefficient| decay(&(length * fraction(coefficient, 32))))
     }
 
-    fn diffuse(&self, met: &Met, material: &Material) -> Vector {
+    fn diffuse(&self, met: &Met<'_>, material: &Material) -> Vector {
         if material.checker_size <= 0 {
             return color(material.diffuse, 30);
         }
@@ -353,7 +569,7 @@ impl<'s> Exact<'s> {
     fn lit(
         &self,
         light: &Light,
-        met: &Met,
+        met: &Met<'_>,
         normal: &Vector,
         direction: &Vector,
         diffuse: &Vector,
@@ -388,6 +604,19 @@ impl<'s> Exact<'s> {
             origin: met.point.clone(),
             slope: way,
         };
+        let has_shadows = self.scene.effects().contains(Effects::SHADOW);
+        if !has_shadows {
+            return product(&color(light.color, 20), &reflected);
+        }
+        if self.is_smooth && !dot(&met.turned(&met.normal), &to_light).is_positive() {
+            let Some(step) = met.lift() else {
+                return black();
+            };
+            line.origin = sum(&line.origin, &step);
+            if !is_far {
+                line.slope = minus(&light.vector.map(|x| fraction(x, 13)), &line.origin);
+            }
+        }
         let mut rest = (!is_far).then(one);
         let mut left = [one(), one(), one()];
         while let Some(blocker) = self.nearest(&line, rest.as_ref()) {

@@ -3,7 +3,7 @@
 use super::{BENCHMARKS, MEMORY, PAPER, README, STRUCTURES, repository, text};
 use std::path::Path;
 
-const DOCUMENTS: [&str; 15] = [
+const DOCUMENTS: [&str; 16] = [
     README,
     "core/README.md",
     "core/x86/README.md",
@@ -14,6 +14,7 @@ const DOCUMENTS: [&str; 15] = [
     "host/docs/CHECK.md",
     "host/docs/EXACT.md",
     "host/docs/PYTHON.md",
+    "host/docs/WEB.md",
     "host/python/README.md",
     STRUCTURES,
     MEMORY,

@@ -31,7 +31,7 @@ const HOST: Layers = Layers {
         "scene sample compile",
         "live state render trace npy picture layer openexr animation merge resolution report",
         "measure emit",
-        "accuracy compare verify explain view certify check",
+        "certify accuracy compare verify explain view check",
         "cli main",
     ],
 };

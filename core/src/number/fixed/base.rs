@@ -8,6 +8,7 @@ use core::ops::{Add, Neg, Sub};
 /// All operators wrap; none panics, whatever the build's overflow checks. Kernels stay within ranges
 /// that they document, and tests hold them to that with the feature `strict-ranges`.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[repr(transparent)]
 pub struct Fixed(pub i32);
 

@@ -28,6 +28,15 @@ class NativeScene:
     def cast(
         self, rays: NDArray, format: str, accel: Optional[str], threads: int
     ) -> _HitArrays: ...
+    def cast_rays(
+        self, rays: NDArray, threads: int
+    ) -> Tuple[
+        NDArray[np.float32],
+        NDArray[np.uint32],
+        NDArray[np.uint32],
+        NDArray[np.float32],
+        NDArray[np.float32],
+    ]: ...
     def first(
         self, origins: NDArray, directions: NDArray, format: str, threads: int
     ) -> NDArray[np.int32]: ...

@@ -113,16 +113,15 @@ class RaycastingScene:
                 "primitive_normals": np.zeros(shape + (3,), dtype=np.float32),
             }
         else:
-            found = self.scene.cast(array, threads=nthreads)
-            t = found.t.astype(np.float32)
-            # A ray without a direction hits nothing there.
-            t[np.isnan(t)] = np.inf
+            t, geometries, primitives, normals, uvs = self.scene._native.cast_rays(
+                np.ascontiguousarray(array), nthreads
+            )
             hits = {
-                "t_hit": t,
-                "geometry_ids": found.object,
-                "primitive_ids": self._identify(found.object, found.primitive),
-                "primitive_uvs": found.uv,
-                "primitive_normals": found.normal,
+                "t_hit": t.reshape(shape),
+                "geometry_ids": geometries.reshape(shape),
+                "primitive_ids": primitives.reshape(shape),
+                "primitive_uvs": uvs.reshape(shape + (2,)),
+                "primitive_normals": normals.reshape(shape + (3,)),
             }
         return {key: _like(rays, value) for key, value in hits.items()}
 

@@ -4,6 +4,7 @@ use crate::cli::arguments::{self, ImportOptions, scene_help, scene_long_help};
 use clap::Args;
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 use gridel_core::Structure;
+use gridel_host::accuracy::Truth;
 use gridel_host::compile::Quality;
 use gridel_host::measure::board as boards;
 use std::path::PathBuf;
@@ -13,7 +14,8 @@ use std::path::PathBuf;
 /// Changes six settings, each alone and in combinations: number format, lattice bits (10, 12, 16, 20,
 /// 24), samples per pixel (1 to 64), ray depth, the cutoff below which a secondary ray is not traced, and the
 /// effects that the scene calls for, each of which is left out. Builds and renders the scene with every setting, and compares the picture with a reference:
-/// f64, 24 bits, ray depth 16, and the samples of --reference-samples.
+/// f64, or the exact picture with --reference exact; 24 bits, ray depth 16, and the samples of
+/// --reference-samples.
 ///
 /// Errors, of display values (sRGB) from 0 to 1:
 ///   RMSE           root of the mean square difference, over all pixels and channels
@@ -26,8 +28,8 @@ use std::path::PathBuf;
 ///                  precision: the median and the largest
 ///
 /// The RMSE has two parts:
-///   sampling       the picture of f64 with the setting against the reference
-///   arithmetic     the picture of the setting's number format against that of f64
+///   sampling       the picture of f64 with the setting, or its exact picture, against the reference
+///   arithmetic     the picture of the setting's number format against that of f64, or the exact one
 ///
 /// Costs:
 ///   time           milliseconds per frame on one thread: the median of the runs, and their spread
@@ -84,6 +86,11 @@ pub struct Arguments {
         value_parser = clap::value_parser!(u16).range(1..=1000))]
     pub repeat: u16,
 
+    /// What errors are measured against: pictures of f64, or the exact pictures that `certify` proves,
+    /// which take 10 to 40 times as long
+    #[arg(long, value_name = "NAME", value_parser = truth(), default_value = Truth::F64.name())]
+    pub reference: Truth,
+
     /// Samples per pixel of the reference, at least twice the most that are measured
     #[arg(long, value_name = "N", default_value_t = 256,
         value_parser = clap::value_parser!(u16).range(1..=256))]
@@ -124,6 +131,13 @@ fn rays(text: &str) -> Result<f64, String> {
     let value = text.parse::<f64>().ok();
     let value = value.filter(|value| value.is_finite() && *value > 0.0);
     value.ok_or_else(|| String::from("write a number above 0, such as 12.5"))
+}
+
+fn truth() -> impl TypedValueParser<Value = Truth> {
+    PossibleValuesParser::new(Truth::ALL.map(Truth::name)).map(|name| {
+        let mut all = Truth::ALL.into_iter();
+        all.find(|it| it.name() == name).unwrap_or_default()
+    })
 }
 
 fn board() -> impl TypedValueParser<Value = String> {

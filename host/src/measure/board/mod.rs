@@ -8,6 +8,7 @@
 //! | `programs.rs` | these figures, and what bounds the others |
 //! | `estimate.rs` | code and call stack of a scene's program |
 //! | `memory.rs` | the memory report: what a scene takes of a board, and what remains |
+//! | `text.rs` | the memory report as text |
 //! | `advice.rs` | what makes it smaller |
 //! | `instructions.rs` | instructions per ray of recorded pictures |
 
@@ -18,6 +19,7 @@ mod instructions;
 mod memory;
 #[doc(hidden)]
 pub mod programs;
+mod text;
 
 pub use account::{Account, Item};
 pub use instructions::{PICTURE_COSTS, PictureCost, core_names, instructions, names};

@@ -4,7 +4,6 @@
 
 use crate::scene::SceneError;
 use crate::scene::access::Access;
-use crate::scene::text::read_file;
 use base64::Engine as _;
 use base64::engine::general_purpose::STANDARD;
 use gltf::Document;
@@ -340,7 +339,7 @@ pub(super) fn fetch(
     let file = access
         .resolve(path, &name)
         .map_err(|[cause, remedy]| wrong(format!("is in a file: {cause}"), &remedy))?;
-    read_file(&file).map_err(|error| {
+    access.read(&file).map_err(|error| {
         wrong(
             format!("is in {}: {}", file.display(), error.cause),
             "put that file beside the scene file",

@@ -151,7 +151,7 @@ fn read_libraries(
             })
         };
         // A name may contain spaces, and a line may contain several names.
-        let names: Vec<&str> = if allowed(names).is_ok_and(|whole| whole.is_file()) {
+        let names: Vec<&str> = if allowed(names).is_ok_and(|whole| access.is_file(&whole)) {
             vec![names]
         } else {
             names.split_whitespace().collect()
@@ -161,7 +161,7 @@ fn read_libraries(
             if !seen.insert(path.clone()) {
                 continue;
             }
-            match Source::read(&path) {
+            match Source::read(&path, access) {
                 Ok(file) => library.extend(mtl::read(&file, &mut images, warnings)?),
                 Err(error) => {
                     let cause = format!(

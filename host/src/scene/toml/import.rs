@@ -115,7 +115,10 @@ impl Imports {
     /// Reads the scene file from which everything starts.
     pub(super) fn root(&mut self, input: Input<'_>) -> Result<Scene, SceneError> {
         // A path that leads nowhere is that of standard input, which nothing can import.
-        let canonical = std::fs::canonicalize(input.path).unwrap_or_else(|_| input.path.to_owned());
+        let canonical = input
+            .access
+            .canonical(input.path)
+            .unwrap_or_else(|_| input.path.to_owned());
         self.nested(input, canonical)
     }
 
@@ -137,7 +140,7 @@ impl Imports {
         let path = allowed.map_err(|[cause, remedy]| {
             source.error(&file.span, format!("the import {cause}"), remedy)
         })?;
-        let canonical = std::fs::canonicalize(&path).map_err(|error| {
+        let canonical = self.access.canonical(&path).map_err(|error| {
             source.error(
                 &file.span,
                 format!("the import {} cannot be read: {error}", path.display()),

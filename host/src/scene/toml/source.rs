@@ -1,6 +1,7 @@
 //! The text of a TOML file, and errors and places in it.
 
-use crate::scene::text::{check_encoding, read_file};
+use crate::scene::access::Access;
+use crate::scene::text::check_encoding;
 use crate::scene::{SceneError, SourceSpan};
 use std::ops::Range;
 use std::path::{Path, PathBuf};
@@ -29,7 +30,7 @@ pub(crate) struct Name {
 
 impl Source {
     pub(crate) fn read(path: &Path) -> Result<Self, SceneError> {
-        Self::new(path, read_file(path)?)
+        Self::new(path, Access::of(path, true).read(path)?)
     }
 
     pub(crate) fn new(path: &Path, bytes: Vec<u8>) -> Result<Self, SceneError> {

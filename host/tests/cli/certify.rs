@@ -1,0 +1,177 @@
+//! `gridel certify`.
+
+use crate::program::Folder;
+use gridel_core::format::checksum;
+
+const BALL: &str = "object = [{ kind = \"sphere\", center = [0, 0, 0], radius = 1 }]\n";
+
+/// Bytes of a pixel in the state, and where it says that it is done.
+const PIXEL: usize = 80;
+const DONE: usize = 74;
+
+fn folder() -> Folder {
+    let folder = Folder::new();
+    folder.write("ball.toml", BALL.as_bytes());
+    folder
+}
+
+const SMALL: [&str; 6] = ["certify", "ball.toml", "--size", "13x7", "-o", "out"];
+
+#[test]
+fn every_pixel_is_proved_different_or_open() {
+    let folder = folder();
+    let run = [&SMALL[..], &["--samples", "3", "--format", "fixed"]].concat();
+    let report = folder.json(&run);
+    assert_eq!(report["size"].to_string(), "[13,7]");
+    assert_eq!(report["samples"], 3);
+    assert_eq!(report["pixels"], 91);
+    let formats = report["formats"].as_array().unwrap();
+    assert_eq!(formats.len(), 1);
+    assert_eq!(formats[0]["format"], "fixed");
+    let count = |key: &str| formats[0][key].as_u64().unwrap();
+    assert_eq!(count("equal") + count("different") + count("open"), 91);
+    let proved = report["proved"].as_u64().unwrap();
+    let reasons = report["reasons"].as_array().unwrap().iter();
+    let open: u64 = reasons.map(|it| it["pixels"].as_u64().unwrap()).sum();
+    assert_eq!(proved + open, 91);
+    let by_bits = report["proved_with_bits"].as_array().unwrap().iter();
+    let sum: u64 = by_bits.map(|it| it[1].as_u64().unwrap()).sum();
+    assert_eq!(sum, proved);
+    // The file holds what is printed, and the pictures are there.
+    let file: serde_json::Value = serde_json::from_slice(&folder.read("out/certify.json")).unwrap();
+    assert_eq!(file["formats"], report["formats"]);
+    for name in ["certify.html", "map.png", "exact.png", "certify.state"] {
+        assert!(folder.path(&format!("out/{name}")).exists(), "{name}");
+    }
+    let text = folder.done(&run);
+    assert!(text.contains("sampled picture"), "{text}");
+    let page = String::from_utf8(folder.read("out/certify.html")).unwrap();
+    assert!(page.contains("sampled picture") && page.contains("3 samples per pixel"));
+}
+
+/// A state with its checksum made anew.
+fn forged(state: &[u8], change: impl FnOnce(&mut [u8])) -> Vec<u8> {
+    let mut bytes = state[..state.len() - 4].to_vec();
+    let line = bytes.iter().position(|&byte| byte == b'\n').unwrap() + 1;
+    change(&mut bytes[line..]);
+    bytes.extend(checksum(&bytes).to_le_bytes());
+    bytes
+}
+
+#[test]
+fn an_interrupted_run_continues_where_it_stopped() {
+    let folder = folder();
+    let whole = folder.json(&SMALL);
+    let state = folder.read("out/certify.state");
+    // As if it had stopped after some rows.
+    let stopped = forged(&state, |pixels| pixels[3 * 13 * PIXEL..].fill(0));
+    folder.write("out/certify.state", &stopped);
+    assert_eq!(folder.json(&SMALL), whole);
+    assert_eq!(folder.read("out/certify.state"), state);
+    // What is done is not done again: of a pixel that is marked as open, the mark stays.
+    let marked = forged(&state, |pixels| {
+        assert_eq!(pixels[DONE], 1);
+        pixels[64..67].fill(0);
+        pixels[67..70].fill(255);
+        pixels[71] = 1;
+    });
+    folder.write("out/certify.state", &marked);
+    let again = folder.json(&SMALL);
+    let count = |report: &serde_json::Value| report["proved"].as_u64().unwrap();
+    assert_eq!(count(&again) + 1, count(&whole));
+    assert_eq!(again["reasons"][0]["examples"][0]["pixel"][0], 0);
+}
+
+#[test]
+fn states_of_other_pictures_and_broken_ones_are_replaced_with_a_warning() {
+    let folder = folder();
+    let whole = folder.json(&SMALL);
+    let state = folder.read("out/certify.state");
+    let with_warning = |bytes: &[u8], arguments: &[&str], cause: &str| {
+        folder.write("out/certify.state", bytes);
+        let run = folder.run(&[arguments, &["--json"]].concat());
+        assert_eq!(run.code, Some(0), "{}", run.stderr);
+        assert!(run.said().contains(cause), "{cause}: {}", run.stderr);
+        serde_json::from_str::<serde_json::Value>(&run.stdout).unwrap()
+    };
+    let mut broken = state.clone();
+    broken[200] ^= 1;
+    for bytes in [
+        &broken[..],
+        &state[..state.len() - 1],
+        &state[..state.len() - PIXEL],
+    ] {
+        assert_eq!(with_warning(bytes, &SMALL, "is damaged"), whole);
+    }
+    let short = forged(&state, |_| ())[..state.len() - PIXEL - 4].to_vec();
+    assert_eq!(with_warning(&short, &SMALL, "is damaged"), whole);
+    for bytes in [&b""[..], b"my own"] {
+        assert_eq!(with_warning(bytes, &SMALL, "is of another picture"), whole);
+    }
+    // Of other samples, of another depth, of another scene.
+    for more in [["--samples", "2"], ["--depth", "0"]] {
+        with_warning(&state, &[&SMALL[..], &more].concat(), "another picture");
+    }
+    folder.write(
+        "ball.toml",
+        BALL.replace("radius = 1", "radius = 2").as_bytes(),
+    );
+    with_warning(&state, &SMALL, "another picture");
+}
+
+#[test]
+fn what_cannot_be_certified_is_rejected() {
+    let folder = folder();
+    let huge = ["certify", "ball.toml", "--size", "65535x65535"];
+    folder.fails(2, &huge, &["4,294,836,225 pixels", "smaller `--size`"]);
+    folder.fails(1, &["certify", "none.toml"], &["none.toml"]);
+    folder.fails(2, &["certify", "ball.toml", "--format", "f16"], &["f16"]);
+    folder.fails(2, &["certify", "ball.toml", "--samples", "0"], &["0"]);
+}
+
+/// The command that a report names shows the intervals of that pixel.
+#[test]
+fn explain_shows_the_intervals_of_a_pixel() {
+    let folder = folder();
+    let pixel = ["explain", "ball.toml", "--size", "13x7", "--pixel", "6,3"];
+    let text = folder.done(&[&pixel[..], &["--interval"]].concat());
+    assert!(text.contains("hit") && text.contains("light"), "{text}");
+    let json = folder.json(&[&pixel[..], &["--interval"]].concat());
+    assert!(json.to_string().contains("\"steps\""), "{json}");
+    folder.fails(
+        2,
+        &[
+            "explain",
+            "ball.toml",
+            "--size",
+            "13x7",
+            "--pixel",
+            "13,3",
+            "--interval",
+        ],
+        &["13"],
+    );
+}
+
+#[test]
+fn manifests_ask_for_a_proved_share_and_a_largest_error() {
+    let folder = folder();
+    let check = |lines: &str| {
+        let text = format!("[[check]]\nscene = \"ball.toml\"\nsize = [13, 7]\n{lines}\n");
+        folder.write("check.toml", text.as_bytes());
+    };
+    check("certified = 1\nmax_proved_error = 0\nformats = [\"f64\"]");
+    folder.done(&["check", "check.toml"]);
+    for (lines, what) in [
+        ("certified = 1.5", "certified"),
+        ("certified = -0.1", "certified"),
+        ("certified = \"all\"", "certified"),
+        ("certified = nan", "certified"),
+        ("max_proved_error = 256", "max_proved_error"),
+        ("max_proved_error = -1", "max_proved_error"),
+        ("max_proved_error = 0.5", "max_proved_error"),
+    ] {
+        check(lines);
+        folder.fails(1, &["check", "check.toml"], &[what, "check.toml"]);
+    }
+}

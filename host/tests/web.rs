@@ -1,0 +1,533 @@
+//! The web page in a browser without a window (Chromium), with real events, served by `gridel web`. Ignored unless
+//! `GRIDEL_WEB` names the folder of a built page; `just web-test` builds it and runs this.
+
+#[allow(dead_code)]
+#[path = "cli/program.rs"]
+mod program;
+
+#[allow(dead_code)]
+#[path = "browser/mod.rs"]
+mod browser;
+
+use base64::Engine;
+use base64::engine::general_purpose::STANDARD;
+use browser::Browser;
+use flate2::Compression;
+use flate2::write::GzEncoder;
+use libtest_mimic::{Arguments, Failed, Trial};
+use program::Folder;
+use serde_json::json;
+use std::io::{BufRead, BufReader, Cursor, Write};
+use std::path::{Path, PathBuf};
+use std::process::{Child, Stdio};
+use std::time::{Duration, Instant};
+
+/// The most that the whole page may take, each file compressed.
+const MOST_BYTES: usize = 1_500_000;
+
+const SHIFT: &str = "\u{e008}";
+const RIGHT: &str = "\u{e014}";
+const UP: &str = "\u{e013}";
+
+/// A name, and what runs with a page that is served.
+type Test = (&'static str, fn(&Page));
+
+fn main() {
+    let page = std::env::var_os("GRIDEL_WEB").map(PathBuf::from);
+    let needs = match (&page, browser::is_missing()) {
+        (None, _) => "needs a built page: GRIDEL_WEB",
+        (_, true) => browser::NEEDS,
+        _ => "",
+    };
+    let is_required = page.is_some() && browser::is_required();
+    let tests: [Test; 6] = [
+        ("web_page_is_small", page_is_small),
+        ("web_page_draws_the_pixels_of_the_program", pixels_equal),
+        ("web_page_follows_mouse_and_keys", camera_follows),
+        ("web_page_measures_explains_and_saves", answers),
+        ("web_page_opens_files_and_shows_errors", files_open),
+        (
+            "web_page_fits_phones_and_names_everything",
+            page_is_accessible,
+        ),
+    ];
+    let trials = tests.map(|(name, test)| {
+        let page = page.clone();
+        let trial = Trial::test(name, move || {
+            let Some(folder) = page.filter(|_| needs.is_empty()) else {
+                return Err(Failed::from(needs));
+            };
+            test(&Page::serve(&folder));
+            Ok(())
+        });
+        let is_ignored = !needs.is_empty() && !is_required;
+        trial.with_kind(needs).with_ignored_flag(is_ignored)
+    });
+    let mut arguments = Arguments::from_args();
+    // Each has a browser of its own, which takes all cores.
+    arguments.test_threads = Some(1);
+    libtest_mimic::run(&arguments, trials.into()).exit();
+}
+
+/// A page that is served, and files of a test.
+struct Page {
+    folder: PathBuf,
+    files: Folder,
+    server: Child,
+    url: String,
+}
+
+impl Page {
+    fn serve(folder: &Path) -> Self {
+        let files = Folder::new();
+        for name in ["glass-chess", "quick"] {
+            let scene = program::fixture(name);
+            files.write(&format!("{name}.toml"), &scene);
+        }
+        let folder = folder.canonicalize().unwrap();
+        let mut command = files.command(&["web", "--port", "0", "--dir"]);
+        let mut server = command.arg(&folder).stdout(Stdio::piped()).spawn().unwrap();
+        let mut line = String::new();
+        let mut lines = BufReader::new(server.stdout.take().unwrap());
+        lines.read_line(&mut line).unwrap();
+        let url = line.split(' ').next().unwrap().to_owned();
+        assert!(url.starts_with("http://127.0.0.1:"), "{line}");
+        Self {
+            folder,
+            files,
+            server,
+            url,
+        }
+    }
+
+    /// A browser that shows the page, once the first picture is compared.
+    fn open(&self) -> Browser {
+        let browser = Browser::open();
+        browser.post("/url", &json!({"url": self.url}));
+        settle(&browser);
+        browser
+    }
+
+    /// The sRGB pixels of the program's picture.
+    fn rendered(&self, arguments: &[&str]) -> Vec<u8> {
+        let all = [&["render", "-o", "picture.ppm"], arguments].concat();
+        self.files.done(&all);
+        let file = self.files.read("picture.ppm");
+        let header = file.split_inclusive(|&byte| byte == b'\n').take(3);
+        let length: usize = header.map(<[u8]>::len).sum();
+        file[length..].to_vec()
+    }
+
+    /// Waits for a file that the browser saves.
+    fn saved(&self, name: &str) -> Vec<u8> {
+        let begun = Instant::now();
+        while !self.files.path(name).exists() {
+            assert!(begun.elapsed() < Duration::from_secs(30), "no {name}");
+            std::thread::sleep(Duration::from_millis(50));
+        }
+        self.files.read(name)
+    }
+}
+
+impl Drop for Page {
+    fn drop(&mut self) {
+        drop(self.server.kill());
+        drop(self.server.wait());
+    }
+}
+
+/// Waits until what was asked for is drawn and compared.
+fn settle(browser: &Browser) {
+    let begun = Instant::now();
+    loop {
+        match browser
+            .text("return document.documentElement.dataset.state ?? ''")
+            .as_str()
+        {
+            "done" => return,
+            "error" => panic!("{}", content(browser, "error-text")),
+            _ => {}
+        }
+        assert!(begun.elapsed() < Duration::from_secs(90), "no picture");
+        std::thread::sleep(Duration::from_millis(20));
+    }
+}
+
+fn content(browser: &Browser, id: &str) -> String {
+    browser.text(&format!(
+        "return document.getElementById('{id}').textContent"
+    ))
+}
+
+/// The pixels that the canvas shows, three bytes each.
+fn shown(browser: &Browser) -> Vec<u8> {
+    let text = browser.text(
+        "const canvas = document.getElementById('canvas');
+         const { data } = canvas.getContext('2d').getImageData(0, 0, canvas.width, canvas.height);
+         let text = '';
+         for (let at = 0; at < data.length; at += 4) text += String.fromCharCode(data[at], data[at + 1], data[at + 2]);
+         return btoa(text);",
+    );
+    STANDARD.decode(text).unwrap()
+}
+
+fn choose(browser: &Browser, id: &str, value: &str) {
+    browser.click(&format!("//*[@id='{id}']"));
+    let option = browser.id(&format!("//*[@id='{id}']/option[@value='{value}']"));
+    browser.post(&format!("/element/{option}/click"), &json!({}));
+    // A list that is open would take the next key.
+    let chosen = format!("document.getElementById('{id}').value === '{value}'");
+    browser.wait(&chosen);
+    settle(browser);
+}
+
+fn choose_format(browser: &Browser, format: &str) {
+    browser.click(&format!(
+        "//label[input[@name='format'][@value='{format}']]"
+    ));
+    settle(browser);
+}
+
+fn assert_no_message(browser: &Browser) {
+    let messages = browser.post("/se/log", &json!({"type": "browser"}));
+    assert_eq!(messages, json!([]));
+}
+
+fn page_is_small(page: &Page) {
+    let mut bytes = 0;
+    let mut folders = vec![page.folder.clone()];
+    while let Some(folder) = folders.pop() {
+        for entry in std::fs::read_dir(folder).unwrap() {
+            let path = entry.unwrap().path();
+            if path.is_dir() {
+                folders.push(path);
+                continue;
+            }
+            let mut encoder = GzEncoder::new(Vec::new(), Compression::best());
+            encoder.write_all(&std::fs::read(&path).unwrap()).unwrap();
+            bytes += encoder.finish().unwrap().len();
+        }
+    }
+    println!("the page takes {bytes} bytes, compressed");
+    assert!(bytes <= MOST_BYTES, "{bytes}");
+}
+
+fn pixels_equal(page: &Page) {
+    let browser = page.open();
+    let times = browser.text("const { seen, picture } = document.documentElement.dataset; return `${seen} and ${picture}`");
+    println!("glass chess: first seen and drawn {times} ms after loading began");
+    let chess = "glass-chess.toml";
+    assert_eq!(
+        shown(&browser),
+        page.rendered(&[chess, "--format", "f32", "--accel", "dual-split"])
+    );
+
+    choose(&browser, "sample", "quick.toml");
+    for (format, structure) in [
+        ("fixed", "dual-split"),
+        ("f32", "wide"),
+        ("f32", "list"),
+        ("f64", "bvh"),
+        ("f64", "octree"),
+    ] {
+        choose_format(&browser, format);
+        choose(&browser, "structure", structure);
+        let expected = page.rendered(&["quick.toml", "--format", format, "--accel", structure]);
+        assert!(shown(&browser) == expected, "{format} {structure}");
+    }
+
+    // Fewer bits, more samples, another depth and size, one effect less.
+    browser.fill("//*[@id='bits']", &"\u{e012}".repeat(12));
+    settle(&browser);
+    choose(&browser, "samples", "4");
+    choose(&browser, "structure", "flagged");
+    choose(&browser, "size", "0.5");
+    browser.click("//*[@id='effects']//label[input/@value='shadow']");
+    settle(&browser);
+    let size = browser.text(
+        "const { width, height } = document.getElementById('canvas'); return `${width}x${height}`",
+    );
+    let setting = [
+        "quick.toml",
+        "--format",
+        "f64",
+        "--accel",
+        "flagged",
+        "--lattice-bits",
+        "12",
+        "--samples",
+        "4",
+        "--without",
+        "shadow",
+        "--size",
+        &size,
+    ];
+    assert!(shown(&browser) == page.rendered(&setting));
+
+    // The work of each pixel is the program's too.
+    browser.click("//label[input/@value='work']");
+    settle(&browser);
+    page.rendered(&[&setting[..], &["--heat-map", "work.png"]].concat());
+    let png = png::Decoder::new(Cursor::new(page.files.read("work.png")));
+    let mut reader = png.read_info().unwrap();
+    let mut map = vec![0; reader.output_buffer_size().unwrap()];
+    reader.next_frame(&mut map).unwrap();
+    assert!(shown(&browser) == map);
+    assert_no_message(&browser);
+}
+
+fn camera_follows(page: &Page) {
+    let browser = page.open();
+    choose(&browser, "sample", "quick.toml");
+    let first = shown(&browser);
+    let canvas = browser.element("//*[@id='canvas']");
+    let compare = || {
+        settle(&browser);
+        // The camera as the program takes it, in a comment.
+        let toml = content(&browser, "camera");
+        let options = toml.lines().next().unwrap().trim_start_matches("# ");
+        let options: Vec<_> = options.split(' ').collect();
+        let common = ["quick.toml", "--format", "f32", "--accel", "dual-split"];
+        let picture = page.rendered(&[&common[..], &options].concat());
+        assert!(shown(&browser) == picture, "{toml}");
+        assert!(picture != first);
+        picture
+    };
+    let begin = "document.documentElement.dataset.state = 'wait'";
+    browser.script(begin);
+    browser.drag(&canvas, [60, -20]);
+    let dragged = compare();
+    browser.script(begin);
+    browser.keys(&[UP, RIGHT, "+"]);
+    browser.wait("document.documentElement.dataset.state === 'done'");
+    std::thread::sleep(Duration::from_millis(300));
+    let turned = compare();
+    assert!(turned != dragged);
+    let wheel = json!({"type": "wheel", "id": "wheel", "actions": [
+        {"type": "scroll", "x": 0, "y": 0, "deltaX": 0, "deltaY": -200, "duration": 0, "origin": canvas}]});
+    browser.script(begin);
+    browser.post("/actions", &json!({"actions": [wheel]}));
+    assert!(compare() != turned);
+    // Shift and an arrow pan.
+    let before = content(&browser, "camera");
+    let target = |toml: &str| {
+        toml.lines()
+            .find(|it| it.starts_with("target"))
+            .unwrap()
+            .to_owned()
+    };
+    let pan = json!({"type": "key", "id": "keys", "actions": [
+        {"type": "keyDown", "value": SHIFT}, {"type": "keyDown", "value": RIGHT},
+        {"type": "keyUp", "value": RIGHT}, {"type": "keyUp", "value": SHIFT}]});
+    browser.script(begin);
+    browser.post("/actions", &json!({"actions": [pan]}));
+    compare();
+    assert_ne!(target(&content(&browser, "camera")), target(&before));
+    // The first camera again, by its key.
+    browser.script(begin);
+    browser.keys(&["r"]);
+    settle(&browser);
+    assert!(shown(&browser) == first);
+    assert_no_message(&browser);
+}
+
+fn answers(page: &Page) {
+    let browser = page.open();
+    choose(&browser, "sample", "quick.toml");
+    assert_ne!(content(&browser, "rmse"), "-");
+    assert!(content(&browser, "reference-text").contains("f64, 24 lattice bits"));
+    // Errors are 0 in the reference's own setting, and not with few bits.
+    choose_format(&browser, "f64");
+    assert_eq!(content(&browser, "rmse"), "0");
+    browser.fill("//*[@id='bits']", &"\u{e012}".repeat(14));
+    settle(&browser);
+    let rmse: f64 = content(&browser, "rmse").parse().unwrap();
+    assert!(rmse > 0.0, "{rmse}");
+    browser.fill("//*[@id='bits']", &"\u{e014}".repeat(14));
+    settle(&browser);
+
+    // All number formats, one after the other.
+    browser.click("//*[@id='measure']");
+    browser.wait("!document.getElementById('measure').disabled");
+    settle(&browser);
+    let rows = content(&browser, "rows");
+    for format in ["fixed", "f32", "f64"] {
+        assert!(rows.contains(&format!("{format}, 24 bits")), "{rows}");
+    }
+
+    // A click explains what the program explains.
+    let canvas = browser.element("//*[@id='canvas']");
+    browser.script("document.getElementById('canvas').scrollIntoView({block: 'center'})");
+    browser.point(&canvas, true);
+    browser.wait("!document.getElementById('explanation').hidden");
+    let pixel = browser.text("return `${document.getElementById('pixel-x').value},${document.getElementById('pixel-y').value}`");
+    let explained = page.files.done(&[
+        "explain",
+        "quick.toml",
+        "--pixel",
+        &pixel,
+        "--format",
+        "f64",
+        "--accel",
+        "dual-split",
+    ]);
+    assert_eq!(content(&browser, "explanation").trim(), explained.trim());
+
+    // Files are those of the program, too.
+    let downloads = json!({"behavior": "allow", "downloadPath": page.files.path("")});
+    browser.command("Page.setDownloadBehavior", downloads);
+    browser.wait("document.getElementById('memory').textContent.includes('dual-split')");
+    let report = content(&browser, "memory");
+    let inspected = page
+        .files
+        .done(&["inspect", "quick.toml", "--target", "stm32vldiscovery"]);
+    assert!(inspected.contains(report.trim()), "{report}\n{inspected}");
+    let expected = page.files.path("expected.gridel").display().to_string();
+    page.files.done(&["build", "quick.toml", "-o", &expected]);
+    browser.click("//*[@id='save-blob']");
+    assert!(page.saved("quick.gridel") == page.files.read("expected.gridel"));
+    page.files.done(&[
+        "render",
+        "quick.toml",
+        "--format",
+        "f64",
+        "-o",
+        "expected.png",
+    ]);
+    browser.click("//*[@id='save-picture']");
+    assert!(page.saved("quick.png") == page.files.read("expected.png"));
+    browser.click("//*[@id='save-memory']");
+    assert_eq!(
+        page.saved("quick-stm32vldiscovery.txt"),
+        report.into_bytes()
+    );
+    assert_no_message(&browser);
+}
+
+fn files_open(page: &Page) {
+    let browser = page.open();
+    let input = "//*[@id='files']";
+    let begin = "document.documentElement.dataset.state = 'wait'";
+    let path = |name: &str| page.files.path(name).display().to_string();
+
+    // A scene with the files that it names.
+    page.files.write(
+        "leaf.obj",
+        b"mtllib leaf.mtl\nusemtl red\nv 0 0 0\nv 2 0 0\nv 0 2 0\nf 1 2 3\n",
+    );
+    page.files.write("leaf.mtl", b"newmtl red\nKd 1 0 0\n");
+    page.files.write(
+        "tree.toml",
+        b"[[object]]\nkind = 'import'\nfile = 'leaf.obj'\n",
+    );
+    browser.script(begin);
+    browser.fill(
+        input,
+        &[path("leaf.mtl"), path("tree.toml"), path("leaf.obj")].join("\n"),
+    );
+    settle(&browser);
+    let of_program = |arguments: &[&str]| {
+        page.rendered(&[arguments, &["--format", "f32", "--accel", "dual-split"]].concat())
+    };
+    assert!(shown(&browser) == of_program(&["tree.toml"]));
+    // The other file that is a scene of its own.
+    choose(&browser, "main", "leaf.obj");
+    assert!(shown(&browser) == of_program(&["leaf.obj"]));
+
+    // A blob, dropped as a mouse drops it.
+    page.files
+        .done(&["build", "quick.toml", "-o", "drop.gridel", "--accel", "bvh"]);
+    browser.script(begin);
+    let data = json!({"items": [], "files": [path("drop.gridel")], "dragOperationsMask": 1});
+    for kind in ["dragEnter", "dragOver", "drop"] {
+        let event = json!({"type": kind, "x": 200, "y": 200, "data": data});
+        browser.command("Input.dispatchDragEvent", event);
+    }
+    settle(&browser);
+    assert!(content(&browser, "status").contains("drop.gridel"));
+    assert!(
+        shown(&browser) == page.rendered(&["drop.gridel", "--format", "f32", "--accel", "bvh"])
+    );
+    assert_eq!(
+        browser.text("return document.getElementById('bits').disabled"),
+        "true"
+    );
+
+    // Errors are the program's: file, place, cause and remedy.
+    page.files.write(
+        "broken.toml",
+        b"[[object]]\nkind = 'sphere'\ncenter = [0, 0, 0]\nradius = -1\n",
+    );
+    page.files.write(
+        "lost.toml",
+        b"[[object]]\nkind = 'import'\nfile = 'none.obj'\n",
+    );
+    let mut blob = page.files.read("drop.gridel");
+    blob.truncate(200);
+    page.files.write("short.gridel", &blob);
+    page.files.write("notes.docx", b"no scene");
+    for name in ["broken.toml", "short.gridel", "notes.docx"] {
+        browser.script(begin);
+        browser.fill(input, &path(name));
+        browser.wait("document.documentElement.dataset.state === 'error'");
+        let plain = |text: &str| {
+            let words = text
+                .split_whitespace()
+                .filter(|word| !"│╰─▶×╭╯├".contains(*word));
+            // Lines break at other places.
+            words.collect::<String>()
+        };
+        let run = page.files.run(&["render", name, "-o", "none.png"]);
+        assert_ne!(run.code, Some(0));
+        // The cause and its remedy; frames and lines are drawn in another width.
+        let (page_says, program_says) =
+            (plain(&content(&browser, "error-text")), plain(&run.stderr));
+        let sentences = page_says.split("help:");
+        for sentence in sentences
+            .map(|it| it.split('[').next().unwrap().trim())
+            .filter(|it| !it.is_empty())
+        {
+            assert!(
+                program_says.contains(sentence),
+                "{sentence:?}\n{program_says}"
+            );
+        }
+        assert!(page_says.contains("help:"), "{page_says}");
+    }
+    browser.script(begin);
+    browser.fill(input, &path("lost.toml"));
+    browser.wait("document.documentElement.dataset.state === 'error'");
+    let error = content(&browser, "error-text");
+    assert!(
+        error.contains("lost.toml:3") && error.contains("none.obj"),
+        "{error}"
+    );
+    // The scene that was shown still is.
+    browser.click("//*[@id='error-close']");
+    assert!(
+        shown(&browser) == page.rendered(&["drop.gridel", "--format", "f32", "--accel", "bvh"])
+    );
+    assert_no_message(&browser);
+}
+
+fn page_is_accessible(page: &Page) {
+    let browser = page.open();
+    assert_eq!(browser.text(browser::UNNAMED), "0");
+    // The picture and every control are reached by the Tab key.
+    let reached = browser.text(
+        "return [...document.querySelectorAll('canvas, select, button, input')].filter((it) => it.tabIndex < 0).length",
+    );
+    assert_eq!(reached, "0");
+    let dark = json!({"features": [{"name": "prefers-color-scheme", "value": "dark"}]});
+    browser.command("Emulation.setEmulatedMedia", dark);
+    let phone = json!({"width": 390, "height": 844, "deviceScaleFactor": 1, "mobile": true});
+    browser.command("Emulation.setDeviceMetricsOverride", phone);
+    std::thread::sleep(Duration::from_millis(300));
+    assert_eq!(
+        browser.text("return document.documentElement.scrollWidth"),
+        "390"
+    );
+    let back = "return getComputedStyle(document.body).backgroundColor";
+    assert_eq!(browser.text(back), "rgb(21, 23, 26)");
+    assert_no_message(&browser);
+}

@@ -1,0 +1,177 @@
+// Workers: requests with answers, and pictures from coarse to fine.
+
+/** How long coarse blocks may keep the next picture waiting, in milliseconds. */
+const PATIENCE = 250;
+
+/** An error of the program. */
+export class Problem extends Error {
+  constructor({ message, help, report }) {
+    super(message);
+    this.help = help;
+    this.report = report;
+  }
+}
+
+/** Pixels so far. A finer block is never drawn over by a coarser one that comes late. */
+export class Frame {
+  constructor(width, height) {
+    const pixels = width * height;
+    Object.assign(this, { width, height });
+    this.colors = new Uint32Array(pixels).fill(0xff000000);
+    this.linear = new Uint16Array(3 * pixels);
+    this.work = new Uint32Array(pixels);
+    this.begin();
+  }
+
+  begin() {
+    this.sides = new Uint8Array(this.width * this.height).fill(255);
+    this.work.fill(0);
+    this.drawn = 0;
+  }
+
+  put(words) {
+    const { width, sides, colors, linear, work } = this;
+    for (let at = 0; at < words.length; at += 4) {
+      const place = words[at], value = words[at + 1], redGreen = words[at + 2], blueSize = words[at + 3];
+      const x = place & 0xffff, y = place >>> 16;
+      const columns = (blueSize >>> 16) & 0xff, rows = blueSize >>> 24;
+      const pixel = y * width + x;
+      linear[3 * pixel] = redGreen;
+      linear[3 * pixel + 1] = redGreen >>> 16;
+      linear[3 * pixel + 2] = blueSize;
+      const side = Math.max(columns, rows);
+      for (let row = pixel; row < pixel + rows * width; row += width) {
+        for (let it = row; it < row + columns; it += 1) {
+          if (sides[it] < side) continue;
+          sides[it] = side;
+          work[it] = value;
+          colors[it] = value | 0xff000000;
+        }
+      }
+    }
+    this.drawn += words.length / 4;
+  }
+}
+
+export class Workers {
+  constructor(module, count) {
+    this.answers = new Map();
+    this.id = 0;
+    this.generation = 0;
+    /** The picture that is drawn, and the one that waits for it. */
+    this.current = null;
+    this.next = null;
+    this.all = Array.from({ length: count }, (_, index) => {
+      const worker = new Worker("worker.js");
+      worker.onmessage = ({ data }) => this.receive(index, data);
+      worker.onerror = (event) => this.onfault?.(new Problem({ message: event.message, help: "reload the page", report: event.message }));
+      return worker;
+    });
+    this.ready = module.then((it) => Promise.all(this.all.map((_, index) => this.send(index, { module: it }))));
+  }
+
+  send(index, message, transfer = []) {
+    const id = this.id += 1;
+    return new Promise((resolve, reject) => {
+      this.answers.set(id, [resolve, reject]);
+      this.all[index].postMessage({ id, ...message }, transfer);
+    });
+  }
+
+  /** Asks the first worker. */
+  ask(request, bytes) {
+    return this.send(0, { request, bytes });
+  }
+
+  /** Asks all workers, and returns the first one's answer. */
+  async askAll(request, bytes) {
+    const answers = await Promise.all(this.all.map((_, index) => this.send(index, { request, bytes })));
+    return answers[0];
+  }
+
+  receive(index, data) {
+    if (data.id !== undefined) {
+      const [resolve, reject] = this.answers.get(data.id) ?? [];
+      this.answers.delete(data.id);
+      if (data.answer.error) reject?.(new Problem(data.answer.error));
+      else resolve?.({ answer: data.answer, bytes: data.bytes });
+      return;
+    }
+    const { current } = this;
+    if (!current || data.generation !== current.generation) return;
+    if (data.error) {
+      this.current = null;
+      current.reject(new Problem(data.error));
+      this.stop();
+      return;
+    }
+    current.frame.put(new Uint32Array(data.words));
+    if (data.seen) current.seen.add(index);
+    if (data.done) current.done.add(index);
+    current.onchange?.();
+    if (current.done.size === this.all.length) {
+      this.current = null;
+      current.resolve((performance.now() - current.begun) / 1000);
+      this.begin();
+    } else if (this.next && this.isSeen()) {
+      this.begin();
+    }
+  }
+
+  isSeen() {
+    return !this.current || this.current.seen.size === this.all.length
+      || performance.now() - this.current.begun > PATIENCE || this.current.isBackground;
+  }
+
+  /** Draws a picture in place of the one that is drawn. Returns the seconds; nothing for one that is given up. */
+  draw(shot, frame, { onchange, isBackground = false } = {}) {
+    return new Promise((resolve, reject) => {
+      this.next?.resolve();
+      this.next = { shot, frame, onchange, isBackground, resolve, reject };
+      if (this.isSeen()) this.begin();
+      else setTimeout(() => { if (this.next && this.isSeen()) this.begin(); }, PATIENCE);
+    });
+  }
+
+  begin() {
+    const { next } = this;
+    if (!next) return;
+    this.next = null;
+    const generation = this.generation += 1;
+    this.current?.resolve();
+    next.frame.begin();
+    this.current = { ...next, generation, begun: performance.now(), seen: new Set(), done: new Set() };
+    this.all.forEach((worker, index) => {
+      const draw = { do: "begin", shot: next.shot, share: [index, this.all.length] };
+      worker.postMessage({ draw, generation });
+    });
+  }
+
+  /** Gives up what is drawn. */
+  stop() {
+    this.current?.resolve();
+    this.next?.resolve();
+    this.current = this.next = null;
+    this.all.forEach((worker) => worker.postMessage({ stop: true }));
+  }
+}
+
+/** The bytes of arrays, one after the other. */
+export function bytesOf(...arrays) {
+  const all = new Uint8Array(arrays.reduce((sum, it) => sum + it.byteLength, 0));
+  let place = 0;
+  for (const it of arrays) {
+    all.set(new Uint8Array(it.buffer, it.byteOffset, it.byteLength), place);
+    place += it.byteLength;
+  }
+  return all;
+}
+
+/** Colors of three bytes as a canvas takes them. */
+export function packed(bytes) {
+  const colors = new Uint32Array(bytes.length / 3);
+  for (let pixel = 0, byte = 0; pixel < colors.length; pixel += 1, byte += 3) {
+    colors[pixel] = bytes[byte] | bytes[byte + 1] << 8 | bytes[byte + 2] << 16 | 0xff000000;
+  }
+  return colors;
+}

@@ -1,0 +1,109 @@
+//! A blob and its scene.
+
+use crate::problem::Problem;
+use crate::request::{CameraOf, ShotOf};
+use gridel_core::format::limits::MAX_SAMPLES;
+use gridel_core::format::record::View;
+use gridel_core::{BlobError, Scene, Settings};
+use gridel_host::blob::{Blob, best_structures};
+use gridel_host::compile::Names;
+use gridel_host::scene::Camera;
+use gridel_host::view::Shot;
+use serde_json::{Value, json};
+
+type Checked<'b> = Result<Scene<'b>, BlobError>;
+
+// A scene borrows from its blob.
+self_cell::self_cell!(
+    struct Cell {
+        owner: Blob,
+        #[covariant]
+        dependent: Checked,
+    }
+);
+
+/// A valid blob and its scene.
+pub struct Loaded {
+    cell: Cell,
+    pub names: Names,
+}
+
+impl Loaded {
+    /// Checks a blob.
+    pub fn new(blob: Blob) -> Result<Self, Problem> {
+        let cell = Cell::new(blob, Blob::scene);
+        let scene = cell.borrow_dependent().as_ref().map_err(invalid)?;
+        let names = Names::of_blob(scene, cell.borrow_owner().bytes());
+        let names = names.map_err(|error| invalid(&error))?;
+        Ok(Self { cell, names })
+    }
+
+    pub fn scene(&self) -> Result<&Scene<'_>, Problem> {
+        self.cell.borrow_dependent().as_ref().map_err(invalid)
+    }
+
+    pub fn bytes(&self) -> &[u8] {
+        self.cell.borrow_owner().bytes()
+    }
+
+    /// What a page shows of it.
+    pub fn json(&self) -> Result<Value, Problem> {
+        let scene = self.scene()?;
+        let settings = Settings::of(scene);
+        let header = scene.header();
+        let structures: Vec<_> = best_structures(scene).map(|it| it.name()).collect();
+        let effects: Vec<_> = scene.effects().names().collect();
+        Ok(json!({
+            "bytes": self.bytes().len(),
+            "width": settings.width,
+            "height": settings.height,
+            "samples": settings.samples,
+            "depth": settings.depth,
+            "structures": structures,
+            "effects": effects,
+            "latticeBits": header.lattice_bits,
+            "objects": header.objects,
+            "primitives": header.primitives,
+            "instances": scene.instances().len(),
+        }))
+    }
+
+    /// The view of a camera; the blob's own without one.
+    pub fn view(&self, camera: Option<CameraOf>) -> Result<View, Problem> {
+        let scene = self.scene()?;
+        match camera {
+            None => Ok(*scene.view()),
+            Some(camera) => Camera::from(camera).in_blob(scene).map_err(Problem::of),
+        }
+    }
+
+    /// The picture that is asked for.
+    pub fn shot(&self, of: &ShotOf) -> Result<Shot, Problem> {
+        Ok(Shot {
+            view: self.view(of.camera)?,
+            format: of.format.0,
+            structure: of.structure.0,
+            settings: Settings {
+                width: of.width,
+                height: of.height,
+                samples: of.samples.clamp(1, MAX_SAMPLES),
+                depth: of.depth,
+                dither: false,
+            },
+            heat_map: of.heat_map,
+        })
+    }
+}
+
+fn invalid(error: &BlobError) -> Problem {
+    let help = match error {
+        BlobError::Magic => {
+            "blobs are made by `gridel build`; a scene file must have the extension of its format"
+        }
+        BlobError::Truncated { .. } | BlobError::Checksum { .. } => {
+            "copy the file again, as binary, or build it again with `gridel build`"
+        }
+        _ => "build it again with `gridel build`",
+    };
+    Problem::new(error, help)
+}

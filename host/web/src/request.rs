@@ -1,0 +1,154 @@
+//! Requests.
+
+use crate::problem::Problem;
+use gridel_core::{Format, Structure};
+use gridel_host::scene::Camera;
+use serde::{Deserialize, Deserializer, de::Error};
+
+/// A request of a page; `bytes` is what comes with it.
+#[derive(Deserialize)]
+#[serde(tag = "do", rename_all = "kebab-case")]
+pub enum Request {
+    /// What there is to choose from.
+    About,
+    /// Forgets all files.
+    ClearFiles,
+    /// Keeps a file; `bytes` is its content.
+    AddFile { path: String },
+    /// Compiles a scene of the files. The answer is the blob.
+    Compile(Compile),
+    /// Loads the blob `bytes` into a place.
+    Load { slot: usize },
+    /// Moves the camera.
+    Move(Move),
+    /// Begins a picture.
+    Begin(Begin),
+    /// Draws so many more of its pixels, four words of 32 bits each: column and row; color as 0x00BBGGRR, or work;
+    /// linear red and green; linear blue, and width and height of the block.
+    Step { blocks: usize },
+    /// Compares two linear pictures, the first being the reference.
+    Errors,
+    /// Shows how two linear pictures differ, eight times enlarged, as sRGB.
+    Difference,
+    /// The colors of a heat map, for the work of all pixels.
+    HeatMap,
+    /// Explains a pixel.
+    Explain { shot: ShotOf, pixel: [u16; 2] },
+    /// The memory report of a board.
+    Memory(Memory),
+    /// The picture of linear pixels as a PNG file.
+    Png { width: u16, height: u16 },
+}
+
+/// How a scene is compiled.
+#[derive(Clone, Deserialize)]
+#[serde(rename_all = "camelCase")]
+pub struct Compile {
+    pub name: String,
+    pub structure: StructureName,
+    pub lattice_bits: u8,
+    /// Effects that are left out.
+    #[serde(default)]
+    pub without: Vec<String>,
+}
+
+/// A scene on a board.
+#[derive(Deserialize)]
+pub struct Memory {
+    pub board: String,
+    pub format: Option<FormatName>,
+    /// How the scene is compiled for it; without this it is the blob of the picture.
+    pub compile: Option<Compile>,
+}
+
+/// How a camera moves.
+#[derive(Deserialize)]
+pub struct Move {
+    pub slot: usize,
+    /// The camera now; the scene's own without one.
+    pub camera: Option<CameraOf>,
+    /// Radians to the right and up.
+    #[serde(default)]
+    pub orbit: [f64; 2],
+    /// Heights of the picture to the right and up.
+    #[serde(default)]
+    pub pan: [f64; 2],
+    /// Steps nearer.
+    #[serde(default)]
+    pub zoom: f64,
+}
+
+/// A share of a picture.
+#[derive(Deserialize)]
+pub struct Begin {
+    pub shot: ShotOf,
+    /// Of so many workers, the number of this one.
+    pub share: [usize; 2],
+}
+
+/// A picture to draw.
+#[derive(Clone, Deserialize)]
+#[serde(rename_all = "camelCase")]
+pub struct ShotOf {
+    pub slot: usize,
+    pub camera: Option<CameraOf>,
+    pub format: FormatName,
+    pub structure: StructureName,
+    pub width: u16,
+    pub height: u16,
+    pub samples: u16,
+    pub depth: u8,
+    #[serde(default)]
+    pub heat_map: bool,
+}
+
+/// Eye, target, up, and the field of view in degrees.
+#[derive(Clone, Copy, Deserialize)]
+pub struct CameraOf([f64; 10]);
+
+impl From<CameraOf> for Camera {
+    fn from(CameraOf([ex, ey, ez, tx, ty, tz, ux, uy, uz, fov_degrees]): CameraOf) -> Self {
+        Self {
+            eye: [ex, ey, ez].into(),
+            target: [tx, ty, tz].into(),
+            up: [ux, uy, uz].into(),
+            fov_degrees,
+        }
+    }
+}
+
+/// A number format by its name.
+#[derive(Clone, Copy)]
+pub struct FormatName(pub Format);
+
+impl<'de> Deserialize<'de> for FormatName {
+    fn deserialize<D: Deserializer<'de>>(from: D) -> Result<Self, D::Error> {
+        let name = String::deserialize(from)?;
+        let found = Format::ALL.into_iter().find(|it| it.name() == name);
+        let unknown = || D::Error::custom(format!("there is no number format `{name}`"));
+        found.map(Self).ok_or_else(unknown)
+    }
+}
+
+/// A structure by its name.
+#[derive(Clone, Copy)]
+pub struct StructureName(pub Structure);
+
+impl<'de> Deserialize<'de> for StructureName {
+    fn deserialize<D: Deserializer<'de>>(from: D) -> Result<Self, D::Error> {
+        let name = String::deserialize(from)?;
+        let found = Structure::ALL.into_iter().find(|it| it.name() == name);
+        let unknown = || D::Error::custom(format!("there is no structure `{name}`"));
+        found.map(Self).ok_or_else(unknown)
+    }
+}
+
+/// A request and its bytes.
+pub fn split(input: &[u8]) -> Result<(Request, &[u8]), Problem> {
+    let short = || Problem::fault("the request ends before its text");
+    let (length, rest) = input.split_first_chunk().ok_or_else(short)?;
+    let length = u32::from_le_bytes(*length) as usize;
+    let (json, bytes) = rest.split_at_checked(length).ok_or_else(short)?;
+    let request = serde_json::from_slice(json).map_err(Problem::fault)?;
+    Ok((request, bytes))
+}

@@ -1,0 +1,258 @@
+//! What a worker holds, and the answers.
+
+use crate::drawing::Drawing;
+use crate::loaded::Loaded;
+use crate::problem::Problem;
+use crate::request::{Compile, Memory, Move, Request, ShotOf};
+use crate::{Answer, pictures};
+use gridel_core::{Effects, Format, Settings, Structure};
+use gridel_host::blob::Blob;
+use gridel_host::compile::{Compiled, LATTICE_BITS, Options, compile};
+use gridel_host::explain::{Shown, Subject, explain};
+use gridel_host::measure::board::{BOARDS, Board, Fit, MemoryReport, Target};
+use gridel_host::scene::{
+    self, Camera, Files, ImportOptions, Imported, effect_named, shown_without,
+};
+use gridel_host::view::{State, saved, summary};
+use serde_json::{Value, json};
+
+/// Places for blobs: that of the picture, and that of the reference.
+const SLOTS: usize = 2;
+
+#[derive(Default)]
+pub struct Session {
+    files: Files,
+    /// The scene that was read last, and the file's name.
+    imported: Option<(String, Imported)>,
+    loaded: [Option<Loaded>; SLOTS],
+    drawing: Option<Drawing>,
+}
+
+impl Session {
+    /// Answers a request.
+    pub fn answer(&mut self, request: Request, bytes: &[u8]) -> Answer {
+        match request {
+            Request::About => Ok((about(), Vec::new())),
+            Request::ClearFiles => {
+                (self.files, self.imported) = (Files::new(), None);
+                Ok((json!({}), Vec::new()))
+            }
+            Request::AddFile { path } => {
+                self.files.insert(path, bytes.to_vec());
+                self.imported = None;
+                Ok((json!({}), Vec::new()))
+            }
+            Request::Compile(how) => self.compile(&how),
+            Request::Load { slot } => self.load(slot, bytes),
+            Request::Move(how) => self.moved(how),
+            Request::Begin(begin) => {
+                let shot = self.loaded(begin.shot.slot)?.shot(&begin.shot)?;
+                self.drawing = Some(Drawing::new(begin.shot.slot, shot, begin.share));
+                Ok((json!({}), Vec::new()))
+            }
+            Request::Step { blocks } => self.step(blocks),
+            Request::Errors => pictures::errors(bytes),
+            Request::Difference => pictures::difference(bytes),
+            Request::HeatMap => pictures::heat_map(bytes),
+            Request::Explain { shot, pixel } => self.explain(&shot, pixel),
+            Request::Memory(of) => self.memory(&of),
+            Request::Png { width, height } => {
+                pictures::png(self.loaded(0)?, [width, height], bytes)
+            }
+        }
+    }
+
+    fn loaded(&self, slot: usize) -> Result<&Loaded, Problem> {
+        let loaded = self.loaded.get(slot).and_then(Option::as_ref);
+        loaded.ok_or_else(|| Problem::fault("no scene is loaded"))
+    }
+
+    /// Reads the scene, unless it was read before, and compiles it.
+    fn compile(&mut self, how: &Compile) -> Answer {
+        if self
+            .imported
+            .as_ref()
+            .is_none_or(|(name, _)| *name != how.name)
+        {
+            let options = ImportOptions::default();
+            let imported = scene::read_among(how.name.as_ref(), &self.files, &options);
+            self.imported = Some((how.name.clone(), imported.map_err(Problem::of)?));
+        }
+        let Compiled { blob, report } = self.compiled(how, true)?;
+        let warnings = match &self.imported {
+            Some((_, imported)) => imported.warnings.clone(),
+            None => Vec::new(),
+        };
+        let answer = json!({
+            "warnings": warnings,
+            "displacement": report.largest_displacement,
+            "collapsed": report.collapsed.count() + report.without_area.count(),
+        });
+        Ok((answer, blob.bytes().to_vec()))
+    }
+
+    fn compiled(&self, how: &Compile, names: bool) -> Result<Compiled, Problem> {
+        let Some((_, imported)) = &self.imported else {
+            return Err(Problem::fault("no scene was read"));
+        };
+        let mut scene = imported.scene.clone();
+        let without = how.without.iter().filter_map(|name| effect_named(name));
+        without.for_each(|effect| scene.remove_effects(effect));
+        let options = Options {
+            structures: vec![how.structure.0],
+            lattice_bits: how.lattice_bits,
+            names,
+            ..Options::default()
+        };
+        let cannot = format!("{} cannot be compiled", how.name);
+        compile(&scene, &options).map_err(|error| Problem::about(cannot, error))
+    }
+
+    fn load(&mut self, slot: usize, bytes: &[u8]) -> Answer {
+        let place = self.loaded.get_mut(slot);
+        let place = place.ok_or_else(|| Problem::fault("no such place"))?;
+        if self.drawing.as_ref().is_some_and(|it| it.slot == slot) {
+            self.drawing = None;
+        }
+        // The blob before goes first: there may be no room for both.
+        *place = None;
+        let loaded = place.insert(Loaded::new(Blob::new(bytes))?);
+        Ok((loaded.json()?, Vec::new()))
+    }
+
+    fn moved(&self, how: Move) -> Answer {
+        let scene = self.loaded(how.slot)?.scene()?;
+        // Panning counts heights of the picture.
+        let settings = Settings {
+            width: 1,
+            height: 1,
+            ..Settings::of(scene)
+        };
+        let mut state = State::new(scene, Format::F32, Structure::List, settings);
+        if let Some(camera) = how.camera {
+            state = state.seen_from(camera.into());
+        }
+        if how.orbit != [0.0; 2] {
+            state.orbit(how.orbit);
+        }
+        if how.pan != [0.0; 2] {
+            state.pan(how.pan);
+        }
+        if how.zoom != 0.0 {
+            state.zoom(how.zoom);
+        }
+        let Camera {
+            eye,
+            target,
+            up,
+            fov_degrees,
+        } = state.camera();
+        let [e, t, u] = [eye, target, up].map(|it| it.to_array());
+        let camera = [&e[..], &t, &u, &[*fov_degrees]].concat();
+        Ok((
+            json!({"camera": camera, "toml": saved(state.camera())}),
+            Vec::new(),
+        ))
+    }
+
+    fn step(&mut self, blocks: usize) -> Answer {
+        let Some(drawing) = &mut self.drawing else {
+            return Err(Problem::fault("no picture was begun"));
+        };
+        let loaded = self.loaded.get(drawing.slot).and_then(Option::as_ref);
+        let loaded = loaded.ok_or_else(|| Problem::fault("no scene is loaded"))?;
+        let words = drawing.step(loaded, blocks)?;
+        let is_done = words.is_empty();
+        if is_done {
+            drawing.is_seen = true;
+        }
+        Ok((json!({"done": is_done, "seen": drawing.is_seen}), words))
+    }
+
+    fn explain(&self, of: &ShotOf, pixel: [u16; 2]) -> Answer {
+        let loaded = self.loaded(of.slot)?;
+        let shot = loaded.shot(of)?;
+        let scene = loaded
+            .scene()?
+            .with_view(&shot.view)
+            .map_err(Problem::fault)?;
+        let subject = Subject::Pixel(pixel);
+        let explained = explain(&scene, shot.format, shot.structure, shot.settings, subject);
+        let explanation = explained.map_err(Problem::of)?;
+        let shown = Shown {
+            explanation: &explanation,
+            names: &loaded.names,
+            all_walks: false,
+        };
+        let summary = summary(&explanation, &loaded.names);
+        Ok((
+            json!({"summary": summary, "text": shown.to_string()}),
+            Vec::new(),
+        ))
+    }
+
+    fn memory(&self, of: &Memory) -> Answer {
+        let unknown = || Problem::fault(format!("there is no board `{}`", of.board));
+        let board = Board::named(&of.board).ok_or_else(unknown)?;
+        let target = Target {
+            board,
+            flash: board.flash,
+            ram: board.ram,
+        };
+        // Blobs for boards have no names.
+        let own = match &of.compile {
+            Some(how) => Some(Loaded::new(self.compiled(how, false)?.blob)?),
+            None => None,
+        };
+        let loaded = match &own {
+            Some(own) => own,
+            None => self.loaded(0)?,
+        };
+        let format = of.format.map_or_else(|| board.format(), |it| it.0);
+        let report = MemoryReport::of(loaded.scene()?, loaded.bytes(), &target, format);
+        let report = report.map_err(|it| {
+            Problem::new(
+                format!("{} was not measured on boards", it.0.name()),
+                "choose list, bvh, flagged or dual-split",
+            )
+        })?;
+        let (fits, why) = match report.fit() {
+            Fit::Fits => (true, String::new()),
+            Fit::Short(why) | Fit::Undecided(why) => (false, why),
+        };
+        let text = report.to_string();
+        Ok((
+            json!({"report": report, "text": text, "fits": fits, "why": why}),
+            Vec::new(),
+        ))
+    }
+}
+
+/// What there is to choose from.
+fn about() -> Value {
+    let boards: Vec<_> = BOARDS
+        .iter()
+        .map(|board| {
+            let formats: Vec<_> = board.formats.iter().map(|it| it.name()).collect();
+            json!({"name": board.name, "core": board.core, "formats": formats})
+        })
+        .collect();
+    let effects: Vec<_> = Effects::NAMED
+        .iter()
+        .map(|(effect, name)| json!({"name": name, "without": shown_without(*effect)}))
+        .collect();
+    let structures: Vec<_> = Structure::ALL.iter().map(|it| it.name()).collect();
+    let formats: Vec<_> = Format::ALL.iter().map(|it| it.name()).collect();
+    let importers = scene::IMPORTERS.iter();
+    let extensions: Vec<_> = importers.flat_map(|it| it.extensions).collect();
+    json!({
+        "version": env!("CARGO_PKG_VERSION"),
+        "formats": formats,
+        "structures": structures,
+        "effects": effects,
+        "boards": boards,
+        "boardStructures": MemoryReport::STRUCTURES.map(Structure::name),
+        "extensions": extensions,
+        "latticeBits": [LATTICE_BITS.start(), LATTICE_BITS.end()],
+    })
+}
