@@ -97,8 +97,8 @@ pub fn render(
 /// Returns the code that traces pixels, compiled for the job's number format and structure and for the scene's
 /// effects. The structure is chosen in the scene: see [`chosen`].
 ///
-/// Inline, so that a crate that draws by itself compiles this code, and by its own profile.
-#[inline]
+/// Inline for web pages, whose crate so compiles this code by its own profile. Elsewhere it would be compiled twice.
+#[cfg_attr(target_family = "wasm", inline)]
 pub(crate) fn tracer<'s>(scene: &'s Scene<'_>, job: &Job) -> NewTracer<'s> {
     match job.format {
         Format::Fixed => with_format::<Fixed>(scene, job),

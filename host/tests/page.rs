@@ -12,7 +12,7 @@ mod browser;
 use browser::Browser;
 use libtest_mimic::{Arguments, Failed, Trial};
 use program::Folder;
-use serde_json::{Value, json};
+use serde_json::json;
 use std::time::Duration;
 
 /// Keys, as WebDriver names them.
@@ -105,12 +105,7 @@ fn page_answers() {
     assert_eq!(browser.text(SHOWN), browser.text(RIGHT_PICTURE));
 
     // The slider, and the pictures of an effect.
-    let slider = browser.element("//*[@id='slider']");
-    let slider = slider.as_object().unwrap().values().next().unwrap();
-    browser.post(
-        &format!("/element/{}/value", slider.as_str().unwrap()),
-        &json!({"text": LEFT}),
-    );
+    browser.fill("//*[@id='slider']", LEFT);
     let border = "return document.getElementById('wipe').style.getPropertyValue('--at')";
     assert_eq!(browser.text(border), "49%");
     browser.click("//button[@aria-label='Compare without shadow']");
@@ -120,23 +115,7 @@ fn page_answers() {
     assert!(largest.parse::<u32>().unwrap() > 16, "{largest}");
 
     // A phone's width scrolls in no direction but down, in the dark, too.
-    let emulate = |command: &str, parameters: Value| {
-        browser.post(
-            "/goog/cdp/execute",
-            &json!({"cmd": command, "params": parameters}),
-        )
-    };
-    let dark = json!({"features": [{"name": "prefers-color-scheme", "value": "dark"}]});
-    emulate("Emulation.setEmulatedMedia", dark);
-    let phone = json!({"width": 390, "height": 844, "deviceScaleFactor": 1, "mobile": true});
-    emulate("Emulation.setDeviceMetricsOverride", phone);
-    std::thread::sleep(Duration::from_millis(300));
-    assert_eq!(
-        browser.text("return document.documentElement.scrollWidth"),
-        "390"
-    );
-    let back = "return getComputedStyle(document.body).backgroundColor";
-    assert_eq!(browser.text(back), "rgb(21, 23, 26)");
+    browser.is_whole_on_a_dark_phone();
 
     // Everything that can be reached has a name, and nothing went wrong.
     assert_eq!(browser.text(browser::UNNAMED), "0");

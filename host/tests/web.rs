@@ -518,16 +518,6 @@ fn page_is_accessible(page: &Page) {
         "return [...document.querySelectorAll('canvas, select, button, input')].filter((it) => it.tabIndex < 0).length",
     );
     assert_eq!(reached, "0");
-    let dark = json!({"features": [{"name": "prefers-color-scheme", "value": "dark"}]});
-    browser.command("Emulation.setEmulatedMedia", dark);
-    let phone = json!({"width": 390, "height": 844, "deviceScaleFactor": 1, "mobile": true});
-    browser.command("Emulation.setDeviceMetricsOverride", phone);
-    std::thread::sleep(Duration::from_millis(300));
-    assert_eq!(
-        browser.text("return document.documentElement.scrollWidth"),
-        "390"
-    );
-    let back = "return getComputedStyle(document.body).backgroundColor";
-    assert_eq!(browser.text(back), "rgb(21, 23, 26)");
+    browser.is_whole_on_a_dark_phone();
     assert_no_message(&browser);
 }

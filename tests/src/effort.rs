@@ -2,13 +2,9 @@
 
 use std::env;
 
-fn is_set(name: &str) -> bool {
-    env::var_os(name).is_some_and(|value| value == "1")
-}
-
 /// Returns whether the environment asks for all that the project promises, by `GRIDEL_FULL=1`.
 pub fn full() -> bool {
-    is_set("GRIDEL_FULL")
+    env::var_os("GRIDEL_FULL").is_some_and(|value| value == "1")
 }
 
 /// `quick`, or `full` where the environment says `GRIDEL_FULL=1`.
@@ -17,17 +13,12 @@ pub fn part_of(quick: usize, full: usize) -> usize {
 }
 
 /// Every how many of many like cases are tested by the longest tests: all where the environment says
-/// `GRIDEL_CI=1` or `GRIDEL_FULL=1`, or else each third.
+/// `GRIDEL_FULL=1`, or else each third.
 pub fn step() -> usize {
     if third_of(3) == 3 { 1 } else { 3 }
 }
 
-/// `count` where the environment says `GRIDEL_CI=1` or `GRIDEL_FULL=1`, or else a third of it: for the
-/// longest tests.
+/// `count` where the environment says `GRIDEL_FULL=1`, or else a third of it: for the longest tests.
 pub fn third_of(count: usize) -> usize {
-    if full() || is_set("GRIDEL_CI") {
-        count
-    } else {
-        count.div_ceil(3)
-    }
+    part_of(count.div_ceil(3), count)
 }

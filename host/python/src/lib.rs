@@ -2,6 +2,7 @@
 //! import.
 
 mod closed;
+mod hit_arrays;
 mod query;
 mod rays;
 mod scene;

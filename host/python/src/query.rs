@@ -1,18 +1,17 @@
 //! Queries of many rays and points, spread over threads.
 
-use crate::rays::{Points, Rays, Ready};
-use glam::DVec3;
+use crate::rays::{Rays, Ready};
 #[cfg(target_arch = "x86_64")]
 use gridel_core::SimdLevel;
 use gridel_core::accel::DynAccel;
 use gridel_core::format::limits::MAX_STACK_DEPTH;
 use gridel_core::{
-    Accel, Fixed, Format, HitList, NoCount, Number, PrimitiveHit, Ray, Scene, Solid, Stack,
-    Structure, Wide, all_hits, any_hit, closest_primitive, containment_ray,
+    Accel, Fixed, Format, NoCount, Number, PrimitiveHit, Ray, Scene, Stack, Structure, Wide,
+    any_hit, closest_primitive,
 };
 #[cfg(target_arch = "x86_64")]
 use gridel_host::simd;
-use gridel_host::trace::{DirectionScale, Frame, SceneRay};
+use gridel_host::trace::{DirectionScale, Frame};
 use rayon::prelude::*;
 use std::ops::Range;
 
@@ -21,9 +20,6 @@ const BATCH: usize = 16;
 
 /// Rays or points that a thread takes at a time.
 const CHUNK: usize = 2048;
-
-/// Hits that are listed at a time.
-const LISTED: usize = 16;
 
 /// What is not there.
 pub const NONE: u32 = u32::MAX;
@@ -74,6 +70,14 @@ macro_rules! dispatch {
     };
 }
 
+mod all_hits;
+mod columns;
+mod inside;
+
+pub use all_hits::{all, count, locations};
+pub use columns::{Columns, cast};
+pub use inside::contains;
+
 /// Calls a function with all threads, or in a pool of so many.
 pub fn with_threads<T: Send>(threads: usize, work: impl FnOnce() -> T + Send) -> T {
     if threads == 0 {
@@ -86,6 +90,27 @@ pub fn with_threads<T: Send>(threads: usize, work: impl FnOnce() -> T + Send) ->
     }
 }
 
+/// Works on chunks, by all threads or so many.
+fn each_chunk<C: Send, T: Send>(
+    how: How,
+    chunks: Vec<C>,
+    work: impl Fn(C) -> T + Sync + Send,
+) -> Vec<T> {
+    if how.threads == 1 || chunks.len() <= 1 {
+        chunks.into_iter().map(work).collect()
+    } else {
+        with_threads(how.threads, || chunks.into_par_iter().map(work).collect())
+    }
+}
+
+/// The numbers of rays in chunks.
+fn chunks_of(length: usize) -> Vec<Range<usize>> {
+    let starts = (0..length).step_by(CHUNK);
+    starts
+        .map(|start| start..length.min(start + CHUNK))
+        .collect()
+}
+
 /// Fills an array with one answer per ray or point, in chunks.
 fn fill<T: Send + Clone>(
     how: How,
@@ -94,15 +119,10 @@ fn fill<T: Send + Clone>(
     chunk: impl Fn(usize, &mut [T]) + Sync,
 ) -> Vec<T> {
     let mut answers = vec![empty; length];
-    if how.threads == 1 || length <= CHUNK {
-        let chunks = answers.chunks_mut(CHUNK).enumerate();
-        chunks.for_each(|(number, answers)| chunk(number * CHUNK, answers));
-    } else {
-        with_threads(how.threads, || {
-            let chunks = answers.par_chunks_mut(CHUNK).enumerate();
-            chunks.for_each(|(number, answers)| chunk(number * CHUNK, answers));
-        });
-    }
+    let chunks = answers.chunks_mut(CHUNK).enumerate().collect();
+    each_chunk(how, chunks, |(number, answers)| {
+        chunk(number * CHUNK, answers)
+    });
     answers
 }
 
@@ -332,319 +352,5 @@ fn ask_inline<N: Number, A: Accel, Q: Question>(
                 Err(_) => *answer = Q::REJECTED,
             }
         }
-    }
-}
-
-/// The first hits of some rays, as arrays hold them.
-pub struct Columns<'c, T> {
-    pub t: &'c mut [T],
-    pub object: &'c mut [u32],
-    pub primitive: &'c mut [u32],
-    /// Empty where nobody asks.
-    pub instance: &'c mut [u32],
-    pub normal: &'c mut [[f32; 3]],
-    pub uv: &'c mut [[f32; 2]],
-}
-
-impl<'c, T> Columns<'c, T> {
-    /// The first so many rows, and the others.
-    fn split(self, at: usize) -> (Self, Self) {
-        let (t, more_t) = self.t.split_at_mut(at);
-        let (object, more_objects) = self.object.split_at_mut(at);
-        let (primitive, more_primitives) = self.primitive.split_at_mut(at);
-        let instances = at.min(self.instance.len());
-        let (instance, more_instances) = self.instance.split_at_mut(instances);
-        let (normal, more_normals) = self.normal.split_at_mut(at);
-        let (uv, more_uvs) = self.uv.split_at_mut(at);
-        let first = Self {
-            t,
-            object,
-            primitive,
-            instance,
-            normal,
-            uv,
-        };
-        let rest = Self {
-            t: more_t,
-            object: more_objects,
-            primitive: more_primitives,
-            instance: more_instances,
-            normal: more_normals,
-            uv: more_uvs,
-        };
-        (first, rest)
-    }
-}
-
-/// Rays whose hits are found before they are written: as many as a processor's nearest memory holds.
-const WRITTEN: usize = 256;
-
-/// Finds the first hit of each ray and writes it to arrays of as many rows.
-///
-/// `place` gives the t and the weights of corners of a hit, and `number` its t and its primitive as the arrays have them.
-pub fn cast<T: Send + Copy>(
-    scene: &Scene<'_>,
-    rays: Rays<'_>,
-    how: How,
-    mut columns: Columns<'_, T>,
-    place: impl Fn(&SceneRay, &Found) -> (f64, [f32; 2]) + Sync,
-    number: impl Fn(&Found) -> (T, u32) + Sync,
-) {
-    let mut chunks = Vec::with_capacity(rays.len().div_ceil(CHUNK));
-    for start in (0..rays.len()).step_by(CHUNK) {
-        let (chunk, rest) = columns.split(CHUNK.min(rays.len() - start));
-        chunks.push((start, chunk));
-        columns = rest;
-    }
-    let write = |(start, mut columns): (usize, Columns<'_, T>)| {
-        let mut hits = [Found::MISS; WRITTEN];
-        let mut start = start;
-        while !columns.t.is_empty() {
-            let count = WRITTEN.min(columns.t.len());
-            let (rows, rest) = columns.split(count);
-            let hits = &mut hits[..count];
-            hits.fill(Found::MISS);
-            ask_some::<Closest>(scene, rays, how, (start, hits));
-            for (row, hit) in hits.iter_mut().enumerate() {
-                if hit.primitive != NONE {
-                    (hit.t, rows.uv[row]) = place(&rays.get(start + row), hit);
-                }
-                (rows.t[row], rows.primitive[row]) = number(hit);
-                rows.object[row] = hit.object;
-                rows.normal[row] = hit.normal;
-                if let Some(instance) = rows.instance.get_mut(row) {
-                    *instance = hit.instance;
-                }
-            }
-            start += WRITTEN;
-            columns = rest;
-        }
-    };
-    if how.threads == 1 || chunks.len() <= 1 {
-        chunks.into_iter().for_each(write);
-    } else {
-        with_threads(how.threads, || chunks.into_par_iter().for_each(write));
-    }
-}
-
-/// The number of hits of each ray; 0 of a ray that is none.
-pub fn count(scene: &Scene<'_>, rays: Rays<'_>, how: How) -> Vec<u32> {
-    fill(how, rays.len(), 0, |start, answers| {
-        dispatch!(how, count_chunk, [], (scene, rays, start, answers));
-    })
-}
-
-fn count_chunk<N: Number, A: Accel>(
-    scene: &Scene<'_>,
-    rays: Rays<'_>,
-    start: usize,
-    answers: &mut [u32],
-) {
-    let frame = Frame::of(scene);
-    for (number, answer) in (start..).zip(answers) {
-        if let Ok((ray, _)) = frame.ray::<N>(scene, &rays.get(number)) {
-            each_hit::<N, A>(scene, &ray, |_| *answer += 1);
-        }
-    }
-}
-
-/// Calls a function with all hits of a ray.
-#[inline(always)]
-fn each_hit<N: Number, A: Accel>(
-    scene: &Scene<'_>,
-    ray: &Ray<N>,
-    mut hit: impl FnMut(&PrimitiveHit<N>),
-) {
-    let mut stack = Stack::<MAX_STACK_DEPTH>::new();
-    let mut list = HitList::<N, LISTED>::new();
-    loop {
-        let more =
-            all_hits::<N, A, _, LISTED>(scene, ray, stack.as_view(), &mut list, &mut NoCount);
-        list.iter().for_each(&mut hit);
-        if !more {
-            return;
-        }
-    }
-}
-
-/// All hits, ray by ray in order, each with the number of its ray.
-pub fn all(scene: &Scene<'_>, rays: Rays<'_>, how: How) -> Vec<Vec<(usize, Found)>> {
-    let chunks = rays.len().div_ceil(CHUNK);
-    let chunk = |number: usize| {
-        let numbers = number * CHUNK..rays.len().min((number + 1) * CHUNK);
-        all_of::<Closest>(scene, rays, how, numbers)
-    };
-    if how.threads == 1 || chunks == 1 {
-        return (0..chunks).map(chunk).collect();
-    }
-    with_threads(how.threads, || {
-        (0..chunks).into_par_iter().map(chunk).collect()
-    })
-}
-
-/// All hits of some rays.
-fn all_of<Q: Question<Answer = Found>>(
-    scene: &Scene<'_>,
-    rays: Rays<'_>,
-    how: How,
-    numbers: Range<usize>,
-) -> Vec<(usize, Found)> {
-    #[cfg(target_arch = "x86_64")]
-    if let (Format::F32, Structure::Wide, SimdLevel::Avx2(avx2)) =
-        (how.format, how.structure, simd::level())
-    {
-        return avx2.call(
-            #[inline(always)]
-            |_, scene, rays, numbers, (), ()| all_inline::<f32, Wide, Q>(scene, rays, numbers),
-            (scene, rays, numbers, (), ()),
-        );
-    }
-    dispatch!(how, all_chunk, [Q], (scene, rays, numbers))
-}
-
-fn all_chunk<N: Number, A: Accel, Q: Question<Answer = Found>>(
-    scene: &Scene<'_>,
-    rays: Rays<'_>,
-    numbers: Range<usize>,
-) -> Vec<(usize, Found)> {
-    all_inline::<N, A, Q>(scene, rays, numbers)
-}
-
-#[inline(always)]
-fn all_inline<N: Number, A: Accel, Q: Question<Answer = Found>>(
-    scene: &Scene<'_>,
-    rays: Rays<'_>,
-    numbers: Range<usize>,
-) -> Vec<(usize, Found)> {
-    let frame = Frame::of(scene);
-    let mut all = Vec::with_capacity(2 * numbers.len());
-    let mut ready: Vec<Ready<N>> = Vec::with_capacity(BATCH);
-    for first in numbers.clone().step_by(BATCH) {
-        let batch = first..numbers.end.min(first + BATCH);
-        rays.fill((scene, &frame), batch.clone(), &mut ready);
-        for (number, ready) in batch.zip(&ready) {
-            let Ok((ray, scale)) = ready else { continue };
-            each_hit::<N, A>(scene, ray, |hit| {
-                let hit = Some(hit);
-                let met = Met {
-                    scene,
-                    ray,
-                    scale,
-                    hit,
-                };
-                all.push((number, Q::hit(met)));
-            });
-        }
-    }
-    all
-}
-
-/// Which objects are closed: of the scene itself, then of its parts, by their numbers.
-pub type Closed<'a> = &'a [bool];
-
-/// Whether each point lies in a closed object; in any object whose surface is crossed an odd number of times, if
-/// `closed` is `None`.
-pub fn contains(
-    scene: &Scene<'_>,
-    points: Points<'_>,
-    closed: Option<Closed<'_>>,
-    how: How,
-) -> Vec<bool> {
-    fill(how, points.len(), false, |start, answers| {
-        dispatch!(
-            how,
-            contains_chunk,
-            [],
-            (scene, points, closed, start, answers)
-        );
-    })
-}
-
-fn contains_chunk<N: Number, A: Accel>(
-    scene: &Scene<'_>,
-    points: Points<'_>,
-    closed: Option<Closed<'_>>,
-    start: usize,
-    answers: &mut [bool],
-) {
-    let header = scene.header();
-    let origin = DVec3::from_array(header.origin);
-    let per_unit = f64::powi(2.0, -i32::from(header.unit_exponent));
-    let is_closed = |object: u32| match closed {
-        Some(closed) => closed.get(object as usize).is_some_and(|&closed| closed),
-        None => true,
-    };
-    let is_single = header.objects == 1 && scene.instances().is_empty();
-    // Solids that are crossed an odd number of times so far.
-    let mut odd: Vec<Solid> = Vec::new();
-    for (number, answer) in (start..).zip(answers) {
-        let units = ((points.get(number) - origin) * per_unit).to_array();
-        let Ok(Some(ray)) = containment_ray::<N>(scene, units.map(N::far_from_f64)) else {
-            continue;
-        };
-        odd.clear();
-        let mut is_odd = false;
-        each_hit::<N, A>(scene, &ray, |hit| {
-            if !hit.encloses() {
-                return;
-            }
-            if is_single {
-                is_odd = !is_odd;
-                return;
-            }
-            let solid = Solid::of_hit(scene, hit);
-            if let Some(place) = odd.iter().position(|&it| it == solid) {
-                odd.swap_remove(place);
-            } else if is_closed(solid.object) {
-                odd.push(solid);
-            }
-        });
-        *answer = is_odd && is_closed(0) || !odd.is_empty();
-    }
-}
-
-/// Places, numbers of rays and triangles.
-pub type Locations = (Vec<[f64; 3]>, Vec<i64>, Vec<i64>);
-
-/// Where rays meet triangles: at most so many of each ray, or the first alone. Chunk by chunk.
-pub fn locations(
-    scene: &Scene<'_>,
-    rays: Rays<'_>,
-    how: How,
-    multiple_hits: bool,
-    max_hits: Option<usize>,
-    place: impl Fn(&SceneRay, &Found) -> [f64; 3] + Sync,
-) -> Vec<Locations> {
-    let most = max_hits.unwrap_or(usize::MAX);
-    let one = |start: usize| -> Locations {
-        let numbers = start..rays.len().min(start + CHUNK);
-        let mut hits = Vec::with_capacity(2 * CHUNK);
-        if multiple_hits {
-            hits = all_of::<Nearest>(scene, rays, how, numbers);
-        } else {
-            let mut first = vec![Found::MISS; numbers.len()];
-            ask_some::<Nearest>(scene, rays, how, (start, &mut first));
-            let met = numbers.zip(first);
-            hits.extend(met.filter(|(_, hit)| hit.primitive != NONE));
-        }
-        let mut locations = Locations::default();
-        let (mut last, mut of_ray) = (usize::MAX, 0);
-        for (number, hit) in &hits {
-            of_ray = if *number == last { of_ray + 1 } else { 1 };
-            last = *number;
-            if of_ray > most {
-                continue;
-            }
-            locations.0.push(place(&rays.get(*number), hit));
-            locations.1.push(*number as i64);
-            locations.2.push(hit.primitive.into());
-        }
-        locations
-    };
-    let starts: Vec<usize> = (0..rays.len()).step_by(CHUNK).collect();
-    if how.threads == 1 || starts.len() <= 1 {
-        starts.into_iter().map(one).collect()
-    } else {
-        with_threads(how.threads, || starts.into_par_iter().map(one).collect())
     }
 }

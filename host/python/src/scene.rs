@@ -1,7 +1,8 @@
 //! Scenes as Python holds them.
 
 use crate::closed::closed;
-use crate::query::{self, Any, Columns, FirstPrimitive, Found, How, NONE};
+use crate::hit_arrays::{Arrays, Cast, HitArrays, MeshHitArrays, append, column, rows, zeros};
+use crate::query::{self, Any, FirstPrimitive, Found, How, NONE};
 use crate::rays::{Array, Points, Rays};
 use glam::DVec3;
 use gridel_core::{BlobError, Format, Scene, Settings, Structure};
@@ -11,7 +12,7 @@ use gridel_host::picture::srgb;
 use gridel_host::render::{Job, render};
 use gridel_host::scene::{self, ImportOptions, Imported, Material, Object, Shape, SourceSpan};
 use gridel_host::trace::SceneRay;
-use numpy::{IntoPyArray, PyArray1, PyArray2, PyArrayMethods, PyReadonlyArray2, PyUntypedArray};
+use numpy::{IntoPyArray, PyArray2, PyArrayMethods, PyReadonlyArray2, PyUntypedArray};
 use pyo3::exceptions::{PyFileNotFoundError, PyKeyError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::PyBytes;
@@ -41,9 +42,7 @@ pub struct NativeScene {
     closed: OnceLock<Vec<bool>>,
 }
 
-type Arrays<'py, T> = Bound<'py, PyArray1<T>>;
-
-fn invalid(error: impl std::fmt::Display) -> PyErr {
+pub fn invalid(error: impl std::fmt::Display) -> PyErr {
     PyValueError::new_err(error.to_string())
 }
 
@@ -192,112 +191,12 @@ impl NativeScene {
         let (u, v) = (weight(relative.cross(to_c)), weight(to_b.cross(relative)));
         (t, place, [u, v])
     }
-}
 
-/// Hits as arrays: t, object, primitive, instance, normal, uv.
-type HitArrays<'py> = (
-    Arrays<'py, f64>,
-    Arrays<'py, u32>,
-    Arrays<'py, u32>,
-    Arrays<'py, u32>,
-    Bound<'py, PyArray2<f32>>,
-    Bound<'py, PyArray2<f32>>,
-);
-
-/// First hits as Open3D has them: t, object, primitive, normal, uv.
-type MeshHitArrays<'py> = (
-    Arrays<'py, f32>,
-    Arrays<'py, u32>,
-    Arrays<'py, u32>,
-    Bound<'py, PyArray2<f32>>,
-    Bound<'py, PyArray2<f32>>,
-);
-
-/// The first hits of rays, in memory of NumPy's, which takes large pages where there are some.
-struct Cast<'py, T> {
-    t: Arrays<'py, T>,
-    object: Arrays<'py, u32>,
-    primitive: Arrays<'py, u32>,
-    instance: Arrays<'py, u32>,
-    normal: Bound<'py, PyArray2<f32>>,
-    uv: Bound<'py, PyArray2<f32>>,
-}
-
-/// Zeros, which are not written to before they are filled in.
-fn zeros<T: numpy::Element>(py: Python<'_>, length: usize) -> Arrays<'_, T> {
-    PyArray1::zeros(py, length, false)
-}
-
-impl NativeScene {
-    /// Finds the first hit of each ray; `number` gives its t and its primitive as the caller has them.
-    fn cast_into<'py, T: numpy::Element + Send + Copy>(
-        &self,
-        py: Python<'py>,
-        (scene, rays, how): (&Scene<'_>, Rays<'_>, How),
-        has_instances: bool,
-        number: impl Fn(&Found) -> (T, u32) + Sync + Send,
-    ) -> PyResult<Cast<'py, T>> {
-        let length = rays.len();
-        let t = zeros(py, length);
-        let [object, primitive] = [length; 2].map(|length| zeros(py, length));
-        let instance = zeros(py, if has_instances { length } else { 0 });
-        let [normal, uv] = [3 * length, 2 * length].map(|length| zeros(py, length));
-        {
-            let mut t = t.readwrite();
-            let [mut object, mut primitive, mut instance] =
-                [&object, &primitive, &instance].map(|array| array.readwrite());
-            let [mut normal, mut uv] = [&normal, &uv].map(|array| array.readwrite());
-            let (normal, _) = normal.as_slice_mut().map_err(invalid)?.as_chunks_mut();
-            let (uv, _) = uv.as_slice_mut().map_err(invalid)?.as_chunks_mut();
-            let columns = Columns {
-                t: t.as_slice_mut().map_err(invalid)?,
-                object: object.as_slice_mut().map_err(invalid)?,
-                primitive: primitive.as_slice_mut().map_err(invalid)?,
-                instance: instance.as_slice_mut().map_err(invalid)?,
-                normal,
-                uv,
-            };
-            let place = |ray: &SceneRay, hit: &Found| {
-                let (t, _, uv) = self.place(ray, hit);
-                (t, uv.map(|weight| weight as f32))
-            };
-            py.detach(|| query::cast(scene, rays, how, columns, place, number));
-        }
-        Ok(Cast {
-            t,
-            object,
-            primitive,
-            instance,
-            normal: normal.reshape([length, 3])?,
-            uv: uv.reshape([length, 2])?,
-        })
+    /// The t of a hit, and the weights of the corners of its triangle.
+    fn weights(&self, ray: &SceneRay, hit: &Found) -> (f64, [f32; 2]) {
+        let (t, _, uv) = self.place(ray, hit);
+        (t, uv.map(|weight| weight as f32))
     }
-}
-
-/// Collects one number of each hit.
-fn column<'py, T: numpy::Element>(
-    py: Python<'py>,
-    hits: &[(usize, Found)],
-    number: impl Fn(&(usize, Found)) -> T,
-) -> Arrays<'py, T> {
-    hits.iter().map(number).collect::<Vec<_>>().into_pyarray(py)
-}
-
-/// Copies values to the start of a slice, and returns the rest of it.
-fn append<'s, T: Copy>(to: &'s mut [T], values: &[T]) -> &'s mut [T] {
-    let (first, rest) = to.split_at_mut(values.len());
-    first.copy_from_slice(values);
-    rest
-}
-
-fn rows<'py, T: numpy::Element, const WIDTH: usize>(
-    py: Python<'py>,
-    rows: Vec<[T; WIDTH]>,
-) -> PyResult<Bound<'py, PyArray2<T>>> {
-    let length = rows.len();
-    rows.into_flattened()
-        .into_pyarray(py)
-        .reshape([length, WIDTH])
 }
 
 #[pymethods]
@@ -406,7 +305,8 @@ impl NativeScene {
         );
         let (scene, rays) = (self.chosen(how)?, Rays::rows(array.rows("rays")?)?);
         let number = |hit: &Found| (hit.t, hit.primitive);
-        let found = self.cast_into(py, (&scene, rays, how), true, number)?;
+        let place = |ray: &SceneRay, hit: &Found| self.weights(ray, hit);
+        let found = Cast::of(py, (&scene, rays, how), true, place, number)?;
         Ok((
             found.t,
             found.object,
@@ -440,7 +340,8 @@ impl NativeScene {
             let first = self.firsts.get(hit.object as usize).copied();
             (t, first.map_or(NONE, |first| hit.primitive - first))
         };
-        let found = self.cast_into(py, (&scene, rays, how), false, number)?;
+        let place = |ray: &SceneRay, hit: &Found| self.weights(ray, hit);
+        let found = Cast::of(py, (&scene, rays, how), false, place, number)?;
         Ok((
             found.t,
             found.object,

@@ -12,7 +12,8 @@
 //! |---|---|
 //! | `number.rs` | what a number that encloses another one can do |
 //! | `interval.rs`, `deep.rs` | intervals of double precision; balls of 128 and 256 bits |
-//! | `world.rs` | a blob's integers, and a hierarchy of boxes |
+//! | `world.rs` | a blob's integers |
+//! | `tree.rs` | a hierarchy of boxes around them |
 //! | `crossing.rs`, `shapes.rs`, `cone.rs`, `torus.rs` | where rays cross primitives |
 //! | `hit.rs`, `search.rs` | hits, and every crossing that may be the nearest |
 //! | `trace.rs`, `light.rs`, `shade.rs` | the rays of a sample, and the rules of effects |
@@ -37,6 +38,7 @@ mod shade;
 mod shapes;
 mod torus;
 mod trace;
+mod tree;
 mod world;
 
 pub use page::{Pictures, page, sentence};

@@ -5,8 +5,8 @@
 //! G is negative lies the inner sheet of a spindle torus, which is inside of the solid.)
 //!
 //! Along a ray F is a quartic. Its roots are isolated by subdivision: coefficients of Bernstein's polynomials whose signs
-//! are known count the roots of a stretch, none or one. Newton's steps narrow each root, and halving where they do not. A stretch whose signs stay open,
-//! where the ray all but touches the surface, may be crossed or not.
+//! are known count the roots of a stretch, none or one. Newton's steps narrow each root, and halving where they do not.
+//! A stretch whose signs stay open, where the ray all but touches the surface, may be crossed or not.
 
 use super::crossing::{Crossing, Grazes, Ray, exact};
 use super::number::*;
@@ -20,7 +20,7 @@ type Quartic<N> = [N; 5];
 const STRETCHES: usize = 1500;
 /// Most times that a stretch is halved.
 const HALVINGS: u32 = 280;
-/// Most Newton's steps: each doubles the digits, but for the first ones, which halve the stretch.
+/// Most of Newton's steps: each doubles the digits, but for the first ones, which halve the stretch.
 const STEPS: usize = 64;
 /// Most stretches with crossings: numbers of parts.
 const PARTS: u8 = 6;
@@ -84,7 +84,7 @@ pub fn crossings<N: Enclosure>(
     let mut quartic = quartic([q, d, w], g, N::int(2 * major).square());
     let mut low = low;
     if itself {
-        // The first root is 0, and what the others are those of is one degree lower.
+        // The first root is 0; the others are those of a polynomial one degree lower.
         quartic = [quartic[1], quartic[2], quartic[3], quartic[4], N::zero()];
         if high <= 0.0 {
             return Ok(());

@@ -167,6 +167,21 @@ impl Browser {
         self.post("/goog/cdp/execute", &body)
     }
 
+    /// Shows the page on a phone, in the dark: it scrolls in no direction but down, and its background is dark.
+    pub fn is_whole_on_a_dark_phone(&self) {
+        let dark = json!({"features": [{"name": "prefers-color-scheme", "value": "dark"}]});
+        self.command("Emulation.setEmulatedMedia", dark);
+        let phone = json!({"width": 390, "height": 844, "deviceScaleFactor": 1, "mobile": true});
+        self.command("Emulation.setDeviceMetricsOverride", phone);
+        std::thread::sleep(Duration::from_millis(300));
+        assert_eq!(
+            self.text("return document.documentElement.scrollWidth"),
+            "390"
+        );
+        let back = "return getComputedStyle(document.body).backgroundColor";
+        assert_eq!(self.text(back), "rgb(21, 23, 26)");
+    }
+
     /// Waits until a condition holds.
     pub fn wait(&self, condition: &str) {
         let begun = Instant::now();

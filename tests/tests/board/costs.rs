@@ -15,9 +15,9 @@ use std::collections::BTreeMap;
 pub fn plan(plan: &mut Plan) {
     let discovery = board("stm32vldiscovery");
     for (board, format) in measured_in_full() {
-        // Twenty builds on each kind of core.
+        // Twenty builds on each kind of core. `shapes_and_effects_are_paid_for_one_by_one` runs more often.
         plan.test_on("every_core_pays_for_parts_one_by_one", board, format)
-            .in_full_if(board == discovery)
+            .at_length()
             .run(move || core_pays_for_parts_one_by_one(board, format));
     }
     let others = boards().filter(|&(board, _)| board != &WASM);

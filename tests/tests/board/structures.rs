@@ -9,11 +9,13 @@ use std::sync::LazyLock;
 
 pub fn plan(plan: &mut Plan) {
     for (name, format) in PAPER_BOARDS {
+        // Twenty-five builds on each.
+        let often = format == Format::F32;
         plan.test_on("flagged_is_ahead_of_plain", board(name), format)
-            .in_full()
+            .in_full_if(often)
             .run(move || flagged_is_ahead_of_plain(name, format));
         plan.test_on("lists_of_candidates", board(name), format)
-            .in_full()
+            .in_full_if(often)
             .run(move || lists_of_candidates(name, format));
     }
 }

@@ -1,6 +1,5 @@
 //! A server of the files in a folder, for browsers on this machine.
 
-use std::fs::File;
 use std::io::{self, BufRead, BufReader, Read, Write};
 use std::net::{Ipv4Addr, SocketAddr, TcpListener, TcpStream};
 use std::path::{Component, Path, PathBuf};
@@ -13,6 +12,8 @@ const MOST_REQUEST: u64 = 8 << 10;
 /// How long a browser may take over a request, or over reading the answer.
 const PATIENCE: Duration = Duration::from_secs(20);
 
+const TEXT: &str = "text/plain; charset=utf-8";
+
 /// Types of files, by their extensions.
 const TYPES: [(&str, &str); 9] = [
     ("html", "text/html; charset=utf-8"),
@@ -20,8 +21,8 @@ const TYPES: [(&str, &str); 9] = [
     ("js", "text/javascript; charset=utf-8"),
     ("json", "application/json"),
     ("wasm", "application/wasm"),
-    ("toml", "text/plain; charset=utf-8"),
-    ("txt", "text/plain; charset=utf-8"),
+    ("toml", TEXT),
+    ("txt", TEXT),
     ("png", "image/png"),
     ("svg", "image/svg+xml"),
 ];
@@ -119,13 +120,13 @@ fn respond(
     is_head: bool,
 ) -> io::Result<()> {
     let (status, kind, content) = match answer {
-        Ok(path) => match read(&path) {
+        Ok(path) => match std::fs::read(&path) {
             Ok(content) => (String::from("200 OK"), kind_of(&path), content),
-            Err(_) => (String::from("404 Not Found"), TYPES[6].1, Vec::new()),
+            Err(_) => (String::from("404 Not Found"), TEXT, Vec::new()),
         },
         Err((code, words)) => {
             let text = format!("{words}\n").into_bytes();
-            (format!("{code} {words}"), TYPES[6].1, text)
+            (format!("{code} {words}"), TEXT, text)
         }
     };
     write!(
@@ -138,12 +139,6 @@ fn respond(
         stream.write_all(&content)?;
     }
     stream.flush()
-}
-
-fn read(path: &Path) -> io::Result<Vec<u8>> {
-    let mut content = Vec::new();
-    File::open(path)?.read_to_end(&mut content)?;
-    Ok(content)
 }
 
 /// The type of a file by its extension.

@@ -1,0 +1,115 @@
+//! Hits as arrays of NumPy's.
+
+use crate::query::{self, Columns, Found, How};
+use crate::rays::Rays;
+use crate::scene::invalid;
+use gridel_core::Scene;
+use gridel_host::trace::SceneRay;
+use numpy::{IntoPyArray, PyArray1, PyArray2, PyArrayMethods};
+use pyo3::prelude::*;
+
+pub type Arrays<'py, T> = Bound<'py, PyArray1<T>>;
+
+/// Hits as arrays: t, object, primitive, instance, normal, uv.
+pub type HitArrays<'py> = (
+    Arrays<'py, f64>,
+    Arrays<'py, u32>,
+    Arrays<'py, u32>,
+    Arrays<'py, u32>,
+    Bound<'py, PyArray2<f32>>,
+    Bound<'py, PyArray2<f32>>,
+);
+
+/// First hits as Open3D has them: t, object, primitive, normal, uv.
+pub type MeshHitArrays<'py> = (
+    Arrays<'py, f32>,
+    Arrays<'py, u32>,
+    Arrays<'py, u32>,
+    Bound<'py, PyArray2<f32>>,
+    Bound<'py, PyArray2<f32>>,
+);
+
+/// The first hits of rays, in memory of NumPy's, which takes large pages where there are some.
+pub struct Cast<'py, T> {
+    pub t: Arrays<'py, T>,
+    pub object: Arrays<'py, u32>,
+    pub primitive: Arrays<'py, u32>,
+    pub instance: Arrays<'py, u32>,
+    pub normal: Bound<'py, PyArray2<f32>>,
+    pub uv: Bound<'py, PyArray2<f32>>,
+}
+
+/// Zeros, which are not written to before they are filled in.
+pub fn zeros<T: numpy::Element>(py: Python<'_>, length: usize) -> Arrays<'_, T> {
+    PyArray1::zeros(py, length, false)
+}
+
+impl<'py, T: numpy::Element + Send + Copy> Cast<'py, T> {
+    /// Finds the first hit of each ray. `place` gives its t and the weights of the corners of its triangle, and
+    /// `number` its t and its primitive as the caller has them.
+    pub fn of(
+        py: Python<'py>,
+        (scene, rays, how): (&Scene<'_>, Rays<'_>, How),
+        has_instances: bool,
+        place: impl Fn(&SceneRay, &Found) -> (f64, [f32; 2]) + Sync + Send,
+        number: impl Fn(&Found) -> (T, u32) + Sync + Send,
+    ) -> PyResult<Self> {
+        let length = rays.len();
+        let t = zeros(py, length);
+        let [object, primitive] = [length; 2].map(|length| zeros(py, length));
+        let instance = zeros(py, if has_instances { length } else { 0 });
+        let [normal, uv] = [3 * length, 2 * length].map(|length| zeros(py, length));
+        {
+            let mut t = t.readwrite();
+            let [mut object, mut primitive, mut instance] =
+                [&object, &primitive, &instance].map(|array| array.readwrite());
+            let [mut normal, mut uv] = [&normal, &uv].map(|array| array.readwrite());
+            let (normal, _) = normal.as_slice_mut().map_err(invalid)?.as_chunks_mut();
+            let (uv, _) = uv.as_slice_mut().map_err(invalid)?.as_chunks_mut();
+            let columns = Columns {
+                t: t.as_slice_mut().map_err(invalid)?,
+                object: object.as_slice_mut().map_err(invalid)?,
+                primitive: primitive.as_slice_mut().map_err(invalid)?,
+                instance: instance.as_slice_mut().map_err(invalid)?,
+                normal,
+                uv,
+            };
+            py.detach(|| query::cast(scene, rays, how, columns, place, number));
+        }
+        Ok(Self {
+            t,
+            object,
+            primitive,
+            instance,
+            normal: normal.reshape([length, 3])?,
+            uv: uv.reshape([length, 2])?,
+        })
+    }
+}
+
+/// Collects one number of each hit.
+pub fn column<'py, T: numpy::Element>(
+    py: Python<'py>,
+    hits: &[(usize, Found)],
+    number: impl Fn(&(usize, Found)) -> T,
+) -> Arrays<'py, T> {
+    hits.iter().map(number).collect::<Vec<_>>().into_pyarray(py)
+}
+
+/// Copies values to the start of a slice, and returns the rest of it.
+pub fn append<'s, T: Copy>(to: &'s mut [T], values: &[T]) -> &'s mut [T] {
+    let (first, rest) = to.split_at_mut(values.len());
+    first.copy_from_slice(values);
+    rest
+}
+
+/// An array of rows.
+pub fn rows<'py, T: numpy::Element, const WIDTH: usize>(
+    py: Python<'py>,
+    rows: Vec<[T; WIDTH]>,
+) -> PyResult<Bound<'py, PyArray2<T>>> {
+    let length = rows.len();
+    rows.into_flattened()
+        .into_pyarray(py)
+        .reshape([length, WIDTH])
+}

@@ -1,0 +1,165 @@
+//! All hits of rays.
+
+use super::{
+    BATCH, CHUNK, Closest, Found, How, Met, NONE, Nearest, Question, ask_some, chunks_of,
+    each_chunk, fill,
+};
+use crate::rays::{Rays, Ready};
+#[cfg(target_arch = "x86_64")]
+use gridel_core::SimdLevel;
+use gridel_core::accel::DynAccel;
+use gridel_core::format::limits::MAX_STACK_DEPTH;
+use gridel_core::{
+    Accel, Fixed, Format, HitList, NoCount, Number, PrimitiveHit, Ray, Scene, Stack, Structure,
+    Wide, all_hits,
+};
+#[cfg(target_arch = "x86_64")]
+use gridel_host::simd;
+use gridel_host::trace::{Frame, SceneRay};
+use std::ops::Range;
+
+/// Hits that are listed at a time.
+const LISTED: usize = 16;
+
+/// The number of hits of each ray; 0 of a ray that is none.
+pub fn count(scene: &Scene<'_>, rays: Rays<'_>, how: How) -> Vec<u32> {
+    fill(how, rays.len(), 0, |start, answers| {
+        dispatch!(how, count_chunk, [], (scene, rays, start, answers));
+    })
+}
+
+fn count_chunk<N: Number, A: Accel>(
+    scene: &Scene<'_>,
+    rays: Rays<'_>,
+    start: usize,
+    answers: &mut [u32],
+) {
+    let frame = Frame::of(scene);
+    for (number, answer) in (start..).zip(answers) {
+        if let Ok((ray, _)) = frame.ray::<N>(scene, &rays.get(number)) {
+            each_hit::<N, A>(scene, &ray, |_| *answer += 1);
+        }
+    }
+}
+
+/// Calls a function with all hits of a ray.
+#[inline(always)]
+pub(super) fn each_hit<N: Number, A: Accel>(
+    scene: &Scene<'_>,
+    ray: &Ray<N>,
+    mut hit: impl FnMut(&PrimitiveHit<N>),
+) {
+    let mut stack = Stack::<MAX_STACK_DEPTH>::new();
+    let mut list = HitList::<N, LISTED>::new();
+    loop {
+        let more =
+            all_hits::<N, A, _, LISTED>(scene, ray, stack.as_view(), &mut list, &mut NoCount);
+        list.iter().for_each(&mut hit);
+        if !more {
+            return;
+        }
+    }
+}
+
+/// All hits, ray by ray in order, each with the number of its ray.
+pub fn all(scene: &Scene<'_>, rays: Rays<'_>, how: How) -> Vec<Vec<(usize, Found)>> {
+    each_chunk(how, chunks_of(rays.len()), |numbers| {
+        all_of::<Closest>(scene, rays, how, numbers)
+    })
+}
+
+/// All hits of some rays.
+fn all_of<Q: Question<Answer = Found>>(
+    scene: &Scene<'_>,
+    rays: Rays<'_>,
+    how: How,
+    numbers: Range<usize>,
+) -> Vec<(usize, Found)> {
+    #[cfg(target_arch = "x86_64")]
+    if let (Format::F32, Structure::Wide, SimdLevel::Avx2(avx2)) =
+        (how.format, how.structure, simd::level())
+    {
+        return avx2.call(
+            #[inline(always)]
+            |_, scene, rays, numbers, (), ()| all_inline::<f32, Wide, Q>(scene, rays, numbers),
+            (scene, rays, numbers, (), ()),
+        );
+    }
+    dispatch!(how, all_chunk, [Q], (scene, rays, numbers))
+}
+
+fn all_chunk<N: Number, A: Accel, Q: Question<Answer = Found>>(
+    scene: &Scene<'_>,
+    rays: Rays<'_>,
+    numbers: Range<usize>,
+) -> Vec<(usize, Found)> {
+    all_inline::<N, A, Q>(scene, rays, numbers)
+}
+
+#[inline(always)]
+fn all_inline<N: Number, A: Accel, Q: Question<Answer = Found>>(
+    scene: &Scene<'_>,
+    rays: Rays<'_>,
+    numbers: Range<usize>,
+) -> Vec<(usize, Found)> {
+    let frame = Frame::of(scene);
+    let mut all = Vec::with_capacity(2 * numbers.len());
+    let mut ready: Vec<Ready<N>> = Vec::with_capacity(BATCH);
+    for first in numbers.clone().step_by(BATCH) {
+        let batch = first..numbers.end.min(first + BATCH);
+        rays.fill((scene, &frame), batch.clone(), &mut ready);
+        for (number, ready) in batch.zip(&ready) {
+            let Ok((ray, scale)) = ready else { continue };
+            each_hit::<N, A>(scene, ray, |hit| {
+                let hit = Some(hit);
+                let met = Met {
+                    scene,
+                    ray,
+                    scale,
+                    hit,
+                };
+                all.push((number, Q::hit(met)));
+            });
+        }
+    }
+    all
+}
+
+/// Places, numbers of rays and triangles.
+pub type Locations = (Vec<[f64; 3]>, Vec<i64>, Vec<i64>);
+
+/// Where rays meet triangles: at most so many of each ray, or the first alone. Chunk by chunk.
+pub fn locations(
+    scene: &Scene<'_>,
+    rays: Rays<'_>,
+    how: How,
+    multiple_hits: bool,
+    max_hits: Option<usize>,
+    place: impl Fn(&SceneRay, &Found) -> [f64; 3] + Sync,
+) -> Vec<Locations> {
+    let most = max_hits.unwrap_or(usize::MAX);
+    each_chunk(how, chunks_of(rays.len()), |numbers| {
+        let mut hits = Vec::with_capacity(2 * CHUNK);
+        if multiple_hits {
+            hits = all_of::<Nearest>(scene, rays, how, numbers);
+        } else {
+            let mut first = vec![Found::MISS; numbers.len()];
+            ask_some::<Nearest>(scene, rays, how, (numbers.start, &mut first));
+            let met = numbers.zip(first);
+            hits.extend(met.filter(|(_, hit)| hit.primitive != NONE));
+        }
+        let mut locations = Locations::default();
+        let (mut last, mut of_ray) = (usize::MAX, 0);
+        for (number, hit) in &hits {
+            of_ray = if *number == last { of_ray + 1 } else { 1 };
+            last = *number;
+            if of_ray > most {
+                continue;
+            }
+            locations.0.push(place(&rays.get(*number), hit));
+            locations.1.push(*number as i64);
+            locations.2.push(hit.primitive.into());
+        }
+        locations
+    })
+}
