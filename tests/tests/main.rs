@@ -35,6 +35,7 @@ mod shapes;
 mod spd;
 mod structures;
 mod tables;
+mod textures;
 mod tracks;
 mod transforms;
 mod verify;

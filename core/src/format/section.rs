@@ -218,6 +218,18 @@ macro_rules! sections {
             Joints = 73, "joints", [track::Joint], "joint" of "tracks";
             /// For each instance, the joint on which it hangs, or `u32::MAX`. Absent where there are no joints.
             InstanceJoints = 74, "instance-joints", [u32], "instance" of "tracks";
+            /// The colors of the first vertices: red, green and blue as square roots of linear light, and alpha. Those of
+            /// other vertices are white.
+            VertexColors = 75, "vertex-colors", [[u8; 4]], "color" of "";
+            /// The texture coordinates of the first vertices, u to the right and v down, with 14 or 20 fraction bits: see
+            /// [`attributes`](crate::geometry::attributes).
+            TextureCoordinates = 76, "texture-coordinates", [[i16; 2], [i32; 2]], "coordinates" of "";
+            /// [`SurfaceMaps`](crate::format::record::SurfaceMaps).
+            SurfaceMaps = 77, "surface-maps", [record::SurfaceMaps], "maps" of "";
+            /// [`Texture`](crate::format::record::Texture)s.
+            Textures = 78, "textures", [record::Texture], "texture" of "";
+            /// The palettes and texels of all textures: see [`Texture`](crate::format::record::Texture).
+            Texels = 79, "texels", [u8], "byte" of "textures";
             /// [`LightForm`](crate::format::light_form::LightForm)s: what makes lights more than points.
             LightForms = 80, "light-forms", [light_form::LightForm], "form" of "lights";
             /// For each of the first materials, the radiance of the light that it sends out, 20 fraction bits; others send

@@ -124,6 +124,25 @@ pub enum Event {
         /// The normal, of length 1, on the side from which the ray came.
         normal: [f64; 3],
     },
+    /// The diffuse color of the surface that was hit is weighted by the colors of its vertices.
+    VertexColor {
+        /// The interpolated color: linear ratios.
+        color: [f64; 3],
+    },
+    /// The diffuse color of the surface that was hit is weighted by that of a texture.
+    Textured {
+        /// Where the texture is looked up, u to the right and v down.
+        coordinates: [f64; 2],
+        /// The nearest texel, counted from the upper left one, or the upper left one of the four that are mixed.
+        texel: [u32; 2],
+        /// The texture's color: linear ratios.
+        color: [f64; 3],
+    },
+    /// The surface that was hit is there in part; the rest of the ray goes straight on.
+    Alpha {
+        /// How much of it is there, 0 to 1.
+        alpha: f64,
+    },
     /// The light that was just considered, which the smooth normal faces, lies behind the triangle, and does not
     /// reach it.
     BehindTriangle,

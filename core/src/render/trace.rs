@@ -254,6 +254,7 @@ impl<N: Number, A: Accel, C: Observer, const EFFECTS: u32> Tracing<'_, '_, '_, N
             direction,
             diffuse: Color::ratios(material.diffuse),
             weight,
+            passing: Color::BLACK,
         };
         All::surface::<EFFECTS, N, _>(self, &mut state, ray, &mut surface);
         self.state = state;

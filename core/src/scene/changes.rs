@@ -111,7 +111,7 @@ impl<'a> Scene<'a> {
         }
         let mut effects = self.effects;
         for (index, material) in materials.iter().enumerate() {
-            check_material(index, material)?;
+            check_material(index, material, self.maps())?;
             effects = effects.with(material.effects());
         }
         check_available(effects)?;

@@ -14,8 +14,9 @@ use crate::geometry::Shapes;
 use crate::instances::placed::Placed;
 use crate::instances::top::Top;
 use crate::scene::Scene;
+use crate::scene::textures::Textures;
 use crate::simd::SimdLevel;
-use crate::target::{AllStructuresOnly, InstancesOnly, WideOnly};
+use crate::target::{AllStructuresOnly, InstancesOnly, TEXTURE, TextureOnly, WideOnly};
 use core::mem::size_of;
 
 /// The header of what is a blob of this version and byte order, and as long as it says.
@@ -99,6 +100,10 @@ pub(crate) fn scene<'a>(
     check_limits(header)?;
     let view = the_view(sections)?;
     let shapes = Shapes::read(sections, header)?;
+    let textures = match TEXTURE {
+        true => Textures::read(sections)?,
+        false => Textures::default(),
+    };
     Ok(Scene {
         space: Space {
             header,
@@ -123,6 +128,7 @@ pub(crate) fn scene<'a>(
         object_first: Indices::read(sections, SectionKind::ObjectFirst)?,
         object_material: Indices::read(sections, SectionKind::ObjectMaterial)?,
         order: Indices::read(sections, SectionKind::Order)?,
+        textures: TextureOnly::new(|| textures),
         placed: placed(sections, parts)?,
         needs_norm: shapes.needs_norm(),
         has_unbounded: shapes.has_unbounded(),

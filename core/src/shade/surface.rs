@@ -24,6 +24,8 @@ pub(crate) struct Surface<'h, N: Number> {
     pub(crate) diffuse: Color<N>,
     /// The ratio of the light from here that arrives at the eye.
     pub(crate) weight: Color<N>,
+    /// The ratio of the light from behind that passes the surface straight on.
+    pub(crate) passing: Color<N>,
 }
 
 /// A light, seen from a surface.

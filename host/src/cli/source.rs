@@ -163,6 +163,7 @@ impl Source {
         if let Some(room) = options.geometry.room {
             compiling.room = room;
         }
+        compiling.texture_bytes = options.geometry.texture_bytes.or(compiling.texture_bytes);
         let progress = Progress::unknown("compiling");
         let on_progress = |structure: Structure, done: u64, of: u64| {
             let share = 100 * done / of.max(1);

@@ -42,6 +42,14 @@ pub enum CompileError {
         pieces: usize,
         most: usize,
     },
+    #[error("{object} has texture coordinates beyond {most} repetitions of its texture")]
+    #[diagnostic(help(
+        "move the coordinates towards 0, or let the texture's `scale` make them smaller"
+    ))]
+    TextureCoordinates { object: String, most: f64 },
+    #[error("the smallest form of the textures takes {bytes} bytes, and the budget is {most}")]
+    #[diagnostic(help("allow more `--texture-bytes`, or remove textures"))]
+    TextureBytes { bytes: u64, most: u64 },
     #[error("{object} passes the middle of the other objects at more than {most:.3e} scene units")]
     #[diagnostic(help("move it nearer, or add an object beside it"))]
     OutOfReach { object: String, most: f64 },

@@ -9,6 +9,7 @@ use super::framing::{BACKGROUND, framing_of};
 use super::joints;
 use super::light_forms::{form_record, lift};
 use super::section::Section;
+use super::textures::{TextureFigures, Textures};
 use super::tracks;
 use crate::scene::{Camera, Color, Diffuse, Light, Material, Scene, ToneMapping};
 use crate::shape::{Lattice, unit};
@@ -43,17 +44,22 @@ pub struct ShadingData {
     pub required_by: Vec<(String, Vec<String>)>,
     /// Parts that the scene lacks and the compiler supplied.
     pub supplied: Vec<String>,
+    /// Textures.
+    pub textures: Vec<Section>,
+    /// How each texture is stored.
+    pub texture_figures: Vec<TextureFigures>,
     /// What moves, and joints.
     pub tracks: Vec<Section>,
 }
 
 impl ShadingData {
-    /// Of a scene, in which these meshes have normals of their own.
+    /// Of a scene, in which these meshes require these effects.
     pub fn of(
         shapes: &Shapes<'_>,
         lattice: &Lattice,
         (lowest, highest): (DVec3, DVec3),
-        smooth: Vec<String>,
+        mut required_by: Vec<(Effects, String)>,
+        texture_bytes: Option<u64>,
     ) -> Result<Self, CompileError> {
         let scene = shapes.scene();
         let mut supplied = Vec::new();
@@ -86,8 +92,7 @@ impl ShadingData {
         let far = |what, point| on_lattice(lattice, size, what, point);
         let mut numbers: Vec<Option<u32>> = vec![None; scene.materials.len()];
         let mut materials = Vec::new();
-        let mut required_by: Vec<(Effects, String)> =
-            smooth.into_iter().map(|by| (Effects::SMOOTH, by)).collect();
+        let mut textures = Textures::default();
         let mut object_material = Vec::with_capacity(scene.objects.len());
         for object in scene.all_objects() {
             let material = &scene.materials[object.material];
@@ -99,7 +104,10 @@ impl ShadingData {
             }
             let number = *numbers[object.material].get_or_insert_with(|| {
                 let material = &scene.materials[object.material];
-                let record = material_record(material, lattice);
+                let record = record::Material {
+                    maps: textures.maps(material),
+                    ..material_record(material, lattice)
+                };
                 required_by.push((
                     record.effects(),
                     format!("material {}", printable(&material.name)),
@@ -109,6 +117,7 @@ impl ShadingData {
             });
             object_material.push(number);
         }
+        let (textures, of_textures) = textures.sections(scene.display_values, texture_bytes)?;
         let exposure = Exposure::of(scene);
         let mut emissions = Vec::new();
         for (material, number) in scene.materials.iter().zip(&numbers) {
@@ -210,6 +219,8 @@ impl ShadingData {
             effects,
             required_by,
             supplied,
+            textures,
+            texture_figures: of_textures,
             tracks,
         })
     }
@@ -342,7 +353,7 @@ fn material_record(material: &Material, lattice: &Lattice) -> record::Material {
             }
         }),
         shininess: material.shininess.clamp(1, 1024),
-        spare: 0,
+        maps: 0,
     }
 }
 

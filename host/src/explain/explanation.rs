@@ -52,6 +52,12 @@ pub struct Ray {
     pub absorbed: Option<[f64; 3]>,
     /// The smooth normal that the surface is shaded with.
     pub smooth: Option<[f64; 3]>,
+    /// The color of the vertices that weights the diffuse color: linear ratios.
+    pub vertex_color: Option<[f64; 3]>,
+    /// The texture that weights the diffuse color.
+    pub texture: Option<Textured>,
+    /// How much of the surface is there, where the alpha of a texture says so.
+    pub alpha: Option<f64>,
     pub lights: Vec<Lighting>,
     /// The radiance that the surface sends out.
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -68,6 +74,17 @@ pub struct Ray {
     pub too_deep: bool,
     /// Rays that it causes, by their places.
     pub children: Vec<usize>,
+}
+
+/// A texture at a hit.
+#[derive(Clone, Debug, Serialize)]
+pub struct Textured {
+    /// Where the texture is looked up, u to the right and v down.
+    pub coordinates: [f64; 2],
+    /// The nearest texel, counted from the upper left one, or the upper left one of the four that are mixed.
+    pub texel: [u32; 2],
+    /// Linear ratios.
+    pub color: [f64; 3],
 }
 
 /// A ray that was not cast.
@@ -265,6 +282,9 @@ impl<'t> Reader<'t> {
             hit: None,
             absorbed: None,
             smooth: None,
+            vertex_color: None,
+            texture: None,
+            alpha: None,
             lights: Vec::new(),
             emitted: None,
             added: [0.0; 3],
@@ -325,6 +345,19 @@ impl Ray {
             }
             Event::Absorbed { weight } => self.absorbed = Some(weight),
             Event::Smooth { normal } => self.smooth = Some(normal),
+            Event::Alpha { alpha } => self.alpha = Some(alpha),
+            Event::VertexColor { color } => self.vertex_color = Some(color),
+            Event::Textured {
+                coordinates,
+                texel,
+                color,
+            } => {
+                self.texture = Some(Textured {
+                    coordinates,
+                    texel,
+                    color,
+                });
+            }
             Event::BehindTriangle => {
                 if let Some(lighting) = self.lights.last_mut() {
                     lighting.outcome = LightOutcome::BehindTriangle;

@@ -236,6 +236,29 @@ impl Shown<'_> {
                 vector(normal, significant)
             )?;
         }
+        if let Some(weight) = ray.vertex_color {
+            writeln!(
+                f,
+                "{indent}  its vertices weight the diffuse color by {}",
+                color(weight)
+            )?;
+        }
+        if let Some(texture) = &ray.texture {
+            let [u, v] = texture.coordinates.map(significant);
+            let [x, y] = texture.texel;
+            writeln!(
+                f,
+                "{indent}  the texture at {u} {v}, texel {x},{y}, weights the diffuse color by {}",
+                color(texture.color)
+            )?;
+        }
+        if let Some(alpha) = ray.alpha {
+            let alpha = significant(alpha);
+            writeln!(
+                f,
+                "{indent}  its alpha is {alpha}; the rest of the ray goes straight on"
+            )?;
+        }
         if let Some(weight) = ray.absorbed {
             writeln!(
                 f,

@@ -1,5 +1,6 @@
 //! Objects that glow as lights, and lights that are seen as objects.
 
+use super::attributes::Attributes;
 use super::light_form::{LightForm, LightShape};
 use super::model::{Color, Diffuse, Light, Material, Object, Scene};
 use super::{Normals, Shape, SourceSpan};
@@ -91,6 +92,7 @@ impl Scene {
                 material: self.materials.len(),
                 shape,
                 normals: Normals::default(),
+                attributes: Attributes::default(),
                 place: SourceSpan::default(),
             });
             self.materials.push(Material {

@@ -7,6 +7,7 @@
 //! [`Scene::display_values`] says otherwise.
 
 mod access;
+mod attributes;
 #[cfg(test)]
 mod bad;
 #[cfg(test)]
@@ -16,6 +17,7 @@ mod error;
 mod files;
 mod flatten;
 mod gzip;
+mod image;
 mod importer;
 mod joint;
 mod light_form;
@@ -33,21 +35,24 @@ pub(crate) mod test_chains;
 #[cfg(test)]
 mod test_scenes;
 mod text;
+mod texture;
 mod track;
 mod without;
 mod words;
 
 pub use crate::shape::Shape;
+pub use attributes::Attributes;
 pub use emitters::MOST_FACES;
 pub use error::SceneError;
 pub use files::Files;
+pub use image::{Image, linear_of_srgb};
 pub use importer::Importer;
 pub(crate) use joint::JointTracks;
 pub use joint::{LARGEST_SCALE, LEAST_SCALE};
 pub use light_form::{LightForm, LightShape, Spot};
 pub use model::{
-    Camera, Color, Diffuse, Instance, Joint, Light, Material, Object, Part, RenderSettings, Scene,
-    ToneMapping,
+    Alpha, Camera, Color, Diffuse, Instance, Joint, Light, Material, Object, Part, RenderSettings,
+    Scene, ToneMapping,
 };
 pub use normals::{Normals, NormalsChoice};
 pub use options::{
@@ -56,6 +61,7 @@ pub use options::{
 pub use placement::Placement;
 pub use size::MOST_INPUT;
 pub use source_span::SourceSpan;
+pub use texture::{Texture, Wrap};
 pub use track::{Interpolation, Key, TICKS_PER_SECOND, Track, TrackTarget};
 pub use without::{effect_named, leave_out, shown_without};
 

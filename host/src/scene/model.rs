@@ -1,9 +1,11 @@
 //! The scene as data.
 
+use super::attributes::Attributes;
 use super::light_form::LightForm;
 use super::normals::{Normals, NormalsChoice};
 use super::placement::Placement;
 use super::source_span::SourceSpan;
+use super::texture::Texture;
 use super::track::Track;
 use crate::shape::{Shape, unit};
 use glam::DVec3;
@@ -118,6 +120,10 @@ pub struct Material {
     pub emission: Color,
     /// Whether objects that send out light are lights, too.
     pub lights: bool,
+    /// The image that weights the diffuse color of meshes with texture coordinates.
+    pub texture: Option<Texture>,
+    /// How the alpha of the texture is used; glass ignores it.
+    pub alpha: Option<Alpha>,
 }
 
 /// How the brightness of pixels is mapped to the range of a display.
@@ -146,6 +152,15 @@ impl ToneMapping {
     }
 }
 
+/// How the alpha of a texture is used.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Alpha {
+    /// It is how much of the surface is there; times a factor, 0 to 1.
+    Blend(f64),
+    /// Less than this, above 0, is not there, and the rest is opaque.
+    CutOut(f64),
+}
+
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Diffuse {
     Plain(Color),
@@ -159,6 +174,28 @@ pub enum Diffuse {
     },
 }
 
+impl Diffuse {
+    /// Its colors times another, channel by channel.
+    #[must_use]
+    pub(super) fn weighted(self, by: Color) -> Self {
+        let times = |color: Color| [0, 1, 2].map(|channel: usize| color[channel] * by[channel]);
+        match self {
+            Self::Plain(color) => Self::Plain(times(color)),
+            Self::Checker {
+                even,
+                odd,
+                size,
+                origin,
+            } => Self::Checker {
+                even: times(even),
+                odd: times(odd),
+                size,
+                origin,
+            },
+        }
+    }
+}
+
 /// One object: a shape and its material.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Object {
@@ -169,6 +206,8 @@ pub struct Object {
     pub shape: Shape,
     /// The normals that a mesh is shaded with. Other shapes have none.
     pub normals: Normals,
+    /// Colors of vertices, and texture coordinates. Other shapes have none.
+    pub attributes: Attributes,
     /// Where the scene file says so, for messages.
     pub place: SourceSpan,
 }
@@ -261,6 +300,8 @@ impl Default for Material {
             absorption: [0.0; 3],
             emission: [0.0; 3],
             lights: true,
+            texture: None,
+            alpha: None,
         }
     }
 }

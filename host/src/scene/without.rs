@@ -4,7 +4,7 @@
 //! and its program no instruction of it. Each effect has a row below, which takes away what calls for it.
 
 use super::plain_lights::{remove_falloff, shrink_areas};
-use super::{Diffuse, Material, Normals, Scene, ToneMapping};
+use super::{Diffuse, Material, Normals, Object, Scene, ToneMapping};
 use gridel_core::Effects;
 use gridel_core::format::track::TrackTarget;
 use std::borrow::Cow;
@@ -58,11 +58,31 @@ const REMOVALS: [(Effects, &str, Removal); Effects::NAMED.len()] = [
         },
     ),
     (Effects::SMOOTH, "meshes show their faces", |scene| {
-        let in_parts = scene.parts.iter_mut().flat_map(|part| &mut part.objects);
-        for object in scene.objects.iter_mut().chain(in_parts) {
-            object.normals = Normals::default();
-        }
+        each_object(scene, |object| object.normals = Normals::default());
     }),
+    (
+        Effects::VERTEX_COLORS,
+        "meshes have the colors of their materials alone",
+        |scene| each_object(scene, |object| object.attributes.colors.clear()),
+    ),
+    (
+        Effects::TEXTURE,
+        "surfaces have their diffuse color weighted by the mean of the image",
+        |scene| {
+            each_material(scene, |material| {
+                material.alpha = None;
+                if let Some(texture) = material.texture.take() {
+                    let mean = texture.image.mean();
+                    material.diffuse = material.diffuse.weighted(mean);
+                }
+            });
+        },
+    ),
+    (
+        Effects::ALPHA,
+        "textures are opaque, also where they were not there",
+        |scene| each_material(scene, |material| material.alpha = None),
+    ),
     (
         Effects::FALLOFF,
         "lights are as bright everywhere as where the camera looks",
@@ -89,6 +109,11 @@ const REMOVALS: [(Effects, &str, Removal); Effects::NAMED.len()] = [
         },
     ),
 ];
+
+fn each_object(scene: &mut Scene, change: impl Fn(&mut Object)) {
+    let in_parts = scene.parts.iter_mut().flat_map(|part| &mut part.objects);
+    scene.objects.iter_mut().chain(in_parts).for_each(change);
+}
 
 fn each_material(scene: &mut Scene, change: impl Fn(&mut Material)) {
     scene.materials.iter_mut().for_each(change);
@@ -171,7 +196,7 @@ pub fn effect_named(name: &str) -> Option<Effects> {
 mod tests {
     use super::*;
     use crate::compile::{Options, compile};
-    use crate::scene::read;
+    use crate::scene::{Alpha, Image, Texture, read};
 
     /// Calls for every effect.
     const ALL: &str = "
@@ -211,12 +236,17 @@ mod tests {
         vertices = [[0, 0, 0], [2, 0, 0.1], [2, 2, 0], [0, 2, 0.1]]
         faces = [[0, 1, 2], [0, 2, 3]]
         smooth = 90
+        colors = ['#ff0000', '#00ff00', '#0000ff', '#ffffff']
         material = 'squares'
     ";
 
     fn scene() -> Scene {
         let imported = read("all.toml".as_ref(), ALL.into(), &Default::default());
-        imported.unwrap().scene
+        let mut scene = imported.unwrap().scene;
+        let image = Image::new("two", 2, 1, vec![[0, 0, 0, 255], [255; 4]]);
+        scene.materials[1].texture = image.map(|it| Texture::of(it.into()));
+        scene.materials[1].alpha = Some(Alpha::Blend(0.5));
+        scene
     }
 
     fn effects(scene: &Scene) -> Effects {
@@ -237,6 +267,7 @@ mod tests {
             let depends = match effect {
                 Effects::GLASS => Effects::ABSORPTION,
                 Effects::FALLOFF => Effects::AREA_LIGHT,
+                Effects::TEXTURE => Effects::ALPHA,
                 _ => Effects::NONE,
             };
             assert_eq!(

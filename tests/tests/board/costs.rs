@@ -7,8 +7,9 @@ use crate::plan::Plan;
 use crate::programs::{Linked, footprint};
 use crate::scenes;
 use crate::{boards, measured_in_full, parts};
-use gridel_core::{Effects, Format, Prevalidated, Structure};
+use gridel_core::{Effects, Format, Prevalidated, Settings, Structure};
 use gridel_host::measure::board::Board;
+use gridel_host::render::{Aov, Job, Values, render_aovs};
 use std::collections::BTreeMap;
 
 pub fn plan(plan: &mut Plan) {
@@ -36,6 +37,10 @@ pub fn plan(plan: &mut Plan) {
         .on(discovery)
         .in_full()
         .run(shapes_and_effects_are_paid_for_one_by_one);
+    plan.test("looking_colors_up_takes_at_most_200_instructions_per_hit")
+        .on(board("mps2-an386"))
+        .in_full()
+        .run(looking_colors_up_takes_at_most_200_instructions_per_hit);
     plan.test("small_code_fits_in_16_kib")
         .on(discovery)
         .in_full()
@@ -110,6 +115,37 @@ fn shapes_and_effects_are_paid_for_one_by_one() {
         "{with_everything} instructions with everything compiled in, {alone} without"
     );
 }
+
+/// Costs per hit of colors and textures on a processor with `f32`: a table of the page of memory.
+fn looking_colors_up_takes_at_most_200_instructions_per_hit() {
+    let here = board("mps2-an386");
+    let scenes = parts::scenes();
+    let spent = |scene| {
+        let build = Build::new(here, Format::F32, Structure::DualSplit, scene);
+        build.program("picture").run()["picture-instructions"]
+    };
+    let base = spent(&scenes[0]);
+    let mut figures = Figures::new();
+    for scene in scenes.iter().filter(|it| PER_HIT.contains(&it.name)) {
+        let view = scene.blob.scene().expect("the compiler's own blob");
+        let job = Job::whole(Format::F32, Structure::DualSplit, Settings::of(&view));
+        let objects = render_aovs(&view, &job, &[Aov::Object]).expect("a picture");
+        let hits = match &objects[..] {
+            [Values::Numbers(all)] => all.iter().filter(|it| **it != u32::MAX).count() as u64,
+            _ => panic!("objects are numbers"),
+        };
+        let each = (spent(scene) - base).div_ceil(hits);
+        println!("{}: {each} instructions per hit, {hits} hits", scene.name);
+        assert!(each <= 200, "{}: {each} instructions per hit", scene.name);
+        let build = Build::new(here, Format::F32, Structure::DualSplit, scene);
+        let report = [("hit-instructions".into(), each)].into();
+        figures.add(&build.to_string(), &report);
+    }
+    figures.check();
+}
+
+/// The effects whose costs per hit are measured.
+const PER_HIT: [&str; 2] = ["vertex-colors", "texture"];
 
 /// Costs of a product with every shape and effect on a board, fast or small, and on one of each kind
 /// of core through every structure that boards prevalidate: by which the memory report scales.

@@ -2,12 +2,12 @@
 //! small scene with and without it.
 
 use crate::scenes::{Compiled, compile_with, small};
-use glam::{DQuat, DVec3};
+use glam::{DQuat, DVec2, DVec3};
 use gridel_core::{Kind, Structure};
 use gridel_host::compile::Options;
 use gridel_host::scene::{
-    Camera, Diffuse, Instance, Light, LightForm, LightShape, Material, Normals, Object, Part,
-    Placement, Scene, Shape, SourceSpan, Spot, ToneMapping,
+    Alpha, Camera, Diffuse, Image, Instance, Light, LightForm, LightShape, Material, Normals,
+    Object, Part, Placement, Scene, Shape, SourceSpan, Spot, Texture, ToneMapping,
 };
 use gridel_host::shape::{Cuboid, Sphere};
 use gridel_tests::shapes::examples;
@@ -21,7 +21,7 @@ const TRIANGLE: &str = Kind::Triangle.name();
 const INSTANCES: &str = "instances";
 
 /// A part's name, and how to require it.
-type Effects = [(&'static str, fn(&mut Scene)); 11];
+type Effects = [(&'static str, fn(&mut Scene)); 14];
 
 const EFFECTS: Effects = [
     ("shadow", |scene| scene.render.shadows = true),
@@ -42,6 +42,14 @@ const EFFECTS: Effects = [
     }),
     ("smooth", |scene| {
         scene.objects.iter_mut().for_each(make_smooth);
+    }),
+    ("vertex-colors", |scene| {
+        scene.objects.iter_mut().for_each(paint);
+    }),
+    ("texture", |scene| hang(scene, |_| 255)),
+    ("alpha", |scene| {
+        hang(scene, |it| 4 * it);
+        scene.materials[0].alpha = Some(Alpha::CutOut(0.5));
     }),
     ("falloff", |scene| {
         let spot = Spot {
@@ -74,6 +82,15 @@ fn shine(scene: &mut Scene, shape: LightShape, spot: Option<Spot>) {
         spot,
         ..LightForm::default()
     })];
+}
+
+/// Gives all meshes a texture with this alpha.
+fn hang(scene: &mut Scene, alpha: fn(u8) -> u8) {
+    scene.objects.iter_mut().for_each(paper);
+    let pixels = (0..64).map(|it| [4 * it, 255 - it, 3 * (it & 15), alpha(it)]);
+    let image = Image::new("gradients", 8, 8, pixels.collect());
+    let image = image.expect("as many pixels");
+    scene.materials[0].texture = Some(Texture::of(image.into()));
 }
 
 /// The base, and a scene for every shape and effect beside it. Scenes for shapes have no effects,
@@ -205,6 +222,27 @@ fn make_smooth(object: &mut Object) {
     object.normals = Normals::given(leaning.collect(), triangles.clone(), (vertices, triangles));
 }
 
+/// Gives the vertices of a mesh colors.
+fn paint(object: &mut Object) {
+    if let Shape::Mesh { vertices, .. } = &object.shape {
+        let colors = (0..vertices.len()).map(|it| [0.3, 0.2 * (it % 5) as f64, 0.9]);
+        object.attributes.colors = colors.collect();
+    }
+}
+
+/// Gives the vertices of a mesh texture coordinates.
+fn paper(object: &mut Object) {
+    if let Shape::Mesh {
+        vertices,
+        triangles,
+    } = &object.shape
+    {
+        let coordinates = vertices.iter().map(|it| DVec2::new(it.x, it.y));
+        object.attributes.coordinates = coordinates.collect();
+        object.attributes.triangles.clone_from(triangles);
+    }
+}
+
 /// Moves all objects into a part, and places that.
 fn place_a_part(scene: &mut Scene) {
     scene.parts.push(Part {
@@ -313,6 +351,7 @@ fn object(shape: Shape) -> Object {
         name: String::from("thing"),
         material: 0,
         normals: Default::default(),
+        attributes: Default::default(),
         shape,
         place: SourceSpan::default(),
     }

@@ -157,6 +157,7 @@ fn program(part: &str) -> Vec<Footprint> {
     let parts = match part {
         "base" => vec!["triangle"],
         "absorption" => vec!["triangle", "glass", "absorption"],
+        "alpha" => vec!["triangle", "texture", "alpha"],
         "area-light" => vec!["triangle", "falloff", "area-light"],
         "sphere, triangle, shadow" => vec!["triangle", "sphere", "shadow"],
         part => vec!["triangle", part],
@@ -193,6 +194,9 @@ fn memory_page_shows_recorded_cost_of_shapes_and_effects() {
         ("absorption", "glass"),
         ("checker", "base"),
         ("smooth", "base"),
+        ("vertex-colors", "base"),
+        ("texture", "base"),
+        ("alpha", "texture"),
         ("falloff", "base"),
         ("area-light", "falloff"),
         ("tone-mapping", "base"),
@@ -220,6 +224,16 @@ fn memory_page_shows_recorded_cost_of_shapes_and_effects() {
         table += &format!("| {name} | {code} | {stack} | {work} |\n");
     }
     holds_table(MEMORY, "parts", &table);
+}
+
+#[test]
+fn memory_page_shows_recorded_cost_per_hit() {
+    let mut table = String::from("| effect | instructions per hit |\n|---|---|\n");
+    for effect in ["vertex-colors", "texture"] {
+        let each = on_board(effect, "mps2-an386", "f32")("hit-instructions");
+        table += &format!("| {effect} | {each} |\n");
+    }
+    holds_table(MEMORY, "per-hit", &table);
 }
 
 #[test]

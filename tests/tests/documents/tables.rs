@@ -1,7 +1,7 @@
 //! Tables of `core/FORMAT.md` that the core's declarations generate.
 
 use super::{FORMAT, holds_table, repository};
-use glam::DVec3;
+use glam::{DVec2, DVec3};
 use gridel_core::format::record::{Header, SectionEntry};
 use gridel_core::format::track::{Interpolation, TrackTarget};
 use gridel_core::format::{Kind, SectionKind};
@@ -60,6 +60,9 @@ fn blobs() -> Vec<Vec<u8>> {
         names: true,
         ..scenes::compact_options(16)
     };
+    let image = scene::Image::new("white", 1, 1, vec![[255; 4]]);
+    let image = image.expect("as many pixels");
+    scene.materials[0].texture = Some(scene::Texture::of(image.into()));
     let compiled = compile(&scene, &options).expect("compiles");
     blobs.push(compiled.blob.bytes().to_vec());
     let placed = |x: f64| scene::Instance {
@@ -99,6 +102,11 @@ fn bent_sheet() -> scene::Object {
         name: String::from("sheet"),
         material: 0,
         normals: scene::Normals::computed(&vertices, &triangles, 120.0),
+        attributes: scene::Attributes {
+            colors: vec![[0.5; 3]; 4],
+            coordinates: vec![DVec2::ZERO, DVec2::X, DVec2::Y],
+            triangles: vec![[0, 1, 2]; 2],
+        },
         shape: Shape::Mesh {
             vertices,
             triangles,

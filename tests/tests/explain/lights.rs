@@ -27,6 +27,7 @@ fn reasons_are_true() {
         }),
         place: SourceSpan::default(),
         normals: Default::default(),
+        attributes: Default::default(),
     });
     scene.lights = vec![
         Light::Directional {

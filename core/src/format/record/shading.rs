@@ -119,7 +119,8 @@ records! {
         /// Exponent of the highlight.
         #[valid(Shininess: 1..=1024)]
         pub shininess: u16,
-        /// Zero.
-        pub spare: u16,
+        /// Its maps: the lower 12 bits are the number of its [`SurfaceMaps`](crate::format::record::SurfaceMaps), and
+        /// bit 12 is set where these have a texture, and bit 13 where its alpha is used. 0 for none.
+        pub maps: u16,
     }
 }

@@ -74,6 +74,11 @@ pub struct GeometryOptions {
     #[arg(long, value_name = "UNITS", value_parser = super::values::room)]
     pub room: Option<f64>,
 
+    /// Most bytes of all textures, such as 64K; they are stored with fewer colors or fewer texels to fit
+    /// [default: no limit]
+    #[arg(long, value_name = "N", value_parser = super::values::bytes)]
+    pub texture_bytes: Option<u64>,
+
     #[command(flatten)]
     pub import: ImportOptions,
 }
@@ -157,6 +162,7 @@ impl GeometryOptions {
         first_given([
             (self.lattice_bits.is_some(), "--lattice-bits"),
             (self.room.is_some(), "--room"),
+            (self.texture_bytes.is_some(), "--texture-bytes"),
             (self.import.allow_outside, "--allow-outside"),
             (self.import.instances.is_some(), "--instances"),
             (self.import.normals.is_some(), "--normals"),

@@ -14,6 +14,7 @@ use super::track::{self, Targets};
 use super::value::Fields;
 use super::{light, view};
 use crate::scene::importer::Input;
+use crate::scene::texture::Images;
 use crate::scene::{Camera, Color, Light, Scene, SceneError};
 use crate::table::printable;
 use glam::DVec3;
@@ -63,7 +64,10 @@ pub(super) fn read(input: Input<'_>, imports: &mut Imports) -> Result<Scene, Sce
     let background = root.or("background", None, |value| value.radiance().map(Some))?;
     let ambient = root.or("ambient", None, |value| value.radiance().map(Some))?;
     let tracks = root.or("track", Vec::new(), track::read)?;
-    let mut palette = root.or("material", Palette::default(), Palette::read)?;
+    let mut images = Images::new(input.access);
+    let mut palette = root.or("material", Palette::default(), |tables| {
+        Palette::read(tables, &mut images)
+    })?;
 
     let mut reader = Reader {
         source: &source,

@@ -3,7 +3,9 @@
 use super::{Errors, Forgery, alone, everything};
 use gridel_core::Structure;
 use gridel_core::format::light_form::LightForm;
-use gridel_core::format::record::{Light, Material, Sphere24, Vertex24, View};
+use gridel_core::format::record::{
+    Light, Material, Sphere24, SurfaceMaps, Texture, Vertex24, View,
+};
 use gridel_core::format::{Effects, Field, Reason, SectionKind};
 use gridel_core::geometry::cone::Cone;
 use gridel_core::geometry::cuboid::Cuboid;
@@ -63,7 +65,9 @@ pub(super) fn shading_data() -> Errors {
         });
     }
     errors.reason("material 0", Reason::SpareNotZero, |it| {
-        it.change(SectionKind::Materials, 0, |it: &mut Material| it.spare = 1)
+        it.change(SectionKind::Materials, 0, |it: &mut Material| {
+            it.maps = 1 << 15
+        })
     });
     errors.reason("material 0", Reason::MissingEffect, |it| {
         it.header().effects &= !Effects::MIRROR.0
@@ -95,6 +99,49 @@ pub(super) fn light_forms() -> Errors {
     errors.field("light 0", Field::LightForm, |it| {
         it.change(SectionKind::Lights, 0, |it: &mut Light| it.directional = 7)
     });
+    errors
+}
+
+/// Textures, and what leads to them.
+pub(super) fn textures() -> Errors {
+    let mut errors = everything();
+    errors.field("material 0", Field::Maps, |it| {
+        it.change(SectionKind::Materials, 0, |it: &mut Material| it.maps = 2)
+    });
+    errors.reason("material 0", Reason::MissingMaps, |it| {
+        it.change(SectionKind::Materials, 0, |it: &mut Material| {
+            it.maps = Material::MAPS_TEXTURE
+        })
+    });
+    errors.field("maps 0", Field::TextureNumber, |it| {
+        it.change(SectionKind::SurfaceMaps, 0, |it: &mut SurfaceMaps| {
+            it.color = 2
+        })
+    });
+    let fields: [Forgery<Texture>; 8] = [
+        (Field::TextureWidth, &|it| it.width = 0),
+        (Field::TextureWidth, &|it| it.width = 4097),
+        (Field::TextureHeight, &|it| it.height = 0),
+        (Field::TextureForm, &|it| it.form = 4),
+        (Field::TextureFilter, &|it| it.filter = 2),
+        (Field::TextureWrap, &|it| it.wrap[1] = 3),
+        (Field::FirstTexel, &|it| it.first = 1),
+        (Field::FirstTexel, &|it| it.height += 1),
+    ];
+    for (field, forge) in fields {
+        errors.field("texture 0", field, |it| {
+            it.change(SectionKind::Textures, 0, forge)
+        });
+    }
+    for effect in [Effects::VERTEX_COLORS, Effects::TEXTURE, Effects::ALPHA] {
+        let place = match effect {
+            Effects::VERTEX_COLORS => "section vertex-colors",
+            _ => "material 2",
+        };
+        errors.reason(place, Reason::MissingEffect, |it| {
+            it.header().effects &= !effect.0
+        });
+    }
     errors
 }
 

@@ -291,7 +291,11 @@ fn meshes_are_smooth_below_an_angle() {
     for (smooth, is_flat) in [("", true), ("smooth = 40", true), ("smooth = 91", false)] {
         let normals = &scene(&roof(smooth)).objects[0].normals;
         assert_eq!(normals.is_flat(), is_flat, "{smooth}");
-        let ridge = normals.vectors.iter().filter(|it| it.z.abs() > 0.99).count();
+        let ridge = normals
+            .vectors
+            .iter()
+            .filter(|it| it.z.abs() > 0.99)
+            .count();
         assert_eq!(ridge, if is_flat { 0 } else { 2 });
     }
     let error = rejection(&roof("smooth = 200")).to_string();
