@@ -20,8 +20,7 @@ use gridel_tests::fuzz::{Base, speaks};
 use header::{headers, names, prevalidated, section_tables};
 use hierarchies::{deep_hierarchy, hierarchies, wide_hierarchies};
 use instances::{instances, joints};
-use records::{light_forms, primitives, shading_data};
-use records::{primitives, shading_data, textures};
+use records::{light_forms, primitives, shading_data, textures};
 use tables::{candidates, cells};
 use tracks::{tracks, turned_camera};
 
