@@ -74,7 +74,6 @@ impl<N: Number> Hit<N> {
     /// The primitives of the part, and point and normal there.
     #[cold]
     #[inline(never)]
-    #[expect(clippy::type_complexity, reason = "used in one place")]
     fn placed_point<'s>(&self, scene: &'s Scene<'_>) -> Option<(&'s Shapes<'s>, [N; 3], [N; 3])> {
         let (instance, part) = find(scene, self.instance()?)?;
         let there = Map::<N>::new(instance).in_part(&PlacedSurface {

@@ -17,6 +17,9 @@ use std::rc::Rc;
 /// Most vertices and triangles of a file, each instance counted: what a blob can hold.
 pub(super) const MOST: usize = 1 << 24;
 
+/// Reads a component of an element from its bytes.
+type Channel = fn(&[u8], usize) -> f64;
+
 /// The bytes of a file's buffers, in their order.
 pub(super) struct Buffers<'a> {
     path: &'a Path,
@@ -162,8 +165,8 @@ impl<'a> Buffers<'a> {
         accessor: &Accessor<'_>,
         fits: bool,
         what: &str,
-    ) -> Result<fn(&[u8], usize) -> f64, SceneError> {
-        let found: Option<fn(&[u8], usize) -> f64> = match accessor.data_type() {
+    ) -> Result<Channel, SceneError> {
+        let found: Option<Channel> = match accessor.data_type() {
             DataType::F32 => Some(|bytes, k| f32::from_bits(narrow::<4>(&bytes[4 * k..])).into()),
             DataType::U8 => Some(|bytes, k| f64::from(bytes[k]) / 255.0),
             DataType::U16 => Some(|bytes, k| f64::from(narrow::<2>(&bytes[2 * k..])) / 65535.0),
