@@ -68,7 +68,7 @@ impl<N: Number, A: Accel, const EFFECTS: u32> Renderer<'_, '_, N, A, EFFECTS> {
         let camera = || Ok(*ray);
         let sampler = Sampler::new([0; 2], 0);
         while !tracing.step::<N, A, C, EFFECTS>(sampler, camera, &mut radiance, space, count) {}
-        let seen = limited::<N, EFFECTS>(radiance);
+        let seen = limited(radiance, tracing.develops::<EFFECTS>());
         if C::ENABLED {
             count.event(Event::SampleFinished {
                 place: None,

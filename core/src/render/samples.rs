@@ -52,9 +52,10 @@ impl<N: Number> Samples<N> {
         if !tracing.step::<N, A, C, EFFECTS>(sampler, camera, radiance, space, count) {
             return None;
         }
+        let develops = tracing.develops::<EFFECTS>();
         // Clamped before they are averaged, so that the edge of a highlight is smooth.
-        let seen = limited::<N, EFFECTS>(self.radiance);
-        let (full, shift) = const { room_for_samples::<EFFECTS>() };
+        let seen = limited(self.radiance, develops);
+        let (full, shift) = room_for_samples(develops);
         let part = if samples > full {
             seen.scaled(N::ratio(1 << (30 - shift)))
         } else {

@@ -161,6 +161,13 @@ impl Loop<'_, '_> {
 }
 
 impl Loop<'_, '_> {
+    /// Whether effects of the scene act on the mean of a pixel's samples.
+    #[inline(always)]
+    pub(super) fn develops<const EFFECTS: u32>(&self) -> bool {
+        let with_code = const { EFFECTS & All::DEVELOPING };
+        with_code != 0 && self.scene.effects().0 & with_code != 0
+    }
+
     /// What is shown of the mean of a pixel's samples.
     #[inline(always)]
     pub(super) fn developed<N: Number, A: Accel, C: Observer, const EFFECTS: u32>(
@@ -169,7 +176,7 @@ impl Loop<'_, '_> {
         space: &mut WorkspaceView<'_, N>,
         count: &mut C,
     ) -> Color<N> {
-        if const { EFFECTS & All::DEVELOPING != 0 } {
+        if self.develops::<EFFECTS>() {
             let mut tracing = Tracing::<N, A, C, EFFECTS> {
                 scene: self.scene,
                 most: self.depth,
@@ -189,8 +196,8 @@ impl Loop<'_, '_> {
 
 /// A sample's radiance, limited to what is added up: to display white, unless effects act on what is brighter.
 #[inline(always)]
-pub(super) fn limited<N: Number, const EFFECTS: u32>(radiance: Color<N>) -> Color<N> {
-    if const { EFFECTS & All::DEVELOPING != 0 } {
+pub(super) fn limited<N: Number>(radiance: Color<N>, develops: bool) -> Color<N> {
+    if develops {
         radiance.limited(BRIGHTEST << 20)
     } else {
         radiance.displayable()
@@ -201,12 +208,9 @@ pub(super) fn limited<N: Number, const EFFECTS: u32>(radiance: Color<N>) -> Colo
 const BRIGHTEST: i32 = 16;
 
 /// The most samples whose sum is in the range of `fixed`, and by how many bits those of more samples are shifted.
-pub(super) const fn room_for_samples<const EFFECTS: u32>() -> (u16, u32) {
-    if EFFECTS & All::DEVELOPING != 0 {
-        (64, 6)
-    } else {
-        (1024, 2)
-    }
+#[inline(always)]
+pub(super) const fn room_for_samples(develops: bool) -> (u16, u32) {
+    if develops { (64, 6) } else { (1024, 2) }
 }
 
 /// One ray that is followed.

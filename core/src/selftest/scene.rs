@@ -10,12 +10,14 @@ use crate::{Effects, Structure};
 use bytemuck::{NoUninit, Zeroable, bytes_of};
 use core::mem::size_of;
 
-/// The effects that the scene requires: its lights are points.
-pub(crate) const REQUIRED: Effects = Effects::ALL
-    .without(Effects::FALLOFF)
-    .without(Effects::AREA_LIGHT)
-    .without(Effects::TONE_MAPPING)
-    .without(Effects::EMISSION);
+/// The effects that the scene requires.
+pub(crate) const REQUIRED: Effects = Effects::SHADOW
+    .with(Effects::HIGHLIGHT)
+    .with(Effects::MIRROR)
+    .with(Effects::GLASS)
+    .with(Effects::ABSORPTION)
+    .with(Effects::CHECKER)
+    .with(Effects::SMOOTH);
 
 /// Sections of the blob.
 const SECTIONS: usize = 12;

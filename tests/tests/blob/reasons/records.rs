@@ -78,6 +78,7 @@ pub(super) fn shading_data() -> Errors {
 /// Lights with forms.
 pub(super) fn light_forms() -> Errors {
     let text = "[[light]]\nkind = 'disc'\ncenter = [0, 9, 0]\nnormal = [0, -1, 0]\nradius = 1\nradiance = 1\n\
+                [material.default]\nemission = 0.1\nlights = false\n\
                 [[object]]\nkind = 'sphere'\ncenter = [0, 0, 0]\nradius = 1";
     let imported =
         gridel_host::scene::read("lights.toml".as_ref(), text.into(), &Default::default());
@@ -98,6 +99,12 @@ pub(super) fn light_forms() -> Errors {
     }
     errors.field("light 0", Field::LightForm, |it| {
         it.change(SectionKind::Lights, 0, |it: &mut Light| it.directional = 7)
+    });
+    errors.field("emission 0", Field::Emission, |it| {
+        it.change(SectionKind::Emissions, 0, |it: &mut [i32; 3]| it[1] = -1)
+    });
+    errors.reason("section emissions", Reason::MissingEffect, |it| {
+        it.header().effects &= !Effects::EMISSION.0
     });
     errors
 }
