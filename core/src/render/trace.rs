@@ -326,13 +326,21 @@ impl<N: Number, A: Accel, C: Observer, const EFFECTS: u32> Tracing<'_, '_, '_, N
         let mut state = self.state;
         let origin = depart(self.scene, surface.hit, surface.hit.front, true);
         let (way, distance) = light.seen_from(origin);
-        let mut aim = Aim { way, distance };
+        let mut aim = Aim {
+            way,
+            distance,
+            cone: None,
+        };
         All::aim::<EFFECTS, N, _>(self, &mut state, number, light, &mut aim);
-        let Aim { way, distance } = aim;
+        let Aim {
+            way,
+            distance,
+            cone,
+        } = aim;
         let Some((slopes, _)) = N::slopes(way) else {
             return Color::BLACK;
         };
-        let (to_light, _) = N::normalize(slopes);
+        let (to_light, norm) = N::normalize(slopes);
         let cos = N::from_wide(N::dot(surface.shading_normal, to_light));
         if C::ENABLED {
             self.count.event(Event::Light {
@@ -349,6 +357,8 @@ impl<N: Number, A: Accel, C: Observer, const EFFECTS: u32> Tracing<'_, '_, '_, N
             way,
             distance,
             to_light,
+            norm,
+            cone,
         };
         let mut reflected = surface.diffuse.scaled(cos);
         let mut is_reached = true;

@@ -83,27 +83,25 @@ impl<'a> Textures<'a> {
     ///
     /// Cost: 4 texels of a bilinear texture, 1 of another.
     #[inline(always)]
-    pub(crate) fn lookup(&self, texture: &Texture, [u, v]: [i32; 2]) -> Texel {
-        let (places, weights, place) = match taps(texture, [u, v]) {
+    pub(crate) fn lookup(&self, texture: &Texture, at: [i32; 2]) -> Texel {
+        let (squares, place) = match taps(texture, at) {
             Taps::Nearest(index, place) => {
-                let color = self.texel(texture, index);
-                return Texel {
-                    color: color.map(|root| linear(square(root) << 16)),
-                    place,
-                };
+                let [texel] = self.fetched(texture, [index]);
+                (texel.channels().map(|root| square(root) << 16), place)
             }
-            Taps::Mixed(places, weights, place) => (places, weights, place),
+            Taps::Mixed(indices, weights, place) => {
+                let mut sum = [0_u32; 3];
+                for (texel, weight) in self.fetched(texture, indices).into_iter().zip(weights) {
+                    for (sum, root) in sum.iter_mut().zip(texel.channels()) {
+                        // In all at most 255^2 2^16, which has 32 bits.
+                        *sum = sum.wrapping_add(square(root).wrapping_mul(weight));
+                    }
+                }
+                (sum, place)
+            }
         };
-        let mut sum = [0_u32; 3];
-        for (index, weight) in places.into_iter().zip(weights) {
-            let texel = self.texel(texture, index);
-            for (sum, root) in sum.iter_mut().zip(texel) {
-                // In all at most 255^2 2^16, which has 32 bits.
-                *sum = sum.wrapping_add(square(root).wrapping_mul(weight));
-            }
-        }
         Texel {
-            color: sum.map(linear),
+            color: squares.map(linear),
             place,
         }
     }
@@ -112,67 +110,96 @@ impl<'a> Textures<'a> {
     #[inline(always)]
     pub(crate) fn alpha(&self, texture: &Texture, at: [i32; 2]) -> i32 {
         ratio(match taps(texture, at) {
-            Taps::Nearest(index, _) => self.texel_alpha(texture, index) << 16,
-            Taps::Mixed(places, weights, _) => {
-                let all = places.into_iter().zip(weights);
-                all.fold(0, |sum, (index, weight)| {
-                    let alpha = self.texel_alpha(texture, index);
-                    sum.wrapping_add(alpha.wrapping_mul(weight))
+            Taps::Nearest(index, _) => {
+                let [texel] = self.fetched(texture, [index]);
+                texel.alpha() << 16
+            }
+            Taps::Mixed(indices, weights, _) => {
+                let texels = self.fetched(texture, indices).into_iter().zip(weights);
+                texels.fold(0, |sum, (texel, weight)| {
+                    sum.wrapping_add(texel.alpha().wrapping_mul(weight))
                 })
             }
         })
     }
 
-    /// The alpha of a texel, of 255.
+    /// Texels of a texture; loading proves that they are there.
     #[inline(always)]
-    fn texel_alpha(&self, texture: &Texture, index: u32) -> u32 {
-        if !matches!(texture.form, 0 | 3) {
-            return 255;
+    fn fetched<const COUNT: usize>(
+        &self,
+        texture: &Texture,
+        indices: [u32; COUNT],
+    ) -> [Packed; COUNT] {
+        let bytes = self
+            .texels
+            .get(texture.first as usize..)
+            .unwrap_or_default();
+        match texture.form {
+            0 => {
+                let (palette, texels) = bytes
+                    .as_chunks()
+                    .0
+                    .split_at_checked(256)
+                    .unwrap_or_default();
+                let texels = texels.as_flattened();
+                indices.map(|index| {
+                    let entry = texels.get(index as usize).copied().unwrap_or_default();
+                    Packed::rgba(element(palette, entry.into()))
+                })
+            }
+            1 => {
+                let texels = bytes.as_chunks().0;
+                indices.map(|index| Packed::rgb565(u16::from_le_bytes(element(texels, index))))
+            }
+            2 => {
+                let texels = bytes.as_chunks().0;
+                indices.map(|index| {
+                    let [red, green, blue] = element(texels, index);
+                    Packed::rgba([red, green, blue, 255])
+                })
+            }
+            _ => {
+                let texels = bytes.as_chunks().0;
+                indices.map(|index| Packed::rgba(element(texels, index)))
+            }
         }
-        let [_, _, _, alpha] = self.bytes(self.place(texture, index));
-        u32::from(alpha)
+    }
+}
+
+/// An element that is known to be there.
+#[inline(always)]
+fn element<const BYTES: usize>(all: &[[u8; BYTES]], index: u32) -> [u8; BYTES] {
+    all.get(index as usize).copied().unwrap_or([0; BYTES])
+}
+
+/// Red, green, blue and alpha from the lowest byte on, the colors as roots.
+#[derive(Clone, Copy)]
+struct Packed(u32);
+
+impl Packed {
+    #[inline(always)]
+    fn rgba(bytes: [u8; 4]) -> Self {
+        Self(u32::from_le_bytes(bytes))
     }
 
-    /// Where the bytes of a texel are, or those of its color in the palette.
     #[inline(always)]
-    fn place(&self, texture: &Texture, index: u32) -> usize {
-        let start = (texture.first as usize).wrapping_add(texture.palette_bytes());
-        let at = (index as usize)
-            .wrapping_mul(texture.texel_bytes())
-            .wrapping_add(start);
-        if texture.form != 0 {
-            return at;
-        }
-        let [entry] = self.bytes(at);
-        usize::from(entry)
-            .wrapping_mul(4)
-            .wrapping_add(texture.first as usize)
+    fn rgb565(texel: u16) -> Self {
+        let texel = u32::from(texel);
+        // The upper bits of each channel again below it, so that all ones are 255.
+        let five = |bits: u32| bits << 3 | bits >> 2;
+        let (red, green, blue) = (five(texel >> 11), texel >> 5 & 63, five(texel & 31));
+        let green = green << 2 | green >> 4;
+        Self(red | green << 8 | blue << 16 | 255 << 24)
     }
 
-    /// The color of a texel, as roots of 8 bits.
     #[inline(always)]
-    fn texel(&self, texture: &Texture, index: u32) -> [u8; 3] {
-        let at = self.place(texture, index);
-        if texture.form == 1 {
-            let [low, high] = self.bytes(at);
-            let packed = u32::from(low) | u32::from(high) << 8;
-            // The upper bits of each channel again below it, so that all ones are 255.
-            let five = |bits: u32| (bits << 3 | bits >> 2) as u8;
-            let green = packed >> 5 & 63;
-            return [
-                five(packed >> 11),
-                (green << 2 | green >> 4) as u8,
-                five(packed & 31),
-            ];
-        }
-        self.bytes(at)
+    fn channels(self) -> [u32; 3] {
+        [self.0 & 255, self.0 >> 8 & 255, self.0 >> 16 & 255]
     }
 
-    /// Bytes of the texels; loading proves that they are there.
     #[inline(always)]
-    fn bytes<const N: usize>(&self, at: usize) -> [u8; N] {
-        let rest = self.texels.get(at..).unwrap_or_default();
-        rest.first_chunk().copied().unwrap_or([0; N])
+    fn alpha(self) -> u32 {
+        self.0 >> 24
     }
 }
 
@@ -225,8 +252,8 @@ pub(crate) fn ratio(number_q16: u32) -> i32 {
 }
 
 #[inline(always)]
-fn square(root: u8) -> u32 {
-    u32::from(root).wrapping_mul(root.into())
+fn square(root: u32) -> u32 {
+    root.wrapping_mul(root)
 }
 
 /// A texture coordinate inside of the image, by the way in which that goes on: 0 up to 1.

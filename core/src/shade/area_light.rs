@@ -15,7 +15,7 @@ use crate::observe::count::Observer;
 use crate::observe::event::Event;
 use crate::shade::effect::{Effect, Tracer};
 use crate::shade::light::{Reach, largest, length};
-use crate::shade::surface::{Aim, Lighting, Surface};
+use crate::shade::surface::{Aim, Cone, Lighting, Surface};
 
 pub(crate) struct AreaLight;
 
@@ -96,6 +96,7 @@ fn at<N: Number>(form: &LightForm, aim: &Aim<N>, [u, v]: [u32; 2]) -> Aim<N> {
     Aim {
         way,
         distance: Some(largest::<N>(way)),
+        cone: None,
     }
 }
 
@@ -104,6 +105,7 @@ fn on_sphere<N: Number>(form: &LightForm, aim: &Aim<N>, u: N, [sine, cosine]: [N
     let hidden = Aim {
         way: [N::Wide::default(); 3],
         distance: None,
+        cone: None,
     };
     let Some(reach) = Reach::of(aim.way, aim.distance) else {
         return hidden;
@@ -116,7 +118,8 @@ fn on_sphere<N: Number>(form: &LightForm, aim: &Aim<N>, u: N, [sine, cosine]: [N
     let square = widest * widest;
     let one = N::ONE.half();
     // 1 - cos of the cone's angle, and of the direction's.
-    let cap = square.half().div(one + (N::ONE - square).sqrt().half());
+    let widening = one.div(one + (N::ONE - square).sqrt().half());
+    let cap = square * widening;
     let sag = cap * u;
     let away = (sag + (sag - sag * sag)).sqrt().min(widest);
     let toward = N::ONE - sag;
@@ -131,6 +134,10 @@ fn on_sphere<N: Number>(form: &LightForm, aim: &Aim<N>, u: N, [sine, cosine]: [N
     Aim {
         way: direction.map(N::widen),
         distance: Some(end.widen() + end.widen()),
+        cone: Some(Cone {
+            half_distance: reach.half_length,
+            widening,
+        }),
     }
 }
 

@@ -11,7 +11,7 @@ use crate::observe::count::Observer;
 use crate::observe::event::Event;
 use crate::shade::Color;
 use crate::shade::effect::{Effect, Tracer};
-use crate::shade::light::{Reach, length};
+use crate::shade::light::length;
 use crate::shade::surface::{Lighting, Surface};
 
 pub(crate) struct Falloff;
@@ -83,8 +83,9 @@ fn shines<N: Number>(form: &LightForm, to_light: [N; 3]) -> bool {
 #[inline(always)]
 fn is_in_range<N: Number>(form: &LightForm, lighting: &Lighting<'_, N>) -> bool {
     form.range == 0
-        || Reach::<N>::of(lighting.way, lighting.distance)
-            .is_some_and(|reach| reach.half_length < length::<N>(form.range).half())
+        || lighting
+            .half_distance()
+            .is_some_and(|half| half < length::<N>(form.range).half())
 }
 
 fn has_cone(form: &LightForm) -> bool {
@@ -94,15 +95,10 @@ fn has_cone(form: &LightForm) -> bool {
 /// What arrives of a light's color.
 #[inline(never)]
 fn falling<N: Number>(form: &LightForm, lighting: &Lighting<'_, N>, color: Color<N>) -> Color<N> {
-    let centre = || lighting.light.seen_from(lighting.origin);
-    let (way, distance) = match form.shape {
-        LightForm::SPHERE => centre(),
-        _ => (lighting.way, lighting.distance),
-    };
-    let Some(reach) = Reach::of(way, distance) else {
+    let middle = lighting.cone.map(|cone| cone.half_distance);
+    let Some(half) = middle.or_else(|| lighting.half_distance()) else {
         return Color::BLACK;
     };
-    let half = reach.half_length;
     let mut arriving = fallen(color, length::<N>(form.reference).half(), half);
     if form.range > 0 {
         // KHR_lights_punctual: 1 minus the fourth power of the distance over the range.
@@ -113,16 +109,12 @@ fn falling<N: Number>(form: &LightForm, lighting: &Lighting<'_, N>, color: Color
         let square = part * part;
         arriving = arriving.scaled(N::ONE - square * square);
     }
+    if let Some(cone) = lighting.cone {
+        // A cone around a sphere takes 2 s² / (1 + cos) of π, where s is the sine of its angle.
+        let arriving = arriving.scaled(cone.widening);
+        return arriving.plus(arriving);
+    }
     match form.shape {
-        LightForm::SPHERE => {
-            // A cone around a sphere takes 2 s² / (1 + cos) of π, where s is the sine of its angle.
-            let sine = length::<N>(form.edges[0][0]).half().div(half);
-            let sine = sine.max(N::ZERO).min(N::ONE);
-            let cos = (N::ONE - sine * sine).sqrt();
-            let one = N::ONE.half();
-            let arriving = arriving.scaled(one.div(one + cos.half()));
-            arriving.plus(arriving)
-        }
         LightForm::RECTANGLE | LightForm::DISC | LightForm::TRIANGLE => {
             arriving.scaled(cosine(form, lighting.to_light).max(N::ZERO))
         }

@@ -70,21 +70,19 @@ fn scrambled_point(index: u32, seed: u32) -> [u32; 2] {
     let index = scrambled(index, seed);
     // The first dimension is the index with its bits mirrored.
     let first = mirrored_scramble(index, mixed(seed ^ 0x68bc_21eb));
-    let second = scrambled(second_dimension(index), mixed(seed ^ 0x02e5_be93));
+    let second = mirrored_scramble(mirrored_second_dimension(index), mixed(seed ^ 0x02e5_be93));
     [first, second]
 }
 
-/// The second dimension of Sobol's sequence, whose generator matrix is Pascal's triangle modulo 2.
-fn second_dimension(index: u32) -> u32 {
-    let (mut column, mut rest, mut value) = (1_u32 << 31, index, 0);
-    while rest != 0 {
-        if rest & 1 == 1 {
-            value ^= column;
-        }
-        column ^= column >> 1;
-        rest >>= 1;
-    }
-    value
+/// The second dimension of Sobol's sequence with its bits mirrored. Its generator matrix is Pascal's triangle modulo 2:
+/// a bit is the sum of those of the index whose numbers have all the bits of its own number (Lucas' theorem).
+fn mirrored_second_dimension(index: u32) -> u32 {
+    let mut x = index;
+    x ^= x >> 1 & 0x5555_5555;
+    x ^= x >> 2 & 0x3333_3333;
+    x ^= x >> 4 & 0x0f0f_0f0f;
+    x ^= x >> 8 & 0x00ff_00ff;
+    x ^ x >> 16
 }
 
 /// A value, scrambled: whether a bit changes depends on the seed and the higher bits.
@@ -191,6 +189,20 @@ mod tests {
             (mean - exact) * (mean - exact)
         });
         libm::sqrt(squares.sum::<f64>() / 64.0)
+    }
+
+    #[test]
+    fn second_dimension_is_that_of_pascals_triangle() {
+        for index in (0..4096).chain([u32::MAX, 0x8000_0000, 0x1234_5678]) {
+            let (mut column, mut sum) = (1_u32 << 31, 0);
+            for bit in 0..32 {
+                if index >> bit & 1 == 1 {
+                    sum ^= column;
+                }
+                column ^= column >> 1;
+            }
+            assert_eq!(mirrored_second_dimension(index).reverse_bits(), sum);
+        }
     }
 
     #[test]

@@ -84,6 +84,36 @@ fn shine(scene: &mut Scene, shape: LightShape, spot: Option<Spot>) {
     })];
 }
 
+/// The base under a point light, and under lights with an area in its place.
+pub fn lamps() -> [Compiled; 4] {
+    let across = |length: f64| [DVec3::new(length, 0.0, 0.0), DVec3::new(0.0, 0.5, 0.0)];
+    let shapes = [
+        ("point-light", None),
+        ("sphere-light", Some(LightShape::Sphere { radius: 0.5 })),
+        (
+            "rectangle-light",
+            Some(LightShape::Rectangle {
+                edges: across(-0.5),
+            }),
+        ),
+        (
+            "disc-light",
+            Some(LightShape::Disc {
+                normal: DVec3::NEG_Z,
+                radius: 0.5,
+            }),
+        ),
+    ];
+    shapes.map(|(name, shape)| {
+        let mut scene = base();
+        shine(&mut scene, shape.unwrap_or(LightShape::Point), None);
+        if shape.is_none() {
+            scene.light_forms.clear();
+        }
+        compile(name, scene)
+    })
+}
+
 /// Gives all meshes a texture with this alpha.
 fn hang(scene: &mut Scene, alpha: fn(u8) -> u8) {
     scene.objects.iter_mut().for_each(paper);
@@ -137,6 +167,7 @@ pub fn combinations() -> impl Iterator<Item = (Vec<&'static str>, Vec<&'static s
         ("triangle", "shadow falloff"),
         ("triangle", "shadow falloff area-light"),
         ("triangle", "shadow smooth falloff area-light"),
+        ("triangle", "shadow smooth texture"),
         ("triangle instances", "shadow"),
         ("sphere", "shadow"),
         ("sphere", "shadow highlight"),

@@ -228,10 +228,16 @@ fn memory_page_shows_recorded_cost_of_shapes_and_effects() {
 
 #[test]
 fn memory_page_shows_recorded_cost_per_hit() {
-    let mut table = String::from("| effect | instructions per hit |\n|---|---|\n");
-    for effect in ["vertex-colors", "texture"] {
-        let each = on_board(effect, "mps2-an386", "f32")("hit-instructions");
-        table += &format!("| {effect} | {each} |\n");
+    let mut table = String::from("| what | instructions per hit |\n|---|---|\n");
+    for (name, scene) in [
+        ("colors of vertices", "vertex-colors"),
+        ("bilinear texture, a palette", "texture"),
+        ("light that is a sphere", "sphere-light"),
+        ("light that is a rectangle", "rectangle-light"),
+        ("light that is a disc", "disc-light"),
+    ] {
+        let each = on_board(scene, "mps2-an386", "f32")("hit-instructions");
+        table += &format!("| {name} | {each} |\n");
     }
     holds_table(MEMORY, "per-hit", &table);
 }
