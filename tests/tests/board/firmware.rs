@@ -233,10 +233,10 @@ impl<'b> Build<'b> {
         let mut parts = [&[self.structure.name()], features].concat();
         parts.retain(|&part| part != "emitted");
         parts.sort_unstable();
-        let core = format!("{} {profile} {flags} {parts:?}", self.board.target);
-        let claim = folders::claim(core);
+        let target = self.board.target;
+        let claim = folders::claim(target, format!("{target} {profile} {flags} {parts:?}"));
         let target_folder = claim.folder();
-        let artifacts = target_folder.join(self.board.target).join(profile);
+        let artifacts = target_folder.join(target).join(profile);
         cargo
             .env("RUSTC_BOOTSTRAP", "1")
             // No instruction depends on them, and every fifth second of a build does.

@@ -48,12 +48,22 @@ pub struct Claim {
     folder: PathBuf,
 }
 
+/// The folder of a target for which few programs are built, which needs other crates in one folder only.
+fn home(target: &str) -> Option<usize> {
+    match target.split_once('-')?.0 {
+        "thumbv7m" | "thumbv7em" => None,
+        "thumbv6m" | "thumbv8m.main" => Some(0),
+        _ => Some(FOLDERS - 1),
+    }
+}
+
 /// Waits for the folder where a core is, or for any where it is in none.
-pub fn claim(core: String) -> Claim {
+pub fn claim(target: &str, core: String) -> Claim {
     let mut folders = all();
     let number = loop {
         let holds = |folder: &Folder| folder.cores.iter().any(|held| held.name == core);
-        let number = match folders.iter().position(holds) {
+        let held = folders.iter().position(holds);
+        let number = match held.or(home(target)) {
             Some(number) => (!folders[number].busy).then_some(number),
             None => folders.iter().position(|folder| !folder.busy),
         };
