@@ -5,7 +5,7 @@ use crate::figures::Figures;
 use crate::firmware::{Build, WASM, board};
 use crate::plan::Plan;
 use crate::programs::{Linked, footprint};
-use crate::scenes;
+use crate::scenes::{self, Compiled};
 use crate::{boards, measured_in_full, parts};
 use gridel_core::{Effects, Format, Prevalidated, Settings, Structure};
 use gridel_host::measure::board::Board;
@@ -32,6 +32,12 @@ pub fn plan(plan: &mut Plan) {
         plan.test_on("everything_on_every_board", board, format)
             .in_full_if(board == discovery)
             .run(move || everything_on_a_board(board, format));
+        if board.similar(format) == (board, format) {
+            // Six builds; pictures through these structures run more often.
+            plan.test_on("everything_through_other_structures", board, format)
+                .at_length()
+                .run(move || everything_through_other_structures(board, format));
+        }
     }
     plan.test("shapes_and_effects_are_paid_for_one_by_one")
         .on(discovery)
@@ -151,20 +157,12 @@ fn hits_and_lights_cost_what_is_recorded() {
 const PER_HIT: [&str; 2] = ["vertex-colors", "texture"];
 
 /// Costs of a product with every shape and effect on a board, fast or small, and on one of each kind
-/// of core through every structure that boards prevalidate: by which the memory report scales.
+/// of core with instances: by which the memory report scales.
 fn everything_on_a_board(board: &'static Board, format: Format) {
     let scene = scenes::quick();
     let mut linked = Linked::new();
-    let in_full = board.similar(format) == (board, format);
-    let measured = |&it: &Structure| in_full || it == Structure::DualSplit;
-    for structure in Prevalidated::STRUCTURES.into_iter().filter(measured) {
-        let fast = || Build::new(board, format, structure, &scene);
-        for build in [fast(), fast().small()] {
-            let elf = build.program_with("bare", &["everything"]).elf();
-            linked.add(&build, &["everything"], &scene, &elf);
-        }
-    }
-    if in_full {
+    add_everything(&mut linked, board, format, Structure::DualSplit, &scene);
+    if board.similar(format) == (board, format) {
         let placed = parts::combination(&["box", "instances"], &["shadow"]);
         let fast = || Build::new(board, format, Structure::DualSplit, &placed);
         for build in [fast(), fast().small()] {
@@ -174,6 +172,32 @@ fn everything_on_a_board(board: &'static Board, format: Format) {
         }
     }
     linked.check();
+}
+
+/// The same through the other structures that boards prevalidate.
+fn everything_through_other_structures(board: &'static Board, format: Format) {
+    let scene = scenes::quick();
+    let mut linked = Linked::new();
+    let others = Prevalidated::STRUCTURES.into_iter();
+    for structure in others.filter(|&other| other != Structure::DualSplit) {
+        add_everything(&mut linked, board, format, structure, &scene);
+    }
+    linked.check();
+}
+
+/// Links all code for a structure, fast and small.
+fn add_everything(
+    linked: &mut Linked,
+    board: &'static Board,
+    format: Format,
+    structure: Structure,
+    scene: &Compiled,
+) {
+    let fast = || Build::new(board, format, structure, scene);
+    for build in [fast(), fast().small()] {
+        let elf = build.program_with("bare", &["everything"]).elf();
+        linked.add(&build, &["everything"], scene, &elf);
+    }
 }
 
 /// Flash for all code that a diffuse scene of triangles and spheres with shadows needs, the vector table

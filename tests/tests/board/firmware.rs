@@ -1,6 +1,7 @@
 //! Builds the firmware for a board and runs it in QEMU, or in Node.
 
 use crate::elf::Elf;
+use crate::folders;
 use crate::scenes::{Compiled, repository};
 use gridel_core::{Format, Structure};
 use gridel_host::measure::board::Board;
@@ -10,7 +11,7 @@ use std::fmt;
 use std::hash::{DefaultHasher, Hash, Hasher};
 use std::path::{Path, PathBuf};
 use std::process::{Command, Output, Stdio};
-use std::sync::{Mutex, MutexGuard, PoisonError};
+use std::sync::{Mutex, PoisonError};
 use std::{env, fs};
 
 /// The runner that comes nearest to a board without an operating system: WebAssembly in Node.
@@ -118,24 +119,6 @@ impl fmt::Display for Build<'_> {
     }
 }
 
-/// Target folders, each for one build at a time: linking takes one core.
-static BUILDING: [Mutex<()>; 2] = [Mutex::new(()), Mutex::new(())];
-
-/// A target folder that no other build uses, by number.
-fn a_target_folder() -> (usize, MutexGuard<'static, ()>) {
-    let free = BUILDING.iter().enumerate().find_map(|(number, folder)| {
-        let guard = folder.try_lock().ok()?;
-        Some((number, guard))
-    });
-    // A test that failed says so itself.
-    free.unwrap_or_else(|| {
-        (
-            0,
-            BUILDING[0].lock().unwrap_or_else(PoisonError::into_inner),
-        )
-    })
-}
-
 impl<'b> Build<'b> {
     pub fn new(
         board: &'b Board,
@@ -200,14 +183,11 @@ impl<'b> Build<'b> {
 
     /// Builds one of the firmware's programs, or says why it does not compile.
     pub fn try_program(&self, name: &str, features: &[&str]) -> Result<Program<'b>, String> {
-        let (number, _one_at_a_time) = a_target_folder();
         let folder = self.folder(name);
         // Beside it a module with a `scene.gridel` of its own may lie.
         let blob = folder.join("firmware.gridel");
         fs::write(&blob, self.scene.blob.bytes()).expect("the target folder can be written to");
 
-        let target_folder =
-            Path::new(env!("CARGO_TARGET_TMPDIR")).join(format!("firmware-{number}"));
         let (profile, small): (_, &[_]) = if self.small {
             ("small", &["small"])
         } else {
@@ -249,16 +229,25 @@ impl<'b> Build<'b> {
             // The target's own baseline is a Cortex-M4F, without double precision.
             flags += " -C target-cpu=cortex-m7";
         }
+        // The core is the same in every number format and with a module of any sort.
+        let mut parts = [&[self.structure.name()], features].concat();
+        parts.retain(|&part| part != "emitted");
+        parts.sort_unstable();
+        let target = self.board.target;
+        let claim = folders::claim(target, format!("{target} {profile} {flags} {parts:?}"));
+        let target_folder = claim.folder();
+        let artifacts = target_folder.join(target).join(profile);
         cargo
             .env("RUSTC_BOOTSTRAP", "1")
             // No instruction depends on them, and every fifth second of a build does.
             .env("CARGO_PROFILE_RELEASE_DEBUG", "false")
             .env("RUSTFLAGS", flags.trim_start())
-            .env("CARGO_TARGET_DIR", &target_folder)
+            .env("CARGO_TARGET_DIR", target_folder)
             .env("GRIDEL_BOARD", self.board.name)
             .env("GRIDEL_BLOB", &blob)
             .env("GRIDEL_MODULE", &folder);
         let output = cargo.output().expect("cargo runs");
+        claim.built(&artifacts.join("deps"));
         if !output.status.success() {
             return Err(text(&output));
         }
@@ -267,10 +256,7 @@ impl<'b> Build<'b> {
         } else {
             ""
         };
-        let built = target_folder
-            .join(self.board.target)
-            .join(profile)
-            .join(format!("{name}{extension}"));
+        let built = artifacts.join(format!("{name}{extension}"));
         fs::copy(built, folder.join("firmware.elf")).expect("the target folder can be written to");
         Ok(Program {
             board: self.board,

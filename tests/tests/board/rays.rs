@@ -30,7 +30,15 @@ pub fn plan(plan: &mut Plan) {
         plan.test_on("primary_rays_of_suzanne", board, format)
             .with_scene(scenes::SUZANNE)
             .in_full()
-            .run(move || primary_rays_of_suzanne(board, format));
+            .run(move || primary_rays_of_suzanne(board, format, &[Structure::DualSplit]));
+        // Other structures, often on one core with floats and one without.
+        let is_often = format == Format::F32 || board.core == "Cortex-M3";
+        plan.test_on("primary_rays_of_suzanne_through_boxes", board, format)
+            .with_scene(scenes::SUZANNE)
+            .in_full_if(is_often)
+            .run(move || {
+                primary_rays_of_suzanne(board, format, &[Structure::Flagged, Structure::Bvh])
+            });
         plan.test_on("primary_rays_of_suzanne_in_16_bits", board, format)
             .with_scene(scenes::SUZANNE)
             .in_full_if(format == Format::F32)
@@ -121,10 +129,10 @@ fn fan<N: Number>(scene: &Scene<'_>) -> Vec<Option<u64>> {
     (0..finder::RAYS).map(measure).collect()
 }
 
-fn primary_rays_of_suzanne(board: &'static Board, format: Format) {
+fn primary_rays_of_suzanne(board: &'static Board, format: Format, structures: &[Structure]) {
     let suzanne = scenes::suzanne();
     let mut figures = Figures::new();
-    for structure in [Structure::DualSplit, Structure::Flagged, Structure::Bvh] {
+    for &structure in structures {
         let build = Build::new(board, format, structure, &suzanne);
         let report = build.program("primary").run();
         assert_eq!(report["rays"], 64 * 64, "{build}");

@@ -9,14 +9,22 @@ use std::sync::LazyLock;
 
 pub fn plan(plan: &mut Plan) {
     for (name, format) in PAPER_BOARDS {
-        // Twenty-five builds on each.
+        // Twenty-five builds on each, five of them for lists in the smaller crystal: structures and shapes that the
+        // chessboard and the larger crystal have, too.
         let often = format == Format::F32;
         plan.test_on("flagged_is_ahead_of_plain", board(name), format)
             .in_full_if(often)
             .run(move || flagged_is_ahead_of_plain(name, format));
         plan.test_on("lists_of_candidates", board(name), format)
             .in_full_if(often)
-            .run(move || lists_of_candidates(name, format));
+            .run(move || lists_of_candidates(name, format, |scene| scene != SMALLER));
+        plan.test_on(
+            "lists_of_candidates_in_the_smaller_crystal",
+            board(name),
+            format,
+        )
+        .at_length()
+        .run(move || lists_of_candidates(name, format, |scene| scene == SMALLER));
     }
 }
 
@@ -44,40 +52,40 @@ fn flagged_is_ahead_of_plain(name: &str, format: Format) {
 /// The grid and lists of candidates on the paper's scenes, as far as a board's flash holds them, and
 /// on a molecule that fills the picture. What hierarchies take there `flagged_is_ahead_of_plain`
 /// records; the test `documents` compares.
-fn lists_of_candidates(name: &str, format: Format) {
+fn lists_of_candidates(name: &str, format: Format, is_measured: fn(&str) -> bool) {
     use Structure::{Apex, CylinderCube, CylinderCubeEntry, CylinderCubeTight, DualSplit, Grid};
     // Gridels a side are those that the builder would find for its budget.
-    static SCENES: LazyLock<Vec<(Structure, Compiled)>> = LazyLock::new(|| {
-        let [chess, molecule, large] = scenes::PAPERS;
-        let all = [
-            (chess, Grid, None),
-            (chess, CylinderCube, None),
-            (chess, CylinderCubeTight, Some(12)),
-            (chess, CylinderCubeEntry, Some(12)),
-            (chess, Apex, None),
-            (molecule, Grid, None),
-            (molecule, CylinderCube, None),
-            (molecule, CylinderCubeTight, Some(4)),
-            (molecule, CylinderCubeEntry, Some(8)),
-            (molecule, Apex, None),
-            (large, Grid, None),
-            (large, CylinderCubeEntry, Some(8)),
-            (large, Apex, None),
-            (scenes::CLOSE, Grid, None),
-            (scenes::CLOSE, DualSplit, None),
-            (scenes::CLOSE, Apex, None),
-        ];
-        all.map(|(scene, structure, gridels)| {
-            (structure, scenes::paper(scene, &[structure], gridels))
-        })
-        .into()
-    });
+    let [chess, molecule, large] = scenes::PAPERS;
+    let all = [
+        (chess, Grid, None),
+        (chess, CylinderCube, None),
+        (chess, CylinderCubeTight, Some(12)),
+        (chess, CylinderCubeEntry, Some(12)),
+        (chess, Apex, None),
+        (molecule, Grid, None),
+        (molecule, CylinderCube, None),
+        (molecule, CylinderCubeTight, Some(4)),
+        (molecule, CylinderCubeEntry, Some(8)),
+        (molecule, Apex, None),
+        (large, Grid, None),
+        (large, CylinderCubeEntry, Some(8)),
+        (large, Apex, None),
+        (scenes::CLOSE, Grid, None),
+        (scenes::CLOSE, DualSplit, None),
+        (scenes::CLOSE, Apex, None),
+    ];
     let mut figures = Figures::new();
-    for (structure, scene) in SCENES.iter() {
-        spent(name, format, *structure, scene, &mut figures);
+    for (scene, structure, gridels) in all {
+        if is_measured(scene) {
+            let scene = scenes::paper(scene, &[structure], gridels);
+            spent(name, format, structure, &scene, &mut figures);
+        }
     }
     figures.check();
 }
+
+/// The smaller crystal.
+const SMALLER: &str = scenes::PAPERS[1];
 
 /// Where the paper's scenes are measured.
 const PAPER_BOARDS: [(&str, Format); 2] =
