@@ -265,7 +265,8 @@ impl<N: Number, A: Accel, C: Observer, const EFFECTS: u32> Tracing<'_, '_, '_, N
 
         let mut local = Color::radiance(scene.view.ambient).times(surface.diffuse);
         All::emit::<EFFECTS, N, _>(self, &mut state, &surface, &mut local);
-        for (number, light) in (0..).zip(scene.lights) {
+        let mut number = 0_u32;
+        for light in scene.lights {
             let lit = self.lit(number, light, &surface);
             local = local.plus(lit);
             if C::ENABLED {
@@ -274,6 +275,7 @@ impl<N: Number, A: Accel, C: Observer, const EFFECTS: u32> Tracing<'_, '_, '_, N
                     radiance: lit.to_f64(),
                 });
             }
+            number = number.wrapping_add(1);
         }
         self.bring(Source::Surface, local.times(surface.weight), radiance);
 
