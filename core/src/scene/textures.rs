@@ -142,28 +142,43 @@ impl<'a> Textures<'a> {
                     .split_at_checked(256)
                     .unwrap_or_default();
                 let texels = texels.as_flattened();
-                indices.map(|index| {
+                each(indices, |index| {
                     let entry = texels.get(index as usize).copied().unwrap_or_default();
                     Packed::rgba(element(palette, entry.into()))
                 })
             }
             1 => {
                 let texels = bytes.as_chunks().0;
-                indices.map(|index| Packed::rgb565(u16::from_le_bytes(element(texels, index))))
+                each(indices, |index| {
+                    Packed::rgb565(u16::from_le_bytes(element(texels, index)))
+                })
             }
             2 => {
                 let texels = bytes.as_chunks().0;
-                indices.map(|index| {
+                each(indices, |index| {
                     let [red, green, blue] = element(texels, index);
                     Packed::rgba([red, green, blue, 255])
                 })
             }
             _ => {
                 let texels = bytes.as_chunks().0;
-                indices.map(|index| Packed::rgba(element(texels, index)))
+                each(indices, |index| Packed::rgba(element(texels, index)))
             }
         }
     }
+}
+
+/// Fetches texels one by one. `array::map` is a function of its own on some targets, with a frame without bound.
+#[inline(always)]
+fn each<const COUNT: usize>(
+    indices: [u32; COUNT],
+    fetch: impl Fn(u32) -> Packed,
+) -> [Packed; COUNT] {
+    let mut texels = [Packed(0); COUNT];
+    for (texel, index) in texels.iter_mut().zip(indices) {
+        *texel = fetch(index);
+    }
+    texels
 }
 
 /// An element that is known to be there.
