@@ -97,7 +97,8 @@ pub fn render(
 /// Returns the code that traces pixels, compiled for the job's number format and structure and for the scene's
 /// effects. The structure is chosen in the scene: see [`chosen`].
 ///
-/// Inline for web pages, whose crate so compiles this code by its own profile. Elsewhere it would be compiled twice.
+/// Inline in WebAssembly alone: the page's crate then compiles this code by its own profile. Elsewhere each crate that
+/// calls it would compile all of this code again.
 #[cfg_attr(target_family = "wasm", inline)]
 pub(crate) fn tracer<'s>(scene: &'s Scene<'_>, job: &Job) -> NewTracer<'s> {
     match job.format {

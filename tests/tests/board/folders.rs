@@ -48,7 +48,7 @@ pub struct Claim {
     folder: PathBuf,
 }
 
-/// The folder of a target for which few programs are built, which needs other crates in one folder only.
+/// The folder of a target with few programs: in one folder, the crates that they share are compiled once.
 fn home(target: &str) -> Option<usize> {
     match target.split_once('-')?.0 {
         "thumbv7m" | "thumbv7em" => None,
