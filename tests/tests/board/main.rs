@@ -309,13 +309,7 @@ fn linked(plan: &mut Plan) {
         let board = board(name);
         let size = if small { "small" } else { structure.name() };
         let test = format!("nothing_panics_with_overflow_checks::{size}");
-        // The code of integers is the same on every core; the ordinary run shows it on one, and in small code on the
-        // one with the fewest instructions.
-        let often = match (small, structure) {
-            (false, Structure::DualSplit) => !["microbit", "sifive_e"].contains(&name),
-            (false, structure) => structure == Structure::Bvh,
-            (true, _) => ["microbit", "mps2-an500"].contains(&name),
-        };
+        let often = structure == Structure::DualSplit || structure == Structure::Bvh;
         plan.test_on(&test, board, format)
             .in_full_if(often)
             .run(move || {
