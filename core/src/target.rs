@@ -3,6 +3,12 @@
 /// Whether code shall be small where that makes it slower; no bit of an answer depends on it.
 pub(crate) const SMALL: bool = cfg!(feature = "small");
 
+/// Whether the code for vertex colors is in this build.
+pub(crate) const VERTEX_COLORS: bool = cfg!(feature = "vertex-colors");
+
+/// Whether the code for textures is in this build.
+pub(crate) const TEXTURE: bool = cfg!(feature = "texture");
+
 /// Whether the code of the structure `wide`, and of the clusters in its leaves, is in this build.
 pub(crate) const WIDE: bool = cfg!(feature = "wide");
 
@@ -18,6 +24,12 @@ pub(crate) type InstancesOnly<T> = InSomeBuilds<T, { cfg!(feature = "instances")
 
 /// A value that only builds with the code for smooth normals hold.
 pub(crate) type SmoothOnly<T> = InSomeBuilds<T, { cfg!(feature = "smooth") as usize }>;
+
+/// A value that only builds with the code for vertex colors hold.
+pub(crate) type VertexColorsOnly<T> = InSomeBuilds<T, { VERTEX_COLORS as usize }>;
+
+/// A value that only builds with the code for textures hold.
+pub(crate) type TextureOnly<T> = InSomeBuilds<T, { TEXTURE as usize }>;
 
 /// A value that builds hold for which `COUNT` is 1; it has no size where `COUNT` is 0.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -24,6 +24,7 @@ pub fn scene() -> Scene {
         shape,
         place: SourceSpan::default(),
         normals: Default::default(),
+        attributes: Default::default(),
     };
     let floor = Shape::Box(Cuboid {
         min: DVec3::new(-4.0, -0.5, -4.0),

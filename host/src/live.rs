@@ -91,7 +91,15 @@ impl Light {
             .map(|[low, high]| f64::from(high) - f64::from(low));
         let lattice = Lattice::of_blob(scene);
         let size = sides.into_iter().fold(0.0, f64::max) * lattice.unit();
-        light_record(self, &lattice, size, number)
+        let record = light_record(self, &lattice, size, number)?;
+        let form = scene.lights().get(number).filter(|it| it.form().is_some());
+        Ok(match form {
+            Some(light) if record.directional == 0 => record::Light {
+                directional: light.directional,
+                ..record
+            },
+            _ => record,
+        })
     }
 }
 

@@ -20,6 +20,7 @@ pub fn of(shapes: impl IntoIterator<Item = Shape>) -> Scene {
         shape,
         place: SourceSpan::default(),
         normals: Default::default(),
+        attributes: Default::default(),
     });
     Scene {
         materials: vec![Material::default()],

@@ -280,7 +280,7 @@ fn values_out_of_range_are_rejected_with_their_place() {
         (view(&|it| it.right[0] = -(1 << 28) - 1), "camera vector"),
         (view(&|it| it.ambient[2] = -1), "ambient"),
         (view(&|it| it.width = 0), "width"),
-        (view(&|it| it.samples = 257), "samples"),
+        (view(&|it| it.samples = 4097), "samples"),
         (light(&|it| it.color[0] = -1), "1"),
         (light(&|it| it.directional = 2), "1"),
         (light(&|it| it.vector = [0; 3]), "1"),

@@ -24,6 +24,7 @@ mod large_scenes;
 #[path = "lattice/main.rs"]
 mod lattice;
 mod layers;
+mod lights;
 mod live;
 mod origins;
 mod reference;
@@ -34,6 +35,7 @@ mod shapes;
 mod spd;
 mod structures;
 mod tables;
+mod textures;
 mod tracks;
 mod transforms;
 mod verify;

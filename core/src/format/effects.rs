@@ -35,6 +35,27 @@ macro_rules! effects {
             /// Smooth normals: meshes are shaded by the normals of their vertices.
             SMOOTH = 6, "smooth", Smooth in smooth, casts 0,
                 required by "a mesh with normals that are not those of its faces";
+            /// Vertex colors: the diffuse color of a mesh is weighted by the colors of its vertices.
+            VERTEX_COLORS = 7, "vertex-colors", VertexColors in vertex_colors, casts 0,
+                required by "a mesh with colors of its vertices";
+            /// Textures: the diffuse color of a mesh is weighted by that of an image.
+            TEXTURE = 8, "texture", Texture in texture, casts 0,
+                required by "a material with a texture";
+            /// Alpha: parts of a texture let rays and light pass straight on. One more ray per hit.
+            ALPHA = 9, "alpha", Alpha in alpha, casts 1,
+                required by "an opaque material with a texture whose alpha is used";
+            /// Lights that fall off with distance, and spots.
+            FALLOFF = 11, "falloff", Falloff in falloff, casts 0,
+                required by "a light with a falloff, a spot or an area";
+            /// Lights with an area: soft shadows.
+            AREA_LIGHT = 12, "area-light", AreaLight in area_light, casts 0,
+                required by "a light that is a sphere, a rectangle or a disc";
+            /// Tone mapping: pixels are mapped to the range of a display.
+            TONE_MAPPING = 13, "tone-mapping", ToneMapping in tone_mapping, casts 0,
+                required by "a view with a curve for tones";
+            /// Surfaces that send out light of their own.
+            EMISSION = 14, "emission", Emission in emission, casts 0,
+                required by "a material that glows";
         }
     };
 }
@@ -123,14 +144,14 @@ impl Effects {
     /// use gridel_core::Effects;
     ///
     /// let opaque = Effects::ALL.without(Effects::GLASS).without(Effects::ABSORPTION);
-    /// assert_eq!(opaque.to_string(), "shadow, highlight, mirror, checker, smooth");
+    /// assert_eq!(opaque.to_string(), "shadow, highlight, mirror, checker, smooth, vertex-colors, texture, alpha");
     /// ```
     pub const fn without(self, other: Effects) -> Effects {
         Effects(self.0 & !other.0)
     }
 
     /// This set under a condition, else none.
-    pub(crate) const fn only_if(self, condition: bool) -> Effects {
+    pub const fn only_if(self, condition: bool) -> Effects {
         if condition { self } else { Effects::NONE }
     }
 

@@ -10,7 +10,7 @@ pub const MAX_LEVELS: usize = 48;
 pub const MAX_RAY_DEPTH: usize = 16;
 
 /// Most samples per pixel.
-pub const MAX_SAMPLES: u16 = 256;
+pub const MAX_SAMPLES: u16 = 4096;
 
 /// Most bytes of a name.
 pub const MAX_NAME_BYTES: usize = 255;

@@ -12,6 +12,7 @@ pub mod instance;
 pub(crate) mod kind;
 pub mod layout;
 mod leaf;
+pub mod light_form;
 pub mod limits;
 pub(crate) mod link;
 mod node;

@@ -135,7 +135,7 @@ impl Requirements {
                 let rays = proved!(word(blob, start.saturating_add(offset_of!(View, samples))));
                 (demand.width, demand.height) = (size as usize & 0xffff, size as usize >> 16);
                 // The last byte of the word that begins with the depth.
-                demand.display_values = rays >> 24 != 0;
+                demand.display_values = rays >> 24 == View::DISPLAY_VALUES as u32;
                 demand.work_depth = demand.effects.work_depth((rays >> 16) as u8);
             } else if kind == SectionKind::Vertices as u16 {
                 demand.vertices = count as usize;

@@ -18,10 +18,31 @@ macro_rules! kinds {
         impl SectionKind {
             /// All kinds, in order.
             pub const ALL: [SectionKind; [$($number),*].len()] = {
-                let mut all = [SectionKind::View; [$($number),*].len()];
-                $(all[$number - 1] = SectionKind::$kind;)*
+                let mut all = [$(SectionKind::$kind),*];
+                // Those of shapes come last in the table above, and not by their numbers.
+                let mut sorted = 1;
+                while sorted < all.len() {
+                    let mut place = sorted;
+                    while place > 0 && all[place - 1] as u16 > all[place] as u16 {
+                        all.swap(place - 1, place);
+                        place -= 1;
+                    }
+                    sorted += 1;
+                }
                 all
             };
+
+            /// A bit for every number that a kind has.
+            pub(crate) const KNOWN: [u32; 4] = {
+                let mut known = [0; 4];
+                $(known[$number / 32] |= 1 << ($number % 32);)*
+                known
+            };
+
+            /// The kind with a number.
+            pub fn of_number(number: u16) -> Option<Self> {
+                Self::ALL.into_iter().find(|&kind| kind as u16 == number)
+            }
 
             /// The name that errors and memory maps use.
             pub const fn name(self) -> &'static str {
@@ -197,6 +218,23 @@ macro_rules! sections {
             Joints = 73, "joints", [track::Joint], "joint" of "tracks";
             /// For each instance, the joint on which it hangs, or `u32::MAX`. Absent where there are no joints.
             InstanceJoints = 74, "instance-joints", [u32], "instance" of "tracks";
+            /// The colors of the first vertices: red, green and blue as square roots of linear light, and alpha. Those of
+            /// other vertices are white.
+            VertexColors = 75, "vertex-colors", [[u8; 4]], "color" of "";
+            /// The texture coordinates of the first vertices, u to the right and v down, with 14 or 20 fraction bits: see
+            /// [`attributes`](crate::geometry::attributes).
+            TextureCoordinates = 76, "texture-coordinates", [[i16; 2], [i32; 2]], "coordinates" of "";
+            /// [`SurfaceMaps`](crate::format::record::SurfaceMaps).
+            SurfaceMaps = 77, "surface-maps", [record::SurfaceMaps], "maps" of "";
+            /// [`Texture`](crate::format::record::Texture)s.
+            Textures = 78, "textures", [record::Texture], "texture" of "";
+            /// The palettes and texels of all textures: see [`Texture`](crate::format::record::Texture).
+            Texels = 79, "texels", [u8], "byte" of "textures";
+            /// [`LightForm`](crate::format::light_form::LightForm)s: what makes lights more than points.
+            LightForms = 80, "light-forms", [light_form::LightForm], "form" of "lights";
+            /// For each of the first materials, the radiance of the light that it sends out, 20 fraction bits; others send
+            /// out none. Absent where no material glows.
+            Emissions = 81, "emissions", [[i32; 3]], "emission" of "";
             $(
                 #[doc = concat!(
                     "[`", stringify!($record), "`](crate::geometry::", stringify!($module),

@@ -28,6 +28,9 @@ pub(crate) struct Sections<'a> {
     table: &'a [SectionEntry],
 }
 
+/// The kind with the largest number.
+const LAST: SectionKind = SectionKind::ALL[SectionKind::ALL.len() - 1];
+
 impl<'a> Sections<'a> {
     /// Reads the section table. Proves that kinds are known and ascend, and that sections are
     /// aligned, in order, disjoint and inside the blob.
@@ -45,10 +48,11 @@ impl<'a> Sections<'a> {
         let mut last = 0;
         for (index, entry) in entries.iter().enumerate() {
             let line = Location::Table(index);
-            let kinds = [i64::from(last) + 1, SectionKind::ALL.len() as i64];
-            let kind = i64::from(entry.kind);
-            if kind < kinds[0] || kind > kinds[1] {
-                return Err(line.out_of_range(Field::Kind, kind, kinds));
+            let known = SectionKind::KNOWN.get(usize::from(entry.kind / 32));
+            let is_known = known.is_some_and(|known| known >> (entry.kind % 32) & 1 == 1);
+            if entry.kind <= last || !is_known {
+                let kinds = [i64::from(last) + 1, LAST as i64];
+                return Err(line.out_of_range(Field::Kind, entry.kind.into(), kinds));
             }
             last = entry.kind;
             if entry.spare != 0 {
@@ -67,8 +71,8 @@ impl<'a> Sections<'a> {
             };
             end = start.saturating_add(bytes.len());
         }
-        // Kinds ascend, so the last entry tells.
-        if !INSTANCES && last >= SectionKind::Parts as u16 {
+        let placing = SectionKind::Parts as u16..=SectionKind::InstanceJoints as u16;
+        if !INSTANCES && entries.iter().any(|entry| placing.contains(&entry.kind)) {
             let missing = "instances";
             return Err(BlobError::MissingPart { missing });
         }

@@ -4,6 +4,7 @@
 //! leaves the primitive, behind the origin too. What of that is a hit is decided once for
 //! all of them, in `accept`.
 
+pub mod attributes;
 pub(crate) mod cluster;
 mod crossing;
 mod flat;

@@ -6,6 +6,7 @@ use crate::format::range::{At, at_most};
 use crate::format::record::{Header, UnitBox};
 use crate::format::{BlobError, Field, Kind, Leaf, SectionKind, Sections};
 use crate::geometry::Clusters;
+use crate::geometry::attributes::{Coordinates, at_most_vertices};
 use crate::geometry::primitive::{InScene, Primitive, offset_inward};
 use crate::geometry::smooth::{self, SmoothTriangle};
 use crate::geometry::sphere::{self, Spheres};
@@ -13,7 +14,10 @@ use crate::geometry::triangle::{self, Triangles, Vertices};
 use crate::geometry::{LEAVING, Part, PrimitiveId, Surface};
 use crate::number::Arithmetic;
 use crate::ray::Ray;
-use crate::target::{SmoothOnly, WIDE, WideOnly, inline_on_boards, inline_on_hosts};
+use crate::target::{
+    SmoothOnly, TEXTURE, TextureOnly, VERTEX_COLORS, VertexColorsOnly, WIDE, WideOnly,
+    inline_on_boards, inline_on_hosts,
+};
 
 macro_rules! registry {
     (
@@ -34,6 +38,10 @@ macro_rules! registry {
             clusters: WideOnly<Clusters<'a>>,
             /// Normals of the first vertices.
             normals: SmoothOnly<&'a [[i16; 2]]>,
+            /// Colors of the first vertices.
+            colors: VertexColorsOnly<&'a [[u8; 4]]>,
+            /// Texture coordinates of the first vertices.
+            coordinates: TextureOnly<Coordinates<'a>>,
         }
 
         /// A primitive of any kind, in 1/256 unit.
@@ -117,6 +125,14 @@ macro_rules! registry {
                     true => sections.records(SectionKind::Normals)?,
                     false => &[],
                 };
+                let colors = match VERTEX_COLORS {
+                    true => sections.records(SectionKind::VertexColors)?,
+                    false => &[],
+                };
+                let coordinates = match TEXTURE {
+                    true => Coordinates::read(sections)?,
+                    false => Coordinates::default(),
+                };
                 let clusters = match WIDE {
                     true => Clusters::read(sections, short)?,
                     false => Clusters::NONE,
@@ -133,6 +149,8 @@ macro_rules! registry {
                     },)*
                     clusters: WideOnly::new(|| clusters),
                     normals: SmoothOnly::new(|| normals),
+                    colors: VertexColorsOnly::new(|| colors),
+                    coordinates: TextureOnly::new(|| coordinates),
                 })
             }
 
@@ -146,6 +164,9 @@ macro_rules! registry {
                 if SMOOTH {
                     smooth::validate(self.normals(), vertices)?;
                 }
+                at_most_vertices(SectionKind::VertexColors, self.colors().len(), vertices)?;
+                let coordinates = self.coordinates().len();
+                at_most_vertices(SectionKind::TextureCoordinates, coordinates, vertices)?;
                 self.spheres.validate(self.records(Kind::Sphere), bounds)?;
                 $(if Kind::$kind.is_available() {
                     validate(self.$field, SectionKind::$section, bounds)?;
@@ -377,6 +398,18 @@ impl<'a> Shapes<'a> {
     /// The normals of the first vertices; none in builds without the code for them.
     pub(crate) fn normals(&self) -> &'a [[i16; 2]] {
         self.normals.get().copied().unwrap_or_default()
+    }
+
+    /// The colors of the first vertices; none in builds without the code for them.
+    #[inline(always)]
+    pub(crate) fn colors(&self) -> &'a [[u8; 4]] {
+        self.colors.get().copied().unwrap_or_default()
+    }
+
+    /// The texture coordinates of the first vertices; none in builds without the code for them.
+    #[inline(always)]
+    pub(crate) fn coordinates(&self) -> Coordinates<'a> {
+        self.coordinates.get().copied().unwrap_or_default()
     }
 
     /// The corners of a triangle in a slot and their normals, if it has some.

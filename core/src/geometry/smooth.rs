@@ -17,6 +17,7 @@
 
 use crate::format::range::At;
 use crate::format::{BlobError, Field, SectionKind};
+use crate::geometry::attributes::weights;
 use crate::number::{Arithmetic, Format, extent};
 
 /// The largest coordinate of a stored normal; the sum of the magnitudes of all three.
@@ -167,40 +168,10 @@ pub(crate) struct SmoothTriangle {
 }
 
 impl SmoothTriangle {
-    /// The weights of the corners at a point of the triangle, and whether its front is turned away from `facing`, the
-    /// geometric normal or its opposite. Weights are ratios whose sum is not 1, but at most 3/2 in magnitude.
+    /// The weights of the corners at a point of the triangle: see [`weights`].
     #[inline(always)]
     fn weights<N: Arithmetic>(&self, point: [N; 3], facing: [N; 3]) -> ([N; 3], bool) {
-        let [x, y, z] = facing.map(N::abs);
-        // Written out by axis, so that nothing is looked up.
-        let (areas, across) = if x >= y && x >= z {
-            (self.areas::<N, 1, 2>(point), facing[0])
-        } else if y >= z {
-            (self.areas::<N, 2, 0>(point), facing[1])
-        } else {
-            (self.areas::<N, 0, 1>(point), facing[2])
-        };
-        let [u, v, w] = N::proportions(areas);
-        // Areas are positive where the front points up that axis.
-        ([u, v, w], (u + v + w < N::ZERO) != (across < N::ZERO))
-    }
-
-    /// Twice the areas into which a point cuts the triangle as it is seen along an axis, given the other two.
-    #[inline(always)]
-    fn areas<N: Arithmetic, const FIRST: usize, const SECOND: usize>(
-        &self,
-        point: [N; 3],
-    ) -> [N::Wide; 3] {
-        let seen = |corner: [i32; 3]| {
-            [
-                N::from_lattice(corner[FIRST]) - point[FIRST],
-                N::from_lattice(corner[SECOND]) - point[SECOND],
-            ]
-        };
-        let [a, b, c] = self.corners;
-        let (a, b, c) = (seen(a), seen(b), seen(c));
-        let area = |p: [N; 2], q: [N; 2]| p[0].wide(q[1]) - p[1].wide(q[0]);
-        [area(b, c), area(c, a), area(a, b)]
+        weights(self.corners, point, facing)
     }
 
     /// The interpolated normal of length 1 at a point of the triangle, on the side of `facing`, which is the geometric

@@ -124,9 +124,45 @@ pub enum Event {
         /// The normal, of length 1, on the side from which the ray came.
         normal: [f64; 3],
     },
+    /// The diffuse color of the surface that was hit is weighted by the colors of its vertices.
+    VertexColor {
+        /// The interpolated color: linear ratios.
+        color: [f64; 3],
+    },
+    /// The diffuse color of the surface that was hit is weighted by that of a texture.
+    Textured {
+        /// Where the texture is looked up, u to the right and v down.
+        coordinates: [f64; 2],
+        /// The nearest texel, counted from the upper left one, or the upper left one of the four that are mixed.
+        texel: [u32; 2],
+        /// The texture's color: linear ratios.
+        color: [f64; 3],
+    },
+    /// The surface that was hit is there in part; the rest of the ray goes straight on.
+    Alpha {
+        /// How much of it is there, 0 to 1.
+        alpha: f64,
+    },
     /// The light that was just considered, which the smooth normal faces, lies behind the triangle, and does not
     /// reach it.
     BehindTriangle,
+    /// The light that was just considered has an area, and shines from a point of it.
+    FromArea {
+        /// The point, in units.
+        point: [f64; 3],
+    },
+    /// The light that was just considered does not shine in this direction, or not so far.
+    Outside,
+    /// The light that was just considered falls off with distance or angle.
+    Fallen {
+        /// The radiance that arrives, after shadows.
+        arriving: [f64; 3],
+    },
+    /// The surface that was hit sends out light of its own.
+    Emitted {
+        /// Its radiance.
+        radiance: [f64; 3],
+    },
     /// Light for a shadow comes through the glass that was just met.
     Filtered {
         /// The part of it that is left.
@@ -177,7 +213,7 @@ pub enum Event {
         /// Its place in 1/256 pixel from the left and from the top of the picture; `None` for a ray
         /// of the caller's own.
         place: Option<[i32; 2]>,
-        /// Its radiance, each channel limited to 0 to 1.
+        /// Its radiance, each channel limited to 0 to 1; to 16 where pixels are mapped by tone.
         radiance: [f64; 3],
     },
 }

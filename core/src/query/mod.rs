@@ -2,10 +2,12 @@
 //!
 //! `search` tests the primitives to which a structure leads, `clusters` those in leaves of eight, `unbounded`
 //! those that lie in no structure. `collect` is what a search does with what it finds. `all_hits` lists all hits, for
-//! which `crossings` is the search, and `contains` counts them; `hit` is the answer, `smooth` its normal for shading,
+//! which `crossings` is the search, and `contains` counts them; `hit` is the answer, `smooth` its normal for shading, `attributes` what
+//! its vertices carry,
 //! and `distance` what range finders make of it.
 
 mod all_hits;
+mod attributes;
 mod barycentric;
 mod candidate;
 mod clusters;

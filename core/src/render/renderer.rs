@@ -2,6 +2,7 @@
 
 use crate::accel::{Accel, Number};
 use crate::format::limits::{DISPLAY_VALUES, MAX_RAY_DEPTH, MAX_SAMPLES};
+use crate::format::record::View;
 use crate::format::{Effects, Structure};
 use crate::number::Format;
 use crate::ray::{Ray, RayError};
@@ -24,7 +25,8 @@ pub struct Settings {
     pub width: u16,
     /// Pixels from top to bottom, above 0. The field of view is vertical.
     pub height: u16,
-    /// Samples a pixel, 1 to 256; powers of two are spread best.
+    /// Samples a pixel, 1 to 4,096; powers of two are spread best. Beyond 256 they share places within the pixel, and
+    /// differ in what effects draw.
     pub samples: u16,
     /// How often a ray may be reflected or refracted, 0 to 16.
     pub depth: u8,
@@ -66,7 +68,7 @@ pub enum RenderError {
         /// The requested height.
         height: u16,
     },
-    /// Not 1 to 256 samples.
+    /// Not 1 to 4,096 samples.
     Samples(u16),
     /// The depth is above 16.
     Depth(u8),
@@ -295,7 +297,7 @@ impl<'s, 'a, N: Number, A: Accel, const EFFECTS: u32> Renderer<'s, 'a, N, A, EFF
     #[inline(always)]
     pub(super) fn to_linear(&self, seen: Color<N>) -> Linear {
         let values = seen.0.map(N::to_linear16);
-        if DISPLAY_VALUES && self.scene.view().display_values != 0 {
+        if DISPLAY_VALUES && self.scene.view().encoding == View::DISPLAY_VALUES {
             from_display(values)
         } else {
             values

@@ -5,8 +5,11 @@ use crate::observe::count::Observer;
 use crate::observe::event::Event;
 use crate::ray::Ray;
 use crate::render::samples::Samples;
+use crate::render::trace::limited;
 use crate::render::{Pixel, Renderer, WorkspaceView};
 use crate::shade::Color;
+use crate::shade::sampler::Sampler;
+
 impl<N: Number, A: Accel, const EFFECTS: u32> Renderer<'_, '_, N, A, EFFECTS> {
     /// One pixel, linear, 65535 being white. Outside of the picture pixels go on.
     ///
@@ -63,15 +66,17 @@ impl<N: Number, A: Accel, const EFFECTS: u32> Renderer<'_, '_, N, A, EFFECTS> {
         let tracing = self.tracing();
         let mut radiance = Color::BLACK;
         let camera = || Ok(*ray);
-        while !tracing.step::<N, A, C, EFFECTS>(0, camera, &mut radiance, space, count) {}
-        let seen = radiance.displayable();
+        let sampler = Sampler::new([0; 2], 0);
+        while !tracing.step::<N, A, C, EFFECTS>(sampler, camera, &mut radiance, space, count) {}
+        let seen = limited(radiance, tracing.develops::<EFFECTS>());
         if C::ENABLED {
             count.event(Event::SampleFinished {
                 place: None,
                 radiance: seen.to_f64(),
             });
         }
-        self.to_linear(seen)
+        let shown = tracing.developed::<N, A, C, EFFECTS>(seen, space, count);
+        self.to_linear(shown)
     }
 
     /// One pixel in a display's form.

@@ -5,9 +5,12 @@ use crate::observe::count::Observer;
 use crate::observe::event::Event;
 use crate::render::pixel::Linear;
 use crate::render::sample::place;
+use crate::render::trace::{limited, room_for_samples};
 use crate::render::{Renderer, WorkspaceView};
 use crate::shade::Color;
+use crate::shade::sampler::Sampler;
 use core::hint::black_box;
+
 /// A pixel that is being rendered: the number of its sample, and what was seen so far.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Samples<N: Number> {
@@ -45,12 +48,20 @@ impl<N: Number> Samples<N> {
         };
         let radiance = &mut self.radiance;
         let tracing = renderer.tracing();
-        if !tracing.step::<N, A, C, EFFECTS>(self.index, camera, radiance, space, count) {
+        let sampler = Sampler::new([x, y], self.index);
+        if !tracing.step::<N, A, C, EFFECTS>(sampler, camera, radiance, space, count) {
             return None;
         }
+        let develops = tracing.develops::<EFFECTS>();
         // Clamped before they are averaged, so that the edge of a highlight is smooth.
-        let seen = self.radiance.displayable();
-        self.sum = self.sum.plus_displayable(seen);
+        let seen = limited(self.radiance, develops);
+        let (full, shift) = room_for_samples(develops);
+        let part = if samples > full {
+            seen.scaled(N::ratio(1 << (30 - shift)))
+        } else {
+            seen
+        };
+        self.sum = self.sum.plus_displayable(part);
         if C::ENABLED {
             count.event(Event::SampleFinished {
                 place: Some(place([x, y], self.index, samples)),
@@ -66,9 +77,11 @@ impl<N: Number> Samples<N> {
             self.sum
         } else {
             // `Renderer::with_settings` rejects 0 samples.
-            self.sum
-                .scaled(N::ratio((1 << 30) / i32::from(samples.max(1))))
+            let one = (1 << 30) / i32::from(samples.max(1));
+            let part = if samples > full { one << shift } else { one };
+            self.sum.scaled(N::ratio(part))
         };
-        Some(renderer.to_linear(mean))
+        let shown = tracing.developed::<N, A, C, EFFECTS>(mean, space, count);
+        Some(renderer.to_linear(shown))
     }
 }

@@ -21,7 +21,10 @@ use crate::query::{Hit, any_hit, closest_hit};
 use crate::ray::{Ray, RayError};
 use crate::scene::Scene;
 use crate::shade::effect::{EffectList, Tracer};
-use crate::shade::surface::{Bounce, Filter, Lighting, Secondary, Surface, depart, secondary_ray};
+use crate::shade::sampler::Sampler;
+use crate::shade::surface::{
+    Aim, Bounce, Filter, Lighting, Secondary, Surface, depart, secondary_ray,
+};
 use crate::shade::{All, Color};
 use core::marker::PhantomData;
 use heapless::{Vec, VecView};
@@ -103,7 +106,7 @@ impl Loop<'_, '_> {
     #[inline(always)]
     pub(super) fn step<N: Number, A: Accel, C: Observer, const EFFECTS: u32>(
         &self,
-        sample: u16,
+        sampler: Sampler,
         camera: impl FnOnce() -> Result<Ray<N>, RayError>,
         radiance: &mut Color<N>,
         space: &mut WorkspaceView<'_, N>,
@@ -115,6 +118,8 @@ impl Loop<'_, '_> {
             scene: self.scene,
             most: self.depth,
             depth: 0,
+            kind: RayKind::Primary,
+            sampler,
             state: State::<N>::default(),
             space,
             count,
@@ -124,7 +129,8 @@ impl Loop<'_, '_> {
             Some(next) => {
                 let (origin, direction) = (next.origin, next.direction.map(N::widen));
                 let ray = secondary_ray(self.scene, origin, direction, None);
-                (tracing.depth, tracing.state) = (next.depth, next.state);
+                (tracing.depth, tracing.kind) = (next.depth, next.kind);
+                tracing.state = next.state;
                 (ray, next.weight, next.kind)
             }
             None => (camera().ok(), Color::WHITE, RayKind::Primary),
@@ -140,7 +146,7 @@ impl Loop<'_, '_> {
         if let Some(mut ray) = ray {
             if kind == RayKind::Primary {
                 let mut state = tracing.state;
-                All::camera::<EFFECTS, N, _>(&mut tracing, &mut state, sample, &mut ray);
+                All::camera::<EFFECTS, N, _>(&mut tracing, &mut state, sampler.sample(), &mut ray);
                 tracing.state = state;
             }
             tracing.count.ray(kind, &ray);
@@ -154,6 +160,59 @@ impl Loop<'_, '_> {
     }
 }
 
+impl Loop<'_, '_> {
+    /// Whether effects of the scene act on the mean of a pixel's samples.
+    #[inline(always)]
+    pub(super) fn develops<const EFFECTS: u32>(&self) -> bool {
+        let with_code = const { EFFECTS & All::DEVELOPING };
+        with_code != 0 && self.scene.effects().0 & with_code != 0
+    }
+
+    /// What is shown of the mean of a pixel's samples.
+    #[inline(always)]
+    pub(super) fn developed<N: Number, A: Accel, C: Observer, const EFFECTS: u32>(
+        &self,
+        mut mean: Color<N>,
+        space: &mut WorkspaceView<'_, N>,
+        count: &mut C,
+    ) -> Color<N> {
+        if self.develops::<EFFECTS>() {
+            let mut tracing = Tracing::<N, A, C, EFFECTS> {
+                scene: self.scene,
+                most: self.depth,
+                depth: 0,
+                kind: RayKind::Primary,
+                sampler: Sampler::new([0; 2], 0),
+                state: State::<N>::default(),
+                space,
+                count,
+                structure: PhantomData,
+            };
+            All::develop::<EFFECTS, N, _>(&mut tracing, &mut State::<N>::default(), &mut mean);
+        }
+        mean
+    }
+}
+
+/// A sample's radiance, limited to what is added up: to display white, unless effects act on what is brighter.
+#[inline(always)]
+pub(super) fn limited<N: Number>(radiance: Color<N>, develops: bool) -> Color<N> {
+    if develops {
+        radiance.limited(BRIGHTEST << 20)
+    } else {
+        radiance.displayable()
+    }
+}
+
+/// The most of a sample's radiance that counts where effects act on the mean, 1 being display white.
+const BRIGHTEST: i32 = 16;
+
+/// The most samples whose sum is in the range of `fixed`, and by how many bits those of more samples are shifted.
+#[inline(always)]
+pub(super) const fn room_for_samples(develops: bool) -> (u16, u32) {
+    if develops { (64, 6) } else { (1024, 2) }
+}
+
 /// One ray that is followed.
 struct Tracing<'t, 'w, 's, N: Number, A, C, const EFFECTS: u32> {
     scene: &'s Scene<'s>,
@@ -161,6 +220,9 @@ struct Tracing<'t, 'w, 's, N: Number, A, C, const EFFECTS: u32> {
     most: u8,
     /// How many reflections and refractions led to the ray.
     depth: u8,
+    kind: RayKind,
+    /// Whose points effects draw.
+    sampler: Sampler,
     state: State<N>,
     space: &'t mut WorkspaceView<'w, N>,
     count: &'t mut C,
@@ -196,12 +258,15 @@ impl<N: Number, A: Accel, C: Observer, const EFFECTS: u32> Tracing<'_, '_, '_, N
             direction,
             diffuse: Color::ratios(material.diffuse),
             weight,
+            passing: Color::BLACK,
         };
         All::surface::<EFFECTS, N, _>(self, &mut state, ray, &mut surface);
         self.state = state;
 
         let mut local = Color::radiance(scene.view.ambient).times(surface.diffuse);
-        for (number, light) in (0..).zip(scene.lights) {
+        All::emit::<EFFECTS, N, _>(self, &mut state, &surface, &mut local);
+        let mut number = 0_u32;
+        for light in scene.lights {
             let lit = self.lit(number, light, &surface);
             local = local.plus(lit);
             if C::ENABLED {
@@ -210,6 +275,7 @@ impl<N: Number, A: Accel, C: Observer, const EFFECTS: u32> Tracing<'_, '_, '_, N
                     radiance: lit.to_f64(),
                 });
             }
+            number = number.wrapping_add(1);
         }
         self.bring(Source::Surface, local.times(surface.weight), radiance);
 
@@ -262,10 +328,21 @@ impl<N: Number, A: Accel, C: Observer, const EFFECTS: u32> Tracing<'_, '_, '_, N
         let mut state = self.state;
         let origin = depart(self.scene, surface.hit, surface.hit.front, true);
         let (way, distance) = light.seen_from(origin);
+        let mut aim = Aim {
+            way,
+            distance,
+            cone: None,
+        };
+        All::aim::<EFFECTS, N, _>(self, &mut state, number, light, &mut aim);
+        let Aim {
+            way,
+            distance,
+            cone,
+        } = aim;
         let Some((slopes, _)) = N::slopes(way) else {
             return Color::BLACK;
         };
-        let (to_light, _) = N::normalize(slopes);
+        let (to_light, norm) = N::normalize(slopes);
         let cos = N::from_wide(N::dot(surface.shading_normal, to_light));
         if C::ENABLED {
             self.count.event(Event::Light {
@@ -282,6 +359,8 @@ impl<N: Number, A: Accel, C: Observer, const EFFECTS: u32> Tracing<'_, '_, '_, N
             way,
             distance,
             to_light,
+            norm,
+            cone,
         };
         let mut reflected = surface.diffuse.scaled(cos);
         let mut is_reached = true;
@@ -316,6 +395,13 @@ impl<'s, N: Number, A: Accel, C: Observer, const EFFECTS: u32> Tracer<'s, N>
     #[inline(always)]
     fn count(&mut self) -> &mut C {
         self.count
+    }
+
+    #[inline(always)]
+    fn point(&self, dimension: u16) -> [u32; 2] {
+        // A hit sends at most one ray of a kind.
+        let bounce = u16::from(self.depth) << 8 | self.kind as u16;
+        self.sampler.point(bounce, dimension)
     }
 
     #[inline(always)]

@@ -1,12 +1,14 @@
 //! A scene: a checked view of a blob.
 
 use crate::accel::{Space, StructureViews};
-use crate::format::record::{Header, Light, Material, UnitBox, View};
+use crate::format::light_form::LightForm;
+use crate::format::record::{Header, Light, Material, Texture, UnitBox, View};
 use crate::format::{Effects, Indices, Kind, Structure};
 use crate::geometry::{Geometry, PrimitiveId};
 use crate::instances::placed::Placed;
+use crate::scene::textures::Textures;
 use crate::simd::SimdLevel;
-use crate::target::{InstancesOnly, WideOnly, inline_on_hosts_hint_on_boards};
+use crate::target::{InstancesOnly, TextureOnly, WideOnly, inline_on_hosts_hint_on_boards};
 
 /// A checked view of a blob: a few hundred bytes that borrow from it.
 ///
@@ -20,11 +22,15 @@ pub struct Scene<'a> {
     pub(crate) structures: StructureViews<'a>,
     pub(crate) view: &'a View,
     pub(crate) lights: &'a [Light],
+    pub(crate) light_forms: &'a [LightForm],
     pub(crate) materials: &'a [Material],
+    pub(crate) emissions: &'a [[i32; 3]],
     pub(in crate::scene) object_first: Indices<'a>,
     pub(in crate::scene) object_material: Indices<'a>,
     pub(in crate::scene) order: Indices<'a>,
     pub(in crate::scene) effects: Effects,
+    /// Its textures.
+    pub(crate) textures: TextureOnly<Textures<'a>>,
     /// Its instances and parts.
     pub(crate) placed: InstancesOnly<Placed<'a, Scene<'a>>>,
     /// Whether any primitive's test needs the norm of the ray's direction.
@@ -53,7 +59,7 @@ impl<'a> Scene<'a> {
     /// # static BLOB: &[u8] =
     /// #     gridel_core::include_blob!(concat!(env!("CARGO_MANIFEST_DIR"), "/../fixtures/blobs/dual-split.gridel"));
     /// let scene = gridel_core::Scene::from_bytes(BLOB)?;
-    /// assert_eq!(scene.view().display_values, 0);
+    /// assert_eq!(scene.view().encoding, 0);
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
     pub fn view(&self) -> &'a View {
@@ -71,6 +77,30 @@ impl<'a> Scene<'a> {
     /// ```
     pub fn lights(&self) -> &'a [Light] {
         self.lights
+    }
+
+    /// The forms of lights, which lights name by their numbers.
+    pub fn light_forms(&self) -> &'a [LightForm] {
+        self.light_forms
+    }
+
+    /// For each of the first materials, the radiance of the light that it sends out, with 20 fraction bits; none where
+    /// no material glows.
+    pub fn emissions(&self) -> &'a [[i32; 3]] {
+        self.emissions
+    }
+
+    /// The radiance of the light that an object sends out.
+    #[inline(always)]
+    pub(crate) fn emission(&self, object: u32) -> Option<[i32; 3]> {
+        let number = self.material_number(object);
+        self.emissions.get(number as usize).copied()
+    }
+
+    /// The form of a light.
+    #[inline(always)]
+    pub(crate) fn light_form(&self, light: &Light) -> Option<&'a LightForm> {
+        self.light_forms.get(light.form()? as usize)
     }
 
     /// The materials.
@@ -165,6 +195,26 @@ impl<'a> Scene<'a> {
         self.space.shapes.normals().len()
     }
 
+    /// The colors of the first vertices: see [`attributes`](crate::geometry::attributes).
+    pub fn vertex_colors(&self) -> &'a [[u8; 4]] {
+        self.space.shapes.colors()
+    }
+
+    /// Number of vertices that have texture coordinates: see [`attributes`](crate::geometry::attributes).
+    pub fn texture_coordinates(&self) -> usize {
+        self.space.shapes.coordinates().len()
+    }
+
+    /// Number of maps.
+    pub(crate) fn maps(&self) -> usize {
+        self.textures.get().map_or(0, |it| it.maps.len())
+    }
+
+    /// The textures.
+    pub fn textures(&self) -> &'a [Texture] {
+        self.textures.get().map_or(&[], |it| it.textures)
+    }
+
     /// The box of a primitive, given by its kind and its slot among those of that kind; `None` for one without bounds.
     pub fn primitive_bounds(&self, kind: Kind, slot: usize) -> Option<UnitBox> {
         self.space.shapes.bounds(kind, slot)
@@ -179,6 +229,34 @@ impl<'a> Scene<'a> {
     /// triangle's slot; `None` of what is not smooth.
     pub fn corner_normals(&self, slot: usize) -> Option<[[i16; 2]; 3]> {
         Some(self.space.shapes.smooth_triangle(slot)?.normals)
+    }
+
+    /// The colors of a triangle's corners (see [`attributes`](crate::geometry::attributes)), given by the triangle's
+    /// slot; `None` where no corner has one.
+    pub fn corner_colors(&self, slot: usize) -> Option<[[u8; 4]; 3]> {
+        let all = self.space.shapes.colors();
+        let vertices = self.space.shapes.triangles.corners(slot)?;
+        let has_color = vertices.iter().any(|&vertex| vertex < all.len());
+        let color = |vertex: usize| all.get(vertex).copied().unwrap_or([255; 4]);
+        has_color.then(|| vertices.map(color))
+    }
+
+    /// The texture coordinates of a triangle's corners, with 20 fraction bits, given by the triangle's slot; `None` where
+    /// a corner has none.
+    pub fn corner_coordinates(&self, slot: usize) -> Option<[[i32; 2]; 3]> {
+        let vertices = self.space.shapes.triangles.corners(slot)?;
+        self.space.shapes.coordinates().corners(vertices)
+    }
+
+    /// The color of a material's texture at coordinates with 20 fraction bits: linear ratios with 30 fraction bits.
+    /// `None` of a material without a texture.
+    pub fn texture_color(&self, material: &Material, coordinates: [i32; 2]) -> Option<[i32; 3]> {
+        if !self.effects.contains(Effects::TEXTURE) || material.maps & Material::MAPS_TEXTURE == 0 {
+            return None;
+        }
+        let textures = self.textures.get()?;
+        let texture = textures.texture(textures.maps_of(material)?.color)?;
+        Some(textures.lookup(texture, coordinates).color)
     }
 
     /// A primitive as it lies on the lattice, given by its kind and its slot among those of that kind.

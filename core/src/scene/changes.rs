@@ -35,7 +35,11 @@ impl<'a> Scene<'a> {
     /// If a number is out of its range, or this build lacks what the view calls for.
     pub fn with_view(&self, view: &'a View) -> Result<Self, BlobError> {
         check_view(view)?;
-        Ok(Self { view, ..*self })
+        Ok(Self {
+            view,
+            effects: self.effects.with(view.effects()),
+            ..*self
+        })
     }
 
     /// The scene under other lights, of which there may be more or fewer than before.
@@ -62,7 +66,7 @@ impl<'a> Scene<'a> {
     pub fn with_lights(&self, lights: &'a [Light]) -> Result<Self, BlobError> {
         let mut effects = self.effects;
         for (index, light) in lights.iter().enumerate() {
-            check_light(index, light)?;
+            check_light(index, light, self.light_forms.len())?;
             if self.lights.is_empty() {
                 effects = effects.with(light.effects());
             }
@@ -107,7 +111,7 @@ impl<'a> Scene<'a> {
         }
         let mut effects = self.effects;
         for (index, material) in materials.iter().enumerate() {
-            check_material(index, material)?;
+            check_material(index, material, self.maps())?;
             effects = effects.with(material.effects());
         }
         check_available(effects)?;

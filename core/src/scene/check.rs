@@ -11,6 +11,7 @@ use crate::number::Fixed;
 use crate::number::Scalar;
 use crate::scene::Scene;
 use crate::scene::parts::check_placed;
+use crate::target::VERTEX_COLORS;
 
 /// Proves that no byte of a blob was changed since it was written.
 pub(crate) fn check_sum(blob: &[u8], header: &Header) -> Result<(), BlobError> {
@@ -28,6 +29,9 @@ pub(crate) fn check_sum(blob: &[u8], header: &Header) -> Result<(), BlobError> {
 pub(crate) fn check<'a>(scene: &Scene<'a>, sections: &Sections<'a>) -> Result<(), BlobError> {
     check_lights(scene)?;
     check_materials(scene)?;
+    if let Some(textures) = scene.textures.get() {
+        textures.validate()?;
+    }
     scene.space.shapes.validate(scene.space.header)?;
     check_objects(scene)?;
     if let Some(placed) = scene.placed.get() {
@@ -41,16 +45,26 @@ pub(crate) fn check<'a>(scene: &Scene<'a>, sections: &Sections<'a>) -> Result<()
 const ONE: i64 = 1 << 30;
 
 fn check_lights(scene: &Scene<'_>) -> Result<(), BlobError> {
+    for (index, form) in scene.light_forms.iter().enumerate() {
+        let section = SectionKind::LightForms;
+        form.check_ranges(At { section, index }.location())?;
+    }
     let mut lights = scene.lights.iter().enumerate();
-    lights.try_for_each(|(index, light)| check_light(index, light))
+    lights.try_for_each(|(index, light)| check_light(index, light, scene.light_forms.len()))
 }
 
 /// Proves the ranges of a light.
 #[inline(always)]
-pub(super) fn check_light(index: usize, light: &Light) -> Result<(), BlobError> {
+pub(super) fn check_light(index: usize, light: &Light, forms: usize) -> Result<(), BlobError> {
     let section = SectionKind::Lights;
     let at = At { section, index };
     light.check_ranges(at.location())?;
+    match light.form() {
+        Some(form) if forms > 0 => {
+            at.within(Field::LightForm, form.into(), 0, forms as i64 - 1)?;
+        }
+        _ => at.within(Field::Kind, light.directional.into(), 0, 1)?,
+    }
     let most = if light.directional == 1 {
         ONE
     } else {
@@ -73,13 +87,19 @@ fn check_materials(scene: &Scene<'_>) -> Result<(), BlobError> {
         });
     }
     for (index, material) in materials.iter().enumerate() {
-        check_material(index, material)?;
+        check_material(index, material, scene.maps())?;
         let uncalled = material.effects().without(Effects(header.effects));
         let at = At { section, index };
         at.ensure(uncalled == Effects::NONE, Reason::MissingEffect)?;
         required = required.with(material.effects());
     }
     required = required.with(check_smooth(scene)?);
+    required = required.with(check_vertex_colors(scene)?);
+    required = required.with(check_glow(scene)?);
+    let view = scene.view.effects();
+    let called = Effects(header.effects).contains(view);
+    Location::Section(SectionKind::View).ensure(called, Reason::MissingEffect)?;
+    required = required.with(view);
     // Without objects lights require nothing.
     if header.objects > 0 {
         let lights = scene.lights.iter();
@@ -105,13 +125,50 @@ fn check_smooth(scene: &Scene<'_>) -> Result<Effects, BlobError> {
     Ok(required)
 }
 
+/// What the light that materials send out requires; an error where it is out of its range, or the header does not
+/// require it.
+fn check_glow(scene: &Scene<'_>) -> Result<Effects, BlobError> {
+    let section = SectionKind::Emissions;
+    for (index, radiance) in scene.emissions.iter().enumerate() {
+        At { section, index }.all_within(Field::Emission, radiance, 0, i32::MAX.into())?;
+    }
+    let required = Effects::EMISSION.only_if(!scene.emissions.is_empty());
+    let is_known = Effects(scene.space.header.effects).contains(required);
+    Location::Section(section).ensure(is_known, Reason::MissingEffect)?;
+    Ok(required)
+}
+
+/// What the colors of vertices require: see [`check_smooth`].
+fn check_vertex_colors(scene: &Scene<'_>) -> Result<Effects, BlobError> {
+    let own = !scene.space.shapes.colors().is_empty();
+    let mut parts = scene.parts().iter();
+    let mut in_parts = || parts.any(|part| part.effects().contains(Effects::VERTEX_COLORS));
+    let required = Effects::VERTEX_COLORS.only_if(VERTEX_COLORS && (own || in_parts()));
+    let is_known = Effects(scene.space.header.effects).contains(required);
+    let section = if own {
+        SectionKind::VertexColors
+    } else {
+        SectionKind::Parts
+    };
+    Location::Section(section).ensure(is_known, Reason::MissingEffect)?;
+    Ok(required)
+}
+
 /// Proves the ranges of a material.
 #[inline(always)]
-pub(super) fn check_material(index: usize, material: &Material) -> Result<(), BlobError> {
+pub(super) fn check_material(
+    index: usize,
+    material: &Material,
+    maps: usize,
+) -> Result<(), BlobError> {
     let section = SectionKind::Materials;
     let at = At { section, index };
     material.check_ranges(at.location())?;
-    at.ensure(material.spare == 0, Reason::SpareNotZero)
+    let number = material.maps & Material::MAPS_NUMBER;
+    at.within(Field::Maps, number.into(), 0, maps as i64)?;
+    let flags = material.maps & !Material::MAPS_NUMBER;
+    at.ensure(flags & !Material::MAPS_FLAGS == 0, Reason::SpareNotZero)?;
+    at.ensure(flags == 0 || number > 0, Reason::MissingMaps)
 }
 
 fn check_objects(scene: &Scene<'_>) -> Result<(), BlobError> {

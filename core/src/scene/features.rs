@@ -1,5 +1,6 @@
 //! Which Cargo features of this crate a scene requires.
 
+use crate::format::record::View;
 use crate::format::{Effects, Kind};
 use crate::geometry::triangle::Triangles;
 use crate::scene::Scene;
@@ -29,7 +30,10 @@ impl Scene<'_> {
             (any(wide_indices, Kind::Triangle), "wide-indices"),
             (!self.parts().is_empty(), "instances"),
             (
-                any(|it, _| it.view.display_values != 0, Kind::Triangle),
+                any(
+                    |it, _| it.view.encoding == View::DISPLAY_VALUES,
+                    Kind::Triangle,
+                ),
                 "display-values",
             ),
         ];

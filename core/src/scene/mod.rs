@@ -15,6 +15,7 @@ pub(crate) mod parts;
 mod poses;
 mod prevalidated;
 mod read;
+pub(crate) mod textures;
 
 pub use blob::Scene;
 pub use coordinates::Position;

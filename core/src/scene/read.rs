@@ -14,8 +14,9 @@ use crate::geometry::Shapes;
 use crate::instances::placed::Placed;
 use crate::instances::top::Top;
 use crate::scene::Scene;
+use crate::scene::textures::Textures;
 use crate::simd::SimdLevel;
-use crate::target::{AllStructuresOnly, InstancesOnly, WideOnly};
+use crate::target::{AllStructuresOnly, InstancesOnly, TEXTURE, TextureOnly, WideOnly};
 use core::mem::size_of;
 
 /// The header of what is a blob of this version and byte order, and as long as it says.
@@ -99,6 +100,10 @@ pub(crate) fn scene<'a>(
     check_limits(header)?;
     let view = the_view(sections)?;
     let shapes = Shapes::read(sections, header)?;
+    let textures = match TEXTURE {
+        true => Textures::read(sections)?,
+        false => Textures::default(),
+    };
     Ok(Scene {
         space: Space {
             header,
@@ -111,10 +116,19 @@ pub(crate) fn scene<'a>(
         effects: Effects(header.effects),
         view,
         lights: sections.records(SectionKind::Lights)?,
+        light_forms: match const { Effects::AVAILABLE.contains(Effects::FALLOFF) } {
+            true => sections.records(SectionKind::LightForms)?,
+            false => &[],
+        },
         materials: sections.records(SectionKind::Materials)?,
+        emissions: match const { Effects::AVAILABLE.contains(Effects::EMISSION) } {
+            true => sections.records(SectionKind::Emissions)?,
+            false => &[],
+        },
         object_first: Indices::read(sections, SectionKind::ObjectFirst)?,
         object_material: Indices::read(sections, SectionKind::ObjectMaterial)?,
         order: Indices::read(sections, SectionKind::Order)?,
+        textures: TextureOnly::new(|| textures),
         placed: placed(sections, parts)?,
         needs_norm: shapes.needs_norm(),
         has_unbounded: shapes.has_unbounded(),
@@ -174,7 +188,7 @@ pub(super) fn check_view(view: &View) -> Result<(), BlobError> {
     let section = SectionKind::View;
     let at = At { section, index: 0 };
     view.check_ranges(at.location())?;
-    if !DISPLAY_VALUES && view.display_values != 0 {
+    if !DISPLAY_VALUES && view.encoding == View::DISPLAY_VALUES {
         let missing = "display-values";
         return Err(BlobError::MissingPart { missing });
     }

@@ -3,8 +3,8 @@
 use crate::format::checksum;
 use crate::format::record::Header;
 use crate::selftest::checks::Checks;
-use crate::selftest::scene::TinyBlob;
-use crate::{BlobError, Effects, Kind, Scene, Structure};
+use crate::selftest::scene::{REQUIRED, TinyBlob};
+use crate::{BlobError, Kind, Scene, Structure};
 use core::fmt::{self, Write};
 use core::mem::offset_of;
 
@@ -22,7 +22,7 @@ pub(super) fn reads(checks: &mut Checks<'_>) {
             usize::from(kind.is_bounded()),
         );
     }
-    checks.equal(format_args!("effects"), scene.effects(), Effects::ALL);
+    checks.equal(format_args!("effects"), scene.effects(), REQUIRED);
     checks.equal(format_args!("list"), scene.holds(Structure::List), true);
     checks.equal(
         format_args!("hierarchy"),

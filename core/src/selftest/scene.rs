@@ -10,6 +10,15 @@ use crate::{Effects, Structure};
 use bytemuck::{NoUninit, Zeroable, bytes_of};
 use core::mem::size_of;
 
+/// The effects that the scene requires.
+pub(crate) const REQUIRED: Effects = Effects::SHADOW
+    .with(Effects::HIGHLIGHT)
+    .with(Effects::MIRROR)
+    .with(Effects::GLASS)
+    .with(Effects::ABSORPTION)
+    .with(Effects::CHECKER)
+    .with(Effects::SMOOTH);
+
 /// Sections of the blob.
 const SECTIONS: usize = 12;
 /// Room for the blob.
@@ -99,7 +108,7 @@ impl TinyBlob {
             section_count: SECTIONS as u16,
             blob_bytes: blob.length as u32,
             structures: Structure::List.bit(),
-            effects: Effects::ALL.0,
+            effects: REQUIRED.0,
             primitives: 6,
             objects: 6,
             lattice_bits: 16,
@@ -161,7 +170,7 @@ fn view() -> View {
         height: TinyBlob::SIZE[1],
         samples: 2,
         depth: 4,
-        display_values: 0,
+        encoding: 0,
     }
 }
 

@@ -64,8 +64,14 @@ impl<N: Number> Color<N> {
     /// Radiance within a display's range: each channel limited to 0 to 1.
     #[inline(always)]
     pub(crate) fn displayable(self) -> Self {
-        let white = N::radiance(1 << 20);
-        Self(self.0.map(|channel| channel.max(N::ZERO).min(white)))
+        self.limited(1 << 20)
+    }
+
+    /// Radiance of which no channel is below 0 or above a limit, given with 20 fraction bits.
+    #[inline(always)]
+    pub(crate) fn limited(self, most: i32) -> Self {
+        let most = N::radiance(most);
+        Self(self.0.map(|channel| channel.max(N::ZERO).min(most)))
     }
 
     /// Radiance, as events report it.

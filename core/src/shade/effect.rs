@@ -6,13 +6,13 @@
 
 use crate::accel::Number;
 use crate::format::Effects;
-use crate::format::record::{Light, Material};
+use crate::format::record::{Light, Material, View};
 use crate::observe::count::Observer;
 use crate::query::Hit;
 use crate::ray::Ray;
 use crate::scene::Scene;
 use crate::shade::Color;
-use crate::shade::surface::{Bounce, Filter, Lighting, Secondary, Surface};
+use crate::shade::surface::{Aim, Bounce, Filter, Lighting, Secondary, Surface};
 use core::fmt::Debug;
 
 /// The ray loop, as effects see it.
@@ -29,6 +29,10 @@ pub(crate) trait Tracer<'s, N: Number> {
     fn scene(&self) -> &'s Scene<'s>;
 
     fn count(&mut self) -> &mut Self::Observer;
+
+    /// A random point of the unit square, with 32 fraction bits, for the ray that is followed: see
+    /// [`Sampler::point`](crate::shade::sampler::Sampler::point), which says what a dimension is.
+    fn point(&self, dimension: u16) -> [u32; 2];
 
     fn any_hit(&mut self, ray: &Ray<N>) -> bool;
 
@@ -68,6 +72,9 @@ macro_rules! places {
             /// True if it acts on light that comes through surfaces.
             const FILTERS: bool = false;
 
+            /// True if it acts on the mean of samples that are brighter than display white.
+            const DEVELOPS: bool = false;
+
             /// Whether a material requires it.
             fn is_required_by_material(material: &Material) -> bool {
                 false
@@ -75,6 +82,11 @@ macro_rules! places {
 
             /// Whether a light requires it.
             fn is_required_by_light(light: &Light) -> bool {
+                false
+            }
+
+            /// Whether a view requires it.
+            fn is_required_by_view(view: &View) -> bool {
                 false
             }
 
@@ -100,12 +112,17 @@ macro_rules! places {
             const DIRECTED: u32;
             /// The effects that act on light that comes through surfaces.
             const FILTERING: u32;
+            /// The effects that act on the mean of samples that are brighter than display white.
+            const DEVELOPING: u32;
 
             /// The effects that a material requires.
             fn required_by_material(material: &Material) -> Effects;
 
             /// The effects that a light requires.
             fn required_by_light(light: &Light) -> Effects;
+
+            /// The effects that a view requires.
+            fn required_by_view(view: &View) -> Effects;
 
             $(
                 fn $place<'s, const USED: u32, N: Number, X: Tracer<'s, N>>(
@@ -122,6 +139,7 @@ macro_rules! places {
             const CASTING: u32 = 0;
             const DIRECTED: u32 = 0;
             const FILTERING: u32 = 0;
+            const DEVELOPING: u32 = 0;
 
             #[inline(always)]
             fn required_by_material(_: &Material) -> Effects {
@@ -129,6 +147,10 @@ macro_rules! places {
             }
 
             fn required_by_light(_: &Light) -> Effects {
+                Effects::NONE
+            }
+
+            fn required_by_view(_: &View) -> Effects {
                 Effects::NONE
             }
 
@@ -149,6 +171,7 @@ macro_rules! places {
             const CASTING: u32 = First::EFFECT.only_if(First::CASTS).0 | Rest::CASTING;
             const DIRECTED: u32 = First::EFFECT.only_if(First::NEEDS_DIRECTION).0 | Rest::DIRECTED;
             const FILTERING: u32 = First::EFFECT.only_if(First::FILTERS).0 | Rest::FILTERING;
+            const DEVELOPING: u32 = First::EFFECT.only_if(First::DEVELOPS).0 | Rest::DEVELOPING;
 
             #[inline(always)]
             fn required_by_material(material: &Material) -> Effects {
@@ -159,6 +182,11 @@ macro_rules! places {
             fn required_by_light(light: &Light) -> Effects {
                 let first = First::EFFECT.only_if(First::is_required_by_light(light));
                 first.with(Rest::required_by_light(light))
+            }
+
+            fn required_by_view(view: &View) -> Effects {
+                let first = First::EFFECT.only_if(First::is_required_by_view(view));
+                first.with(Rest::required_by_view(view))
             }
 
             $(
@@ -188,6 +216,12 @@ places! {
     /// A ray hits a surface: the diffuse color and the shading normal may change.
     fn surface(ray: &Ray<N>, surface: &mut Surface<'_, N>);
 
+    /// A surface sends out light: its radiance, first that of ambient light, may change.
+    fn emit(surface: &Surface<'_, N>, local: &mut Color<N>);
+
+    /// A surface looks for a light of the scene, by its number: the point of the light may change.
+    fn aim(number: u32, light: &Light, aim: &mut Aim<N>);
+
     /// A surface faces a light: the start of the way there may change, and whether the light reaches it.
     fn face(surface: &Surface<'_, N>, lighting: &mut Lighting<'_, N>, is_reached: &mut bool);
 
@@ -212,4 +246,8 @@ places! {
     /// All rays of a sample were traced: its radiance may change before it is limited to the
     /// range of a display. The state is a new one.
     fn pixel(radiance: &mut Color<N>);
+
+    /// The mean of a pixel's samples is known: it may change before it is limited to the range of a display. The
+    /// state is a new one.
+    fn develop(mean: &mut Color<N>);
 }

@@ -1,7 +1,7 @@
-//! The effects that materials and lights require.
+//! The effects that materials, lights and views require.
 
 use crate::format::Effects;
-use crate::format::record::{Light, Material};
+use crate::format::record::{Light, Material, View};
 use crate::shade::All;
 use crate::shade::effect::EffectList;
 
@@ -16,5 +16,12 @@ impl Light {
     /// The effects that this light requires in a scene with objects, unless the scene turns them off.
     pub fn effects(&self) -> Effects {
         All::required_by_light(self)
+    }
+}
+
+impl View {
+    /// The effects that this view requires.
+    pub fn effects(&self) -> Effects {
+        All::required_by_view(self)
     }
 }

@@ -7,20 +7,24 @@
 //! |---|---|---|
 //! | `camera` | a ray leaves the camera | |
 //! | `arrive` | a ray has come to a hit | absorption |
-//! | `surface` | a ray hits a surface | checker, smooth |
-//! | `face` | a surface faces a light | smooth |
+//! | `surface` | a ray hits a surface | checker, smooth, vertex colors, texture, alpha |
+//! | `emit` | a surface sends out light of its own | emission |
+//! | `aim` | a surface looks for a light | area light |
+//! | `face` | a surface faces a light | smooth, falloff |
 //! | `reflect` | a surface reflects a light | highlight |
-//! | `light` | light arrives at a surface | shadow |
-//! | `filter` | a surface is in the way of light | glass, absorption |
+//! | `light` | light arrives at a surface | shadow, falloff |
+//! | `filter` | a surface is in the way of light | glass, absorption, alpha |
 //! | `miss` | a ray hits nothing | |
-//! | `bounce` | a surface sends rays on | mirror, glass |
+//! | `bounce` | a surface sends rays on | mirror, glass, alpha |
 //! | `leave` | a ray leaves a hit | smooth |
 //! | `pixel` | all rays of a sample were traced | |
+//! | `develop` | the mean of a pixel's samples is known | tone mapping |
 
 mod color;
 pub(crate) mod effect;
 pub(crate) mod light;
 mod material;
+pub(crate) mod sampler;
 pub(crate) mod surface;
 
 use crate::format::effects::{Effects, effects};

@@ -141,7 +141,10 @@ fn lift<'s, N: Number, X: Tracer<'s, N>>(
     if N::from_wide(N::dot(way, facing)) <= hit.error {
         return false;
     }
-    lighting.origin = moved(lighting.origin, way);
-    (lighting.way, lighting.distance) = lighting.light.seen_from(lighting.origin);
+    let from = lighting.origin;
+    lighting.origin = moved(from, way);
+    if lighting.light.form().is_none() {
+        (lighting.way, lighting.distance) = lighting.light.seen_from(lighting.origin);
+    }
     true
 }

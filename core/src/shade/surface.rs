@@ -24,6 +24,8 @@ pub(crate) struct Surface<'h, N: Number> {
     pub(crate) diffuse: Color<N>,
     /// The ratio of the light from here that arrives at the eye.
     pub(crate) weight: Color<N>,
+    /// The ratio of the light from behind that passes the surface straight on.
+    pub(crate) passing: Color<N>,
 }
 
 /// A light, seen from a surface.
@@ -37,6 +39,38 @@ pub(crate) struct Lighting<'l, N: Number> {
     pub(crate) distance: Option<N::Wide>,
     /// The direction of the light, with length 1.
     pub(crate) to_light: [N; 3],
+    /// The length of `way`, of whose largest component this is a multiple: 1 to the square root of 3.
+    pub(crate) norm: N,
+    /// Where the light is a sphere, how it is seen.
+    pub(crate) cone: Option<Cone<N>>,
+}
+
+impl<N: Number> Lighting<'_, N> {
+    /// Half the distance of the light, for which every format has room; `None` for infinitely far.
+    #[inline(always)]
+    pub(crate) fn half_distance(&self) -> Option<N> {
+        Some(N::narrow(self.distance?).half() * self.norm)
+    }
+}
+
+/// The cone in which a sphere is seen.
+#[derive(Clone, Copy)]
+pub(crate) struct Cone<N> {
+    /// Half the distance of its middle.
+    pub(crate) half_distance: N,
+    /// 1 / (1 + cos) of the angle between its axis and its side.
+    pub(crate) widening: N,
+}
+
+/// The way from a surface to a light.
+#[derive(Clone, Copy)]
+pub(crate) struct Aim<N: Number> {
+    /// The way, of any length.
+    pub(crate) way: [N::Wide; 3],
+    /// How far the light is along the largest component of `way`; `None` for infinitely far.
+    pub(crate) distance: Option<N::Wide>,
+    /// Where the light is a sphere, how it is seen.
+    pub(crate) cone: Option<Cone<N>>,
 }
 
 /// A surface in the way of light to another one.

@@ -128,7 +128,7 @@ fn check_track(
     at.within(Field::TrackIndex, track.index.into(), 0, last)?;
     let directional = lights.get(track.index as usize).map(|it| it.directional);
     let fits = match target {
-        TrackTarget::LightPosition => directional == Some(0),
+        TrackTarget::LightPosition => directional.is_some_and(|it| it != 1),
         TrackTarget::LightDirection => directional == Some(1),
         _ => true,
     };

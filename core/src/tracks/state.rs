@@ -67,7 +67,7 @@ impl Tracks<'_> {
             let value = || self.sample::<3>(track, kind, time);
             // A program may have put a light of the other kind in its place.
             match (target, light.directional) {
-                (TrackTarget::LightPosition, 0) => {
+                (TrackTarget::LightPosition, kind) if kind != 1 => {
                     if let Some(place) = value() {
                         light.vector = scene.on_lattice(Position(place.value()));
                     }

@@ -1,8 +1,10 @@
 //! The settings of a sweep: six parameters, each alone and together.
 
-use gridel_core::format::limits::MAX_SAMPLES;
 use gridel_core::{Effects, Format};
 use serde::{Deserialize, Serialize};
+
+/// The most samples per pixel of a reference, unless a setting has more.
+const REFERENCE_SAMPLES: u16 = 256;
 
 /// A way to build and render a scene.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -254,7 +256,8 @@ pub fn sweep(base: Setting, effects: Effects) -> Vec<Setting> {
 /// most of theirs, as far as pictures can have so many.
 pub fn least_reference_samples(settings: &[Setting]) -> u16 {
     let most = settings.iter().map(|setting| setting.samples).max();
-    (2 * most.unwrap_or(1)).min(MAX_SAMPLES)
+    let most = most.unwrap_or(1);
+    (2 * most).min(REFERENCE_SAMPLES.max(most))
 }
 
 #[cfg(test)]

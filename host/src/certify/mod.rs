@@ -29,6 +29,7 @@ mod interval;
 mod light;
 mod number;
 mod page;
+mod paint;
 mod picture;
 mod reason;
 mod report;

@@ -8,6 +8,7 @@ use super::reason::Reason;
 use super::search::{Open, Step, Tracer};
 use super::world::{NONE, World};
 use bytemuck::{Pod, Zeroable};
+use gridel_core::format::record::View;
 use gridel_core::render::Pixel as _;
 use gridel_core::{Rgb888, Settings};
 use std::cell::{Cell, RefCell};
@@ -222,7 +223,7 @@ fn rounded(world: &World<'_>, linear: &[[f64; 2]; 3]) -> [[u16; 3]; 2] {
     // What the sum and the product round does not reach the value that is cut off.
     let value = |x: f64, by: f64| {
         let value = ((x + by).clamp(0.0, 1.0) * 65535.0 + 0.5).clamp(0.0, 65535.0) as u16;
-        if world.scene.view().display_values != 0 {
+        if world.scene.view().encoding == View::DISPLAY_VALUES {
             from_display(value)
         } else {
             value

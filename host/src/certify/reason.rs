@@ -27,10 +27,12 @@ pub enum Reason {
     Branches,
     /// Which of two 8-bit values is nearer, though everything else is known.
     Rounding,
+    /// Which texel a point shows, or how texels are weighted there.
+    Texture,
 }
 
 impl Reason {
-    pub const ALL: [Self; 10] = [
+    pub const ALL: [Self; 11] = [
         Self::Hit,
         Self::Shadow,
         Self::Terminator,
@@ -41,6 +43,7 @@ impl Reason {
         Self::Grazing,
         Self::Branches,
         Self::Rounding,
+        Self::Texture,
     ];
 
     pub fn of_number(number: u8) -> Option<Self> {
@@ -60,6 +63,7 @@ impl Reason {
             Self::Grazing => "ray along a surface",
             Self::Branches => "too many open comparisons",
             Self::Rounding => "rounding to 8 bits",
+            Self::Texture => "boundary of texels or of their weights",
         }
     }
 }

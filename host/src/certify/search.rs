@@ -182,14 +182,16 @@ impl Tracer<'_, '_> {
         // Faces of one object in one plane look alike at their common edge.
         let alike = |a: &Candidate<N>, b: &Candidate<N>| {
             let is_plain = |it: &Candidate<N>| {
-                !matches!(
-                    solid(it).form,
-                    Form::Triangle {
-                        smooth: Some(_),
-                        ..
-                    } | Form::Cuboid { .. }
-                        | Form::Cone { .. }
-                )
+                let is_painted = !solid(it).paint.is_plain();
+                !is_painted
+                    && !matches!(
+                        solid(it).form,
+                        Form::Triangle {
+                            smooth: Some(_),
+                            ..
+                        } | Form::Cuboid { .. }
+                            | Form::Cone { .. }
+                    )
             };
             plane(a).is_some()
                 && plane(a) == plane(b)

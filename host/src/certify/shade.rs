@@ -227,6 +227,22 @@ fn smooth<N: Enclosure>(world: &World<'_>, hit: &Hit<N>) -> Option<Smooth<N>> {
     else {
         return None;
     };
+    let (point, weights) = weights(world, hit, corners, normal)?;
+    Some(Smooth {
+        corners,
+        normals,
+        point,
+        weights,
+    })
+}
+
+/// The point of a hit of a triangle in the triangle's space, and the weights of the corners there, whose sum is 1.
+pub fn weights<N: Enclosure>(
+    world: &World<'_>,
+    hit: &Hit<N>,
+    corners: [[i64; 3]; 3],
+    normal: [i64; 3],
+) -> Option<(Three<N>, Three<N>)> {
     let placed = world.placed.get(hit.instance as usize);
     let point = placed.map_or(hit.point, |placed| placed.point(hit.point));
     // Weights are areas, as they are seen along the largest component of the normal.
@@ -246,12 +262,7 @@ fn smooth<N: Enclosure>(world: &World<'_>, hit: &Hit<N>) -> Option<Smooth<N>> {
     for (weight, area) in weights.iter_mut().zip(areas) {
         *weight = area.over(N::int(across))?;
     }
-    Some(Smooth {
-        corners,
-        normals,
-        point,
-        weights,
-    })
+    Some((point, weights))
 }
 
 /// The interpolated normal on the side of the ray; `None` of what is not smooth.

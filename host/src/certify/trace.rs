@@ -8,6 +8,7 @@ use super::crossing::Ray;
 use super::deep;
 use super::hit::{Hit, Seen, radiance_of, ratio_of};
 use super::number::*;
+use super::paint;
 use super::reason::Reason;
 use super::search::{Candidate, Stop, Tracer};
 use super::shade;
@@ -77,7 +78,14 @@ impl Tracer<'_, '_> {
                 normal = shade::turned_to_ray(normal, direction).ok_or(Stop)?;
             }
         }
-        let diffuse = self.diffuse(&hit, material, depth);
+        let mut diffuse = self.diffuse(&hit, material, depth);
+        if self.has(Effects::VERTEX_COLORS) || self.has(Effects::TEXTURE) {
+            let paint = paint::weight(self.world, &hit, material).ok_or(Stop)?;
+            if paint.is_open {
+                self.note(Reason::Texture, depth, hit.primitive, hit.point);
+            }
+            diffuse = times(diffuse, paint.color);
+        }
         let named = Some((hit.primitive, hit.object));
         self.step(
             depth,

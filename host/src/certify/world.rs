@@ -15,7 +15,9 @@ pub const KNOWN: Effects = Effects::SHADOW
     .with(Effects::GLASS)
     .with(Effects::ABSORPTION)
     .with(Effects::CHECKER)
-    .with(Effects::SMOOTH);
+    .with(Effects::SMOOTH)
+    .with(Effects::VERTEX_COLORS)
+    .with(Effects::TEXTURE);
 
 /// No plane, and no instance.
 pub const NONE: u32 = u32::MAX;
@@ -42,6 +44,22 @@ pub struct Solid {
     pub planes: [u32; 6],
     /// The first primitive of the very same form.
     pub twin: u32,
+    pub paint: Paint,
+}
+
+/// What the corners of a triangle carry beside places and normals, as it is stored.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Paint {
+    pub colors: Option<[[u8; 4]; 3]>,
+    /// Texture coordinates with 20 fraction bits.
+    pub coordinates: Option<[[i32; 2]; 3]>,
+}
+
+impl Paint {
+    /// Whether a triangle has the same color everywhere.
+    pub fn is_plain(&self) -> bool {
+        self.colors.is_none() && self.coordinates.is_none()
+    }
 }
 
 /// The form of a primitive.
@@ -199,6 +217,13 @@ impl Space {
                     object,
                     planes: planes.of(&form),
                     twin: *twins.entry(form).or_insert(index),
+                    paint: match kind {
+                        Kind::Triangle => Paint {
+                            colors: scene.corner_colors(slot),
+                            coordinates: scene.corner_coordinates(slot),
+                        },
+                        _ => Paint::default(),
+                    },
                 });
                 match scene.primitive_bounds(kind, slot) {
                     Some(bounds) if kind.is_bounded() => {

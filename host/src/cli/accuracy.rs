@@ -59,6 +59,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         geometry: GeometryOptions {
             lattice_bits: None,
             room: None,
+            texture_bytes: None,
             import: arguments.import.clone(),
         },
         ..SceneOptions::default()

@@ -14,7 +14,9 @@ use super::source::Source;
 use clap::Args;
 use gridel_core::{Format, Scene, Structure};
 use gridel_host::blob::is_blob;
-use gridel_host::compile::{self, Builder, Figures, KeptNames, LeftOut, Report, TableStats};
+use gridel_host::compile::{
+    self, Builder, Figures, KeptNames, LeftOut, Report, TableStats, TextureFigures,
+};
 use gridel_host::emit::{self, Emitted};
 use gridel_host::measure::Deforming;
 use gridel_host::measure::InstanceCount;
@@ -121,6 +123,8 @@ struct Built<'r> {
     without_area: &'r LeftOut,
     sah_cost: Option<f64>,
     effects: Vec<CalledFor>,
+    /// How each image of a texture is stored.
+    textures: &'r [TextureFigures],
     supplied: &'r [String],
     tables: &'r [TableStats],
     /// Where the scene has names that the blob is to have.
@@ -312,6 +316,7 @@ impl<'r> Built<'r> {
             without_area: &report.without_area,
             sah_cost: report.sah_cost,
             effects: CalledFor::in_report(report),
+            textures: &report.textures,
             supplied: &report.supplied,
             tables: &report.tables,
             names: report.names,
@@ -414,6 +419,9 @@ impl<'r> Built<'r> {
         }
         for effect in &self.effects {
             line("effect", effect.to_string());
+        }
+        for texture in self.textures {
+            line("texture", texture.to_string());
         }
         if let Some(report) = self.memory {
             let remains = |account: &Account| {

@@ -4,8 +4,8 @@ use super::arguments::SceneOptions;
 use super::failure::Failure;
 use gridel_core::format::record::{self, View};
 use gridel_core::{BlobError, Scene};
-use gridel_host::compile;
-use gridel_host::scene::Light;
+use gridel_host::compile::{self, CompileError};
+use gridel_host::scene::{Light, ToneMapping};
 use gridel_host::state::Poses;
 
 /// What is to be otherwise than in a blob.
@@ -48,6 +48,24 @@ impl Changes {
         let mut view = options.view.in_blob(scene)?;
         if let Some(cutoff) = options.cutoff {
             [view.cutoff, ..] = compile::radiance([cutoff; 3]);
+        }
+        if let Some(tone_mapping) = options.tone_mapping {
+            if view.encoding == View::DISPLAY_VALUES && tone_mapping != ToneMapping::None {
+                let error = CompileError::ToneMapping;
+                return Err(Failure::Usage(miette::Report::new(error)));
+            }
+            view.encoding = match tone_mapping {
+                ToneMapping::None if view.encoding == View::DISPLAY_VALUES => view.encoding,
+                ToneMapping::None => 0,
+                ToneMapping::Reinhard => View::REINHARD,
+                ToneMapping::Aces => View::ACES,
+            };
+        }
+        if options.exposure.is_some() {
+            return Err(Failure::usage(
+                "a blob's exposure is part of its lights, and cannot be changed",
+                "give the scene file in place of the blob, or change the lights with `--light`",
+            ));
         }
         let own = scene.lights();
         let mut lights: Vec<Light> = own.iter().map(|it| Light::of_blob(scene, it)).collect();

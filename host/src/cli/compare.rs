@@ -102,6 +102,7 @@ pub fn run(arguments: &Arguments, memory: &PeakAlloc) -> Result<(), Failure> {
         structures: structures.clone(),
         lattice_bits: lattice_bits.unwrap_or(default.compiling.lattice_bits),
         room: arguments.scene_options.geometry.room.unwrap_or(0.0),
+        texture_bytes: arguments.scene_options.geometry.texture_bytes,
         ..default.compiling
     })?;
     let imported = import(

@@ -55,13 +55,9 @@ impl CalledFor {
             let lights = scene.lights().iter().map(Light::effects);
             let lights = numbers_of("light", effect, lights);
             let materials = scene.materials().iter().map(Material::effects);
-            let smooth = |scene: &Scene<'_>| match scene.normals() {
-                0 => Effects::NONE,
-                _ => Effects::SMOOTH,
-            };
             let own =
-                (smooth(scene).contains(effect)).then(|| String::from("the scene's own meshes"));
-            let parts = numbers_of("part", effect, scene.parts().iter().map(smooth));
+                (of_meshes(scene).contains(effect)).then(|| String::from("the scene's own meshes"));
+            let parts = numbers_of("part", effect, scene.parts().iter().map(of_meshes));
             lights
                 .chain(numbers_of("material", effect, materials))
                 .chain(own)
@@ -79,6 +75,12 @@ impl CalledFor {
             })
             .collect()
     }
+}
+
+/// What the vertices of a scene's own meshes require.
+fn of_meshes(scene: &Scene<'_>) -> Effects {
+    let normals = Effects::SMOOTH.only_if(scene.normals() > 0);
+    normals.with(Effects::VERTEX_COLORS.only_if(!scene.vertex_colors().is_empty()))
 }
 
 /// The names of those that require an effect, counted from 0.

@@ -163,6 +163,7 @@ impl Source {
         if let Some(room) = options.geometry.room {
             compiling.room = room;
         }
+        compiling.texture_bytes = options.geometry.texture_bytes.or(compiling.texture_bytes);
         let progress = Progress::unknown("compiling");
         let on_progress = |structure: Structure, done: u64, of: u64| {
             let share = 100 * done / of.max(1);
@@ -473,6 +474,12 @@ fn import_from(input: &Input, options: &SceneOptions) -> Result<Imported, Failur
     }
     if let Some(cutoff) = options.cutoff {
         imported.scene.render.cutoff = cutoff;
+    }
+    if let Some(exposure) = options.exposure {
+        imported.scene.render.exposure = exposure;
+    }
+    if let Some(tone_mapping) = options.tone_mapping {
+        imported.scene.render.tone_mapping = tone_mapping;
     }
     options.view.apply(&mut imported.scene)?;
     for change in &options.lights {

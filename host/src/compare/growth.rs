@@ -138,6 +138,7 @@ fn part(scene: &Scene, primitives: &[Part]) -> Scene {
         lights: scene.lights.clone(),
         materials: scene.materials.clone(),
         light_names: Vec::new(),
+        light_forms: scene.light_forms.clone(),
         tracks: Vec::new(),
         parts: Vec::new(),
         instances: Vec::new(),

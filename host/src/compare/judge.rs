@@ -126,6 +126,7 @@ mod tests {
                 }),
                 place: scene::SourceSpan::default(),
                 normals: Default::default(),
+                attributes: Default::default(),
             });
         let wall = scene::Object {
             name: String::from("wall"),
@@ -136,6 +137,7 @@ mod tests {
             }),
             place: scene::SourceSpan::default(),
             normals: Default::default(),
+            attributes: Default::default(),
         };
         let scene = scene::Scene {
             materials: vec![scene::Material::default()],

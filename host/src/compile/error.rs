@@ -42,6 +42,14 @@ pub enum CompileError {
         pieces: usize,
         most: usize,
     },
+    #[error("{object} has texture coordinates beyond {most} repetitions of its texture")]
+    #[diagnostic(help(
+        "move the coordinates towards 0, or let the texture's `scale` make them smaller"
+    ))]
+    TextureCoordinates { object: String, most: f64 },
+    #[error("the smallest form of the textures takes {bytes} bytes, and the budget is {most}")]
+    #[diagnostic(help("allow more `--texture-bytes`, or remove textures"))]
+    TextureBytes { bytes: u64, most: u64 },
     #[error("{object} passes the middle of the other objects at more than {most:.3e} scene units")]
     #[diagnostic(help("move it nearer, or add an object beside it"))]
     OutOfReach { object: String, most: f64 },
@@ -60,6 +68,24 @@ pub enum CompileError {
     )]
     #[diagnostic(help("make the cells smaller, or give the plane one color"))]
     CheckerSize { material: String, most: f64 },
+    #[error(
+        "light {number}: its {what} of {length:.3e} scene units is more than {most:.3e}, which the scene's lattice holds"
+    )]
+    #[diagnostic(help("make it smaller or less bright, or make the scene larger"))]
+    LightForm {
+        number: usize,
+        what: &'static str,
+        length: f64,
+        most: f64,
+    },
+    #[error("the {what} has a channel of {value:.4e} after exposure; it must be at most {most}")]
+    #[diagnostic(help("lower `exposure` or the light"))]
+    TooBright { what: String, value: f64, most: f64 },
+    #[error("tone mapping is for linear colors, and those of the scene are display values")]
+    #[diagnostic(help(
+        "leave `--tone-mapping` out, or write the scene as TOML with linear colors"
+    ))]
+    ToneMapping,
     #[error("{place}: track of {target}: {cause}")]
     #[diagnostic(help("{remedy}"))]
     Track {

@@ -153,7 +153,7 @@ impl<'s> Shapes<'s> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scene::{Material, Normals, SourceSpan};
+    use crate::scene::{Attributes, Material, Normals, SourceSpan};
     use crate::shape::random::Random;
     use glam::DQuat;
 
@@ -178,6 +178,7 @@ mod tests {
         shapes.extend((0..40).map(|_| ball(random)));
         let object = |shape| Object {
             normals: Normals::default(),
+            attributes: Attributes::default(),
             name: String::new(),
             material: 0,
             shape,

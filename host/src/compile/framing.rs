@@ -123,6 +123,7 @@ mod tests {
             shape: Shape::Box(Cuboid { min, max }),
             place: SourceSpan::default(),
             normals: Default::default(),
+            attributes: Default::default(),
         };
         Scene {
             materials: vec![Material::default()],

@@ -6,7 +6,7 @@ use super::reach::Reach;
 use super::section::{Section, section};
 use super::sizes::Sizes;
 use crate::blob::Blob;
-use crate::scene::{Instance, Material, Object, Part, Scene};
+use crate::scene::{Image, Instance, Material, Object, Part, Scene, Texture};
 use crate::shape::{Lattice, exp2};
 use crate::table::printable;
 use glam::DVec3;
@@ -16,6 +16,7 @@ use gridel_core::format::limits::{INSTANCE_EXPONENT, MAX_INSTANCES};
 use gridel_core::format::record::{ALIGNMENT, UnitBox};
 use gridel_core::format::track::Joint;
 use gridel_core::format::{SectionKind, instance};
+use std::sync::Arc;
 
 /// What a blob is made for.
 #[derive(Clone, Copy, Debug)]
@@ -41,8 +42,8 @@ pub struct Parts {
     pub reach: Reach,
     /// For each object of all parts, its first primitive, counted from that of the first part.
     pub object_first: Vec<u32>,
-    /// Parts with meshes that are smooth, by name.
-    pub smooth: Vec<String>,
+    /// Parts with meshes whose vertices require effects, by name.
+    pub required_by: Vec<(Effects, String)>,
     /// For each part, its first primitive, counted likewise; then how many there are.
     first_primitive: Vec<u32>,
     /// The bytes of their structures.
@@ -82,21 +83,25 @@ impl Parts {
         let mut primitives = 0_u32;
         parts.first_primitive.push(0);
         for part in &scene.parts {
-            let (blob, displacement) = compile(&alone(part)?).map_err(|error| match error {
-                CompileError::TooFar { .. } => CompileError::FarPart {
-                    part: printable(&part.name),
-                    source: error.into(),
-                },
-                error => error,
-            })?;
+            let (blob, displacement) =
+                compile(&alone(part, scene)?).map_err(|error| match error {
+                    CompileError::TooFar { .. } => CompileError::FarPart {
+                        part: printable(&part.name),
+                        source: error.into(),
+                    },
+                    error => error,
+                })?;
             let header = *blob.header();
             parts.lattices.push(Lattice {
                 bits: header.lattice_bits,
                 unit_exponent: header.unit_exponent,
                 origin: DVec3::from_array(header.origin),
             });
-            if Effects(header.effects).contains(Effects::SMOOTH) {
-                parts.smooth.push(format!("part {}", printable(&part.name)));
+            for effect in [Effects::SMOOTH, Effects::VERTEX_COLORS] {
+                if Effects(header.effects).contains(effect) {
+                    let name = format!("part {}", printable(&part.name));
+                    parts.required_by.push((effect, name));
+                }
             }
             parts.bounds.push(header.bounds);
             parts.blobs.push(blob);
@@ -270,7 +275,7 @@ impl Placed {
 }
 
 /// A scene of a part's objects, in which all have one material and light comes from everywhere.
-fn alone(part: &Part) -> Result<Scene, CompileError> {
+fn alone(part: &Part, scene: &Scene) -> Result<Scene, CompileError> {
     let unbounded = part.objects.iter().find(|it| !it.shape.is_bounded());
     if let Some(object) = unbounded {
         return Err(CompileError::UnboundedPart {
@@ -278,13 +283,26 @@ fn alone(part: &Part) -> Result<Scene, CompileError> {
             part: printable(&part.name),
         });
     }
-    let plain = |object: &Object| Object {
-        material: 0,
-        ..object.clone()
+    let plain = |object: &Object| {
+        let texture = scene.materials[object.material].texture.as_ref();
+        Object {
+            // What is on coordinates already has no transform.
+            material: usize::from(texture.is_some()),
+            attributes: object.attributes.placed_on(texture),
+            ..object.clone()
+        }
     };
+    let mut materials = vec![Material::default()];
+    let mut all = part.objects.iter();
+    if all.any(|it| scene.materials[it.material].texture.is_some()) {
+        materials.push(Material {
+            texture: Some(Texture::of(Arc::new(Image::blank()))),
+            ..Material::default()
+        });
+    }
     Ok(Scene {
         ambient: [1.0; 3],
-        materials: vec![Material::default()],
+        materials,
         objects: part.objects.iter().map(plain).collect(),
         ..Scene::default()
     })

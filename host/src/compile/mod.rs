@@ -11,6 +11,7 @@ mod cuts;
 mod dual_split;
 mod error;
 mod estimate;
+mod exposure;
 mod extent;
 mod flattened;
 mod framing;
@@ -20,6 +21,7 @@ mod instances;
 mod joints;
 mod lattice;
 mod layout;
+mod light_forms;
 mod names;
 mod octree;
 mod options;
@@ -34,6 +36,7 @@ mod shading_data;
 mod sizes;
 mod structures;
 mod support;
+mod textures;
 mod tracks;
 mod vertices;
 mod volumes;
@@ -54,6 +57,7 @@ pub use report::{Report, TableStats};
 pub(crate) use shading_data::light_record;
 pub use shading_data::radiance;
 pub use structures::{takes_hierarchy, usual_budget};
+pub use textures::TextureFigures;
 pub use wide::Quality;
 
 pub use crate::scene::TICKS_PER_SECOND;
@@ -133,6 +137,7 @@ pub fn compile_with_progress(
     on_progress: OnProgress<'_>,
 ) -> Result<Compiled, CompileError> {
     check(scene, options)?;
+    let scene = &*scene.with_emitters();
     let (parts, reports) = compile_parts(scene, options, on_progress)?;
     let (mut compiled, _) = compile_as(Role::Whole(&parts), scene, options, on_progress)?;
     reports
@@ -183,11 +188,13 @@ fn compile_as(
     }
     let (lattice, snapped, placed) = snap(role, scene, extent, options.lattice_bits)?;
     let structures = held(&options.structures);
-    let smooth = match role {
-        Role::Part { .. } => snapped.smooth.clone(),
-        Role::Whole(parts) => [&snapped.smooth[..], &parts.smooth[..]].concat(),
+    let required_by = match role {
+        Role::Part { .. } => snapped.required_by.clone(),
+        Role::Whole(parts) => [&snapped.required_by[..], &parts.required_by[..]].concat(),
     };
-    let shading_data = shading_data::ShadingData::of(&shapes, &lattice, extent, smooth)?;
+    let budget = options.texture_bytes;
+    let shading_data =
+        shading_data::ShadingData::of(&shapes, &lattice, extent, required_by, budget)?;
     // WebAssembly without a system has no clock, and asking for the time would panic.
     let has_clock = !cfg!(all(target_family = "wasm", target_os = "unknown"));
     let started = has_clock.then(Instant::now);
@@ -286,6 +293,7 @@ fn compile_as(
         bytes,
         longest_list,
         effects: shading_data.required_by.clone(),
+        textures: shading_data.texture_figures.clone(),
         supplied: shading_data.supplied.clone(),
         setup,
         tables,
@@ -389,9 +397,9 @@ impl Hierarchies {
         };
         // The eight-wide hierarchy holds triangles and spheres itself; alone it needs no slots of them.
         let has_wide = structures.contains(&Structure::Wide);
-        // Normals belong to vertices, which slots lead to.
+        // What vertices carry is found by slots.
         let wide_alone = has_wide
-            && snapped.normals.is_empty()
+            && snapped.corners.is_empty()
             && structures
                 .iter()
                 .all(|it| [Structure::Wide, Structure::List].contains(it));

@@ -45,6 +45,9 @@ pub struct Options {
     pub grid: Option<[u32; 3]>,
     /// Reject a blob that would be larger. Names that make it larger are left out.
     pub max_bytes: Option<u64>,
+    /// Most bytes of all textures' texels, which are stored more coarsely to fit; without it nothing is lost but for
+    /// rounding.
+    pub texture_bytes: Option<u64>,
     /// Whether the blob has the names of objects, materials and lights.
     pub names: bool,
     /// Gridels along a side of a cylinder cube's faces, 1 to 64; otherwise as many as the budget
@@ -68,6 +71,7 @@ impl Default for Options {
             slab_directions: 7,
             grid: None,
             max_bytes: None,
+            texture_bytes: None,
             names: false,
             gridels: None,
             budget: None,

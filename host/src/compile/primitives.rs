@@ -5,15 +5,15 @@ use super::cuts::{self, Sliver};
 use super::flattened::{self, is_degenerate};
 use super::hierarchy::Primitive;
 use super::records::{Added, Records};
-use super::vertices::{self, Stored, Vertices};
+use super::vertices::{Corner, Corners, MOST_COORDINATE, Vertices, corner_at};
 use crate::scene::{Object, Scene};
 use crate::shape::{Lattice, Shape, Solid, displacement};
 use crate::table::{grouped, printable};
 use glam::{DVec3, IVec3};
-use gridel_core::Kind;
 use gridel_core::format::limits::FARTHEST_POINT;
 use gridel_core::format::record::UnitBox;
 use gridel_core::geometry::Geometry;
+use gridel_core::{Effects, Kind};
 use serde::{Serialize, Serializer};
 
 /// Most primitives in a blob.
@@ -26,12 +26,12 @@ const FAR_MOVED: f64 = 4.0;
 /// Primitives of all kinds, each in scene-file order.
 #[derive(Debug, Default)]
 pub struct Primitives {
-    /// Distinct vertices of all meshes, in 1/256 unit. Those with different normals differ.
+    /// Distinct vertices of all meshes, in 1/256 unit. Those that carry something else differ.
     pub vertices: Vec<[i32; 3]>,
-    /// The normal of each vertex, if it has one; empty where none has.
-    pub normals: Vec<Option<Stored>>,
-    /// Objects with triangles that are smooth, by name.
-    pub smooth: Vec<String>,
+    /// What each vertex carries beside its place; empty where none carries anything.
+    pub corners: Vec<Corner>,
+    /// Objects whose vertices require effects, by name.
+    pub required_by: Vec<(Effects, String)>,
     pub triangles: Vec<[u32; 3]>,
     pub records: Records,
     /// For each kind, the numbers of its primitives in scene-file order.
@@ -104,10 +104,10 @@ impl Primitives {
         let mut distinct = Vertices::default();
         for object in &scene.objects {
             primitives.object_first.push(primitives.total);
-            primitives.add(object, lattice, &mut distinct)?;
+            primitives.add(scene, object, lattice, &mut distinct)?;
         }
         primitives.cut(&mut distinct)?;
-        (primitives.vertices, primitives.normals) = distinct.into_parts();
+        (primitives.vertices, primitives.corners) = distinct.into_parts();
         Ok(primitives)
     }
 
@@ -120,12 +120,11 @@ impl Primitives {
         let triangles = std::mem::take(&mut self.triangles);
         let numbers = std::mem::take(&mut self.numbers[Kind::Triangle as usize]);
         for (triangle, number) in triangles.into_iter().zip(numbers) {
-            let corners = triangle.map(|vertex| distinct.get(vertex).0);
-            let normals = triangle.map(|vertex| distinct.get(vertex).1);
-            for piece in cuts.pieces(corners) {
-                let piece = piece.map(|corner| {
-                    distinct.number(corner, vertices::normal_at(corner, corners, normals))
-                });
+            let places = triangle.map(|vertex| distinct.get(vertex).0);
+            let corners = triangle.map(|vertex| distinct.get(vertex).1);
+            for piece in cuts.pieces(places) {
+                let piece =
+                    piece.map(|place| distinct.number(place, corner_at(place, places, corners)));
                 self.triangles.push(piece);
                 self.numbers[Kind::Triangle as usize].push(number);
             }
@@ -187,6 +186,7 @@ impl Primitives {
 
     fn add(
         &mut self,
+        scene: &Scene,
         object: &Object,
         lattice: &Lattice,
         distinct: &mut Vertices,
@@ -199,7 +199,13 @@ impl Primitives {
                 let snapped: Vec<_> = vertices.iter().map(|&v| lattice.snap(v)).collect();
                 // Their numbers among all distinct ones without normals, as soon as they are looked up.
                 let mut numbers = vec![None; vertices.len()];
-                let normals = vertices::stored(&object.normals);
+                let texture = scene.materials[object.material].texture.as_ref();
+                let attributes = object.attributes.placed_on(texture);
+                let all = Corners::of(&object.normals, &attributes, scene.display_values);
+                let all = all.ok_or_else(|| CompileError::TextureCoordinates {
+                    object: format!("{} ({})", printable(&object.name), object.place),
+                    most: MOST_COORDINATE,
+                })?;
                 let mut is_smooth = false;
                 for (number, triangle) in triangles.iter().enumerate() {
                     let corners = triangle.map(|vertex| snapped[vertex as usize]);
@@ -225,25 +231,29 @@ impl Primitives {
                             })
                             .into_iter()
                             .fold(0.0, f64::max);
-                        let triangle = match normals.get(number).copied().flatten() {
-                            Some(normals) => {
-                                is_smooth = true;
-                                [0, 1, 2]
-                                    .map(|k: usize| distinct.number(corners[k], Some(normals[k])))
-                            }
-                            None => triangle.map(|vertex| {
+                        let triangle = if all.is_plain() {
+                            triangle.map(|vertex| {
                                 *numbers[vertex as usize].get_or_insert_with(|| {
-                                    distinct.number(snapped[vertex as usize], None)
+                                    distinct.number(snapped[vertex as usize], Corner::default())
                                 })
-                            }),
+                            })
+                        } else {
+                            let found = all.of_triangle(number, *triangle);
+                            is_smooth |= found[0].normal.is_some();
+                            [0, 1, 2].map(|k: usize| distinct.number(corners[k], found[k]))
                         };
                         self.triangles.push(triangle);
                         self.keep(Kind::Triangle, displacement);
                     }
                 }
-                if is_smooth {
-                    self.smooth
-                        .push(format!("mesh {}", printable(&object.name)));
+                for (effect, is_required) in [
+                    (Effects::SMOOTH, is_smooth),
+                    (Effects::VERTEX_COLORS, all.is_colored()),
+                ] {
+                    if is_required {
+                        let name = format!("mesh {}", printable(&object.name));
+                        self.required_by.push((effect, name));
+                    }
                 }
                 if flattened::is_flattened((vertices, &snapped), triangles) {
                     return Err(CompileError::Flattened {

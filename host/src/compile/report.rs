@@ -3,6 +3,7 @@
 use super::candidates::lists::Figures;
 use super::names::KeptNames;
 use super::primitives::LeftOut;
+use super::textures::TextureFigures;
 use std::time::Duration;
 
 /// The compiler's report.
@@ -33,6 +34,8 @@ pub struct Report {
     pub longest_list: usize,
     /// Effects and the names of what requires each.
     pub effects: Vec<(String, Vec<String>)>,
+    /// How each image of a texture is stored.
+    pub textures: Vec<TextureFigures>,
     /// Parts that the compiler supplied because the scene has none.
     pub supplied: Vec<String>,
     /// The time that the structures took to build, from primitives on the lattice to records.

@@ -3,19 +3,24 @@
 use super::CompileError;
 use super::camera::place;
 use super::coordinates::Coordinates;
+use super::exposure::Exposure;
 use super::extent::Shapes;
 use super::framing::{BACKGROUND, framing_of};
 use super::joints;
+use super::light_forms::{form_record, lift};
 use super::section::Section;
+use super::textures::{TextureFigures, Textures};
 use super::tracks;
-use crate::scene::{Camera, Color, Diffuse, Light, Material, RenderSettings};
+use crate::scene::{Camera, Color, Diffuse, Light, Material, Scene, ToneMapping};
 use crate::shape::{Lattice, unit};
 use crate::table::printable;
 use bytemuck::Zeroable;
 use glam::DVec3;
 use gridel_core::Effects;
+use gridel_core::format::light_form::LightForm;
 use gridel_core::format::limits::FARTHEST;
 use gridel_core::format::record::{self, View};
+use gridel_core::format::track::TrackTarget;
 
 /// The ambient light that is supplied with a light, so that shadows are not black.
 const AMBIENT: f64 = 0.15;
@@ -26,6 +31,10 @@ pub struct ShadingData {
     pub view: View,
     pub coordinates: Coordinates,
     pub lights: Vec<record::Light>,
+    /// What makes lights more than points.
+    pub light_forms: Vec<LightForm>,
+    /// The radiance of each material that an object has; empty where none glows.
+    pub emissions: Vec<[i32; 3]>,
     /// Materials that an object has.
     pub materials: Vec<record::Material>,
     /// For each object, its place in `materials`.
@@ -35,17 +44,22 @@ pub struct ShadingData {
     pub required_by: Vec<(String, Vec<String>)>,
     /// Parts that the scene lacks and the compiler supplied.
     pub supplied: Vec<String>,
+    /// Textures.
+    pub textures: Vec<Section>,
+    /// How each texture is stored.
+    pub texture_figures: Vec<TextureFigures>,
     /// What moves, and joints.
     pub tracks: Vec<Section>,
 }
 
 impl ShadingData {
-    /// Of a scene, in which these meshes have normals of their own.
+    /// Of a scene, in which these meshes require these effects.
     pub fn of(
         shapes: &Shapes<'_>,
         lattice: &Lattice,
         (lowest, highest): (DVec3, DVec3),
-        smooth: Vec<String>,
+        mut required_by: Vec<(Effects, String)>,
+        texture_bytes: Option<u64>,
     ) -> Result<Self, CompileError> {
         let scene = shapes.scene();
         let mut supplied = Vec::new();
@@ -78,8 +92,7 @@ impl ShadingData {
         let far = |what, point| on_lattice(lattice, size, what, point);
         let mut numbers: Vec<Option<u32>> = vec![None; scene.materials.len()];
         let mut materials = Vec::new();
-        let mut required_by: Vec<(Effects, String)> =
-            smooth.into_iter().map(|by| (Effects::SMOOTH, by)).collect();
+        let mut textures = Textures::default();
         let mut object_material = Vec::with_capacity(scene.objects.len());
         for object in scene.all_objects() {
             let material = &scene.materials[object.material];
@@ -91,7 +104,10 @@ impl ShadingData {
             }
             let number = *numbers[object.material].get_or_insert_with(|| {
                 let material = &scene.materials[object.material];
-                let record = material_record(material, lattice);
+                let record = record::Material {
+                    maps: textures.maps(material),
+                    ..material_record(material, lattice)
+                };
                 required_by.push((
                     record.effects(),
                     format!("material {}", printable(&material.name)),
@@ -101,17 +117,64 @@ impl ShadingData {
             });
             object_material.push(number);
         }
+        let (textures, of_textures) = textures.sections(scene.display_values, texture_bytes)?;
+        let exposure = Exposure::of(scene);
+        let mut emissions = Vec::new();
+        for (material, number) in scene.materials.iter().zip(&numbers) {
+            let Some(number) = number.filter(|_| material.emission != [0.0; 3]) else {
+                continue;
+            };
+            let what = || format!("material {}", printable(&material.name));
+            let emission = radiance(exposure.of_color(material.emission, what)?);
+            if emissions.len() <= number as usize {
+                emissions.resize(number as usize + 1, [0; 3]);
+            }
+            emissions[number as usize] = emission;
+            required_by.push((Effects::EMISSION, what()));
+        }
+        let mut light_forms = Vec::new();
         let lights = lights
             .iter()
             .enumerate()
-            .map(|(number, light)| light_record(light, lattice, size, number))
-            .collect::<Result<Vec<_>, _>>()?;
+            .map(|(number, light)| {
+                let form = scene.light_forms.get(number).copied().flatten();
+                let (Some(form), Light::Point { position, color }) = (form, *light) else {
+                    let light = exposure.of_light(light, number)?;
+                    return light_record(&light, lattice, size, number);
+                };
+                let color = color.map(|channel| channel * exposure.factor);
+                let position = position + lift(&form, lattice);
+                let has_color_track = scene
+                    .tracks
+                    .iter()
+                    .any(|track| (track.target, track.index) == (TrackTarget::LightColor, number));
+                let (form, color) = form_record(&form, color, lattice, number, has_color_track)?;
+                let light = Light::Point { position, color };
+                let directional =
+                    record::Light::with_form(light_forms.len() as u32, form.shape != 0);
+                light_forms.push(form);
+                let record = light_record(&light, lattice, size, number)?;
+                Ok(record::Light {
+                    directional,
+                    ..record
+                })
+            })
+            .collect::<Result<Vec<_>, CompileError>>()?;
         // A scene file may turn shadows off.
         let unwanted = if scene.render.shadows {
             Effects::NONE
         } else {
             Effects::SHADOW
         };
+        let view = View {
+            background: radiance(exposure.of_color(background, || String::from("background"))?),
+            ambient: radiance(exposure.of_color(ambient, || String::from("ambient light"))?),
+            ..view_record(scene)?
+        };
+        required_by.push((
+            view.effects(),
+            String::from("the `tone_mapping` of pictures"),
+        ));
         if scene.all_objects().next().is_some() {
             let effects = (0..).zip(lights.iter().map(record::Light::effects));
             required_by.extend(effects.map(|(number, effects): (usize, _)| {
@@ -140,24 +203,24 @@ impl ShadingData {
         ways.extend(joints::places(scene));
         let coordinates =
             Coordinates::choose(lattice, [lowest, highest], camera.eye, &scene.lights, &ways);
-        let view = View {
-            background: radiance(background),
-            ambient: radiance(ambient),
-            ..view_record(&scene.render, scene.display_values)
-        };
         let placed = place(&camera, &coordinates.header)?;
-        let tracks = joints::kept_tracks(scene);
+        let mut tracks = joints::kept_tracks(scene);
+        exposure.change_tracks(&mut tracks);
         let mut tracks = tracks::sections(tracks, &camera, &numbers, &coordinates.header)?;
         tracks.extend(joints::sections(scene, &coordinates.header)?);
         Ok(Self {
             view: placed.replace_in(&view, &coordinates.header),
             coordinates,
             lights,
+            light_forms,
+            emissions,
             materials,
             object_material,
             effects,
             required_by,
             supplied,
+            textures,
+            texture_figures: of_textures,
             tracks,
         })
     }
@@ -186,16 +249,24 @@ fn over_a_shoulder(shapes: &Shapes<'_>, camera: &Camera) -> (DVec3, &'static str
 }
 
 /// The defaults of a picture; the camera is placed afterwards.
-fn view_record(render: &RenderSettings, display_values: bool) -> View {
-    View {
+fn view_record(scene: &Scene) -> Result<View, CompileError> {
+    let render = &scene.render;
+    let encoding = match (render.tone_mapping, scene.display_values) {
+        (ToneMapping::None, false) => 0,
+        (ToneMapping::None, true) => View::DISPLAY_VALUES,
+        (_, true) => return Err(CompileError::ToneMapping),
+        (ToneMapping::Reinhard, false) => View::REINHARD,
+        (ToneMapping::Aces, false) => View::ACES,
+    };
+    Ok(View {
         cutoff: radiance([render.cutoff; 3])[0],
         width: render.width.clamp(1, u16::MAX.into()) as u16,
         height: render.height.clamp(1, u16::MAX.into()) as u16,
         samples: render.samples,
         depth: render.depth,
-        display_values: u8::from(display_values),
+        encoding,
         ..View::zeroed()
-    }
+    })
 }
 
 /// A place that may lie beyond the scene, in units with 13 fraction bits.
@@ -282,7 +353,7 @@ fn material_record(material: &Material, lattice: &Lattice) -> record::Material {
             }
         }),
         shininess: material.shininess.clamp(1, 1024),
-        spare: 0,
+        maps: 0,
     }
 }
 

@@ -9,6 +9,7 @@ use super::pairs::Flat;
 use super::primitives::Primitives;
 use super::records::in_order;
 use super::section::{Section, indices, section};
+use super::vertices::Corner;
 use crate::blob::{Blob, Buffer};
 use crate::shape::Lattice;
 use gridel_core::accel::Entry;
@@ -108,6 +109,8 @@ pub fn parts(context: &BuildContext<'_>, layouts: Vec<Layout>) -> Parts {
 
     let mut sections = vec![section(SectionKind::View, &[shading_data.view])];
     sections.push(section(SectionKind::Lights, &shading_data.lights));
+    sections.push(section(SectionKind::LightForms, &shading_data.light_forms));
+    sections.push(section(SectionKind::Emissions, &shading_data.emissions));
     sections.push(section(SectionKind::Materials, &shading_data.materials));
     if objects != total && objects > 1 {
         sections.push(indices(SectionKind::ObjectFirst, &object_first, 2));
@@ -132,6 +135,7 @@ pub fn parts(context: &BuildContext<'_>, layouts: Vec<Layout>) -> Parts {
         sections.push(indices(SectionKind::Order, &order, 2));
     }
     sections.extend(shading_data.tracks.iter().cloned());
+    sections.extend(shading_data.textures.iter().cloned());
     sections.extend(geometry(lattice, primitives, flat));
     if uses_leaves {
         sections.push(section(SectionKind::Leaves, &flat.leaves));
@@ -187,16 +191,23 @@ pub fn parts(context: &BuildContext<'_>, layouts: Vec<Layout>) -> Parts {
 fn geometry(lattice: &Lattice, primitives: &Primitives, flat: &Flat) -> Vec<Section> {
     let slots = &flat.slots[Kind::Triangle as usize];
     let triangles = in_order(&primitives.triangles, slots);
-    // Vertices in the order in which the leaves need them, those with normals first.
+    // Vertices in the order in which the leaves need them, those that carry the most first.
     let mut number = vec![u32::MAX; primitives.vertices.len()];
     let mut vertices = Vec::with_capacity(primitives.vertices.len());
-    let mut normals = Vec::new();
-    for &vertex in triangles.iter().flatten() {
-        let normal = primitives.normals.get(vertex as usize).copied().flatten();
-        if let Some(normal) = normal.filter(|_| number[vertex as usize] == u32::MAX) {
-            number[vertex as usize] = vertices.len() as u32;
-            vertices.push(primitives.vertices[vertex as usize]);
-            normals.push(normal);
+    let mut corners = Vec::new();
+    let corner = |vertex: u32| primitives.corners.get(vertex as usize).copied();
+    let mut has_rank = [false; Corner::RANKS];
+    for corner in &primitives.corners {
+        has_rank[corner.rank()] = true;
+    }
+    for rank in (0..Corner::RANKS - 1).filter(|&rank| has_rank[rank]) {
+        for &vertex in triangles.iter().flatten() {
+            let found = corner(vertex).filter(|it| it.rank() == rank);
+            if let Some(corner) = found.filter(|_| number[vertex as usize] == u32::MAX) {
+                number[vertex as usize] = vertices.len() as u32;
+                vertices.push(primitives.vertices[vertex as usize]);
+                corners.push(corner);
+            }
         }
     }
     let triangles: Vec<[u32; 3]> = triangles
@@ -229,10 +240,44 @@ fn geometry(lattice: &Lattice, primitives: &Primitives, flat: &Flat) -> Vec<Sect
     } else {
         section(SectionKind::Triangles, &triangles)
     };
-    let normals = section(SectionKind::Normals, &normals);
-    let mut sections = vec![vertex_section, triangle_section, normals];
+    let mut sections = vec![vertex_section, triangle_section];
+    sections.extend(carried(&corners));
     sections.extend(primitives.records.sections(lattice.bits, &flat.slots));
     sections
+}
+
+/// What vertices carry beside their places. Behind the last one that has something, nothing is stored.
+fn carried(corners: &[Corner]) -> Vec<Section> {
+    let until = |has: fn(&Corner) -> bool| {
+        let count = corners.iter().rposition(has).map_or(0, |last| last + 1);
+        &corners[..count]
+    };
+    let normals = until(|it| it.normal.is_some());
+    let normals: Vec<_> = normals.iter().filter_map(|it| it.normal).collect();
+    let colors = until(|it| it.color.is_some()).iter();
+    let colors: Vec<_> = colors.map(|it| it.color.unwrap_or([255; 4])).collect();
+    let coordinates = until(|it| it.coordinates.is_some()).iter();
+    let coordinates: Vec<_> = coordinates
+        .map(|it| it.coordinates.unwrap_or([i32::MIN; 2]))
+        .collect();
+    // With 14 fraction bits; the lowest number stands for none.
+    let short = |it: i32| {
+        let rounded = i16::try_from((i64::from(it) + (1 << 5)) >> 6).ok();
+        rounded.filter(|it| *it != i16::MIN)
+    };
+    let narrow = coordinates.iter().map(|&[u, v]| match u {
+        i32::MIN => Some([i16::MIN; 2]),
+        _ => Some([short(u)?, short(v)?]),
+    });
+    let coordinates = match narrow.collect::<Option<Vec<_>>>() {
+        Some(narrow) => section(SectionKind::TextureCoordinates, &narrow),
+        None => section(SectionKind::TextureCoordinates, &coordinates),
+    };
+    vec![
+        section(SectionKind::Normals, &normals),
+        section(SectionKind::VertexColors, &colors),
+        coordinates,
+    ]
 }
 
 /// Puts header, table and sections together. Large sections are in memory twice meanwhile.

@@ -52,7 +52,16 @@ pub struct Ray {
     pub absorbed: Option<[f64; 3]>,
     /// The smooth normal that the surface is shaded with.
     pub smooth: Option<[f64; 3]>,
+    /// The color of the vertices that weights the diffuse color: linear ratios.
+    pub vertex_color: Option<[f64; 3]>,
+    /// The texture that weights the diffuse color.
+    pub texture: Option<Textured>,
+    /// How much of the surface is there, where the alpha of a texture says so.
+    pub alpha: Option<f64>,
     pub lights: Vec<Lighting>,
+    /// The radiance that the surface sends out.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub emitted: Option<[f64; 3]>,
     /// The radiance that it adds to the sample, its weight included.
     pub added: [f64; 3],
     /// Whether that is the background.
@@ -65,6 +74,17 @@ pub struct Ray {
     pub too_deep: bool,
     /// Rays that it causes, by their places.
     pub children: Vec<usize>,
+}
+
+/// A texture at a hit.
+#[derive(Clone, Debug, Serialize)]
+pub struct Textured {
+    /// Where the texture is looked up, u to the right and v down.
+    pub coordinates: [f64; 2],
+    /// The nearest texel, counted from the upper left one, or the upper left one of the four that are mixed.
+    pub texel: [u32; 2],
+    /// Linear ratios.
+    pub color: [f64; 3],
 }
 
 /// A ray that was not cast.
@@ -103,6 +123,12 @@ pub struct Lighting {
     pub shadow: Vec<Walk>,
     /// The part of the light that is left behind each.
     pub filtered: Vec<[f64; 3]>,
+    /// The point of an area from which this sample sees light, in scene units.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub from_area: Option<[f64; 3]>,
+    /// The radiance that arrives of a light that falls off, after shadows.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub arriving: Option<[f64; 3]>,
     /// The radiance that the light adds to the surface, without the ray's weight.
     pub radiance: [f64; 3],
     pub outcome: LightOutcome,
@@ -118,6 +144,8 @@ pub enum LightOutcome {
     Behind,
     /// The smooth normal faces it, and the triangle does not.
     BehindTriangle,
+    /// The surface lies outside of a spot, or behind an area.
+    Outside,
     /// Something stands in between.
     Blocked {
         kind: &'static str,
@@ -129,6 +157,8 @@ pub enum LightOutcome {
     Faded,
     /// The material reflects none of it.
     Unreflected,
+    /// Too little of it arrives from so far, or the material reflects none of it.
+    Faint,
     /// It lies where the ray to it would start, so there is no direction to it.
     Here,
 }
@@ -252,7 +282,11 @@ impl<'t> Reader<'t> {
             hit: None,
             absorbed: None,
             smooth: None,
+            vertex_color: None,
+            texture: None,
+            alpha: None,
             lights: Vec::new(),
+            emitted: None,
             added: [0.0; 3],
             background: false,
             reflected: None,
@@ -311,9 +345,38 @@ impl Ray {
             }
             Event::Absorbed { weight } => self.absorbed = Some(weight),
             Event::Smooth { normal } => self.smooth = Some(normal),
+            Event::Alpha { alpha } => self.alpha = Some(alpha),
+            Event::VertexColor { color } => self.vertex_color = Some(color),
+            Event::Textured {
+                coordinates,
+                texel,
+                color,
+            } => {
+                self.texture = Some(Textured {
+                    coordinates,
+                    texel,
+                    color,
+                });
+            }
             Event::BehindTriangle => {
                 if let Some(lighting) = self.lights.last_mut() {
                     lighting.outcome = LightOutcome::BehindTriangle;
+                }
+            }
+            Event::Emitted { radiance } => self.emitted = Some(radiance),
+            Event::FromArea { point } => {
+                if let Some(lighting) = self.lights.last_mut() {
+                    lighting.from_area = Some(frame.place(point).to_array());
+                }
+            }
+            Event::Outside => {
+                if let Some(lighting) = self.lights.last_mut() {
+                    lighting.outcome = LightOutcome::Outside;
+                }
+            }
+            Event::Fallen { arriving } => {
+                if let Some(lighting) = self.lights.last_mut() {
+                    lighting.arriving = Some(arriving);
                 }
             }
             Event::Added { source, radiance } => {
@@ -364,6 +427,8 @@ impl Lighting {
             cosine,
             shadow: Vec::new(),
             filtered: Vec::new(),
+            from_area: None,
+            arriving: None,
             radiance: [0.0; 3],
             outcome,
         }
@@ -376,11 +441,14 @@ impl Lighting {
         if self.cosine <= 0.0 {
             return LightOutcome::Behind;
         }
-        if matches!(self.outcome, LightOutcome::BehindTriangle) {
-            return LightOutcome::BehindTriangle;
+        if let LightOutcome::BehindTriangle | LightOutcome::Outside = self.outcome {
+            return self.outcome.clone();
         }
         let Some(last) = self.shadow.last() else {
-            return LightOutcome::Unreflected;
+            return match self.arriving {
+                Some(_) => LightOutcome::Faint,
+                None => LightOutcome::Unreflected,
+            };
         };
         // Glass that was met let the rest through, or too little of it.
         match last.met() {
@@ -391,6 +459,7 @@ impl Lighting {
                 object: met.object,
                 instance: met.instance,
             },
+            None if self.arriving.is_some() => LightOutcome::Faint,
             None => LightOutcome::Unreflected,
         }
     }

@@ -236,12 +236,38 @@ impl Shown<'_> {
                 vector(normal, significant)
             )?;
         }
+        if let Some(weight) = ray.vertex_color {
+            writeln!(
+                f,
+                "{indent}  its vertices weight the diffuse color by {}",
+                color(weight)
+            )?;
+        }
+        if let Some(texture) = &ray.texture {
+            let [u, v] = texture.coordinates.map(significant);
+            let [x, y] = texture.texel;
+            writeln!(
+                f,
+                "{indent}  the texture at {u} {v}, texel {x},{y}, weights the diffuse color by {}",
+                color(texture.color)
+            )?;
+        }
+        if let Some(alpha) = ray.alpha {
+            let alpha = significant(alpha);
+            writeln!(
+                f,
+                "{indent}  its alpha is {alpha}; the rest of the ray goes straight on"
+            )?;
+        }
         if let Some(weight) = ray.absorbed {
             writeln!(
                 f,
                 "{indent}  absorption in the glass reduces its weight to {}",
                 color(weight)
             )?;
+        }
+        if let Some(radiance) = ray.emitted {
+            writeln!(f, "{indent}  glows with {}", color(radiance))?;
         }
         for lighting in &ray.lights {
             writeln!(f, "{indent}  {}", self.outcome(lighting))?;
@@ -282,11 +308,21 @@ impl Shown<'_> {
             ),
             None => String::new(),
         };
+        let from = match lighting.from_area {
+            Some(point) => format!(", from its point {},", vector(point, significant)),
+            None => String::new(),
+        };
+        let arriving = match lighting.arriving {
+            Some(arriving) => format!(", and falls off to {}", color(arriving)),
+            None => String::new(),
+        };
         match lighting.outcome {
             LightOutcome::Lit => format!(
-                "{light} reaches it with cosine {cosine}{glass}: {}",
+                "{light}{from} reaches it with cosine {cosine}{glass}{arriving}: {}",
                 color(lighting.radiance)
             ),
+            LightOutcome::Outside => format!("{light}{from} does not shine in this direction"),
+            LightOutcome::Faint => format!("{light}{from} adds nothing that shows from so far"),
             LightOutcome::Behind => format!("{light} is behind the surface (cosine {cosine})"),
             LightOutcome::BehindTriangle => {
                 format!("{light} is behind the triangle (cosine {cosine} with the smooth normal)")
@@ -297,7 +333,7 @@ impl Shown<'_> {
                 object,
                 instance,
             } => format!(
-                "{light} is blocked by {kind} {primitive}, which is {}{}{}{glass}",
+                "{light}{from} is blocked by {kind} {primitive}, which is {}{}{}{glass}",
                 self.object(object),
                 self.material(object),
                 self.of_instance(instance)

@@ -76,7 +76,7 @@ impl MemoryMap {
         ];
         parts.extend(entries.iter().map(|entry| {
             part(
-                SectionKind::ALL[usize::from(entry.kind) - 1].name(),
+                SectionKind::of_number(entry.kind).map_or("unknown", SectionKind::name),
                 Some(entry.offset as usize),
                 entry.count as usize,
                 entry.stride.into(),

@@ -4,6 +4,7 @@ use super::{ALL, Job, chosen};
 use crate::observed::Observed;
 use gridel_core::accel::DynAccel;
 use gridel_core::format::limits::{MAX_RAY_DEPTH, MAX_STACK_DEPTH};
+use gridel_core::format::record::View;
 use gridel_core::render::RenderError;
 use gridel_core::{Fixed, Format, Number, Renderer, Scene, Workspace};
 use rayon::prelude::*;
@@ -23,7 +24,7 @@ pub struct LinearPicture {
 /// Renders some rows in linear radiance. Calls `progress` after every row, from any thread.
 ///
 /// Samples are averaged as they are, where [`render`](super::render()) limits each to display white first. Where
-/// colors are display values (see `View::display_values`), their mean is decoded by the curve of sRGB, continued above 1.
+/// colors are display values (see `View::encoding`), their mean is decoded by the curve of sRGB, continued above 1.
 /// Work is not counted.
 ///
 /// # Errors
@@ -75,7 +76,7 @@ fn rows<N: Number>(
 ) -> Result<Vec<[f32; 3]>, RenderError> {
     let renderer = Renderer::<N, DynAccel, ALL>::with_settings(scene, job.settings)?;
     let (width, samples) = (job.settings.width, f64::from(job.settings.samples));
-    let is_display_value = scene.view().display_values != 0;
+    let is_display_value = scene.view().encoding == View::DISPLAY_VALUES;
     let mut pixels = vec![[0.0; 3]; usize::from(width) * job.rows.len()];
     let rows = job.rows.clone().into_par_iter();
     rows.zip(pixels.par_chunks_mut(width.into()))

@@ -5,7 +5,7 @@ use crate::blob::Blob;
 use crate::compile::{Options, compile};
 use crate::sample::icosphere;
 use crate::scene::{
-    Camera, Instance, Light, Material, Normals, NormalsChoice, Object, Part, Placement,
+    Attributes, Camera, Instance, Light, Material, Normals, NormalsChoice, Object, Part, Placement,
     Scene as Model, Shape, SourceSpan,
 };
 use glam::{DQuat, DVec3};
@@ -301,6 +301,7 @@ fn object(shape: Shape, normals: Normals) -> Object {
         material: 0,
         shape,
         normals,
+        attributes: Attributes::default(),
         place: SourceSpan::default(),
     }
 }

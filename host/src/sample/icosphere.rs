@@ -44,6 +44,7 @@ pub fn icosphere(levels: u32) -> Scene {
         },
         place: SourceSpan::default(),
         normals: Default::default(),
+        attributes: Default::default(),
     };
     lit(
         Scene {

@@ -112,6 +112,7 @@ fn placed(instance: &Instance, object: &Object) -> Result<Object, SceneError> {
         shape: object.shape.transformed(&by).map_err(misfit)?,
         place: object.place.clone(),
         normals: object.normals.transformed(&by),
+        attributes: object.attributes.transformed(&by),
     })
 }
 

@@ -7,21 +7,26 @@
 //! [`Scene::display_values`] says otherwise.
 
 mod access;
+mod attributes;
 #[cfg(test)]
 mod bad;
 #[cfg(test)]
 mod damaged;
+mod emitters;
 mod error;
 mod files;
 mod flatten;
 mod gzip;
+mod image;
 mod importer;
 mod joint;
+mod light_form;
 mod model;
 pub(crate) mod molecule;
 mod normals;
 mod options;
 mod placement;
+mod plain_lights;
 mod polygon;
 mod size;
 mod source_span;
@@ -30,18 +35,24 @@ pub(crate) mod test_chains;
 #[cfg(test)]
 mod test_scenes;
 mod text;
+mod texture;
 mod track;
 mod without;
 mod words;
 
 pub use crate::shape::Shape;
+pub use attributes::Attributes;
+pub use emitters::MOST_FACES;
 pub use error::SceneError;
 pub use files::Files;
+pub use image::{Image, linear_of_srgb};
 pub use importer::Importer;
 pub(crate) use joint::JointTracks;
 pub use joint::{LARGEST_SCALE, LEAST_SCALE};
+pub use light_form::{LightForm, LightShape, Spot};
 pub use model::{
-    Camera, Color, Diffuse, Instance, Joint, Light, Material, Object, Part, RenderSettings, Scene,
+    Alpha, Camera, Color, Diffuse, Instance, Joint, Light, Material, Object, Part, RenderSettings,
+    Scene, ToneMapping,
 };
 pub use normals::{Normals, NormalsChoice};
 pub use options::{
@@ -50,6 +61,7 @@ pub use options::{
 pub use placement::Placement;
 pub use size::MOST_INPUT;
 pub use source_span::SourceSpan;
+pub use texture::{Texture, Wrap};
 pub use track::{Interpolation, Key, TICKS_PER_SECOND, Track, TrackTarget};
 pub use without::{effect_named, leave_out, shown_without};
 
@@ -155,6 +167,21 @@ fn finish(mut imported: Imported, options: &ImportOptions) -> Result<Imported, S
         }
         imported.copied = scene.instances.len();
         imported.scene = imported.scene.into_flattened()?;
+    }
+    let dark: Vec<_> = imported.scene.emitters_without_light().collect();
+    if let [first, rest @ ..] = &dark[..] {
+        let more = match rest.len() {
+            0 => String::new(),
+            more => format!(" and {more} more"),
+        };
+        imported.warnings.push(format!(
+            "object {}{more} glows, and does not light other objects: spheres, discs, boxes and meshes of up to \
+             {MOST_FACES} triangles do that, outside of parts; add a `[[light]]`, or set the material's `lights = false`",
+            crate::table::printable(first)
+        ));
+    }
+    if let std::borrow::Cow::Owned(scene) = imported.scene.with_emitters() {
+        imported.scene = scene;
     }
     Ok(imported)
 }

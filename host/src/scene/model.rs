@@ -1,8 +1,11 @@
 //! The scene as data.
 
+use super::attributes::Attributes;
+use super::light_form::LightForm;
 use super::normals::{Normals, NormalsChoice};
 use super::placement::Placement;
 use super::source_span::SourceSpan;
+use super::texture::Texture;
 use super::track::Track;
 use crate::shape::{Shape, unit};
 use glam::DVec3;
@@ -31,6 +34,8 @@ pub struct Scene {
     pub lights: Vec<Light>,
     /// Names of the lights, in their order; empty, or missing at the end, where there is none.
     pub light_names: Vec<String>,
+    /// For each light, what makes it more than a point; empty, or missing at the end, where there is nothing.
+    pub light_forms: Vec<Option<LightForm>>,
     /// Surfaces; objects refer to them by index.
     pub materials: Vec<Material>,
     /// Objects in scene-file order; that order is the one in which `trace` counts them.
@@ -111,6 +116,49 @@ pub struct Material {
     pub ior: f64,
     /// Absorption inside glass: the coefficient of Beer's law per scene unit of path length.
     pub absorption: Color,
+    /// Radiance that leaves the front of the surface; black for none.
+    pub emission: Color,
+    /// Whether objects that send out light are lights, too.
+    pub lights: bool,
+    /// The image that weights the diffuse color of meshes with texture coordinates.
+    pub texture: Option<Texture>,
+    /// How the alpha of the texture is used; glass ignores it.
+    pub alpha: Option<Alpha>,
+}
+
+/// How the brightness of pixels is mapped to the range of a display.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum ToneMapping {
+    /// Not at all: what is brighter than white is white.
+    #[default]
+    None,
+    /// By x / (1 + x).
+    Reinhard,
+    /// By a curve like that of ACES.
+    Aces,
+}
+
+impl ToneMapping {
+    /// All of them.
+    pub const ALL: [Self; 3] = [Self::None, Self::Reinhard, Self::Aces];
+
+    /// Its name in scene files.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::None => "none",
+            Self::Reinhard => "reinhard",
+            Self::Aces => "aces",
+        }
+    }
+}
+
+/// How the alpha of a texture is used.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Alpha {
+    /// It is how much of the surface is there; times a factor, 0 to 1.
+    Blend(f64),
+    /// Less than this, above 0, is not there, and the rest is opaque.
+    CutOut(f64),
 }
 
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -126,6 +174,28 @@ pub enum Diffuse {
     },
 }
 
+impl Diffuse {
+    /// Its colors times another, channel by channel.
+    #[must_use]
+    pub(super) fn weighted(self, by: Color) -> Self {
+        let times = |color: Color| [0, 1, 2].map(|channel: usize| color[channel] * by[channel]);
+        match self {
+            Self::Plain(color) => Self::Plain(times(color)),
+            Self::Checker {
+                even,
+                odd,
+                size,
+                origin,
+            } => Self::Checker {
+                even: times(even),
+                odd: times(odd),
+                size,
+                origin,
+            },
+        }
+    }
+}
+
 /// One object: a shape and its material.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Object {
@@ -136,6 +206,8 @@ pub struct Object {
     pub shape: Shape,
     /// The normals that a mesh is shaded with. Other shapes have none.
     pub normals: Normals,
+    /// Colors of vertices, and texture coordinates. Other shapes have none.
+    pub attributes: Attributes,
     /// Where the scene file says so, for messages.
     pub place: SourceSpan,
 }
@@ -186,7 +258,7 @@ pub struct RenderSettings {
     /// Picture size in pixels.
     pub width: u32,
     pub height: u32,
-    /// Samples a pixel: 1 to 256.
+    /// Samples a pixel: 1 to 4,096.
     pub samples: u16,
     /// How many times a ray may be reflected or refracted: 0 to 16.
     pub depth: u8,
@@ -195,6 +267,9 @@ pub struct RenderSettings {
     pub cutoff: f64,
     /// Whether objects stand in each other's light.
     pub shadows: bool,
+    /// All light is multiplied with 2 to this power: -32 to 32.
+    pub exposure: f64,
+    pub tone_mapping: ToneMapping,
 }
 
 impl Default for RenderSettings {
@@ -206,6 +281,8 @@ impl Default for RenderSettings {
             depth: 5,
             cutoff: 1.0 / 512.0,
             shadows: true,
+            exposure: 0.0,
+            tone_mapping: ToneMapping::None,
         }
     }
 }
@@ -221,6 +298,10 @@ impl Default for Material {
             transmit: [0.0; 3],
             ior: 1.5,
             absorption: [0.0; 3],
+            emission: [0.0; 3],
+            lights: true,
+            texture: None,
+            alpha: None,
         }
     }
 }
@@ -268,6 +349,7 @@ impl Default for Scene {
             ambient: [0.0; 3],
             lights: Vec::new(),
             light_names: Vec::new(),
+            light_forms: Vec::new(),
             materials: Vec::new(),
             objects: Vec::new(),
             parts: Vec::new(),

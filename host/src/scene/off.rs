@@ -109,6 +109,7 @@ fn read(input: Input<'_>) -> Result<Imported, SceneError> {
             },
             place: SourceSpan::of(&source.path),
             normals: Default::default(),
+            attributes: Default::default(),
         }],
         ..Scene::default()
     };

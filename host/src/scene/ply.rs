@@ -10,7 +10,10 @@ mod payload;
 use super::importer::{Importer, Input, stem};
 use super::polygon::{self, MAX_CONCAVE};
 use super::text::{Warnings, check_encoding};
-use super::{Imported, Material, Normals, Object, Scene, SceneError, Shape, SourceSpan};
+use super::{
+    Attributes, Imported, Material, Normals, Object, Scene, SceneError, Shape, SourceSpan,
+    linear_of_srgb,
+};
 use glam::DVec3;
 use gridel_core::Up;
 use payload::{Payload, Skipped};
@@ -59,6 +62,7 @@ fn read(input: Input<'_>) -> Result<Imported, SceneError> {
         }
     }
     payload.warn(&mut warnings);
+    let attributes = attributes(path, &vertices, &mut warnings);
     let (shape, normals) = mesh(path, &vertices, &faces, &strips, &mut warnings)?;
     let scene = Scene {
         materials: vec![Material::default()],
@@ -68,6 +72,7 @@ fn read(input: Input<'_>) -> Result<Imported, SceneError> {
             shape,
             place: SourceSpan::of(path),
             normals,
+            attributes,
         }],
         ..Scene::default()
     };
@@ -80,6 +85,25 @@ fn read(input: Input<'_>) -> Result<Imported, SceneError> {
         posed: None,
         copied: 0,
     })
+}
+
+/// The colors of vertices, if all have one.
+fn attributes(path: &Path, vertices: &[Vertex], warnings: &mut Warnings) -> Attributes {
+    let is_colored = |vertex: &Vertex| vertex.color.iter().all(|it| it.is_finite());
+    if !vertices.iter().all(is_colored) {
+        let has_channel = |vertex: &Vertex| vertex.color.iter().any(|it| it.is_finite());
+        if vertices.iter().any(has_channel) {
+            let sentence = "colors of vertices without red, green or blue are ignored";
+            warnings.add_times(SourceSpan::of(path), 1, sentence);
+        }
+        return Attributes::default();
+    }
+    let linear = |channel: f64| linear_of_srgb(channel.clamp(0.0, 1.0));
+    let colors = vertices.iter().map(|vertex| vertex.color.map(linear));
+    Attributes {
+        colors: colors.collect(),
+        ..Attributes::default()
+    }
 }
 
 fn mesh(
@@ -214,6 +238,8 @@ fn strip_triangles(corners: &[u32]) -> impl Iterator<Item = [u32; 3]> {
 struct Vertex {
     position: [f64; 3],
     normal: [f64; 3],
+    /// In sRGB, 0 to 1.
+    color: [f64; 3],
 }
 
 impl PropertyAccess for Vertex {
@@ -221,6 +247,7 @@ impl PropertyAccess for Vertex {
         Self {
             position: [f64::NAN; 3],
             normal: [f64::NAN; 3],
+            color: [f64::NAN; 3],
         }
     }
 
@@ -232,9 +259,18 @@ impl PropertyAccess for Vertex {
             "nx" => &mut self.normal[0],
             "ny" => &mut self.normal[1],
             "nz" => &mut self.normal[2],
+            "red" | "diffuse_red" => &mut self.color[0],
+            "green" | "diffuse_green" => &mut self.color[1],
+            "blue" | "diffuse_blue" => &mut self.color[2],
             _ => return PropertyAccessResult::Ignored,
         };
-        *component = match property {
+        let is_color = !name.starts_with('n') && name.len() > 1;
+        let most = match property {
+            Property::UChar(_) => 255.0,
+            Property::UShort(_) => 65_535.0,
+            _ => 1.0,
+        };
+        let value = match property {
             Property::Float(value) => value.into(),
             Property::Double(value) => value,
             Property::Char(value) => value.into(),
@@ -245,6 +281,7 @@ impl PropertyAccess for Vertex {
             Property::UInt(value) => value.into(),
             _ => return PropertyAccessResult::UnsupportedType,
         };
+        *component = if is_color { value / most } else { value };
         PropertyAccessResult::Set
     }
 }

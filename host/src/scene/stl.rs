@@ -254,6 +254,7 @@ impl Soup {
             shape,
             place,
             normals: Default::default(),
+            attributes: Default::default(),
         })
     }
 }

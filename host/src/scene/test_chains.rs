@@ -1,8 +1,8 @@
 //! Random chains of joints for tests.
 
 use super::{
-    Instance, Interpolation, Joint, Key, Material, Normals, Object, Part, Placement, Scene,
-    SourceSpan, Track, TrackTarget,
+    Attributes, Instance, Interpolation, Joint, Key, Material, Normals, Object, Part, Placement,
+    Scene, SourceSpan, Track, TrackTarget,
 };
 use crate::shape::{Shape, Sphere};
 use glam::{DQuat, DVec3, DVec4};
@@ -94,6 +94,7 @@ pub fn chain(random: &mut Random, all_scale: bool) -> Scene {
         name: String::new(),
         objects: vec![Object {
             normals: Normals::default(),
+            attributes: Attributes::default(),
             name: String::new(),
             material: 0,
             shape: Shape::Sphere(Sphere {

@@ -3,9 +3,11 @@
 //! An effect is what its scene calls for it with: a scene without that calls for nothing, and its blob has no byte
 //! and its program no instruction of it. Each effect has a row below, which takes away what calls for it.
 
-use super::{Diffuse, Material, Normals, Scene};
+use super::plain_lights::{remove_falloff, shrink_areas};
+use super::{Diffuse, Material, Normals, Object, Scene, ToneMapping};
 use gridel_core::Effects;
 use gridel_core::format::track::TrackTarget;
+use std::borrow::Cow;
 
 /// Takes away what calls for an effect.
 type Removal = fn(&mut Scene);
@@ -56,12 +58,62 @@ const REMOVALS: [(Effects, &str, Removal); Effects::NAMED.len()] = [
         },
     ),
     (Effects::SMOOTH, "meshes show their faces", |scene| {
-        let in_parts = scene.parts.iter_mut().flat_map(|part| &mut part.objects);
-        for object in scene.objects.iter_mut().chain(in_parts) {
-            object.normals = Normals::default();
-        }
+        each_object(scene, |object| object.normals = Normals::default());
     }),
+    (
+        Effects::VERTEX_COLORS,
+        "meshes have the colors of their materials alone",
+        |scene| each_object(scene, |object| object.attributes.colors.clear()),
+    ),
+    (
+        Effects::TEXTURE,
+        "surfaces have their diffuse color weighted by the mean of the image",
+        |scene| {
+            each_material(scene, |material| {
+                material.alpha = None;
+                if let Some(texture) = material.texture.take() {
+                    let mean = texture.image.mean();
+                    material.diffuse = material.diffuse.weighted(mean);
+                }
+            });
+        },
+    ),
+    (
+        Effects::ALPHA,
+        "textures are opaque, also where they were not there",
+        |scene| each_material(scene, |material| material.alpha = None),
+    ),
+    (
+        Effects::FALLOFF,
+        "lights are as bright everywhere as where the camera looks",
+        remove_falloff,
+    ),
+    (
+        Effects::AREA_LIGHT,
+        "lights shine from their middles, and shadows have hard edges",
+        shrink_areas,
+    ),
+    (
+        Effects::TONE_MAPPING,
+        "what is brighter than white is white",
+        |scene| scene.render.tone_mapping = ToneMapping::None,
+    ),
+    (
+        Effects::EMISSION,
+        "what glows lights others and is dark itself",
+        |scene| {
+            if let Cow::Owned(expanded) = scene.with_emitters() {
+                *scene = expanded;
+            }
+            each_material(scene, |material| material.emission = [0.0; 3]);
+        },
+    ),
 ];
+
+fn each_object(scene: &mut Scene, change: impl Fn(&mut Object)) {
+    let in_parts = scene.parts.iter_mut().flat_map(|part| &mut part.objects);
+    scene.objects.iter_mut().chain(in_parts).for_each(change);
+}
 
 fn each_material(scene: &mut Scene, change: impl Fn(&mut Material)) {
     scene.materials.iter_mut().for_each(change);
@@ -73,7 +125,7 @@ fn remove_tracks(scene: &mut Scene, target: TrackTarget) {
 
 impl Scene {
     /// Takes away all that calls for some effects: the blob has no byte of them, and the program no code. What calls for
-    /// others stays, but for what depends on them: without glass nothing absorbs.
+    /// others stays, but for what depends on them: without glass nothing absorbs, and without a falloff lights have no area.
     ///
     /// ```
     /// # let file = "[[object]]\nkind = 'sphere'\ncenter = [0, 0, 0]\nradius = 1\nname = 'ball'";
@@ -96,7 +148,7 @@ impl Scene {
     }
 }
 
-/// Leaves one effect out, and returns the names of the materials and objects that lose it; `None` for a scene that does
+/// Leaves one effect out, and returns the names of the lights, materials and objects that lose it; `None` for a scene that does
 /// not call for it.
 pub fn leave_out(scene: &mut Scene, effect: Effects) -> Option<Vec<String>> {
     let before = scene.clone();
@@ -108,7 +160,15 @@ pub fn leave_out(scene: &mut Scene, effect: Effects) -> Option<Vec<String>> {
     let materials = materials.filter(|(old, new)| old != new);
     let objects = before.all_objects().zip(scene.all_objects());
     let objects = objects.filter(|(old, new)| old != new);
-    let names = materials.map(|(old, _)| format!("material `{}`", old.name));
+    let lights = (0..before.lights.len()).filter(|&number| {
+        let form = |scene: &Scene| scene.light_forms.get(number).copied().flatten();
+        form(&before) != form(scene)
+    });
+    let lights = lights.map(|number| match before.light_names.get(number) {
+        Some(name) if !name.is_empty() => format!("light `{name}`"),
+        _ => format!("light {number}"),
+    });
+    let names = lights.chain(materials.map(|(old, _)| format!("material `{}`", old.name)));
     let names = names.chain(objects.map(|(old, _)| format!("object `{}`", old.name)));
     Some(names.collect())
 }
@@ -136,7 +196,7 @@ pub fn effect_named(name: &str) -> Option<Effects> {
 mod tests {
     use super::*;
     use crate::compile::{Options, compile};
-    use crate::scene::read;
+    use crate::scene::{Alpha, Image, Texture, read};
 
     /// Calls for every effect.
     const ALL: &str = "
@@ -144,6 +204,20 @@ mod tests {
         kind = 'point'
         position = [4, 5, 6]
         color = [1, 1, 1]
+        [render]
+        tone_mapping = 'aces'
+        [material.lamp]
+        emission = 2
+        [[object]]
+        kind = 'sphere'
+        center = [9, 9, 9]
+        radius = 1
+        material = 'lamp'
+        [[light]]
+        kind = 'rectangle'
+        corner = [4, 5, 6]
+        edges = [[1, 0, 0], [0, 1, 0]]
+        radiance = 9
         [material.all]
         diffuse = [0.5, 0.5, 0.5]
         highlight = [0.3, 0.3, 0.3]
@@ -162,12 +236,17 @@ mod tests {
         vertices = [[0, 0, 0], [2, 0, 0.1], [2, 2, 0], [0, 2, 0.1]]
         faces = [[0, 1, 2], [0, 2, 3]]
         smooth = 90
+        colors = ['#ff0000', '#00ff00', '#0000ff', '#ffffff']
         material = 'squares'
     ";
 
     fn scene() -> Scene {
         let imported = read("all.toml".as_ref(), ALL.into(), &Default::default());
-        imported.unwrap().scene
+        let mut scene = imported.unwrap().scene;
+        let image = Image::new("two", 2, 1, vec![[0, 0, 0, 255], [255; 4]]);
+        scene.materials[1].texture = image.map(|it| Texture::of(it.into()));
+        scene.materials[1].alpha = Some(Alpha::Blend(0.5));
+        scene
     }
 
     fn effects(scene: &Scene) -> Effects {
@@ -187,6 +266,8 @@ mod tests {
             assert_eq!(leave_out(&mut scene, effect), None, "{name}");
             let depends = match effect {
                 Effects::GLASS => Effects::ABSORPTION,
+                Effects::FALLOFF => Effects::AREA_LIGHT,
+                Effects::TEXTURE => Effects::ALPHA,
                 _ => Effects::NONE,
             };
             assert_eq!(

@@ -248,7 +248,7 @@ mod tests {
                 state.apply(Action::FewerSamples);
             }
             assert_eq!(state.settings().samples, 1);
-            for samples in [2, 4, 8, 16, 32, 64, 128, 256, 256] {
+            for samples in [2, 4, 8, 16, 32, 64, 128, 256, 512, 1024, 2048, 4096, 4096] {
                 state.apply(Action::MoreSamples);
                 assert_eq!(state.settings().samples, samples);
             }

@@ -10,8 +10,7 @@ const COLORS: &str = "v 0 0 0\nv 1 0 0 1 1 1\nv 0 1 0 1 0 0\nf 1 2 3\n";
 fn ignored_data_are_in_the_json_of_every_command() {
     let folder = Folder::new();
     folder.write("a.obj", COLORS.as_bytes());
-    let warning =
-        "a.obj:2: vertex colors are ignored; the surface has its material's color (and once more)";
+    let warning = "a.obj:2: vertices before the first with a color are white";
     let small = ["--size", "16x12"];
     for arguments in [
         &["build", "a.obj", "-o", "a.gridel"][..],
@@ -41,7 +40,7 @@ fn ignored_data_are_in_the_json_of_every_command() {
     let check = "[[check]]\nscene = \"a.obj\"\nbudget = { blob_bytes = 1_000_000 }\n";
     folder.write("check.toml", check.as_bytes());
     let report = folder.json(&["check", "check.toml"]).to_string();
-    assert!(report.contains("vertex colors are ignored"), "{report}");
+    assert!(report.contains("vertices before the first"), "{report}");
 }
 
 #[test]

@@ -305,6 +305,7 @@ fn ball() -> Workload {
         },
         place: scene::SourceSpan::default(),
         normals: Default::default(),
+        attributes: Default::default(),
     });
     Workload::of(BALL, scene)
 }

@@ -9,13 +9,15 @@ mod old;
 mod prevalidated;
 mod reasons;
 
-use glam::DVec3;
+use glam::{DVec2, DVec3};
 use gridel_core::format::BlobError;
 use gridel_core::{Format, Hit, List, NoCount, Number, Scene, Settings};
 use gridel_host::blob::Blob;
 use gridel_host::compile::{Options, compile};
 use gridel_host::render::{Job, render};
-use gridel_host::scene::{Camera, Diffuse, Light, Material, Shape};
+use gridel_host::scene::{
+    Alpha, Attributes, Camera, Diffuse, Image, Light, Material, Shape, Texture,
+};
 use gridel_host::shape::{Plane, Torus};
 use gridel_tests::effort::step;
 use gridel_tests::fuzz::{moves, sealed, speaks};
@@ -41,6 +43,15 @@ fn small_scene() -> gridel_host::scene::Scene {
         .objects
         .remove(0),
     );
+    let mesh = scene.objects.last_mut().expect("the mesh");
+    mesh.attributes = Attributes {
+        colors: vec![[1.0, 0.5, 0.1], [0.2; 3], [0.9; 3], [0.0, 1.0, 0.0]],
+        coordinates: [[0.0, 0.0], [1.5, 0.0], [0.0, 1.0], [1.0, -0.5]]
+            .map(DVec2::from_array)
+            .to_vec(),
+        triangles: vec![[0, 1, 2], [1, 3, 2]],
+    };
+    mesh.material = 2;
     let torus = Shape::Torus(Torus {
         center: DVec3::new(0.5, 0.4, 0.3),
         axis: DVec3::new(1.0, 2.0, 0.0),
@@ -66,7 +77,16 @@ fn small_scene() -> gridel_host::scene::Scene {
         absorption: [0.1, 0.2, 0.3],
         ..Material::default()
     });
-    for object in scene.objects.iter_mut().step_by(3) {
+    let pixels = (0..6).map(|it| [40 * it, 255 - it, 9, 255]);
+    let image = Image::new("six", 3, 2, pixels.collect()).expect("six pixels");
+    scene.materials.push(Material {
+        name: String::from("image"),
+        texture: Some(Texture::of(image.into())),
+        alpha: Some(Alpha::Blend(0.9)),
+        ..Material::default()
+    });
+    let plain = scene.objects.iter_mut().filter(|it| it.material == 0);
+    for object in plain.step_by(3) {
         object.material = 1;
     }
     let color = [0.8; 3];

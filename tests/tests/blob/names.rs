@@ -59,7 +59,7 @@ fn names_are_read_as_they_were_written() {
         let found = names.material(read.material_number(object));
         assert_eq!(found, scene.materials[number].name);
     }
-    assert_eq!(names.material(2), "");
+    assert_eq!(names.material(3), "");
     let lights = [0, 1, 2, u32::MAX].map(|light| names.light(light));
     assert_eq!(lights, ["", "sun", "", ""]);
     works(&read, 20);

@@ -7,8 +7,9 @@ use crate::plan::Plan;
 use crate::programs::{Linked, footprint};
 use crate::scenes::{self, Compiled};
 use crate::{boards, measured_in_full, parts};
-use gridel_core::{Effects, Format, Prevalidated, Structure};
+use gridel_core::{Effects, Format, Prevalidated, Settings, Structure};
 use gridel_host::measure::board::Board;
+use gridel_host::render::{Aov, Job, Values, render_aovs};
 use std::collections::BTreeMap;
 
 pub fn plan(plan: &mut Plan) {
@@ -42,6 +43,10 @@ pub fn plan(plan: &mut Plan) {
         .on(discovery)
         .in_full()
         .run(shapes_and_effects_are_paid_for_one_by_one);
+    plan.test("hits_and_lights_cost_what_is_recorded")
+        .on(board("mps2-an386"))
+        .in_full()
+        .run(hits_and_lights_cost_what_is_recorded);
     plan.test("small_code_fits_in_16_kib")
         .on(discovery)
         .in_full()
@@ -116,6 +121,40 @@ fn shapes_and_effects_are_paid_for_one_by_one() {
         "{with_everything} instructions with everything compiled in, {alone} without"
     );
 }
+
+/// Costs per hit of what looks colors up, and of a sample of a light, on a processor with `f32`: a table of the page of
+/// memory.
+fn hits_and_lights_cost_what_is_recorded() {
+    let here = board("mps2-an386");
+    let build = |scene| Build::new(here, Format::F32, Structure::DualSplit, scene);
+    let spent = |scene| build(scene).program("picture").run()["picture-instructions"];
+    let (parts, lamps) = (parts::scenes(), parts::lamps());
+    let colored = parts.iter().filter(|it| PER_HIT.contains(&it.name));
+    let mut figures = Figures::new();
+    for (base, scenes) in [
+        (&parts[0], colored.collect::<Vec<_>>()),
+        (&lamps[0], lamps[1..].iter().collect()),
+    ] {
+        let without = spent(base);
+        for scene in scenes {
+            let view = scene.blob.scene().expect("the compiler's own blob");
+            let job = Job::whole(Format::F32, Structure::DualSplit, Settings::of(&view));
+            let objects = render_aovs(&view, &job, &[Aov::Object]).expect("a picture");
+            let hits = match &objects[..] {
+                [Values::Numbers(all)] => all.iter().filter(|it| **it != u32::MAX).count() as u64,
+                _ => panic!("objects are numbers"),
+            };
+            let each = (spent(scene) - without).div_ceil(hits);
+            println!("{}: {each} instructions per hit, {hits} hits", scene.name);
+            let report = [("hit-instructions".into(), each)].into();
+            figures.add(&build(scene).to_string(), &report);
+        }
+    }
+    figures.check();
+}
+
+/// The effects whose costs per hit are measured.
+const PER_HIT: [&str; 2] = ["vertex-colors", "texture"];
 
 /// Costs of a product with every shape and effect on a board, fast or small, and on one of each kind
 /// of core with instances: by which the memory report scales.

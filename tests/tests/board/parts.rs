@@ -2,12 +2,12 @@
 //! small scene with and without it.
 
 use crate::scenes::{Compiled, compile_with, small};
-use glam::{DQuat, DVec3};
+use glam::{DQuat, DVec2, DVec3};
 use gridel_core::{Kind, Structure};
 use gridel_host::compile::Options;
 use gridel_host::scene::{
-    Camera, Diffuse, Instance, Light, Material, Normals, Object, Part, Placement, Scene, Shape,
-    SourceSpan,
+    Alpha, Camera, Diffuse, Image, Instance, Light, LightForm, LightShape, Material, Normals,
+    Object, Part, Placement, Scene, Shape, SourceSpan, Spot, Texture, ToneMapping,
 };
 use gridel_host::shape::{Cuboid, Sphere};
 use gridel_tests::shapes::examples;
@@ -21,7 +21,7 @@ const TRIANGLE: &str = Kind::Triangle.name();
 const INSTANCES: &str = "instances";
 
 /// A part's name, and how to require it.
-type Effects = [(&'static str, fn(&mut Scene)); 7];
+type Effects = [(&'static str, fn(&mut Scene)); 14];
 
 const EFFECTS: Effects = [
     ("shadow", |scene| scene.render.shadows = true),
@@ -43,7 +43,85 @@ const EFFECTS: Effects = [
     ("smooth", |scene| {
         scene.objects.iter_mut().for_each(make_smooth);
     }),
+    ("vertex-colors", |scene| {
+        scene.objects.iter_mut().for_each(paint);
+    }),
+    ("texture", |scene| hang(scene, |_| 255)),
+    ("alpha", |scene| {
+        hang(scene, |it| 4 * it);
+        scene.materials[0].alpha = Some(Alpha::CutOut(0.5));
+    }),
+    ("falloff", |scene| {
+        let spot = Spot {
+            direction: DVec3::new(0.4, 1.0, -1.0),
+            inner: 20.0,
+            outer: 40.0,
+        };
+        shine(scene, LightShape::Point, Some(spot));
+    }),
+    ("area-light", |scene| {
+        shine(scene, LightShape::Sphere { radius: 0.5 }, None)
+    }),
+    ("tone-mapping", |scene| {
+        scene.render.tone_mapping = ToneMapping::Aces;
+    }),
+    ("emission", |scene| {
+        scene.materials[0].emission = [0.2; 3];
+        scene.materials[0].lights = false;
+    }),
 ];
+
+/// Gives the light a form.
+fn shine(scene: &mut Scene, shape: LightShape, spot: Option<Spot>) {
+    scene.lights[0] = Light::Point {
+        position: DVec3::new(-1.0, -2.5, 3.0),
+        color: [9.0; 3],
+    };
+    scene.light_forms = vec![Some(LightForm {
+        shape,
+        spot,
+        ..LightForm::default()
+    })];
+}
+
+/// The base under a point light, and under lights with an area in its place.
+pub fn lamps() -> [Compiled; 4] {
+    let across = |length: f64| [DVec3::new(length, 0.0, 0.0), DVec3::new(0.0, 0.5, 0.0)];
+    let shapes = [
+        ("point-light", None),
+        ("sphere-light", Some(LightShape::Sphere { radius: 0.5 })),
+        (
+            "rectangle-light",
+            Some(LightShape::Rectangle {
+                edges: across(-0.5),
+            }),
+        ),
+        (
+            "disc-light",
+            Some(LightShape::Disc {
+                normal: DVec3::NEG_Z,
+                radius: 0.5,
+            }),
+        ),
+    ];
+    shapes.map(|(name, shape)| {
+        let mut scene = base();
+        shine(&mut scene, shape.unwrap_or(LightShape::Point), None);
+        if shape.is_none() {
+            scene.light_forms.clear();
+        }
+        compile(name, scene)
+    })
+}
+
+/// Gives all meshes a texture with this alpha.
+fn hang(scene: &mut Scene, alpha: fn(u8) -> u8) {
+    scene.objects.iter_mut().for_each(paper);
+    let pixels = (0..64).map(|it| [4 * it, 255 - it, 3 * (it & 15), alpha(it)]);
+    let image = Image::new("gradients", 8, 8, pixels.collect());
+    let image = image.expect("as many pixels");
+    scene.materials[0].texture = Some(Texture::of(image.into()));
+}
 
 /// The base, and a scene for every shape and effect beside it. Scenes for shapes have no effects,
 /// and those for effects no other shapes; absorption comes with the glass that it is in.
@@ -86,10 +164,15 @@ pub fn combinations() -> impl Iterator<Item = (Vec<&'static str>, Vec<&'static s
         ("triangle", "shadow smooth"),
         ("triangle", "shadow highlight smooth"),
         ("triangle", EVERY_SMOOTH),
+        ("triangle", "shadow falloff"),
+        ("triangle", "shadow falloff area-light"),
+        ("triangle", "shadow smooth falloff area-light"),
+        ("triangle", "shadow smooth texture"),
         ("triangle instances", "shadow"),
         ("sphere", "shadow"),
         ("sphere", "shadow highlight"),
         ("sphere", EVERY),
+        ("sphere", "shadow falloff area-light"),
         ("box", "shadow"),
         ("box", "shadow highlight"),
         ("disc", "shadow"),
@@ -168,6 +251,27 @@ fn make_smooth(object: &mut Object) {
     let face = (b - a).cross(c - a).normalize();
     let leaning = vertices.iter().map(|&it| 2.0 * face + (it - center));
     object.normals = Normals::given(leaning.collect(), triangles.clone(), (vertices, triangles));
+}
+
+/// Gives the vertices of a mesh colors.
+fn paint(object: &mut Object) {
+    if let Shape::Mesh { vertices, .. } = &object.shape {
+        let colors = (0..vertices.len()).map(|it| [0.3, 0.2 * (it % 5) as f64, 0.9]);
+        object.attributes.colors = colors.collect();
+    }
+}
+
+/// Gives the vertices of a mesh texture coordinates.
+fn paper(object: &mut Object) {
+    if let Shape::Mesh {
+        vertices,
+        triangles,
+    } = &object.shape
+    {
+        let coordinates = vertices.iter().map(|it| DVec2::new(it.x, it.y));
+        object.attributes.coordinates = coordinates.collect();
+        object.attributes.triangles.clone_from(triangles);
+    }
 }
 
 /// Moves all objects into a part, and places that.
@@ -278,6 +382,7 @@ fn object(shape: Shape) -> Object {
         name: String::from("thing"),
         material: 0,
         normals: Default::default(),
+        attributes: Default::default(),
         shape,
         place: SourceSpan::default(),
     }

@@ -8,8 +8,8 @@ use gridel_host::compile::{self, Options};
 use gridel_host::render::{Job, render};
 use gridel_host::sample;
 use gridel_host::scene::{
-    self, Camera, Instance, Light, Material, Normals, Object, Part, Placement, Scene, Shape,
-    SourceSpan,
+    self, Attributes, Camera, Instance, Light, Material, Normals, Object, Part, Placement, Scene,
+    Shape, SourceSpan,
 };
 use gridel_host::shape::Sphere;
 use gridel_tests::random::Random;
@@ -182,6 +182,7 @@ fn torus_mesh_scene([rings, around]: [u32; 2]) -> Scene {
             },
             place: SourceSpan::default(),
             normals: Default::default(),
+            attributes: Default::default(),
         }],
         ..Scene::default()
     }
@@ -257,6 +258,7 @@ pub fn thirty_two_balls() -> Compiled {
         name: String::from("ball"),
         objects: vec![Object {
             normals: Normals::default(),
+            attributes: Attributes::default(),
             name: String::from("ball"),
             material: 0,
             shape: Shape::Sphere(Sphere {

@@ -232,6 +232,32 @@ fn the_table_in_the_readme_is_measured() {
     assert_eq!(table, rows, "paste this:\n{rows}");
 }
 
+/// `certify` says what it does not know, and proves nothing of it.
+#[test]
+fn unknown_effects_are_rejected_by_name() {
+    for (light, effect) in [
+        (
+            "kind = 'point'\nposition = [3, 4, 5]\nfalloff = 'square'",
+            "falloff",
+        ),
+        (
+            "kind = 'sphere'\ncenter = [3, 4, 5]\nradius = 1\nradiance = 9",
+            "falloff",
+        ),
+    ] {
+        let text = format!(
+            "[[light]]\n{light}\n[[object]]\nkind = 'sphere'\ncenter = [0, 0, 0]\nradius = 1"
+        );
+        let imported =
+            gridel_host::scene::read("light.toml".as_ref(), text.into(), &Default::default());
+        let blob = scenes::blob(&imported.expect("a scene").scene, 24);
+        let scene = blob.scene().expect("a scene");
+        let unknown = World::of(&scene).err().map(|error| error.to_string());
+        let expected = format!("certify does not know the effect `{effect}` yet");
+        assert_eq!(unknown, Some(expected));
+    }
+}
+
 /// What a blob is and what firmware runs know nothing of certified pixels: the enclosing numbers are the host's, which
 /// the core and its firmware do not depend on.
 #[test]

@@ -157,6 +157,8 @@ fn program(part: &str) -> Vec<Footprint> {
     let parts = match part {
         "base" => vec!["triangle"],
         "absorption" => vec!["triangle", "glass", "absorption"],
+        "alpha" => vec!["triangle", "texture", "alpha"],
+        "area-light" => vec!["triangle", "falloff", "area-light"],
         "sphere, triangle, shadow" => vec!["triangle", "sphere", "shadow"],
         part => vec!["triangle", part],
     };
@@ -192,6 +194,13 @@ fn memory_page_shows_recorded_cost_of_shapes_and_effects() {
         ("absorption", "glass"),
         ("checker", "base"),
         ("smooth", "base"),
+        ("vertex-colors", "base"),
+        ("texture", "base"),
+        ("alpha", "texture"),
+        ("falloff", "base"),
+        ("area-light", "falloff"),
+        ("tone-mapping", "base"),
+        ("emission", "base"),
         ("sphere, triangle, shadow", "base"),
     ];
     let mut table = String::from(
@@ -215,6 +224,22 @@ fn memory_page_shows_recorded_cost_of_shapes_and_effects() {
         table += &format!("| {name} | {code} | {stack} | {work} |\n");
     }
     holds_table(MEMORY, "parts", &table);
+}
+
+#[test]
+fn memory_page_shows_recorded_cost_per_hit() {
+    let mut table = String::from("| what | instructions per hit |\n|---|---|\n");
+    for (name, scene) in [
+        ("colors of vertices", "vertex-colors"),
+        ("bilinear texture, a palette", "texture"),
+        ("light that is a sphere", "sphere-light"),
+        ("light that is a rectangle", "rectangle-light"),
+        ("light that is a disc", "disc-light"),
+    ] {
+        let each = on_board(scene, "mps2-an386", "f32")("hit-instructions");
+        table += &format!("| {name} | {each} |\n");
+    }
+    holds_table(MEMORY, "per-hit", &table);
 }
 
 #[test]

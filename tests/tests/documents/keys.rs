@@ -75,6 +75,7 @@ fn scene_page_lists_exactly_the_keys_of_tables() {
         ("Tracks", "[[track]]\nunknown = 1"),
         ("Materials", "[material.a]\nunknown = 1"),
         ("Checkerboard", "[material.a]\nchecker = { unknown = 1 }"),
+        ("Textures", "[material.a]\ntexture = { unknown = 1 }"),
         ("Groups", "[group.a]\nunknown = 1"),
         ("Parts", "[[part]]\nunknown = 1"),
         ("Instances", "[[instance]]\nunknown = 1"),

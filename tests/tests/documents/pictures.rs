@@ -5,7 +5,7 @@ use gridel_core::render::Pixel;
 use gridel_core::{Format, Rgb888, Settings, Structure};
 use gridel_host::compile::{Options, compile};
 use gridel_host::picture::{hash, write_png};
-use gridel_host::render::{Job, render};
+use gridel_host::render::{Job, Picture, render};
 use gridel_tests::scenes;
 use std::fs;
 
@@ -56,27 +56,44 @@ fn picture_of_the_board_is_the_one_that_fixed_renders() {
     };
     let job = Job::whole(Format::Fixed, Structure::DualSplit, settings);
     let picture = render(&scene, &job, &|| ()).expect("a picture");
-    let rows = picture.pixels.chunks(128);
-    let enlarged: Vec<u8> = rows
-        .flat_map(|row| std::iter::repeat_n(row, ENLARGED))
+    holds_picture("board.png", &picture, ENLARGED);
+}
+
+/// Whoever follows the link sees what textures and lights with an area look like.
+#[test]
+fn picture_of_the_studio_is_the_one_of_its_file() {
+    let scene = scenes::read(&scenes::fixture_folder().join("studio.toml"));
+    let blob = compile(&scene, &Options::default()).expect("compiles").blob;
+    let scene = blob.scene().expect("the compiler's blob");
+    let settings = Settings::of(&scene);
+    let job = Job::whole(Format::F32, Structure::DualSplit, settings);
+    let picture = render(&scene, &job, &|| ()).expect("a picture");
+    holds_picture("studio.png", &picture, 2);
+}
+
+/// Compares a file with a picture, whose pixels it shows as squares of some rows and columns.
+fn holds_picture(name: &str, picture: &Picture, enlarged: usize) {
+    let rows = picture.pixels.chunks(picture.width.into());
+    let bytes: Vec<u8> = rows
+        .flat_map(|row| std::iter::repeat_n(row, enlarged))
         .flatten()
-        .flat_map(|&linear| [Rgb888::encode(linear, None).0; ENLARGED])
+        .flat_map(|&linear| std::iter::repeat_n(Rgb888::encode(linear, None).0, enlarged))
         .flatten()
         .collect();
-    let side = 128 * ENLARGED as u32;
+    let size = [picture.width, picture.height].map(|it| u32::from(it) * enlarged as u32);
     let mut rendered = Vec::new();
-    write_png(&mut rendered, [side; 2], &enlarged, None).expect("a file in memory");
-    let path = repository().join("fixtures/pictures/board.png");
+    write_png(&mut rendered, size, &bytes, None).expect("a file in memory");
+    let path = repository().join("fixtures/pictures").join(name);
     if std::env::var_os("GRIDEL_BLESS").is_some_and(|value| value == "1") {
         fs::write(&path, &rendered).expect("the picture can be written to");
     }
     let shown = fs::read(&path).expect("the picture");
-    assert!(shown == rendered, "GRIDEL_BLESS=1 writes the picture");
+    assert!(shown == rendered, "GRIDEL_BLESS=1 writes {name}");
 }
 
 #[test]
-fn readme_shows_three_pictures() {
-    for name in ["glass-chess.png", "board.png", "accuracy.svg"] {
+fn readme_shows_the_pictures() {
+    for name in ["glass-chess.png", "board.png", "studio.png", "accuracy.svg"] {
         assert!(
             text(README).contains(&format!("fixtures/pictures/{name}")),
             "{name}"

@@ -1,7 +1,7 @@
 //! Tables of `core/FORMAT.md` that the core's declarations generate.
 
 use super::{FORMAT, holds_table, repository};
-use glam::DVec3;
+use glam::{DVec2, DVec3};
 use gridel_core::format::record::{Header, SectionEntry};
 use gridel_core::format::track::{Interpolation, TrackTarget};
 use gridel_core::format::{Kind, SectionKind};
@@ -37,6 +37,18 @@ fn blobs() -> Vec<Vec<u8>> {
         direction: DVec3::new(-1.0, -2.0, -0.5),
         color: [0.8; 3],
     }];
+    scene.lights.push(scene::Light::Point {
+        position: DVec3::new(3.0, 4.0, 5.0),
+        color: [9.0; 3],
+    });
+    scene.light_forms = vec![
+        None,
+        Some(scene::LightForm {
+            shape: scene::LightShape::Sphere { radius: 0.5 },
+            ..scene::LightForm::default()
+        }),
+    ];
+    scene.materials[0].emission = [2.0; 3];
     scene.tracks = vec![scene::Track {
         target: TrackTarget::CameraOrbit,
         index: 0,
@@ -48,6 +60,9 @@ fn blobs() -> Vec<Vec<u8>> {
         names: true,
         ..scenes::compact_options(16)
     };
+    let image = scene::Image::new("white", 1, 1, vec![[255; 4]]);
+    let image = image.expect("as many pixels");
+    scene.materials[0].texture = Some(scene::Texture::of(image.into()));
     let compiled = compile(&scene, &options).expect("compiles");
     blobs.push(compiled.blob.bytes().to_vec());
     let placed = |x: f64| scene::Instance {
@@ -87,6 +102,11 @@ fn bent_sheet() -> scene::Object {
         name: String::from("sheet"),
         material: 0,
         normals: scene::Normals::computed(&vertices, &triangles, 120.0),
+        attributes: scene::Attributes {
+            colors: vec![[0.5; 3]; 4],
+            coordinates: vec![DVec2::ZERO, DVec2::X, DVec2::Y],
+            triangles: vec![[0, 1, 2]; 2],
+        },
         shape: Shape::Mesh {
             vertices,
             triangles,
@@ -105,7 +125,7 @@ fn sections_of_blobs_have_the_strides_of_the_format() {
         let entries = rest.chunks_exact(size_of::<SectionEntry>());
         for entry in entries.take(header.section_count.into()) {
             let entry: SectionEntry = bytemuck::pod_read_unaligned(entry);
-            let kind = SectionKind::ALL[usize::from(entry.kind) - 1];
+            let kind = SectionKind::of_number(entry.kind).expect("a known kind");
             let stride = usize::from(entry.stride);
             let mut forms = kind.layout().records.iter();
             assert!(forms.any(|form| form.bytes == stride), "{kind:?} {stride}");

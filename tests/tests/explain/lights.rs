@@ -27,6 +27,7 @@ fn reasons_are_true() {
         }),
         place: SourceSpan::default(),
         normals: Default::default(),
+        attributes: Default::default(),
     });
     scene.lights = vec![
         Light::Directional {
@@ -114,4 +115,47 @@ fn light_at_the_point_itself_is_reported() {
     assert_eq!(above, [(0, LightOutcome::Lit), (1, LightOutcome::Lit)]);
     let (here, _) = falls_at(start);
     assert_eq!(here, [(0, LightOutcome::Here), (1, LightOutcome::Lit)]);
+}
+
+/// The point of an area, where a spot ends, and how light falls off.
+#[test]
+fn lights_with_forms_say_from_where_they_shine_and_how_they_fall_off() {
+    let text = "
+        [[light]]
+        kind = 'rectangle'
+        corner = [-1, 4, -1]
+        edges = [[2, 0, 0], [0, 0, 2]]
+        radiance = 9
+        [[light]]
+        kind = 'spot'
+        position = [0, 5, 0]
+        direction = [1, 0, 0]
+        [[object]]
+        kind = 'box'
+        min = [-5, -1, -5]
+        max = [5, 0, 5]";
+    let imported =
+        gridel_host::scene::read("lights.toml".as_ref(), text.into(), &Default::default());
+    let blob = scenes::blob(&imported.expect("a scene").scene, 24);
+    let scene = blob.scene().expect("a scene");
+    let ray = SceneRay {
+        origin: glam::DVec3::new(0.5, 3.0, 0.5),
+        direction: -glam::DVec3::Y,
+        tmin: 0.0,
+        tmax: f64::INFINITY,
+    };
+    for format in Format::ALL {
+        let explanation = explanation(&scene, format, Structure::Bvh, ray);
+        let [area, spot] = &explanation.samples[0].rays[0].lights[..] else {
+            panic!("two lights");
+        };
+        assert_eq!(area.outcome, LightOutcome::Lit, "{format:?}");
+        let [arriving, ..] = area.arriving.expect("it falls off");
+        // At most what the area brings from straight above, which is 9 * 4 / (pi * 16).
+        assert!(arriving > 0.3 && arriving < 0.72, "{arriving}");
+        let [x, y, z] = area.from_area.expect("a point of the area");
+        assert!((y - 4.0).abs() < 1e-3 && x.abs() <= 1.001 && z.abs() <= 1.001);
+        assert_eq!(spot.outcome, LightOutcome::Outside, "{format:?}");
+        assert_eq!(spot.from_area, None);
+    }
 }

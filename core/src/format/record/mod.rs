@@ -9,6 +9,7 @@ mod header;
 mod nodes;
 mod points;
 mod shading;
+mod texture;
 
 pub use candidates::{ApexDirection, ApexPoint, ApexWindow, Gridels};
 pub use header::{Header, SectionEntry};
@@ -17,6 +18,7 @@ pub use nodes::{
 };
 pub use points::{Sphere16, Sphere24, UnitBox, Vertex16, Vertex24};
 pub use shading::{Light, Material, View};
+pub use texture::{SurfaceMaps, Texture};
 
 /// The first bytes of every blob. The last two betray a file that was mangled as text.
 pub const MAGIC: [u8; 8] = *b"GRIDEL\x1a\n";

@@ -9,6 +9,15 @@ const RADIANCE: i64 = i32::MAX as i64;
 /// The ratio 1.
 const ONE: i64 = 1 << 30;
 
+impl View {
+    /// The [encoding](Self::encoding) of display values.
+    pub const DISPLAY_VALUES: u8 = 1;
+    /// The [encoding](Self::encoding) of tones that are mapped by the curve of Reinhard.
+    pub const REINHARD: u8 = 2;
+    /// The [encoding](Self::encoding) of tones that are mapped by a curve like that of ACES.
+    pub const ACES: u8 = 3;
+}
+
 records! {
     /// Camera, surroundings and rendering defaults.
     ///
@@ -52,10 +61,11 @@ records! {
         /// How often a ray may be reflected or refracted.
         #[valid(RayDepth: 0..=MAX_RAY_DEPTH as i64)]
         pub depth: u8,
-        /// 1 where all colors and lights are display values, which are added up and shown as they are; 0
-        /// where they are linear and the picture is encoded in sRGB.
-        #[valid(DisplayValues: 0..=1)]
-        pub display_values: u8,
+        /// 1 where all colors and lights are display values, which are added up and shown as they are. Else they are
+        /// linear and the picture is encoded in sRGB: 0 as it is, 2 and 3 after its tones were mapped, by the curve of
+        /// Reinhard or one like that of ACES.
+        #[valid(Encoding: 0..=3)]
+        pub encoding: u8,
     }
 
     /// A light.
@@ -69,8 +79,8 @@ records! {
         /// Radiance, 20 fraction bits.
         #[valid(Color: 0..=RADIANCE)]
         pub color: [i32; 3],
-        /// 0 for a point light, 1 for a directional one.
-        #[valid(Kind: 0..=1)]
+        /// 0 for a point light, 1 for a directional one. Else a light at a position with a
+        /// [form](crate::format::light_form::LightForm): its number times 4, and 2 for a point or 3 for an area.
         pub directional: u32,
     }
 
@@ -109,7 +119,8 @@ records! {
         /// Exponent of the highlight.
         #[valid(Shininess: 1..=1024)]
         pub shininess: u16,
-        /// Zero.
-        pub spare: u16,
+        /// Its maps: the lower 12 bits are the number of its [`SurfaceMaps`](crate::format::record::SurfaceMaps), and
+        /// bit 12 is set where these have a texture, and bit 13 where its alpha is used. 0 for none.
+        pub maps: u16,
     }
 }

@@ -56,7 +56,7 @@ pub struct PictureOptions {
     #[arg(long, value_name = "WxH", value_parser = size)]
     pub size: Option<[u16; 2]>,
 
-    /// Samples per pixel, 1 to 256 [default: that of the scene]
+    /// Samples per pixel, 1 to 4096 [default: that of the scene]
     #[arg(
         long,
         value_name = "N",

@@ -1,13 +1,13 @@
 //! How a scene file is read and compiled.
 
 use super::light::{LightChange, light};
-use super::values::{cutoff, first_given, quoted, vector};
+use super::values::{cutoff, exposure, first_given, quoted, vector};
 use super::view::ViewOptions;
 use clap::Args;
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 use glam::DVec3;
 use gridel_core::Effects;
-use gridel_host::scene::{self, Instances, MoleculeStyle, NormalsChoice};
+use gridel_host::scene::{self, Instances, MoleculeStyle, NormalsChoice, ToneMapping};
 use std::num::NonZeroUsize;
 
 /// Help for the argument that names a scene file.
@@ -35,6 +35,14 @@ pub struct SceneOptions {
     /// [default: that of the scene file]
     #[arg(long, value_name = "X", value_parser = cutoff, allow_hyphen_values = true)]
     pub cutoff: Option<f64>,
+
+    /// Multiply all light with 2 to the power of this, -32 to 32 [default: that of the scene file, or 0]
+    #[arg(long, value_name = "STOPS", value_parser = exposure, allow_hyphen_values = true)]
+    pub exposure: Option<f64>,
+
+    /// Map the brightness of pixels to the range of a display [default: that of the scene]
+    #[arg(long, value_name = "CURVE", value_parser = tone_mapping())]
+    pub tone_mapping: Option<ToneMapping>,
 
     #[command(flatten)]
     pub view: ViewOptions,
@@ -65,6 +73,11 @@ pub struct GeometryOptions {
     /// needs `--accel bvh` alone [default: 0]
     #[arg(long, value_name = "UNITS", value_parser = super::values::room)]
     pub room: Option<f64>,
+
+    /// Most bytes of all textures, such as 64K; they are stored with fewer colors or fewer texels to fit
+    /// [default: no limit]
+    #[arg(long, value_name = "N", value_parser = super::values::bytes)]
+    pub texture_bytes: Option<u64>,
 
     #[command(flatten)]
     pub import: ImportOptions,
@@ -135,6 +148,8 @@ impl SceneOptions {
     pub fn given_for_pictures(&self) -> Option<&'static str> {
         first_given([
             (self.cutoff.is_some(), "--cutoff"),
+            (self.exposure.is_some(), "--exposure"),
+            (self.tone_mapping.is_some(), "--tone-mapping"),
             (!self.lights.is_empty(), "--light"),
         ])
         .or(first_given(self.view.given()))
@@ -147,6 +162,7 @@ impl GeometryOptions {
         first_given([
             (self.lattice_bits.is_some(), "--lattice-bits"),
             (self.room.is_some(), "--room"),
+            (self.texture_bytes.is_some(), "--texture-bytes"),
             (self.import.allow_outside, "--allow-outside"),
             (self.import.instances.is_some(), "--instances"),
             (self.import.normals.is_some(), "--normals"),
@@ -325,6 +341,13 @@ fn normals(text: &str) -> Result<NormalsChoice, String> {
 fn effect() -> impl TypedValueParser<Value = Effects> {
     PossibleValuesParser::new(Effects::NAMED.map(|(_, name)| name))
         .try_map(|name| scene::effect_named(&name).ok_or("no such effect"))
+}
+
+fn tone_mapping() -> impl TypedValueParser<Value = ToneMapping> {
+    PossibleValuesParser::new(ToneMapping::ALL.map(ToneMapping::name)).try_map(|name| {
+        let mut all = ToneMapping::ALL.into_iter();
+        all.find(|it| it.name() == name).ok_or("no such curve")
+    })
 }
 
 fn instances() -> impl TypedValueParser<Value = Instances> {

@@ -30,6 +30,13 @@ pub fn cutoff(text: &str) -> Result<f64, String> {
     value.ok_or_else(|| String::from("write a number from 0 to 1, such as 0.002"))
 }
 
+/// Reads an exposure.
+pub fn exposure(text: &str) -> Result<f64, String> {
+    let value = text.parse::<f64>().ok();
+    let value = value.filter(|value| (-32.0..=32.0).contains(value));
+    value.ok_or_else(|| String::from("write a number from -32 to 32, such as 1.5"))
+}
+
 /// Reads numbers with commas between them.
 pub fn numbers<const N: usize>(text: &str) -> Option<[f64; N]> {
     let numbers: Result<Vec<f64>, _> = text.split(',').map(|part| part.trim().parse()).collect();

@@ -13,6 +13,7 @@ fn object(name: &str, shape: Shape) -> Object {
         shape,
         place: SourceSpan::of(Path::new("a.toml")),
         normals: Default::default(),
+        attributes: Default::default(),
     }
 }
 

@@ -6,16 +6,19 @@ use crate::scene::SceneError;
 use crate::scene::access::Access;
 use base64::Engine as _;
 use base64::engine::general_purpose::STANDARD;
+use gltf::Document;
 use gltf::accessor::sparse::IndexType;
 use gltf::accessor::{Accessor, DataType, Dimensions};
 use gltf::buffer::{Source, View};
-use gltf::{Buffer, Document};
 use std::collections::HashMap;
 use std::path::Path;
 use std::rc::Rc;
 
 /// Most vertices and triangles of a file, each instance counted: what a blob can hold.
 pub(super) const MOST: usize = 1 << 24;
+
+/// Reads a component of an element from its bytes.
+type Channel = fn(&[u8], usize) -> f64;
 
 /// The bytes of a file's buffers, in their order.
 pub(super) struct Buffers<'a> {
@@ -41,7 +44,9 @@ impl<'a> Buffers<'a> {
                     Source::Uri(uri) => match files.get(uri) {
                         Some(bytes) => Rc::clone(bytes),
                         None => {
-                            let bytes: Rc<[u8]> = fetch(path, &buffer, uri, access)?.into();
+                            let bytes: Rc<[u8]> =
+                                fetch(path, &format!("buffer {}", buffer.index()), uri, access)?
+                                    .into();
                             files.insert(uri.to_owned(), Rc::clone(&bytes));
                             bytes
                         }
@@ -101,9 +106,9 @@ impl<'a> Buffers<'a> {
             DataType::F32 => |bytes, k| f32::from_bits(narrow::<4>(&bytes[4 * k..])).into(),
             DataType::I8 => |bytes, k| (f64::from(bytes[k] as i8) / 127.0).max(-1.0),
             DataType::U8 => |bytes, k| f64::from(bytes[k]) / 255.0,
-            DataType::I16 => |bytes, k| {
-                (f64::from(narrow::<2>(&bytes[2 * k..]) as i16) / 32767.0).max(-1.0)
-            },
+            DataType::I16 => {
+                |bytes, k| (f64::from(narrow::<2>(&bytes[2 * k..]) as i16) / 32767.0).max(-1.0)
+            }
             DataType::U16 => |bytes, k| f64::from(narrow::<2>(&bytes[2 * k..])) / 65535.0,
             DataType::U32 => |_, _| f64::NAN,
         };
@@ -120,6 +125,59 @@ impl<'a> Buffers<'a> {
         }
         self.values(accessor, [0.0; N], |bytes| {
             std::array::from_fn(|component| number(bytes, component))
+        })
+    }
+
+    /// The bytes of a view; `None` where its buffer is shorter.
+    pub(super) fn view(&self, view: &View<'_>) -> Option<&[u8]> {
+        let bytes = self.bytes.get(view.buffer().index())?;
+        bytes.get(view.offset()..)?.get(..view.length())
+    }
+
+    /// Reads linear colors; alpha is 1 where there is none.
+    pub(super) fn colors(&self, accessor: &Accessor<'_>) -> Result<Vec<[f64; 4]>, SceneError> {
+        let count = match accessor.dimensions() {
+            Dimensions::Vec3 => 3,
+            Dimensions::Vec4 => 4,
+            _ => 0,
+        };
+        let number = self.channel(accessor, count > 0, "colors")?;
+        self.values(accessor, [0.0; 4], |bytes| {
+            std::array::from_fn(|k| if k < count { number(bytes, k) } else { 1.0 })
+        })
+    }
+
+    /// Reads texture coordinates.
+    pub(super) fn coordinates(&self, accessor: &Accessor<'_>) -> Result<Vec<[f64; 2]>, SceneError> {
+        let is_pair = accessor.dimensions() == Dimensions::Vec2;
+        let number = self.channel(accessor, is_pair, "texture coordinates")?;
+        let found = self.values(accessor, [0.0; 2], |bytes| {
+            [number(bytes, 0), number(bytes, 1)]
+        })?;
+        // Not a number, nor infinite: the file was warned of.
+        let finite = |it: f64| if it.is_finite() { it } else { 0.0 };
+        Ok(found.into_iter().map(|it| it.map(finite)).collect())
+    }
+
+    /// Reads a component of colors or coordinates: a float, or an integer that stands for 0 to 1.
+    fn channel(
+        &self,
+        accessor: &Accessor<'_>,
+        fits: bool,
+        what: &str,
+    ) -> Result<Channel, SceneError> {
+        let found: Option<Channel> = match accessor.data_type() {
+            DataType::F32 => Some(|bytes, k| f32::from_bits(narrow::<4>(&bytes[4 * k..])).into()),
+            DataType::U8 => Some(|bytes, k| f64::from(bytes[k]) / 255.0),
+            DataType::U16 => Some(|bytes, k| f64::from(narrow::<2>(&bytes[2 * k..])) / 65535.0),
+            _ => None,
+        };
+        found.filter(|_| fits).ok_or_else(|| {
+            let (kind, dimensions) = (accessor.data_type(), accessor.dimensions());
+            self.error(
+                accessor,
+                format!("is to hold {what} and holds {dimensions:?} of {kind:?}"),
+            )
         })
     }
 
@@ -251,15 +309,14 @@ fn narrow<const N: usize>(bytes: &[u8]) -> u32 {
 }
 
 /// Reads a URI: bytes in base 64, or a file beside the scene's.
-fn fetch(
+pub(super) fn fetch(
     path: &Path,
-    buffer: &Buffer<'_>,
+    what: &str,
     uri: &str,
     access: &Access,
 ) -> Result<Vec<u8>, SceneError> {
-    let wrong = |cause: String, remedy: &str| {
-        SceneError::new(path, format!("buffer {} {cause}", buffer.index()), remedy)
-    };
+    let wrong =
+        |cause: String, remedy: &str| SceneError::new(path, format!("{what} {cause}"), remedy);
     if let Some(data) = uri.strip_prefix("data:") {
         let encoded = data.split_once(";base64,").map(|(_, encoded)| encoded);
         return encoded
@@ -288,7 +345,7 @@ fn fetch(
     access.read(&file).map_err(|error| {
         wrong(
             format!("is in {}: {}", file.display(), error.cause),
-            "put the file of the buffer beside the scene file",
+            "put that file beside the scene file",
         )
     })
 }

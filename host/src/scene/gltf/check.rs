@@ -85,7 +85,12 @@ impl Importer<'_> {
         Ok(())
     }
 
-    pub(super) fn check_corner(&self, place: &str, corner: u32, vertices: usize) -> Result<(), SceneError> {
+    pub(super) fn check_corner(
+        &self,
+        place: &str,
+        corner: u32,
+        vertices: usize,
+    ) -> Result<(), SceneError> {
         if (corner as usize) < vertices {
             return Ok(());
         }

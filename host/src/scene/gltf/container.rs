@@ -1,7 +1,7 @@
 //! The container of glTF: text as it is, or the chunks of a binary file (glTF 2.0, chapter 4).
 
-use crate::scene::SourceSpan;
 use crate::scene::SceneError;
+use crate::scene::SourceSpan;
 use crate::scene::importer::extension;
 use crate::scene::text::{Warnings, check_encoding};
 use std::path::Path;

@@ -2,7 +2,7 @@
 
 use super::container::{self, Container};
 use crate::scene::text::Warnings;
-use crate::scene::{SourceSpan, SceneError};
+use crate::scene::{SceneError, SourceSpan};
 use gltf::Document;
 use gltf::json::camera::Type;
 use gltf::json::validation::{Checked, Error, Validate};

@@ -8,9 +8,7 @@ use super::Importer;
 use super::animation::{Motion, Way};
 use super::place::{parts, transform};
 use super::shared::Placed;
-use crate::scene::{
-    Interpolation, Joint, Key, LARGEST_SCALE, Placement, Track, TrackTarget,
-};
+use crate::scene::{Interpolation, Joint, Key, LARGEST_SCALE, Placement, Track, TrackTarget};
 use crate::table::printable;
 use glam::{DMat3, DMat4, DQuat, DVec3, DVec4};
 use gltf::Node;
@@ -189,7 +187,11 @@ fn least_between(first: &Key, second: &Key) -> f64 {
     // Where the slope is 0.
     let half = -b;
     let root = (half * half - 3.0 * c * out).sqrt();
-    let turns = [(half + root) / (3.0 * c), (half - root) / (3.0 * c), out / (-2.0 * b)];
+    let turns = [
+        (half + root) / (3.0 * c),
+        (half - root) / (3.0 * c),
+        out / (-2.0 * b),
+    ];
     let inside = turns.into_iter().filter(|s| (0.0..=1.0).contains(s));
     inside.map(at).fold(from.min(to), f64::min)
 }

@@ -10,11 +10,13 @@
 //! | shininess n | 2 / r^4 - 2, from 1 to 1024, the Blinn-Phong exponent of that roughness |
 //! | transmit | c t (1 - m) |
 //! | index of refraction | that of `KHR_materials_ior` where the glass has a volume, else 1: a pane |
+//! | emission | emissive factor times `KHR_materials_emissive_strength`: 1 is display white |
 //! | absorption | -ln(attenuation color) / attenuation distance |
 //!
-//! Where the alpha mode is `BLEND`, alpha is what of the material is there, and the rest is a pane.
+//! Where the alpha mode is `BLEND`, alpha is what of the material is there, and the rest is a pane; but for textures
+//! with alpha.
 
-use crate::scene::{Color, Diffuse, Material};
+use crate::scene::{Alpha, Color, Diffuse, Material};
 use gltf::material::AlphaMode;
 
 fn name(material: &gltf::Material<'_>) -> String {
@@ -30,12 +32,11 @@ fn name(material: &gltf::Material<'_>) -> String {
 /// Sentences on what of a material is ignored or taken otherwise.
 pub(super) fn ignored(material: &gltf::Material<'_>) -> impl Iterator<Item = String> {
     let name = name(material);
-    let glows = material.emissive_factor().iter().any(|&x| x > 0.0);
-    let masked = material.alpha_mode() == AlphaMode::Mask;
+    // The mask of a texture is another matter.
+    let masked = material.alpha_mode() == AlphaMode::Mask && !is_there(material);
     let index = material.ior().filter(|ior| !(1.0..=4.0).contains(ior));
     [
-        glows.then(|| format!("material {name:?} glows, which is ignored; it is not brighter")),
-        masked.then(|| format!("the alpha mask of material {name:?} is ignored; it is opaque")),
+        masked.then(|| format!("the alpha of material {name:?} is below its cutoff; it is opaque")),
         index.map(|ior| {
             let taken = taken_ior(ior);
             format!("the index of refraction {ior} of material {name:?} is taken as {taken}; it must be 1 to 4")
@@ -49,8 +50,30 @@ fn taken_ior(ior: f32) -> f64 {
     f64::from(ior).clamp(1.0, 4.0)
 }
 
-/// Reads a material.
-pub(super) fn read(material: &gltf::Material<'_>) -> Material {
+/// Whether the alpha of the base color alone is not cut out.
+fn is_there(material: &gltf::Material<'_>) -> bool {
+    let [.., alpha] = material.pbr_metallic_roughness().base_color_factor();
+    alpha >= material.alpha_cutoff().unwrap_or(0.5)
+}
+
+/// How the alpha of a texture is used that is not opaque everywhere.
+pub(super) fn alpha(material: &gltf::Material<'_>) -> Option<Alpha> {
+    let [.., factor] = material.pbr_metallic_roughness().base_color_factor();
+    let factor = f64::from(factor).clamp(0.0, 1.0);
+    match material.alpha_mode() {
+        AlphaMode::Opaque => None,
+        AlphaMode::Blend => Some(Alpha::Blend(factor)),
+        // All of it is cut out.
+        AlphaMode::Mask if !is_there(material) => Some(Alpha::Blend(0.0)),
+        AlphaMode::Mask => {
+            let cutoff = f64::from(material.alpha_cutoff().unwrap_or(0.5));
+            (cutoff > 0.0).then(|| Alpha::CutOut((cutoff / factor).min(1.0)))
+        }
+    }
+}
+
+/// Reads a material, whose alpha is used by a texture, or else makes a pane of it.
+pub(super) fn read(material: &gltf::Material<'_>, alpha_is_used: bool) -> Material {
     let name = name(material);
     let unit = |x: f32| f64::from(x).clamp(0.0, 1.0);
     let surface = material.pbr_metallic_roughness();
@@ -60,8 +83,8 @@ pub(super) fn read(material: &gltf::Material<'_>) -> Material {
     let through = material.transmission();
     let through = through.map_or(0.0, |through| unit(through.transmission_factor()));
     let there = match material.alpha_mode() {
-        AlphaMode::Blend => alpha,
-        AlphaMode::Opaque | AlphaMode::Mask => 1.0,
+        AlphaMode::Blend if !alpha_is_used => alpha,
+        _ => 1.0,
     };
     let times = |factor: f64| base.map(|channel| channel * factor * there);
     let power = 2.0 / (rough * rough * rough * rough).max(1e-9) - 2.0;
@@ -86,7 +109,14 @@ pub(super) fn read(material: &gltf::Material<'_>) -> Material {
         absorption: volume.map_or([0.0; 3], |volume| {
             absorption(volume.attenuation_color(), volume.attenuation_distance())
         }),
+        emission: material.emissive_factor().map(|factor| {
+            let strength = material.emissive_strength().unwrap_or(1.0);
+            f64::from(factor * strength).clamp(0.0, 2047.0)
+        }),
+        lights: true,
         name,
+        texture: None,
+        alpha: None,
     }
 }
 

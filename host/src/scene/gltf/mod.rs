@@ -3,10 +3,11 @@
 //!
 //! Each set of triangles of each node becomes an object, in the order of the nodes. A mesh that several
 //! nodes share is a [part](super::Part), or is copied where that costs little. Animations of cameras and lights become tracks. Meshes stand as they are
-//! at rest: skins, morph targets and animations of meshes are ignored, and so are normals, textures and
-//! vertex colors. A warning names those of them that a file has. Images are never read, wherever they lie.
+//! at rest: skins, morph targets and animations of meshes are ignored. Of textures only that of the base color is
+//! drawn. A warning names those of them that a file has. Images that nothing draws are not read.
 
 mod animation;
+mod attributes;
 mod buffers;
 mod check;
 mod container;
@@ -19,9 +20,12 @@ mod place;
 mod shared;
 mod view;
 
+use super::access::Access;
 use super::importer::{Choices, Importer as Entry, Input};
 use super::text::Warnings;
-use super::{Choice, Imported, Normals, Object, Scene, SceneError, Shape, SourceSpan};
+use super::{
+    Attributes, Choice, Image, Imported, Normals, Object, Scene, SceneError, Shape, SourceSpan,
+};
 use animation::Motion;
 use buffers::{Buffers, MOST};
 use glam::{DMat4, DVec3};
@@ -33,6 +37,7 @@ use place::transform;
 use shared::Shared;
 use std::collections::HashMap;
 use std::path::Path;
+use std::sync::Arc;
 use view::View;
 
 pub(super) const IMPORTER: Entry = Entry {
@@ -79,6 +84,8 @@ fn read(input: Input<'_>) -> Result<Imported, SceneError> {
         path,
         place: SourceSpan::of(path),
         buffers: Buffers::read(path, &document, blob, access)?,
+        access,
+        images: HashMap::new(),
         scene: Scene::default(),
         materials: HashMap::new(),
         view: View::with_camera(choice.camera.clone()),
@@ -100,7 +107,7 @@ fn read(input: Input<'_>) -> Result<Imported, SceneError> {
     }
     let Importer {
         mut scene,
-        view,
+        mut view,
         mut motion,
         place,
         mut warnings,
@@ -139,6 +146,8 @@ struct Importer<'a> {
     path: &'a Path,
     place: SourceSpan,
     buffers: Buffers<'a>,
+    access: &'a Access,
+    images: HashMap<usize, Option<Arc<Image>>>,
     scene: Scene,
     /// Materials in use, by their number in the file; the default has none.
     materials: HashMap<Option<usize>, usize>,
@@ -177,12 +186,8 @@ impl Importer<'_> {
         let with =
             |semantic: Semantic| parts().filter(|part| part.get(&semantic).is_some()).count();
         self.warn_of(
-            with(Semantic::Colors(0)),
-            "COLOR_0 of a primitive is ignored; its surface has its material's color",
-        );
-        self.warn_of(
-            document.textures().len(),
-            "textures are not drawn; the plain colors are used",
+            with(Semantic::Colors(1)),
+            "COLOR_1 of a primitive is ignored; COLOR_0 is read",
         );
         self.warn_of(
             document.skins().len(),
@@ -195,9 +200,11 @@ impl Importer<'_> {
         }
         let known = [
             "KHR_lights_punctual",
+            "KHR_materials_emissive_strength",
             "KHR_materials_ior",
             "KHR_materials_transmission",
             "KHR_materials_volume",
+            "KHR_texture_transform",
         ];
         let used = document.extensions_used();
         let others: Vec<_> = used.filter(|name| !known.contains(name)).collect();
@@ -349,35 +356,24 @@ impl Importer<'_> {
         let mut objects = Vec::with_capacity(parts);
         for part in mesh.primitives() {
             let place = place(mesh, &part);
-            let Some((shape, normals)) = self.mesh(&place, &part, world)? else {
+            let Some((shape, normals, attributes)) = self.mesh(&place, &part, world)? else {
                 continue;
             };
             let name = match parts {
                 1 => name.to_owned(),
                 _ => format!("{name} {}", part.index()),
             };
-            let material = self.material(&part);
+            let material = self.material(&part)?;
             objects.push(Object {
                 name,
                 material,
                 shape,
                 place: self.place.clone(),
                 normals,
+                attributes,
             });
         }
         Ok(objects)
-    }
-
-    fn material(&mut self, part: &Primitive<'_>) -> usize {
-        let material = part.material();
-        if let Some(&known) = self.materials.get(&material.index()) {
-            return known;
-        }
-        let made = material::read(&material);
-        let number = self.scene.materials.len();
-        self.scene.materials.push(made);
-        self.materials.insert(material.index(), number);
-        number
     }
 
     /// The triangles of a part of a mesh in world space, if it has any.
@@ -386,7 +382,7 @@ impl Importer<'_> {
         place: &str,
         part: &Primitive<'_>,
         world: &DMat4,
-    ) -> Result<Option<(Shape, Normals)>, SceneError> {
+    ) -> Result<Option<(Shape, Normals, Attributes)>, SceneError> {
         if !matches!(
             part.mode(),
             Mode::Triangles | Mode::TriangleStrip | Mode::TriangleFan
@@ -441,11 +437,12 @@ impl Importer<'_> {
             Some(accessor) => self.normals(place, &accessor, world, (&vertices, &triangles))?,
             None => Normals::default(),
         };
+        let attributes = self.attributes(place, part, (vertices.len(), &triangles))?;
         let shape = Shape::Mesh {
             vertices,
             triangles,
         };
-        Ok(Some((shape, normals)))
+        Ok(Some((shape, normals, attributes)))
     }
 }
 

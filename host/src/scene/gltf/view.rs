@@ -1,10 +1,13 @@
 //! The cameras and lights of a glTF file.
 //!
-//! Lights do not fall off with distance here. So each has the strength that it has in the middle of
-//! the scene, and all are scaled alike so that the strongest is 1, as a photographer would expose.
+//! Points and spots fall off with the square of the distance, and end at their range and their cones, as
+//! `KHR_lights_punctual` says. Intensities are in candela and lux, which span many powers of ten: so all are scaled
+//! alike, as a photographer would expose. The light that is strongest in the middle of the scene is 1 there.
 
 use super::animation::Motion;
-use crate::scene::{Camera, Color, Light, Object, RenderSettings, Scene, Shape, SourceSpan, Track};
+use crate::scene::{
+    Camera, Color, Light, LightForm, Object, RenderSettings, Scene, Shape, SourceSpan, Spot, Track,
+};
 use crate::table::printable;
 use glam::{DMat4, DVec3};
 use gltf::Node;
@@ -22,12 +25,20 @@ pub(super) struct View {
     cameras: usize,
     /// The names of those with a perspective.
     names: Vec<String>,
-    /// Each with its intensity and its name.
-    lights: Vec<(Light, f64, String)>,
+    lights: Vec<Lamp>,
     /// The node of each light.
     light_nodes: Vec<usize>,
-    has_spots: bool,
     has_broken: bool,
+    has_moving_spots: bool,
+}
+
+/// A light of the file.
+struct Lamp {
+    light: Light,
+    form: Option<LightForm>,
+    /// In candela, or lux.
+    intensity: f64,
+    name: String,
 }
 
 impl View {
@@ -94,21 +105,50 @@ impl View {
                 direction: world.transform_vector3(-DVec3::Z),
                 color,
             },
-            kind => {
-                self.has_spots |= matches!(kind, Kind::Spot { .. });
-                Light::Point {
-                    position: world.transform_point3(DVec3::ZERO),
-                    color,
-                }
+            _ => Light::Point {
+                position: world.transform_point3(DVec3::ZERO),
+                color,
+            },
+        };
+        let spot = match light.kind() {
+            Kind::Spot {
+                inner_cone_angle,
+                outer_cone_angle,
+            } => {
+                let degrees = |radians: f32| f64::from(radians).to_degrees();
+                // The range that the extension allows; more is an error there.
+                let outer = degrees(outer_cone_angle).clamp(0.1, 90.0);
+                Some(Spot {
+                    direction: world.transform_vector3(-DVec3::Z),
+                    inner: degrees(inner_cone_angle).clamp(0.0, outer),
+                    outer,
+                })
             }
+            _ => None,
+        };
+        let form = match made {
+            Light::Directional { .. } => None,
+            Light::Point { .. } => Some(LightForm {
+                range: light.range().map(f64::from).filter(|range| *range > 0.0),
+                spot,
+                ..LightForm::default()
+            }),
         };
         let aims = match made {
             Light::Directional { direction, .. } => direction.try_normalize().is_some(),
-            Light::Point { position, .. } => position.is_finite(),
+            Light::Point { position, .. } => {
+                let aims = |spot: Spot| spot.direction.try_normalize().is_some();
+                position.is_finite() && spot.is_none_or(aims)
+            }
         };
         if aims && intensity.is_finite() && intensity >= 0.0 {
             let name = node.name().or(light.name()).unwrap_or_default();
-            self.lights.push((made, intensity, name.to_owned()));
+            self.lights.push(Lamp {
+                light: made,
+                form,
+                intensity,
+                name: name.to_owned(),
+            });
             self.light_nodes.push(node.index());
         } else {
             self.has_broken = true;
@@ -134,16 +174,18 @@ impl View {
     }
 
     /// The tracks of camera and lights.
-    pub(super) fn tracks(&self, motion: &mut Motion, place: &SourceSpan) -> Vec<Track> {
+    pub(super) fn tracks(&mut self, motion: &mut Motion, place: &SourceSpan) -> Vec<Track> {
         let mut tracks = match self.camera {
             Some(_) => motion.camera(self.camera_node, place),
             None => Vec::new(),
         };
         // Without any strength there are no lights.
-        let lit = self.lights.iter().any(|(_, intensity, _)| *intensity > 0.0);
+        let lit = self.lights.iter().any(|lamp| lamp.intensity > 0.0);
         let lights = self.lights.iter().zip(&self.light_nodes).enumerate();
-        for (index, ((light, ..), &node)) in lights.filter(|_| lit) {
-            let directional = matches!(light, Light::Directional { .. });
+        for (index, (lamp, &node)) in lights.filter(|_| lit) {
+            let directional = matches!(lamp.light, Light::Directional { .. });
+            let is_spot = lamp.form.is_some_and(|form| form.spot.is_some());
+            self.has_moving_spots |= is_spot && motion.moves(node);
             tracks.extend(motion.light(node, index, directional, place));
         }
         tracks
@@ -161,8 +203,8 @@ impl View {
                 "the file has several cameras, of which the first is used; choose one with `--camera`",
             ),
             (
-                self.has_spots,
-                "spot lights shine in all directions, as point lights do",
+                self.has_moving_spots,
+                "spot lights that move keep the direction that they have at rest",
             ),
             (
                 self.has_broken,
@@ -174,20 +216,22 @@ impl View {
             }
         }
         scene.camera = self.camera;
-        let middle = middle(scene);
-        let strength = |(light, intensity, _): &(Light, f64, String)| match light {
-            Light::Directional { .. } => *intensity,
+        let (middle, size) = middle(scene);
+        // A light within the scene is measured from a distance that is usual there.
+        let nearest = (0.25 * size).max(1e-15);
+        let strength = |lamp: &Lamp| match lamp.light {
+            Light::Directional { .. } => lamp.intensity,
             Light::Point { position, .. } => {
-                intensity / position.distance_squared(middle).max(1e-30)
+                lamp.intensity / position.distance(middle).max(nearest).powi(2)
             }
         };
         let strongest = self.lights.iter().map(strength).fold(0.0, f64::max);
         if strongest == 0.0 {
             return;
         }
-        let exposed = |light: &(Light, f64, String)| {
-            let dim = |color: Color| color.map(|channel| channel * strength(light) / strongest);
-            match light.0 {
+        for lamp in self.lights {
+            let dim = |color: Color| color.map(|channel| channel * lamp.intensity / strongest);
+            scene.lights.push(match lamp.light {
                 Light::Directional { direction, color } => Light::Directional {
                     direction,
                     color: dim(color),
@@ -196,15 +240,15 @@ impl View {
                     position,
                     color: dim(color),
                 },
-            }
-        };
-        scene.lights = self.lights.iter().map(exposed).collect();
-        scene.light_names = self.lights.into_iter().map(|(.., name)| name).collect();
+            });
+            scene.light_names.push(lamp.name);
+            scene.light_forms.push(lamp.form);
+        }
     }
 }
 
-/// The middle of the box around all meshes.
-fn middle(scene: &Scene) -> DVec3 {
+/// The middle of the box around all meshes, and the length of its diagonal.
+fn middle(scene: &Scene) -> (DVec3, f64) {
     fn vertices(object: &Object) -> &[DVec3] {
         match &object.shape {
             Shape::Mesh { vertices, .. } => vertices,
@@ -222,5 +266,5 @@ fn middle(scene: &Scene) -> DVec3 {
     let (low, high) = own.chain(placed).fold(nowhere, |(low, high), vertex| {
         (low.min(vertex), high.max(vertex))
     });
-    (low + high) * 0.5
+    ((low + high) * 0.5, low.distance(high))
 }

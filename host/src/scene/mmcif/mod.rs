@@ -13,12 +13,12 @@ use super::importer::{Importer, Input};
 use super::molecule::{self, Atom, Element, End, Model, Parsed, Site};
 use super::text::{Source, Warnings};
 use super::{Imported, SceneError};
-use gridel_core::Up;
 use assembly::{GroupColumns, OperatorColumns};
 use cif::{Token, Tokens};
-use table::{Column, Table, category};
 use glam::DVec3;
+use gridel_core::Up;
 use std::collections::HashMap;
+use table::{Column, Table, category};
 
 pub(super) const IMPORTER: Importer = Importer {
     name: "mmCIF",
@@ -273,13 +273,15 @@ enum Columns {
 
 impl Columns {
     fn of(table: &Table<'_>) -> Option<Self> {
-        Some(match category(table.tags.first()?).to_ascii_lowercase().as_str() {
-            "atom_site" => Self::Atom(AtomColumns::of(table)),
-            "struct_conn" => Self::Bond(BondColumns::of(table)),
-            "pdbx_struct_assembly_gen" => Self::Group(GroupColumns::of(table)),
-            "pdbx_struct_oper_list" => Self::Operator(OperatorColumns::of(table)),
-            _ => return None,
-        })
+        Some(
+            match category(table.tags.first()?).to_ascii_lowercase().as_str() {
+                "atom_site" => Self::Atom(AtomColumns::of(table)),
+                "struct_conn" => Self::Bond(BondColumns::of(table)),
+                "pdbx_struct_assembly_gen" => Self::Group(GroupColumns::of(table)),
+                "pdbx_struct_oper_list" => Self::Operator(OperatorColumns::of(table)),
+                _ => return None,
+            },
+        )
     }
 }
 

@@ -58,6 +58,7 @@ pub(crate) fn draw(
                     }),
                     place: balls[near].place.clone(),
                     normals: Default::default(),
+                    attributes: Default::default(),
                 });
             }
         }
@@ -74,6 +75,7 @@ pub(crate) fn draw(
             }),
             place: ball.place,
             normals: Default::default(),
+            attributes: Default::default(),
         })
         .collect();
     objects.extend(sticks);

@@ -22,8 +22,8 @@ mod view;
 use super::importer::{Importer as Entry, Input};
 use super::text::{Source, Warnings};
 use super::{Color, Diffuse, Imported, Light, Material, Scene, SceneError};
-use gridel_core::Up;
 use glam::DVec3;
+use gridel_core::Up;
 use reader::{Line, Lines};
 use std::collections::{BTreeSet, HashMap};
 
@@ -246,7 +246,7 @@ impl<'a> Importer<'a> {
             mirror: [ks; 3],
             transmit: [r, g, b].map(|c| c * transmit),
             ior: ior.clamp(1.0, 4.0),
-            absorption: [0.0; 3],
+            ..Material::default()
         });
         self.materials.insert(key, index);
         let left = (1.0 - kd - ks - transmit).max(0.0);

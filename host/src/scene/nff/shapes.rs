@@ -1,10 +1,10 @@
 //! The objects of an NFF file.
 
-use crate::shape::{Cone, Sphere};
 use super::Importer;
 use super::reader::{Line, Lines};
 use crate::scene::polygon::{self, MAX_CONCAVE};
-use crate::scene::{Material, Normals, Object, SceneError, Shape};
+use crate::scene::{Attributes, Material, Normals, Object, SceneError, Shape};
+use crate::shape::{Cone, Sphere};
 use glam::DVec3;
 
 impl<'a> Importer<'a> {
@@ -206,6 +206,7 @@ impl<'a> Importer<'a> {
             shape,
             place: self.source.place(line.number),
             normals: Normals::default(),
+            attributes: Attributes::default(),
         });
     }
 }

@@ -1,7 +1,7 @@
-use crate::shape::{Cone, Sphere};
 use super::*;
 use crate::scene::test_scenes::{self, load};
 use crate::scene::{Imported, Shape};
+use crate::shape::{Cone, Sphere};
 use std::collections::BTreeMap;
 
 fn read(text: &str) -> Result<Imported, SceneError> {
@@ -17,7 +17,9 @@ const VIEW: &str = "v\nfrom 0 0 9\nat 0 0 0\nup 0 1 0\nangle 40\nhither 1\nresol
 #[test]
 fn patches_have_their_normals() {
     let patch = "pp 3\n0 0 0 0 0 1\n1 0 0 .5 0 1\n0 1 0 0 0 -1\np 3\n0 0 0\n1 0 0\n0 1 0\n";
-    let scene = read(&format!("{VIEW}f 1 1 1 1 0 0 0 0\n{patch}")).unwrap().scene;
+    let scene = read(&format!("{VIEW}f 1 1 1 1 0 0 0 0\n{patch}"))
+        .unwrap()
+        .scene;
     let [smooth, flat] = [0, 1].map(|number: usize| &scene.objects[number].normals);
     assert_eq!(smooth.triangles, [[0, 1, 2]]);
     assert_eq!(smooth.vectors[2], -DVec3::Z);

@@ -7,7 +7,7 @@
 //!
 //! Every `o`, `g` and change of `usemtl` starts a new mesh, in file order, which holds only the
 //! vertices that it uses. Faces are cut into triangles in file order. A face whose corners all have
-//! normals is smooth. Smoothing groups, textures and vertex colors are ignored, with a warning each. Zero-area triangles are kept for
+//! normals is smooth. Smoothing groups are ignored, with a warning. Colors of vertices are in sRGB. Zero-area triangles are kept for
 //! the compiler to report.
 
 mod mtl;
@@ -18,9 +18,10 @@ use super::importer::{Importer, Input};
 use super::polygon::{self, MAX_CONCAVE};
 use super::size::Size;
 use super::text::{Source, Warnings};
-use super::{Imported, Material, Normals, Object, Scene, SceneError, Shape};
+use super::texture::Images;
+use super::{Attributes, Color, Imported, Material, Normals, Object, Scene, SceneError, Shape};
+use glam::{DVec2, DVec3};
 use gridel_core::Up;
-use glam::DVec3;
 use parser::{NO_NORMAL, Parsed, Part};
 use std::collections::{HashMap, HashSet};
 
@@ -75,6 +76,8 @@ fn import(source: &Source, access: &Access) -> Result<Imported, SceneError> {
     let mut mesher = Mesher {
         vertices: &parsed.vertices,
         normals: &parsed.normals,
+        colors: &parsed.colors,
+        coordinates: &parsed.coordinates,
         seen: vec![(usize::MAX, 0); parsed.vertices.len()],
     };
     let mut scene = Scene::default();
@@ -85,13 +88,14 @@ fn import(source: &Source, access: &Access) -> Result<Imported, SceneError> {
             part.name.to_owned()
         };
         let material = materials.resolve(part, source, &mut warnings);
-        let (shape, normals) = mesher.mesh(number, part, source, &mut warnings)?;
+        let (shape, normals, attributes) = mesher.mesh(number, part, source, &mut warnings)?;
         scene.objects.push(Object {
             name,
             material,
             shape,
             place: source.place(part.line),
             normals,
+            attributes,
         });
     }
     scene.materials = materials.used;
@@ -136,6 +140,7 @@ fn read_libraries(
     warnings: &mut Warnings,
 ) -> Result<HashMap<String, Material>, SceneError> {
     let mut library = HashMap::new();
+    let mut images = Images::new(access);
     let mut seen = HashSet::new();
     for &(line, names) in &parsed.libraries {
         let allowed = |name: &str| {
@@ -157,7 +162,7 @@ fn read_libraries(
                 continue;
             }
             match Source::read(&path, access) {
-                Ok(file) => library.extend(mtl::read(&file, warnings)?),
+                Ok(file) => library.extend(mtl::read(&file, &mut images, warnings)?),
                 Err(error) => {
                     let cause = format!(
                         "the material file {name:?} {}; its materials are replaced",
@@ -202,6 +207,8 @@ impl<'a> Materials<'a> {
 struct Mesher<'a> {
     vertices: &'a [DVec3],
     normals: &'a [DVec3],
+    colors: &'a [Color],
+    coordinates: &'a [DVec2],
     /// For each vertex of the file, the last part that used it and its index there.
     seen: Vec<(usize, u32)>,
 }
@@ -213,11 +220,13 @@ impl Mesher<'_> {
         part: &Part<'_>,
         source: &Source,
         warnings: &mut Warnings,
-    ) -> Result<(Shape, Normals), SceneError> {
+    ) -> Result<(Shape, Normals, Attributes), SceneError> {
         let (mut vertices, mut triangles) = (Vec::new(), Vec::new());
         let mut corners = part.corners.as_slice();
         let mut of_corners = part.normals.as_slice();
         let mut normals = PartNormals::default();
+        let mut of_texture = part.coordinates.as_slice();
+        let mut attributes = Attributes::default();
         let (mut local, mut points) = (Vec::new(), Vec::new());
         for face in &part.faces {
             let (outline, rest) = corners.split_at(face.corners);
@@ -229,6 +238,7 @@ impl Mesher<'_> {
                 if seen.0 != number {
                     *seen = (number, vertices.len() as u32);
                     vertices.push(self.vertices[corner as usize]);
+                    attributes.colors.extend(self.colors.get(corner as usize));
                 }
                 local.push(seen.1);
                 points.push(self.vertices[corner as usize]);
@@ -253,6 +263,15 @@ impl Mesher<'_> {
                     warnings.add(source, face.line, sentence);
                 }
             }
+            if !of_texture.is_empty() {
+                let (outline, rest) = of_texture.split_at(face.corners);
+                of_texture = rest;
+                if !self.add_coordinates(&mut attributes, outline, &result.triangles) {
+                    let sentence =
+                        "a face has texture coordinates that the file lacks, and no texture";
+                    warnings.add(source, face.line, sentence);
+                }
+            }
             triangles.extend(
                 result
                     .triangles
@@ -265,7 +284,29 @@ impl Mesher<'_> {
             vertices,
             triangles,
         };
-        Ok((shape, normals))
+        Ok((shape, normals, attributes))
+    }
+
+    /// Adds the texture coordinates of a face's corners, which has these triangles, v downwards. Returns false if one of
+    /// them is missing.
+    fn add_coordinates(
+        &self,
+        attributes: &mut Attributes,
+        outline: &[u32],
+        triangles: &[[u32; 3]],
+    ) -> bool {
+        let found = outline.iter().map(|it| self.coordinates.get(*it as usize));
+        let Some(found) = found.collect::<Option<Vec<_>>>() else {
+            let none = triangles.iter().map(|_| Attributes::NONE);
+            attributes.triangles.extend(none);
+            return outline.contains(&NO_NORMAL);
+        };
+        let first = attributes.coordinates.len() as u32;
+        let down = found.into_iter().map(|it| DVec2::new(it.x, 1.0 - it.y));
+        attributes.coordinates.extend(down);
+        let named = triangles.iter().map(|it| it.map(|corner| first + corner));
+        attributes.triangles.extend(named);
+        true
     }
 }
 
@@ -285,7 +326,8 @@ impl PartNormals {
         let is_missing = outline.iter().any(|it| *it as usize >= all.len());
         let is_complete = is_flat || !is_missing;
         if is_flat || is_missing {
-            self.triangles.extend(triangles.iter().map(|_| Normals::FLAT));
+            self.triangles
+                .extend(triangles.iter().map(|_| Normals::FLAT));
             return is_complete;
         }
         let number = |corner: &u32| {

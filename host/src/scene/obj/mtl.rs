@@ -4,10 +4,12 @@
 //! have none. `illum` 3, 5 and 8 mirror with `Ks`. `illum` 4, 6, 7 and 9 are glass of index `Ni`
 //! that lets `Tf` through. Otherwise `d` below 1 (or `Tr` above 0, of which `d` takes precedence)
 //! is a pane that does not bend light: glass of index 1. `Ka` is not needed, because ambient light
-//! takes the diffuse color. Everything else is ignored, with a warning.
+//! takes the diffuse color. `Ke` is the radiance that the surface sends out. `map_Kd` weights `Kd`, with its options `-o`, `-s` and `-clamp`. Everything else is ignored, with a warning.
 
 use crate::scene::text::{Source, Warnings};
-use crate::scene::{Color, Diffuse, Material, SceneError};
+use crate::scene::texture::Images;
+use crate::scene::{Color, Diffuse, Material, SceneError, Texture, Wrap};
+use glam::{DAffine2, DVec2};
 
 /// One material of a file.
 #[derive(Default)]
@@ -22,11 +24,14 @@ struct Statements {
     dissolve: Option<f64>,
     transparency: Option<f64>,
     illumination: Option<u32>,
+    emission: Color,
+    texture: Option<Texture>,
 }
 
 /// Reads the materials by name; a later one replaces an earlier one of its name.
 pub(super) fn read(
     source: &Source,
+    images: &mut Images<'_>,
     warnings: &mut Warnings,
 ) -> Result<Vec<(String, Material)>, SceneError> {
     let mut all: Vec<Statements> = Vec::new();
@@ -77,20 +82,16 @@ pub(super) fn read(
             "d" => material.dissolve = Some(reader.number()?.clamp(0.0, 1.0)),
             "Tr" => material.transparency = Some(reader.number()?.clamp(0.0, 1.0)),
             "illum" => material.illumination = Some(reader.number()?.clamp(0.0, 255.0) as u32),
-            "Ke" if reader
-                .color(number, warnings)?
-                .is_none_or(|c| c != [0.0; 3]) =>
-            {
-                warnings.add(source, number, "Ke is ignored; the material does not glow");
-            }
-            "Ka" | "Ke" | "sharpness" => {}
+            "Ke" => material.emission = reader.color_up_to(2047.0, number, warnings)?.unwrap_or_default(),
+            "Ka" | "sharpness" => {}
+            "map_Kd" => material.texture = reader.texture(number, images, warnings)?,
             _ if keyword.starts_with("map_")
                 || ["bump", "disp", "decal", "refl", "norm"].contains(&keyword) =>
             {
                 warnings.add(
                     source,
                     number,
-                    "textures are not drawn; the plain colors are used",
+                    "textures other than map_Kd are not drawn; the plain colors are used",
                 );
             }
             _ => {
@@ -124,6 +125,8 @@ impl Statements {
             opacity = 1.0;
         }
         let diffuse = match (self.diffuse, default.diffuse) {
+            // What the texture weights.
+            (None, _) if self.texture.is_some() => [1.0; 3],
             (Some(color), _) | (None, Diffuse::Plain(color)) => color,
             (None, Diffuse::Checker { even, .. }) => even,
         };
@@ -158,7 +161,9 @@ impl Statements {
             },
             transmit: self.filter.unwrap_or([1.0; 3]).map(|c| c * (1.0 - opacity)),
             ior: density.clamp(1.0, 4.0),
-            absorption: [0.0; 3],
+            emission: self.emission,
+            texture: self.texture.clone(),
+            ..default
         }
     }
 }
@@ -186,9 +191,89 @@ impl Reader<'_> {
         }
     }
 
+    /// Reads a texture: options, then the name of a file, which may contain spaces.
+    fn texture(
+        &self,
+        line: usize,
+        images: &mut Images<'_>,
+        warnings: &mut Warnings,
+    ) -> Result<Option<Texture>, SceneError> {
+        let mut rest = self.line.strip_prefix(self.keyword).unwrap_or("").trim();
+        let (mut scale, mut offset, mut clamps) = (DVec2::ONE, DVec2::ZERO, false);
+        while rest.starts_with('-') {
+            let (option, behind) = rest.split_once(char::is_whitespace).unwrap_or((rest, ""));
+            rest = behind.trim_start();
+            let mut values = Vec::new();
+            let most = match option {
+                "-o" | "-s" | "-t" => 3,
+                "-mm" => 2,
+                _ => 1,
+            };
+            while values.len() < most {
+                let (word, behind) = rest.split_once(char::is_whitespace).unwrap_or((rest, ""));
+                let is_value = most == 1 || word.parse::<f64>().is_ok();
+                if !is_value || behind.is_empty() {
+                    break;
+                }
+                values.push(word);
+                rest = behind.trim_start();
+            }
+            let number = |k: usize, default: f64| {
+                let word: Option<&&str> = values.get(k);
+                word.and_then(|it| it.parse().ok()).unwrap_or(default)
+            };
+            match option {
+                "-s" => scale = DVec2::new(number(0, 1.0), number(1, 1.0)),
+                "-o" => offset = DVec2::new(number(0, 0.0), number(1, 0.0)),
+                "-clamp" => clamps = values == ["on"],
+                _ => {
+                    let sentence = format!("the option {option} of a texture is ignored");
+                    warnings.add(self.source, line, sentence);
+                }
+            }
+        }
+        if rest.is_empty() {
+            return Err(self.source.error_at(
+                self.line,
+                format!("{} names no file", self.keyword),
+                format!("write `{} FILE`", self.keyword),
+            ));
+        }
+        let name = rest.replace('\\', "/");
+        match images.file(&self.source.path, &name) {
+            Ok(image) => Ok(Some(Texture {
+                wrap: [if clamps { Wrap::Clamp } else { Wrap::Repeat }; 2],
+                // Coordinates have v downwards here, and upwards there.
+                transform: DAffine2::from_translation(DVec2::new(offset.x, 1.0 - offset.y))
+                    * DAffine2::from_scale(scale)
+                    * DAffine2::from_translation(DVec2::new(0.0, -1.0)),
+                ..Texture::of(image)
+            })),
+            // As with material files: it was often left behind.
+            Err([cause, _]) if cause.contains("cannot be read") => {
+                let sentence = format!("the texture {cause}; the plain color is used");
+                warnings.add(self.source, line, sentence);
+                Ok(None)
+            }
+            Err([cause, remedy]) => {
+                let error = self.source.error(format!("the texture {cause}"), remedy);
+                Err(error.at_line(line))
+            }
+        }
+    }
+
     /// Reads a color of one number (gray) or three, from 0 to 1; `None` where it is given in
     /// another way.
     fn color(&self, line: usize, warnings: &mut Warnings) -> Result<Option<Color>, SceneError> {
+        self.color_up_to(1.0, line, warnings)
+    }
+
+    fn color_up_to(
+        &self,
+        most: f64,
+        line: usize,
+        warnings: &mut Warnings,
+    ) -> Result<Option<Color>, SceneError> {
         if let Some(way @ (&"spectral" | &"xyz")) = self.values.first() {
             let sentence = format!("a color given as {way:?} is not read; the default is used");
             warnings.add(self.source, line, sentence);
@@ -209,14 +294,14 @@ impl Reader<'_> {
                 return Err(self.source.error_at(
                     self.line,
                     format!("{} has {} numbers", self.keyword, numbers.len()),
-                    format!("write `{} r g b`, with numbers from 0 to 1", self.keyword),
+                    format!("write `{} r g b`, with numbers from 0 to {most}", self.keyword),
                 ));
             }
         };
-        if color.iter().any(|c| !(0.0..=1.0).contains(c)) {
-            let sentence = format!("{} is limited to the range 0 to 1", self.keyword);
+        if color.iter().any(|c| !(0.0..=most).contains(c)) {
+            let sentence = format!("{} is limited to the range 0 to {most}", self.keyword);
             warnings.add(self.source, line, sentence);
         }
-        Ok(Some(color.map(|c| c.clamp(0.0, 1.0))))
+        Ok(Some(color.map(|c| c.clamp(0.0, most))))
     }
 }

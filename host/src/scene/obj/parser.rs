@@ -1,14 +1,18 @@
 //! The lines of an OBJ file: vertices, and parts of faces that share a name and a material.
 
-use crate::scene::SceneError;
 use crate::scene::text::{Source, Warnings};
-use glam::DVec3;
+use crate::scene::{Color, SceneError, linear_of_srgb};
+use glam::{DVec2, DVec3};
 
 #[derive(Default)]
 pub(super) struct Parsed<'a> {
     pub(super) vertices: Vec<DVec3>,
     /// Of any length.
     pub(super) normals: Vec<DVec3>,
+    /// Linear; empty, or one for each vertex.
+    pub(super) colors: Vec<Color>,
+    /// Texture coordinates, v upwards.
+    pub(super) coordinates: Vec<DVec2>,
     /// In file order; each has at least one face.
     pub(super) parts: Vec<Part<'a>>,
     /// The text behind each `mtllib`, with its line.
@@ -27,9 +31,11 @@ pub(super) struct Part<'a> {
     pub(super) corners: Vec<u32>,
     /// The normals of the corners, likewise; [`NO_NORMAL`] where there is none. Empty where no face has any.
     pub(super) normals: Vec<u32>,
+    /// The texture coordinates of the corners, likewise.
+    pub(super) coordinates: Vec<u32>,
 }
 
-/// Stands for the normal of a corner that has none.
+/// Stands for the normal, or the texture coordinates, of a corner that has none.
 pub(super) const NO_NORMAL: u32 = u32::MAX;
 /// Stands for a normal that the file cannot have.
 const MISSING_NORMAL: u32 = NO_NORMAL - 1;
@@ -41,8 +47,8 @@ pub(super) struct Face {
 }
 
 /// Statements about what is not drawn, or not needed to draw it.
-const PASSED_OVER: [&str; 9] = [
-    "vt", "vp", "mg", "bevel", "c_interp", "d_interp", "lod", "maplib", "call",
+const PASSED_OVER: [&str; 8] = [
+    "vp", "mg", "bevel", "c_interp", "d_interp", "lod", "maplib", "call",
 ];
 
 /// Reads all lines.
@@ -79,12 +85,22 @@ pub(super) fn parse<'a>(
             .unwrap_or(words.len());
         match words.first() {
             Some(&"v") => parser.vertex(number, line, &words[1..end], warnings)?,
+            Some(&"vt") => parser.texture_vertex(line, &words[1..end])?,
             Some(&"vn") => parser.normal(line, &words[1..end])?,
             Some(&"f") => parser.face(number, &words[1..end], warnings)?,
             _ => parser.statement(number, line.trim(), warnings),
         }
     }
     parser.finish(warnings)
+}
+
+/// Reads the index of a normal or of texture coordinates, of which the file has so many so far, counted from 0;
+/// [`MISSING_NORMAL`] for one that cannot be.
+fn number_of(index: &str, count: usize) -> u32 {
+    let index = index.parse::<i64>().ok().filter(|it| *it != 0);
+    let index = index.map(|it| if it < 0 { count as i64 + it } else { it - 1 });
+    let index = index.and_then(|it| u32::try_from(it).ok());
+    index.map_or(MISSING_NORMAL, |it| it.min(MISSING_NORMAL))
 }
 
 struct Parser<'a> {
@@ -123,15 +139,45 @@ impl<'a> Parser<'a> {
             )?;
         }
         // What may follow is a weight, which only curved surfaces use, or a color.
-        if words.len() >= 6 {
-            let sentence = "vertex colors are ignored; the surface has its material's color";
-            warnings.add(self.source, number, sentence);
-        }
+        let mut rest = Vec::with_capacity(words.len() - 3);
         for word in &words[3..] {
-            self.source
-                .number(word, "what follows the coordinates of a vertex")?;
+            rest.push(
+                self.source
+                    .number(word, "what follows the coordinates of a vertex")?,
+            );
+        }
+        let count = self.parsed.vertices.len();
+        if let [.., red, green, blue] = rest[..] {
+            if count > 0 && self.parsed.colors.is_empty() {
+                let sentence = "vertices before the first with a color are white";
+                warnings.add(self.source, number, sentence);
+            }
+            let linear = |channel: f64| linear_of_srgb(channel.clamp(0.0, 1.0));
+            self.parsed.colors.resize(count, [1.0; 3]);
+            self.parsed.colors.push([red, green, blue].map(linear));
+        } else if !self.parsed.colors.is_empty() {
+            let sentence = "a vertex without a color, behind others with one, is white";
+            warnings.add(self.source, number, sentence);
+            self.parsed.colors.push([1.0; 3]);
         }
         self.parsed.vertices.push(DVec3::from_array(position));
+        Ok(())
+    }
+
+    fn texture_vertex(&mut self, line: &'a str, words: &[&'a str]) -> Result<(), SceneError> {
+        let &[u, ..] = words else {
+            return Err(self.source.error_at(
+                line.trim(),
+                "texture coordinates are missing",
+                "write `vt u v`",
+            ));
+        };
+        let mut coordinates = [0.0; 2];
+        for (value, word) in coordinates.iter_mut().zip([Some(&u), words.get(1)]) {
+            let number = word.map(|word| self.source.number(word, "a texture coordinate"));
+            *value = number.transpose()?.unwrap_or(0.0);
+        }
+        self.parsed.coordinates.push(DVec2::from_array(coordinates));
         Ok(())
     }
 
@@ -159,13 +205,16 @@ impl<'a> Parser<'a> {
     ) -> Result<(), SceneError> {
         let mut corners = Vec::with_capacity(words.len());
         let mut normals = Vec::new();
+        let mut coordinates = Vec::new();
         for word in words {
             let mut indices = word.split('/');
             corners.push(self.corner(word, indices.next().unwrap_or(""))?);
-            normals.push(match indices.nth(1) {
+            let mut next = |count: usize| match indices.next() {
                 None | Some("") => NO_NORMAL,
-                Some(index) => self.normal_of(index),
-            });
+                Some(index) => number_of(index, count),
+            };
+            coordinates.push(next(self.parsed.coordinates.len()));
+            normals.push(next(self.parsed.normals.len()));
         }
         if corners.len() < 3 {
             let sentence = format!(
@@ -183,6 +232,7 @@ impl<'a> Parser<'a> {
                 faces: Vec::new(),
                 corners: Vec::new(),
                 normals: Vec::new(),
+                coordinates: Vec::new(),
             });
             self.fresh = false;
         }
@@ -194,6 +244,10 @@ impl<'a> Parser<'a> {
             if !part.normals.is_empty() || normals.iter().any(|it| *it != NO_NORMAL) {
                 part.normals.resize(part.corners.len(), NO_NORMAL);
                 part.normals.extend(normals);
+            }
+            if !part.coordinates.is_empty() || coordinates.iter().any(|it| *it != NO_NORMAL) {
+                part.coordinates.resize(part.corners.len(), NO_NORMAL);
+                part.coordinates.extend(coordinates);
             }
             part.corners.extend(corners);
         }
@@ -223,15 +277,6 @@ impl<'a> Parser<'a> {
                 Ok((index - 1) as u32)
             }
         }
-    }
-
-    /// Reads the index of a normal, counted from 0; [`MISSING_NORMAL`] for one that cannot be.
-    fn normal_of(&self, index: &str) -> u32 {
-        let count = self.parsed.normals.len() as i64;
-        let index = index.parse::<i64>().ok().filter(|it| *it != 0);
-        let index = index.map(|it| if it < 0 { count + it } else { it - 1 });
-        let index = index.and_then(|it| u32::try_from(it).ok());
-        index.map_or(MISSING_NORMAL, |it| it.min(MISSING_NORMAL))
     }
 
     fn statement(&mut self, number: usize, line: &'a str, warnings: &mut Warnings) {
@@ -284,7 +329,8 @@ impl<'a> Parser<'a> {
         if let Some(line) = self.smoothing
             && self.parsed.parts.iter().all(|part| part.normals.is_empty())
         {
-            let sentence = "smoothing groups are ignored; for smooth normals use `--normals smooth=40`";
+            let sentence =
+                "smoothing groups are ignored; for smooth normals use `--normals smooth=40`";
             warnings.add(self.source, line, sentence);
         }
         Ok(self.parsed)

@@ -1,6 +1,6 @@
 use super::*;
 use crate::scene::test_scenes::{self, load, load_allowing_outside, mesh};
-use crate::scene::{Diffuse, Imported};
+use crate::scene::{Diffuse, Imported, Wrap, linear_of_srgb};
 use std::path::Path;
 
 fn read(text: &str) -> Result<Imported, SceneError> {
@@ -66,7 +66,8 @@ fn weights_colors_and_lines_are_no_geometry() {
     assert_eq!(
         warnings,
         [
-            "t.obj:2: vertex colors are ignored; the surface has its material's color",
+            "t.obj:2: vertices before the first with a color are white",
+            "t.obj:3: a vertex without a color, behind others with one, is white",
             "t.obj:4: points and lines have no surface and are skipped (and once more)"
         ]
     );
@@ -138,7 +139,9 @@ fn concave_faces_keep_their_area() {
 fn material(text: &str) -> (Material, Vec<String>) {
     let mut warnings = Warnings::default();
     let source = Source::from_bytes(Path::new("t.mtl"), text.into());
-    let mut all = mtl::read(&source, &mut warnings).unwrap();
+    let access = Access::of(Path::new("t.mtl"), false);
+    let mut images = Images::new(&access);
+    let mut all = mtl::read(&source, &mut images, &mut warnings).unwrap();
     (all.remove(0).1, warnings.into_sentences())
 }
 
@@ -174,7 +177,9 @@ fn materials() {
 fn material_faults_name_their_own_file() {
     let fault = |text: &str| {
         let source = Source::from_bytes(Path::new("t.mtl"), text.into());
-        mtl::read(&source, &mut Warnings::default())
+        let access = Access::of(Path::new("t.mtl"), false);
+        let mut images = Images::new(&access);
+        mtl::read(&source, &mut images, &mut Warnings::default())
             .unwrap_err()
             .to_string()
     };
@@ -298,7 +303,10 @@ fn faces_are_smooth_where_all_corners_have_normals() {
     let normals = &scene.objects[0].normals;
     let flat = Normals::FLAT;
     // The file's face of its own normals is flat, too.
-    assert_eq!(normals.triangles, [[0, 1, 2], flat, flat, flat, flat, flat, flat]);
+    assert_eq!(
+        normals.triangles,
+        [[0, 1, 2], flat, flat, flat, flat, flat, flat]
+    );
     assert_eq!(normals.vectors[0], DVec3::Z);
     assert!((normals.vectors[1] - DVec3::new(1.0, 0.0, 1.0).normalize()).length() < 1e-15);
     assert_eq!(
@@ -313,16 +321,12 @@ fn faces_are_smooth_where_all_corners_have_normals() {
 }
 
 #[test]
-fn ignored_smoothing_and_colors_cause_one_warning_with_a_count() {
+fn ignored_smoothing_causes_one_warning() {
     let colored = "v 0 0 0 1 0 0\nv 1 0 0 0 1 0\nv 0 1 0 0 0 1\n";
     let text = format!("{colored}vn 0 0 1\nvn 0 0 1\ns off\ns 0\ns 1\nusemap off\nf 1 2 3\n");
     assert_eq!(
         read(&text).unwrap().warnings,
-        [
-            "t.obj:1: vertex colors are ignored; the surface has its material's color (and 2 \
-             times more)",
-            "t.obj:8: smoothing groups are ignored; for smooth normals use `--normals smooth=40`",
-        ]
+        ["t.obj:8: smoothing groups are ignored; for smooth normals use `--normals smooth=40`",]
     );
 }
 
@@ -380,4 +384,112 @@ fn parts_with_a_long_name_are_rejected_with_the_figure() {
         "{error}"
     );
     assert!(error.line.is_some());
+}
+
+#[test]
+fn colors_of_vertices_are_taken_from_srgb() {
+    let text = "v 0 0 0 1 0 0.5\nv 1 0 0 0 2 0\nv 0 1 0 .5 -1 1 0 0 1\nv 9 9 9 1 1 1\nf 1 2 3\n";
+    let imported = read(text).unwrap();
+    let colors = &imported.scene.objects[0].attributes.colors;
+    let half = linear_of_srgb(0.5);
+    assert_eq!(
+        *colors,
+        [[1.0, 0.0, half], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]]
+    );
+    assert_eq!(imported.warnings, [] as [&str; 0]);
+}
+
+/// A square with a material file of one material, and a texture of two by one texels.
+fn textured(faces: &str, material: &str) -> Result<Imported, SceneError> {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("t.obj");
+    let corners = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nvt 0 0\nvt 1 0\nvt 1 1\nvt 0\n";
+    let text = format!("mtllib t.mtl\n{corners}usemtl m\n{faces}");
+    std::fs::write(&path, text).unwrap();
+    std::fs::write(
+        folder.path().join("t.mtl"),
+        format!("newmtl m\n{material}\n"),
+    )
+    .unwrap();
+    let pixels = [[255, 0, 0, 255], [0, 0, 255, 255]];
+    let image = crate::scene::image::tests::png_of(2, 1, &pixels);
+    std::fs::write(folder.path().join("two colors.png"), image).unwrap();
+    std::fs::write(folder.path().join("broken.png"), "PNG").unwrap();
+    load(&path)
+}
+
+#[test]
+fn textures_are_read_with_their_options() {
+    let square = "f 1/1 2/2 3/3 4/4\n";
+    let plain = textured(square, "map_Kd two colors.png").unwrap();
+    let (object, material) = (&plain.scene.objects[0], &plain.scene.materials[0]);
+    assert_eq!(material.diffuse, Diffuse::Plain([1.0; 3]));
+    let texture = material.texture.as_ref().unwrap();
+    assert_eq!((texture.image.size(), texture.bilinear), ([2, 1], true));
+    assert_eq!(texture.wrap, [Wrap::Repeat; 2]);
+    // v points up in the file, and down here.
+    let placed = object.attributes.placed_on(Some(texture));
+    let found: Vec<_> = placed.coordinates.iter().map(|it| it.to_array()).collect();
+    assert_eq!(found, [[0.0, 1.0], [1.0, 1.0], [1.0, 0.0], [0.0, 1.0]]);
+    assert_eq!(placed.triangles, [[0, 1, 2], [0, 2, 3]]);
+    assert_eq!(plain.warnings, [] as [&str; 0]);
+
+    let statement = "Kd .5 .5 .5\nmap_Kd -s 2 3 1 -clamp on -o 0.25 0.5 -bm 1 two colors.png";
+    let placed = textured(square, statement).unwrap();
+    let material = &placed.scene.materials[0];
+    assert_eq!(material.diffuse, Diffuse::Plain([0.5; 3]));
+    let texture = material.texture.as_ref().unwrap();
+    assert_eq!(texture.wrap, [Wrap::Clamp; 2]);
+    let attributes = placed.scene.objects[0].attributes.placed_on(Some(texture));
+    // u becomes 2 u + 0.25; v, upwards, 3 v + 0.5.
+    let corner = attributes.coordinates[2];
+    assert!(
+        (corner - DVec2::new(2.25, 1.0 - 3.5)).length() < 1e-12,
+        "{corner}"
+    );
+    assert_eq!(placed.warnings.len(), 1);
+    assert!(placed.warnings[0].ends_with("the option -bm of a texture is ignored"));
+}
+
+#[test]
+fn faces_without_texture_coordinates_have_none() {
+    let faces = "f 1/1 2/2 3/3\nf 1 3 4\nf 1/1 2/2 3/9\nf -4/-4 -2/-2 -1/-1\n";
+    let imported = textured(faces, "map_Kd two colors.png").unwrap();
+    let attributes = &imported.scene.objects[0].attributes;
+    let none = Attributes::NONE;
+    assert_eq!(attributes.triangles, [[0, 1, 2], none, none, [3, 4, 5]]);
+    let [warning] = &imported.warnings[..] else {
+        panic!("{:?}", imported.warnings);
+    };
+    assert!(
+        warning.ends_with(
+            "t.obj:13: a face has texture coordinates that the file lacks, and no texture"
+        ),
+        "{warning}"
+    );
+}
+
+#[test]
+fn textures_that_cannot_be_read_are_named() {
+    let square = "f 1/1 2/2 3/3 4/4\n";
+    let missing = textured(square, "Kd .5 .5 .5\nmap_Kd none.png").unwrap();
+    assert_eq!(missing.scene.materials[0].texture, None);
+    let [warning] = &missing.warnings[..] else {
+        panic!("{:?}", missing.warnings);
+    };
+    assert!(
+        warning.contains("t.mtl:3") && warning.contains("none.png"),
+        "{warning}"
+    );
+    for (statement, expected) in [
+        ("map_Kd broken.png", "is neither PNG nor JPEG"),
+        ("map_Kd ../two.png", "outside of the scene's folder"),
+        ("map_Kd", "names no file"),
+    ] {
+        let error = textured(square, statement).unwrap_err().to_string();
+        assert!(
+            error.contains("t.mtl:2") && error.contains(expected),
+            "{error}"
+        );
+    }
 }

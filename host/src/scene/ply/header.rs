@@ -115,7 +115,12 @@ pub(super) fn check(path: &Path, element: &ElementDef, bytes: usize) -> Result<(
     }
     for property in element.properties.values() {
         let expected = match (&*element.name, &*property.name, &property.data_type) {
-            ("vertex", "x" | "y" | "z" | "nx" | "ny" | "nz", PropertyType::List(..)) => "a number",
+            (
+                "vertex",
+                "x" | "y" | "z" | "nx" | "ny" | "nz" | "red" | "green" | "blue" | "diffuse_red"
+                | "diffuse_green" | "diffuse_blue",
+                PropertyType::List(..),
+            ) => "a number",
             ("face" | "tristrips", "vertex_index" | "vertex_indices", found) => match found {
                 PropertyType::List(_, entry) if range(entry).is_some() => continue,
                 _ => "a list of whole numbers",
@@ -172,7 +177,7 @@ fn ignored(path: &Path, bytes: &[u8], warnings: &mut Warnings) {
                 let sentence = "textures are not drawn; the plain colors are used";
                 warnings.add_times(place, 1, sentence);
             }
-            ["property", .., name] if ["vertex", "face"].contains(&&*element) && count > 0 => {
+            ["property", .., name] if element == "face" && count > 0 => {
                 let is_it = |(names, ..): &(&[&str], _, _)| names.contains(&name);
                 let Some(kind) = IGNORED.iter().position(is_it) else {
                     continue;

@@ -37,8 +37,8 @@ fn faces_become_triangles() {
     assert_eq!(triangles, [[0, 1, 2], [0, 2, 3]]);
     assert_eq!(imported.scene.objects[0].name, "thing");
     assert_eq!(imported.warnings.len(), 3, "{:?}", imported.warnings);
-    assert!(imported.warnings[0].contains("thing.ply:8: the color of a vertex is ignored; the surface has one color (and 3 times more)"));
-    assert!(imported.warnings[1].contains("elements \"wheel\" are ignored"));
+    assert!(imported.warnings[0].contains("elements \"wheel\" are ignored"));
+    assert!(imported.warnings[1].contains("colors of vertices without red, green or blue"));
     assert!(imported.warnings[2].contains("a face has fewer than three vertices"));
 }
 
@@ -286,7 +286,7 @@ fn with_properties(vertex: &str, face: &str) -> String {
 }
 
 #[test]
-fn colors_and_textures_are_warned_of() {
+fn colors_of_faces_and_textures_are_warned_of() {
     let text = with_properties(
         "property float nx\nproperty float ny\nproperty float nz\nproperty uchar red\n",
         "property uchar red\n",
@@ -300,7 +300,6 @@ fn colors_and_textures_are_warned_of() {
         ends,
         [
             "3: textures are not drawn; the plain colors are used",
-            "11: the color of a vertex is ignored; the surface has one color (and 2 times more)",
             "14: the color of a face is ignored; the surface has one color",
         ]
     );
@@ -351,4 +350,26 @@ fn vertices_bring_their_normals() {
             .normals
             .is_flat()
     );
+}
+
+#[test]
+fn colors_of_vertices_are_taken_from_srgb() {
+    for (kind, most) in [("uchar", "255"), ("ushort", "65535"), ("float", "1")] {
+        let channels = ["red", "green", "blue", "alpha"];
+        let properties = channels
+            .map(|name| format!("property {kind} {name}\n"))
+            .concat();
+        let text = with_properties(&properties, "").replace("comment TextureFile a.png\n", "");
+        let rows = format!(
+            "0 0 0 {most} 0 0 {most}\n1 0 0 0 {most} 0 {most}\n0 1 0 0 0 {most} {most}\n3 0 1 2\n"
+        );
+        let imported = read((text + &rows).as_bytes()).unwrap();
+        let colors = &imported.scene.objects[0].attributes.colors;
+        let expected = [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
+        assert_eq!(*colors, expected, "{kind}");
+        assert_eq!(imported.warnings, [] as [&str; 0]);
+    }
+    let list = with_properties("property list uchar uchar red\n", "");
+    let error = read((list + "0 0 0 1 2\n1 0 0 1 2\n0 1 0 1 2\n3 0 1 2\n").as_bytes());
+    assert!(error.is_err());
 }

@@ -12,8 +12,9 @@ use super::place::Placer;
 use super::source::Source;
 use super::track::{self, Targets};
 use super::value::Fields;
-use super::view;
+use super::{light, view};
 use crate::scene::importer::Input;
+use crate::scene::texture::Images;
 use crate::scene::{Camera, Color, Light, Scene, SceneError};
 use crate::table::printable;
 use glam::DVec3;
@@ -50,12 +51,23 @@ pub(super) fn read(input: Input<'_>, imports: &mut Imports) -> Result<Scene, Sce
     )?;
     let camera = root.or("camera", None, |table| view::camera(table).map(Some))?;
     let render = root.or("render", None, |table| view::render(table).map(Some))?;
-    let lights = root.or("light", Vec::new(), view::lights)?;
-    let (lights, light_names) = lights.into_iter().unzip();
+    let lights = root.or("light", Vec::new(), light::lights)?;
+    let mut names = Vec::with_capacity(lights.len());
+    let mut forms = Vec::with_capacity(lights.len());
+    let mut plain = Vec::with_capacity(lights.len());
+    for (light, name, form) in lights {
+        plain.push(light);
+        names.push(name);
+        forms.push(form);
+    }
+    let (lights, light_names, light_forms) = (plain, names, forms);
     let background = root.or("background", None, |value| value.radiance().map(Some))?;
     let ambient = root.or("ambient", None, |value| value.radiance().map(Some))?;
     let tracks = root.or("track", Vec::new(), track::read)?;
-    let mut palette = root.or("material", Palette::default(), Palette::read)?;
+    let mut images = Images::new(input.access);
+    let mut palette = root.or("material", Palette::default(), |tables| {
+        Palette::read(tables, &mut images)
+    })?;
 
     let mut reader = Reader {
         source: &source,
@@ -91,6 +103,7 @@ pub(super) fn read(input: Input<'_>, imports: &mut Imports) -> Result<Scene, Sce
         ambient: ambient.unwrap_or(BLACK),
         lights,
         light_names,
+        light_forms,
         objects: placed.objects,
         parts: placed.parts,
         instances: placed.instances,
@@ -126,6 +139,9 @@ pub(super) fn read(input: Input<'_>, imports: &mut Imports) -> Result<Scene, Sce
                 scene.lights.push(moved_light(&source, item, light)?);
                 let name = import.light_names.get(number).cloned();
                 scene.light_names.push(name.unwrap_or_default());
+                let form = import.light_forms.get(number).copied().flatten();
+                let form = form.map(|form| form.moved(&item.transform));
+                scene.light_forms.push(form);
             }
         }
         scene.background = scene.background.or(import.background);

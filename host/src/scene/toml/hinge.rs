@@ -111,9 +111,10 @@ impl Segment {
         let entering = to.entering[0] * duration;
         let (angles, pieces) = match interpolation {
             Interpolation::Step => ([start, 0.0, 0.0, 0.0], 1.0),
-            Interpolation::Linear => {
-                ([start, change, 0.0, 0.0], (change.abs() / LINEAR_STEP).ceil())
-            }
+            Interpolation::Linear => (
+                [start, change, 0.0, 0.0],
+                (change.abs() / LINEAR_STEP).ceil(),
+            ),
             Interpolation::Cubic => {
                 let square = 3.0 * change - 2.0 * leaving - entering;
                 let cube = leaving + entering - 2.0 * change;

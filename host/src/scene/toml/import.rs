@@ -115,7 +115,10 @@ impl Imports {
     /// Reads the scene file from which everything starts.
     pub(super) fn root(&mut self, input: Input<'_>) -> Result<Scene, SceneError> {
         // A path that leads nowhere is that of standard input, which nothing can import.
-        let canonical = input.access.canonical(input.path).unwrap_or_else(|_| input.path.to_owned());
+        let canonical = input
+            .access
+            .canonical(input.path)
+            .unwrap_or_else(|_| input.path.to_owned());
         self.nested(input, canonical)
     }
 

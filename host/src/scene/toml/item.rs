@@ -1,7 +1,7 @@
 //! Objects and groups as the file states them.
 
 use super::source::{Name, Span};
-use crate::scene::{Placement, Scene, Shape};
+use crate::scene::{Attributes, Placement, Scene, Shape};
 use glam::{DAffine3, DVec3};
 use std::rc::Rc;
 
@@ -12,6 +12,8 @@ pub(super) struct Item {
     pub(super) material: Option<Name>,
     /// The angle of `smooth`.
     pub(super) smooth: Option<f64>,
+    /// Of a mesh.
+    pub(super) attributes: Attributes,
     pub(super) transform: DAffine3,
     pub(super) span: Span,
     pub(super) content: Content,

@@ -1,10 +1,13 @@
 //! The `[material.NAME]` tables, and looking materials up by name.
 
+use super::shape::pair;
 use super::source::{Name, Source, nearest};
-use super::value::Value;
-use crate::scene::{Diffuse, Material, SceneError};
-use glam::DVec3;
+use super::value::{Fields, Value};
+use crate::scene::texture::{Images, texture_transform};
+use crate::scene::{Alpha, Diffuse, Image, Material, SceneError, Texture, Wrap};
+use glam::{DVec2, DVec3};
 use std::collections::BTreeMap;
+use std::sync::Arc;
 
 const KEYS: &[&str] = &[
     "diffuse",
@@ -15,6 +18,11 @@ const KEYS: &[&str] = &[
     "transmit",
     "ior",
     "absorption",
+    "texture",
+    "alpha",
+    "cutoff",
+    "emission",
+    "lights",
 ];
 
 /// The materials of a scene, each with a name of its own.
@@ -26,12 +34,12 @@ pub(super) struct Palette {
 
 impl Palette {
     /// Reads the tables inside `[material]`.
-    pub(super) fn read(tables: Value<'_>) -> Result<Self, SceneError> {
+    pub(super) fn read(tables: Value<'_>, images: &mut Images<'_>) -> Result<Self, SceneError> {
         let mut palette = Self::default();
         for (name, table) in tables.entries()? {
             let material = Material {
                 name: name.text,
-                ..material(table)?
+                ..material(table, images)?
             };
             palette.push(material);
         }
@@ -95,7 +103,7 @@ impl Palette {
     }
 }
 
-fn material(table: Value<'_>) -> Result<Material, SceneError> {
+fn material(table: Value<'_>, images: &mut Images<'_>) -> Result<Material, SceneError> {
     let fields = table.fields("material", &[KEYS])?;
     let default = Material::default();
     let diffuse = match (fields.get("diffuse"), fields.get("checker")) {
@@ -119,8 +127,80 @@ fn material(table: Value<'_>) -> Result<Material, SceneError> {
         transmit: fields.or("transmit", default.transmit, Value::reflectance)?,
         ior: fields.or("ior", default.ior, |value| value.number_in(1.0..=4.0))?,
         absorption: fields.or("absorption", default.absorption, Value::coefficients)?,
+        texture: fields.or("texture", None, |value| texture(value, images).map(Some))?,
+        alpha: alpha(&fields)?,
+        emission: fields.or("emission", default.emission, Value::radiance)?,
+        lights: fields.or("lights", default.lights, Value::boolean)?,
         ..default
     })
+}
+
+/// How the alpha of the texture is used, which glass ignores.
+fn alpha(fields: &Fields<'_>) -> Result<Option<Alpha>, SceneError> {
+    let cutoff = fields.get("cutoff");
+    let Some(value) = fields.get("alpha") else {
+        return match cutoff {
+            None => Ok(None),
+            Some(cutoff) => Err(cutoff.error(
+                "`cutoff` is for textures that are cut out",
+                "write `alpha = \"cutout\"` beside it",
+            )),
+        };
+    };
+    if fields.get("texture").is_none() {
+        let remedy = "add a `texture`, or write a pane as `transmit = 0.5` and `ior = 1`";
+        return Err(value.error("`alpha` is that of a texture, and there is none", remedy));
+    }
+    if fields.get("transmit").is_some() {
+        let remedy = "remove `alpha` or `transmit`";
+        return Err(value.error("glass has no `alpha`: it lets light through", remedy));
+    }
+    let blends = value.word(&["blend", "cutout"])? == "blend";
+    match cutoff {
+        Some(cutoff) if blends => Err(cutoff.error(
+            "`cutoff` is for textures that are cut out",
+            "remove it, or write `alpha = \"cutout\"`",
+        )),
+        _ if blends => Ok(Some(Alpha::Blend(1.0))),
+        None => Ok(Some(Alpha::CutOut(0.5))),
+        Some(cutoff) => cutoff.number_in(0.002..=1.0).map(Alpha::CutOut).map(Some),
+    }
+}
+
+/// A file's name, or a table with it and options.
+fn texture(value: Value<'_>, images: &mut Images<'_>) -> Result<Texture, SceneError> {
+    let keys = ["file", "filter", "wrap", "scale", "offset", "rotation"];
+    if !value.is_table() {
+        return Ok(Texture::of(image(value, images)?));
+    }
+    let fields = value.fields("texture", &[&keys])?;
+    let wrap = |value: Value<'_>| {
+        Ok(match value.word(&["repeat", "mirror", "clamp"])? {
+            "repeat" => Wrap::Repeat,
+            "mirror" => Wrap::Mirror,
+            _ => Wrap::Clamp,
+        })
+    };
+    let scale = fields.or("scale", DVec2::ONE, |value| match value.number() {
+        Ok(number) => Ok(DVec2::splat(number)),
+        Err(_) => pair(value),
+    })?;
+    let rotation = fields.or("rotation", 0.0, Value::number)?;
+    let offset = fields.or("offset", DVec2::ZERO, pair)?;
+    Ok(Texture {
+        image: image(fields.require("file")?, images)?,
+        wrap: [fields.or("wrap", Wrap::Repeat, wrap)?; 2],
+        bilinear: fields.or("filter", true, |value| {
+            Ok(value.word(&["linear", "nearest"])? == "linear")
+        })?,
+        transform: texture_transform(scale, rotation.to_radians(), offset),
+    })
+}
+
+fn image(file: Value<'_>, images: &mut Images<'_>) -> Result<Arc<Image>, SceneError> {
+    let name = file.filled()?;
+    let wrong = |[cause, remedy]: [String; 2]| file.error(format!("the texture {cause}"), remedy);
+    images.file(&file.source.path, name).map_err(wrong)
 }
 
 fn checker(table: Value<'_>) -> Result<Diffuse, SceneError> {

@@ -16,6 +16,7 @@ pub(crate) mod source;
 mod track;
 mod transform;
 pub(crate) mod value;
+mod light;
 mod view;
 
 #[cfg(test)]

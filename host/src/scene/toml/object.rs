@@ -8,7 +8,7 @@ use super::source::Source;
 use super::value::{Fields, Value};
 use super::{shape, transform};
 use crate::scene::importer::stem;
-use crate::scene::{MoleculeOptions, MoleculeStyle, Scene, SceneError, Shape, Track};
+use crate::scene::{Attributes, MoleculeOptions, MoleculeStyle, Scene, SceneError, Shape, Track};
 use std::collections::BTreeMap;
 use std::path::Path;
 use std::rc::Rc;
@@ -122,11 +122,16 @@ impl Reader<'_> {
             }
             _ => Content::Shape(shape::read(kind, &fields)?),
         };
+        let attributes = match &content {
+            Content::Shape(shape) => shape::attributes(shape, &fields)?,
+            _ => Attributes::default(),
+        };
         let transform = transform::read(&fields)?;
         Ok(Item {
             name,
             material,
             smooth: smooth(&fields)?,
+            attributes,
             transform,
             span: fields.span,
             content,

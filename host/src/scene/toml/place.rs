@@ -7,7 +7,8 @@ use super::material::Palette;
 use super::source::Source;
 use crate::scene::size::{MOST_PRIMITIVES, Size, primitives};
 use crate::scene::{
-    Instance, Joint, Normals, NormalsChoice, Object, Part, Placement, Scene, SceneError, Shape, Track,
+    Instance, Joint, Normals, NormalsChoice, Object, Part, Placement, Scene, SceneError, Shape,
+    Track,
 };
 use crate::shape::transform::OUT_OF_RANGE;
 use glam::DAffine3;
@@ -161,6 +162,7 @@ impl<'p> Placer<'p> {
                         material,
                         shape,
                         normals: Normals::default(),
+                        attributes: item.attributes.transformed(&transform),
                         place,
                     };
                     if let Some(degrees) = item.smooth {
@@ -204,6 +206,7 @@ impl<'p> Placer<'p> {
             name,
             material: materials[object.material],
             normals: Normals::default(),
+            attributes: object.attributes.transformed(&site.transform),
             place: object.place.clone(),
         };
         match item.smooth {

@@ -2,9 +2,9 @@
 
 use super::value::{Fields, Value};
 use crate::scene::polygon::{self, MAX_CONCAVE};
-use crate::scene::{SceneError, Shape};
+use crate::scene::{Attributes, SceneError, Shape};
 use crate::shape::Keys;
-use glam::DVec3;
+use glam::{DVec2, DVec3};
 
 /// The most vertices that a face may have; that they differ is checked in quadratic time.
 const MAX_CORNERS: usize = 1024;
@@ -13,9 +13,11 @@ const _: () = assert!(MAX_CORNERS <= MAX_CONCAVE);
 /// The keys of a kind of shape, apart from those of every object.
 pub(super) fn keys(kind: &str) -> &'static [&'static str] {
     match kind {
-        "triangle" => &["vertices"],
-        "mesh" => &["vertices", "faces", "smooth"],
-        _ => Shape::kinds().find(|(name, _)| *name == kind).map_or(&[], |(_, keys)| keys),
+        "triangle" => &["vertices", "colors", "coordinates"],
+        "mesh" => &["vertices", "faces", "smooth", "colors", "coordinates"],
+        _ => Shape::kinds()
+            .find(|(name, _)| *name == kind)
+            .map_or(&[], |(_, keys)| keys),
     }
 }
 
@@ -23,6 +25,52 @@ pub(super) fn read(kind: &str, fields: &Fields<'_>) -> Result<Shape, SceneError>
     match kind {
         "triangle" => triangle(fields),
         _ => Shape::read(kind, fields).unwrap_or_else(|| mesh(fields)),
+    }
+}
+
+/// The colors and texture coordinates of a mesh or triangle, one for each vertex.
+pub(super) fn attributes(shape: &Shape, fields: &Fields<'_>) -> Result<Attributes, SceneError> {
+    let Shape::Mesh {
+        vertices,
+        triangles,
+    } = shape
+    else {
+        return Ok(Attributes::default());
+    };
+    let as_many = |list: Value<'_>, found: usize, what: &str| {
+        if found == vertices.len() {
+            return Ok(());
+        }
+        Err(list.error(
+            format!("there are {found} {what} and {} vertices", vertices.len()),
+            "write one for each vertex, in the same order",
+        ))
+    };
+    let mut attributes = Attributes::default();
+    if let Some(list) = fields.get("colors") {
+        let colors = list.items("`colors = [[1, 0, 0], [0, 1, 0], [0, 0, 1]]`")?;
+        attributes.colors = colors.map(Value::reflectance).collect::<Result<_, _>>()?;
+        as_many(list, attributes.colors.len(), "colors")?;
+    }
+    if let Some(list) = fields.get("coordinates") {
+        let pairs = list.items("`coordinates = [[0, 1], [1, 1], [0, 0]]`")?;
+        attributes.coordinates = pairs.map(pair).collect::<Result<_, _>>()?;
+        as_many(list, attributes.coordinates.len(), "texture coordinates")?;
+        attributes.triangles.clone_from(triangles);
+    }
+    Ok(attributes)
+}
+
+/// Two numbers.
+pub(super) fn pair(value: Value<'_>) -> Result<DVec2, SceneError> {
+    let mistyped = || value.mistyped("two numbers", "`[0.5, 1]`");
+    let numbers = value
+        .items("two numbers, such as `[0.5, 1]`")
+        .map_err(|_| mistyped())?;
+    let numbers: Vec<f64> = numbers.map(Value::number).collect::<Result<_, _>>()?;
+    match numbers[..] {
+        [u, v] => Ok(DVec2::new(u, v)),
+        _ => Err(mistyped()),
     }
 }
 

@@ -2,7 +2,7 @@
 
 use crate::scene::access::Access;
 use crate::scene::text::check_encoding;
-use crate::scene::{SourceSpan, SceneError};
+use crate::scene::{SceneError, SourceSpan};
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;

@@ -159,7 +159,10 @@ impl<'a> Value<'a> {
 
     /// A color of which no channel is above 1: a surface reflects no more than arrives.
     pub(crate) fn reflectance(self) -> Result<Color, SceneError> {
-        self.color_up_to(1.0, "write numbers from 0 to 1; make the lights brighter instead")
+        self.color_up_to(
+            1.0,
+            "write numbers from 0 to 1; make the lights brighter instead",
+        )
     }
 
     /// A color of light.

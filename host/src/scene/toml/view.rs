@@ -1,8 +1,9 @@
-//! The tables that say how a scene is seen: `[camera]`, `[render]` and `[[light]]`.
+//! The tables that say how a scene is seen: `[camera]` and `[render]`.
 
 use super::value::Value;
-use crate::scene::{Camera, Light, RenderSettings, SceneError};
+use crate::scene::{Camera, RenderSettings, SceneError, ToneMapping};
 use glam::DVec3;
+use gridel_core::format::limits::MAX_SAMPLES;
 
 /// The largest width and height of a picture.
 const MAX_SIDE: u32 = 65_535;
@@ -55,7 +56,9 @@ pub(super) fn field_of_view(value: Value<'_>) -> Result<f64, SceneError> {
 }
 
 pub(super) fn render(table: Value<'_>) -> Result<RenderSettings, SceneError> {
-    let keys = ["width", "height", "samples", "depth", "cutoff", "shadows"];
+    let keys = [
+        "width", "height", "samples", "depth", "cutoff", "shadows", "exposure", "tone_mapping",
+    ];
     let fields = table.fields("render table", &[&keys])?;
     let default = RenderSettings::default();
     let side = |value: Value<'_>| value.integer_in(1..=MAX_SIDE);
@@ -73,47 +76,18 @@ pub(super) fn render(table: Value<'_>) -> Result<RenderSettings, SceneError> {
         width,
         height,
         samples: fields.or("samples", default.samples, |value| {
-            Ok(value.integer_in(1..=256)? as u16)
+            Ok(value.integer_in(1..=MAX_SAMPLES.into())? as u16)
         })?,
         depth: fields.or("depth", default.depth, |value| {
             Ok(value.integer_in(0..=16)? as u8)
         })?,
         cutoff: fields.or("cutoff", default.cutoff, |value| value.number_in(0.0..=1.0))?,
         shadows: fields.or("shadows", default.shadows, Value::boolean)?,
+        exposure: fields.or("exposure", 0.0, |value| value.number_in(-32.0..=32.0))?,
+        tone_mapping: fields.or("tone_mapping", ToneMapping::None, |value| {
+            let name = value.word(&ToneMapping::ALL.map(ToneMapping::name))?;
+            let mut all = ToneMapping::ALL.into_iter();
+            Ok(all.find(|it| it.name() == name).unwrap_or_default())
+        })?,
     })
-}
-
-/// Reads lights, each with its name.
-pub(super) fn lights(tables: Value<'_>) -> Result<Vec<(Light, String)>, SceneError> {
-    tables
-        .items("`[[light]]` above the keys of each")?
-        .map(light)
-        .collect()
-}
-
-fn light(table: Value<'_>) -> Result<(Light, String), SceneError> {
-    let keys = ["kind", "name", "position", "direction", "color"];
-    let fields = table.fields("light", &[&keys])?;
-    let name = fields.or("name", String::new(), |value| {
-        value.filled().map(str::to_owned)
-    })?;
-    let kind = fields.require("kind")?;
-    let color = fields.or("color", [1.0; 3], Value::radiance)?;
-    let (light, foreign) = match kind.word(&["point", "directional"])? {
-        "point" => {
-            let position = fields.require("position")?.vector()?;
-            (Light::Point { position, color }, "direction")
-        }
-        _ => {
-            let direction = fields.require("direction")?.direction()?;
-            (Light::Directional { direction, color }, "position")
-        }
-    };
-    match fields.get(foreign) {
-        Some(value) => Err(value.error(
-            format!("a light of this kind has no `{foreign}`"),
-            "remove the key, or change the light's `kind`",
-        )),
-        None => Ok((light, name)),
-    }
 }

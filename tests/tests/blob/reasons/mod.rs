@@ -20,7 +20,7 @@ use gridel_tests::fuzz::{Base, speaks};
 use header::{headers, names, prevalidated, section_tables};
 use hierarchies::{deep_hierarchy, hierarchies, wide_hierarchies};
 use instances::{instances, joints};
-use records::{primitives, shading_data};
+use records::{light_forms, primitives, shading_data, textures};
 use tables::{candidates, cells};
 use tracks::{tracks, turned_camera};
 
@@ -149,6 +149,8 @@ fn every_field_and_reason_is_named_by_the_error_of_a_forged_blob() {
         section_tables(),
         prevalidated(),
         shading_data(),
+        textures(),
+        light_forms(),
         primitives(),
         hierarchies(),
         deep_hierarchy(),

@@ -1,7 +1,11 @@
 //! The view, lights, materials, primitives and objects.
 
-use super::{Errors, Forgery, everything};
-use gridel_core::format::record::{Light, Material, Sphere24, Vertex24, View};
+use super::{Errors, Forgery, alone, everything};
+use gridel_core::Structure;
+use gridel_core::format::light_form::LightForm;
+use gridel_core::format::record::{
+    Light, Material, Sphere24, SurfaceMaps, Texture, Vertex24, View,
+};
 use gridel_core::format::{Effects, Field, Reason, SectionKind};
 use gridel_core::geometry::cone::Cone;
 use gridel_core::geometry::cuboid::Cuboid;
@@ -23,9 +27,9 @@ pub(super) fn shading_data() -> Errors {
         (Field::Width, &|it| it.width = 0),
         (Field::Height, &|it| it.height = 0),
         (Field::Samples, &|it| it.samples = 0),
-        (Field::Samples, &|it| it.samples = 257),
+        (Field::Samples, &|it| it.samples = 4097),
         (Field::RayDepth, &|it| it.depth = 17),
-        (Field::DisplayValues, &|it| it.display_values = 2),
+        (Field::Encoding, &|it| it.encoding = 4),
     ];
     for (field, forge) in fields {
         errors.field(view, field, |it| it.change(SectionKind::View, 0, forge));
@@ -61,11 +65,90 @@ pub(super) fn shading_data() -> Errors {
         });
     }
     errors.reason("material 0", Reason::SpareNotZero, |it| {
-        it.change(SectionKind::Materials, 0, |it: &mut Material| it.spare = 1)
+        it.change(SectionKind::Materials, 0, |it: &mut Material| {
+            it.maps = 1 << 15
+        })
     });
     errors.reason("material 0", Reason::MissingEffect, |it| {
         it.header().effects &= !Effects::MIRROR.0
     });
+    errors
+}
+
+/// Lights with forms.
+pub(super) fn light_forms() -> Errors {
+    let text = "[[light]]\nkind = 'disc'\ncenter = [0, 9, 0]\nnormal = [0, -1, 0]\nradius = 1\nradiance = 1\n\
+                [material.default]\nemission = 0.1\nlights = false\n\
+                [[object]]\nkind = 'sphere'\ncenter = [0, 0, 0]\nradius = 1";
+    let imported =
+        gridel_host::scene::read("lights.toml".as_ref(), text.into(), &Default::default());
+    let mut errors = alone(&imported.expect("a scene").scene, Structure::List, 24);
+    let forms: [Forgery<LightForm>; 7] = [
+        (Field::Kind, &|it| it.shape = 5),
+        (Field::LightReference, &|it| it.reference = -1),
+        (Field::LightRange, &|it| it.range = -1),
+        (Field::ConeCosine, &|it| it.cone_cosine = i32::MAX),
+        (Field::ConeWidth, &|it| it.cone_width = -1),
+        (Field::Normal, &|it| it.normal[1] = i32::MIN),
+        (Field::LightEdge, &|it| it.edges[1][2] = i32::MAX),
+    ];
+    for (field, forge) in forms {
+        errors.field("form 0 of lights", field, |it| {
+            it.change(SectionKind::LightForms, 0, forge)
+        });
+    }
+    errors.field("light 0", Field::LightForm, |it| {
+        it.change(SectionKind::Lights, 0, |it: &mut Light| it.directional = 7)
+    });
+    errors.field("emission 0", Field::Emission, |it| {
+        it.change(SectionKind::Emissions, 0, |it: &mut [i32; 3]| it[1] = -1)
+    });
+    errors.reason("section emissions", Reason::MissingEffect, |it| {
+        it.header().effects &= !Effects::EMISSION.0
+    });
+    errors
+}
+
+/// Textures, and what leads to them.
+pub(super) fn textures() -> Errors {
+    let mut errors = everything();
+    errors.field("material 0", Field::Maps, |it| {
+        it.change(SectionKind::Materials, 0, |it: &mut Material| it.maps = 2)
+    });
+    errors.reason("material 0", Reason::MissingMaps, |it| {
+        it.change(SectionKind::Materials, 0, |it: &mut Material| {
+            it.maps = Material::MAPS_TEXTURE
+        })
+    });
+    errors.field("maps 0", Field::TextureNumber, |it| {
+        it.change(SectionKind::SurfaceMaps, 0, |it: &mut SurfaceMaps| {
+            it.color = 2
+        })
+    });
+    let fields: [Forgery<Texture>; 8] = [
+        (Field::TextureWidth, &|it| it.width = 0),
+        (Field::TextureWidth, &|it| it.width = 4097),
+        (Field::TextureHeight, &|it| it.height = 0),
+        (Field::TextureForm, &|it| it.form = 4),
+        (Field::TextureFilter, &|it| it.filter = 2),
+        (Field::TextureWrap, &|it| it.wrap[1] = 3),
+        (Field::FirstTexel, &|it| it.first = 1),
+        (Field::FirstTexel, &|it| it.height += 1),
+    ];
+    for (field, forge) in fields {
+        errors.field("texture 0", field, |it| {
+            it.change(SectionKind::Textures, 0, forge)
+        });
+    }
+    for effect in [Effects::VERTEX_COLORS, Effects::TEXTURE, Effects::ALPHA] {
+        let place = match effect {
+            Effects::VERTEX_COLORS => "section vertex-colors",
+            _ => "material 2",
+        };
+        errors.reason(place, Reason::MissingEffect, |it| {
+            it.header().effects &= !effect.0
+        });
+    }
     errors
 }
 

@@ -24,16 +24,33 @@ fn animated(animations: Value) -> Value {
     buffers.push(json!({"byteLength": bytes.len(),
         "uri": format!("data:application/octet-stream;base64,{data}")}));
     let mut offset = 0;
-    for (count, kind, components) in [(3, "SCALAR", 1), (3, "VEC3", 3), (3, "VEC4", 4), (9, "VEC3", 3)] {
+    for (count, kind, components) in [
+        (3, "SCALAR", 1),
+        (3, "VEC3", 3),
+        (3, "VEC4", 4),
+        (9, "VEC3", 3),
+    ] {
         let length = 4 * count * components;
         let view = document["bufferViews"].as_array().unwrap().len();
-        document["bufferViews"].as_array_mut().unwrap().push(
-            json!({"buffer": 1, "byteOffset": offset, "byteLength": length}));
-        document["accessors"].as_array_mut().unwrap().push(json!({"bufferView": view,
+        document["bufferViews"]
+            .as_array_mut()
+            .unwrap()
+            .push(json!({"buffer": 1, "byteOffset": offset, "byteLength": length}));
+        document["accessors"]
+            .as_array_mut()
+            .unwrap()
+            .push(json!({"bufferView": view,
             "componentType": 5126, "count": count, "type": kind, "min": [0], "max": [2]}));
-        let accessor = document["accessors"].as_array_mut().unwrap().last_mut().unwrap();
+        let accessor = document["accessors"]
+            .as_array_mut()
+            .unwrap()
+            .last_mut()
+            .unwrap();
         if kind != "SCALAR" {
-            accessor.as_object_mut().unwrap().retain(|key, _| key != "min" && key != "max");
+            accessor
+                .as_object_mut()
+                .unwrap()
+                .retain(|key, _| key != "min" && key != "max");
         }
         offset += length;
     }
@@ -59,7 +76,11 @@ fn chosen(document: &Value, choice: Choice) -> Result<Imported, SceneError> {
         choice,
         ..ImportOptions::default()
     };
-    crate::scene::read("a.gltf".as_ref(), document.to_string().into_bytes(), &options)
+    crate::scene::read(
+        "a.gltf".as_ref(),
+        document.to_string().into_bytes(),
+        &options,
+    )
 }
 
 #[test]
@@ -77,7 +98,10 @@ fn a_node_keeps_its_keys() {
         let [eye, rotation, light] = &tracks[..] else {
             panic!("{tracks:?}")
         };
-        assert_eq!((eye.target, eye.interpolation), (TrackTarget::CameraEye, interpolation));
+        assert_eq!(
+            (eye.target, eye.interpolation),
+            (TrackTarget::CameraEye, interpolation)
+        );
         assert_eq!((light.target, light.index), (TrackTarget::LightPosition, 0));
         assert_eq!(eye.keys, light.keys);
         assert_eq!(eye.keys[1].vector(), DVec3::new(1.5, 0.5, 4.0));
@@ -99,7 +123,10 @@ fn rotations_follow_what_stands_above() {
         "samplers": [sampler(4, "LINEAR")]}]));
     // Above it a node that is turned by 90 degrees about z, scaled and moved.
     let half = std::f32::consts::FRAC_1_SQRT_2;
-    document["nodes"].as_array_mut().unwrap().push(json!({"children": [1],
+    document["nodes"]
+        .as_array_mut()
+        .unwrap()
+        .push(json!({"children": [1],
         "rotation": [0, 0, half, half], "scale": [2, 2, 2], "translation": [1, 0, 0]}));
     document["scenes"] = json!([{"nodes": [0, 2]}]);
     let (tracks, warnings) = tracks(&document);
@@ -118,15 +145,31 @@ fn rotations_follow_what_stands_above() {
 fn a_rig_is_sampled() {
     let mut document = animated(json!([{"channels": [channel(0, 2, "rotation")],
         "samplers": [sampler(4, "LINEAR")]}]));
-    document["nodes"].as_array_mut().unwrap().push(json!({"children": [1]}));
+    document["nodes"]
+        .as_array_mut()
+        .unwrap()
+        .push(json!({"children": [1]}));
     document["scenes"] = json!([{"nodes": [0, 2]}]);
     let (tracks, warnings) = tracks(&document);
-    assert!(warnings.len() == 1 && warnings[0].contains("60 times"), "{warnings:?}");
+    assert!(
+        warnings.len() == 1 && warnings[0].contains("60 times"),
+        "{warnings:?}"
+    );
     let eye = &tracks[0];
-    assert_eq!((eye.keys.len(), eye.interpolation), (121, Interpolation::Linear));
-    for (key, expected) in [(0, [0.5, 0.5, 4.0]), (60, [4.0, 0.5, -0.5]), (120, [-0.5, 0.5, -4.0])] {
+    assert_eq!(
+        (eye.keys.len(), eye.interpolation),
+        (121, Interpolation::Linear)
+    );
+    for (key, expected) in [
+        (0, [0.5, 0.5, 4.0]),
+        (60, [4.0, 0.5, -0.5]),
+        (120, [-0.5, 0.5, -4.0]),
+    ] {
         let found = eye.keys[key].vector();
-        assert!(found.distance(DVec3::from_array(expected)) < 1e-6, "{found}");
+        assert!(
+            found.distance(DVec3::from_array(expected)) < 1e-6,
+            "{found}"
+        );
     }
     let ahead = DQuat::from_array(tracks[1].keys[60].value) * DVec3::NEG_Z;
     assert!(ahead.distance(DVec3::NEG_X) < 1e-6, "{ahead}");
@@ -138,7 +181,10 @@ fn cameras_and_animations_are_chosen_by_name() {
         {"name": "still", "channels": [channel(0, 0, "translation")], "samplers": [sampler(3, "STEP")]},
         {"name": "dolly", "channels": [channel(0, 1, "translation")], "samplers": [sampler(3, "STEP")]},
     ]));
-    document["nodes"].as_array_mut().unwrap().push(json!({"name": "top", "camera": 0, "translation": [0, 9, 0]}));
+    document["nodes"]
+        .as_array_mut()
+        .unwrap()
+        .push(json!({"name": "top", "camera": 0, "translation": [0, 9, 0]}));
     document["scenes"] = json!([{"nodes": [0, 1, 2]}]);
     let choice = |camera: Option<&str>, animation: Option<&str>| Choice {
         camera: camera.map(str::to_owned),
@@ -157,16 +203,24 @@ fn cameras_and_animations_are_chosen_by_name() {
     // Of the light alone.
     assert_eq!(top.scene.tracks.len(), 1);
     let error = chosen(&document, choice(Some("side"), None)).unwrap_err();
-    assert!(error.cause.contains("side") && error.remedy.contains("top"), "{error}");
+    assert!(
+        error.cause.contains("side") && error.remedy.contains("top"),
+        "{error}"
+    );
     let error = chosen(&document, choice(None, Some("2"))).unwrap_err();
     assert!(error.remedy.contains("still, dolly"), "{error}");
 }
 
 #[test]
 fn skins_and_morph_targets_that_are_asked_for_are_rejected() {
-    let mut document = animated(json!([{"name": "bend", "channels": [channel(0, 2, "rotation")],
-        "samplers": [sampler(4, "LINEAR")]}]));
-    document["nodes"].as_array_mut().unwrap().push(json!({"name": "joint"}));
+    let mut document = animated(
+        json!([{"name": "bend", "channels": [channel(0, 2, "rotation")],
+        "samplers": [sampler(4, "LINEAR")]}]),
+    );
+    document["nodes"]
+        .as_array_mut()
+        .unwrap()
+        .push(json!({"name": "joint"}));
     document["scenes"] = json!([{"nodes": [0, 1, 2]}]);
     document["nodes"][0]["skin"] = json!(0);
     document["skins"] = json!([{"joints": [2]}]);
@@ -177,7 +231,10 @@ fn skins_and_morph_targets_that_are_asked_for_are_rejected() {
     let error = chosen(&document, bend.clone()).unwrap_err();
     assert!(error.cause.contains("\"tile\" by a skin"), "{error}");
     let warnings = chosen(&document, Choice::default()).unwrap().warnings;
-    assert!(warnings.iter().any(|it| it.contains("bends")), "{warnings:?}");
+    assert!(
+        warnings.iter().any(|it| it.contains("bends")),
+        "{warnings:?}"
+    );
     document["animations"][0]["channels"] = json!([channel(0, 0, "weights")]);
     let error = chosen(&document, bend).unwrap_err();
     assert!(error.cause.contains("morph targets"), "{error}");
@@ -194,7 +251,9 @@ fn broken_channels_are_rejected() {
     assert!(animation(translated(1), sampler(4, "LINEAR")).contains("accessor 4"));
     assert!(animation(translated(1), sampler(3, "CUBICSPLINE")).contains("not a value for each"));
     assert!(animation(channel(0, 1, "rotation"), sampler(3, "LINEAR")).contains("accessor 3"));
-    assert!(animation(channel(1, 1, "translation"), sampler(3, "LINEAR")).contains("animations[0]"));
+    assert!(
+        animation(channel(1, 1, "translation"), sampler(3, "LINEAR")).contains("animations[0]")
+    );
     let backwards = json!({"input": 2, "output": 3});
     let mut document = animated(json!([{"channels": [translated(1)], "samplers": [backwards]}]));
     document["accessors"][2]["bufferView"] = document["accessors"][3]["bufferView"].clone();

@@ -53,7 +53,8 @@ fn a_camera_and_lights() {
     document["extensions"] = json!({"KHR_lights_punctual": {"lights": [
         {"type": "point", "intensity": 800, "color": [1, 0.5, 0]},
         {"type": "directional", "intensity": 4},
-        {"type": "spot", "intensity": 0, "spot": {}},
+        {"type": "spot", "intensity": 0, "range": 7,
+         "spot": {"innerConeAngle": 0.25, "outerConeAngle": 0.5}},
     ]}});
     let light = |number: usize| json!({"KHR_lights_punctual": {"light": number}});
     document["nodes"] = json!([
@@ -75,13 +76,13 @@ fn a_camera_and_lights() {
     );
     assert!((camera.fov_degrees - 90.0).abs() < 1e-4);
     assert_eq!((scene.render.width, scene.render.height), (360, 240));
-    // 800 candela ten units away are 8, the strongest.
+    // 800 candela ten units away are 8 lux, the strongest, and 1 there.
     assert_eq!(
         scene.lights[..2],
         [
             Light::Point {
                 position: DVec3::Y * 10.0,
-                color: [1.0, 0.5, 0.0]
+                color: [100.0, 50.0, 0.0]
             },
             Light::Directional {
                 direction: DVec3::Z,
@@ -89,8 +90,18 @@ fn a_camera_and_lights() {
             },
         ]
     );
-    assert_eq!(warnings.len(), 2, "{warnings:?}");
-    assert!(warnings[0].contains("several cameras") && warnings[1].contains("spot lights"));
+    let [Some(point), None, Some(spot)] = scene.light_forms[..] else {
+        panic!("{:?}", scene.light_forms);
+    };
+    assert_eq!(point, LightForm::default());
+    assert_eq!(spot.range, Some(7.0));
+    let cone = spot.spot.unwrap();
+    assert_eq!(cone.direction, -DVec3::Z);
+    for (found, radians) in [(cone.inner, 0.25_f64), (cone.outer, 0.5)] {
+        assert!((found - radians.to_degrees()).abs() < 1e-5);
+    }
+    assert_eq!(warnings.len(), 1, "{warnings:?}");
+    assert!(warnings[0].contains("several cameras"));
     assert!(matches!(scene.camera, Some(Camera { .. })));
 }
 
@@ -98,17 +109,15 @@ fn a_camera_and_lights() {
 fn ignored_attributes_are_counted_in_one_warning_each() {
     let mut document = document();
     assert_eq!(warnings(&document), [] as [&str; 0]);
-    let part = json!({"attributes": {"POSITION": 0, "NORMAL": 0, "COLOR_0": 0}, "indices": 1});
+    let part = json!({"attributes": {"POSITION": 0, "NORMAL": 0, "COLOR_1": 0}, "indices": 1});
     document["meshes"][0]["primitives"] = json!([part, part, part]);
     document["materials"] = json!([{"alphaMode": "MASK", "name": "leaf"},
         {"emissiveFactor": [1, 0, 0], "name": "lamp"}]);
     assert_eq!(
         warnings(&document),
         [
-            "COLOR_0 of a primitive is ignored; its surface has its material's color (and 2 times \
-             more)",
+            "COLOR_1 of a primitive is ignored; COLOR_0 is read (and 2 times more)",
             "the alpha mask of material \"leaf\" is ignored; it is opaque",
-            "material \"lamp\" glows, which is ignored; it is not brighter",
         ]
     );
 }
@@ -141,11 +150,181 @@ fn textures_without_a_source_are_read() {
         document["materials"][0]["pbrMetallicRoughness"]["baseColorTexture"] = json!({"index": 1});
         assert_eq!(
             warnings(&document),
-            ["textures are not drawn; the plain colors are used (and 2 times more)"]
+            [
+                "the texture of material \"plain\" names no image that Gridel reads; its plain color is used"
+            ]
         );
     }
     let mut document = document();
     document["textures"] = json!([{}]);
     document["materials"][0]["pbrMetallicRoughness"]["baseColorTexture"] = json!({"index": 1});
     assert!(cause(&document).contains("baseColorTexture"));
+}
+
+fn push(document: &mut Value, list: &str, value: Value) {
+    document[list].as_array_mut().unwrap().push(value);
+}
+
+/// The square with texture coordinates 0, 1/2, 1 in 16 bits, colors in 8 bits, and a texture of two by one texels.
+fn textured() -> Value {
+    let mut document = document();
+    let pixels = [[255, 0, 0, 255], [0, 0, 255, 255]];
+    let image = STANDARD.encode(crate::scene::image::tests::png_of(2, 1, &pixels));
+    document["images"] = json!([{"uri": format!("data:image/png;base64,{image}")}]);
+    document["samplers"] = json!([{"magFilter": 9728, "wrapS": 33071, "wrapT": 33648}]);
+    document["textures"] = json!([{"source": 0, "sampler": 0}, {"source": 0}]);
+    document["materials"][0]["pbrMetallicRoughness"]["baseColorTexture"] = json!({"index": 0});
+    let coordinates: [u16; 8] = [0, 0, 65535, 0, 65535, 65535, 0, 32768];
+    let coordinates = coordinates.iter().flat_map(|it| it.to_le_bytes());
+    let colors: [u8; 16] = [
+        255, 0, 0, 255, 0, 255, 0, 255, 0, 0, 255, 255, 51, 51, 51, 127,
+    ];
+    let more: Vec<u8> = coordinates.chain(colors).collect();
+    push(
+        &mut document,
+        "buffers",
+        json!({"byteLength": 32,
+        "uri": format!("data:application/octet-stream;base64,{}", STANDARD.encode(more))}),
+    );
+    push(
+        &mut document,
+        "bufferViews",
+        json!({"buffer": 1, "byteLength": 16}),
+    );
+    push(
+        &mut document,
+        "bufferViews",
+        json!({"buffer": 1, "byteOffset": 16, "byteLength": 16}),
+    );
+    push(
+        &mut document,
+        "accessors",
+        json!({"bufferView": 2, "componentType": 5123, "normalized": true,
+        "count": 4, "type": "VEC2"}),
+    );
+    push(
+        &mut document,
+        "accessors",
+        json!({"bufferView": 3, "componentType": 5121, "normalized": true,
+        "count": 4, "type": "VEC4"}),
+    );
+    document["meshes"][0]["primitives"][0]["attributes"]["TEXCOORD_0"] = json!(2);
+    document
+}
+
+#[test]
+fn base_color_textures_have_their_sampler_and_transform() {
+    let mut document = textured();
+    let made = scene(&document);
+    let texture = made.materials[0].texture.clone().unwrap();
+    assert_eq!(texture.image.pixels()[1], [0, 0, 255, 255]);
+    assert_eq!(
+        (texture.wrap, texture.bilinear),
+        ([Wrap::Clamp, Wrap::Mirror], false)
+    );
+    let attributes = &made.objects[0].attributes;
+    assert_eq!(attributes.triangles, [[0, 1, 2], [0, 2, 3]]);
+    assert_eq!(attributes.coordinates[2].to_array(), [1.0, 1.0]);
+    assert_eq!(warnings(&document), [] as [&str; 0]);
+
+    let info = &mut document["materials"][0]["pbrMetallicRoughness"]["baseColorTexture"];
+    let turn = std::f64::consts::FRAC_PI_2;
+    *info = json!({"index": 1, "extensions": {"KHR_texture_transform":
+        {"offset": [0.5, 0.25], "rotation": turn, "scale": [2, 3]}}});
+    document["extensionsUsed"] = json!(["KHR_texture_transform", "KHR_lights_punctual"]);
+    let made = scene(&document);
+    let texture = made.materials[0].texture.clone().unwrap();
+    assert_eq!((texture.wrap, texture.bilinear), ([Wrap::Repeat; 2], true));
+    // The matrix of the extension: translation * rotation * scale, with the rotation [[c, s], [-s, c]].
+    let placed = made.objects[0].attributes.placed_on(Some(&texture));
+    let corner = placed.coordinates[1];
+    assert!(
+        (corner - glam::DVec2::new(0.5, 0.25 - 2.0)).length() < 1e-6,
+        "{corner}"
+    );
+    let corner = placed.coordinates[2];
+    assert!(
+        (corner - glam::DVec2::new(3.5, 0.25 - 2.0)).length() < 1e-6,
+        "{corner}"
+    );
+}
+
+#[test]
+fn colors_of_vertices_are_linear() {
+    let mut document = textured();
+    document["meshes"][0]["primitives"][0]["attributes"]["COLOR_0"] = json!(3);
+    let made = scene(&document);
+    let colors = &made.objects[0].attributes.colors;
+    assert_eq!(
+        colors[..3],
+        [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]]
+    );
+    assert_eq!(colors[3], [0.2; 3]);
+    assert_eq!(warnings(&document), ["the alpha of COLOR_0 is ignored"]);
+    document["accessors"][3]["count"] = json!(3);
+    assert!(cause(&document).contains("4 vertices and 3 colors"));
+    document["accessors"][3] =
+        json!({"bufferView": 3, "componentType": 5121, "count": 4, "type": "SCALAR"});
+    assert!(cause(&document).contains("is to hold colors"));
+}
+
+#[test]
+fn images_that_cannot_be_read_are_named() {
+    let mut document = textured();
+    document["images"] = json!([{"uri": "none.png"}]);
+    let found = warnings(&document);
+    assert!(
+        found.len() == 1 && found[0].contains("none.png"),
+        "{found:?}"
+    );
+    assert_eq!(scene(&document).materials[0].texture, None);
+    document["images"] = json!([{"uri": "../none.png"}]);
+    assert!(cause(&document).contains("outside of the scene's folder"));
+    document["images"] = json!([{"bufferView": 2, "mimeType": "image/png"}]);
+    assert!(cause(&document).contains("neither PNG nor JPEG"));
+    document["bufferViews"][2]["byteLength"] = json!(99);
+    assert!(!cause(&document).is_empty());
+    let mut document = textured();
+    document["meshes"][0]["primitives"][0]["attributes"] = json!({"POSITION": 0});
+    let found = warnings(&document);
+    assert!(
+        found.len() == 1 && found[0].contains("no TEXCOORD_0"),
+        "{found:?}"
+    );
+}
+
+#[test]
+fn alpha_modes_of_textures() {
+    let mut document = textured();
+    let pixels = [[255, 0, 0, 255], [0, 0, 255, 9]];
+    let image = STANDARD.encode(crate::scene::image::tests::png_of(2, 1, &pixels));
+    let clear = json!({"uri": format!("data:image/png;base64,{image}")});
+    let alpha_of = |document: &Value| scene(document).materials[0].alpha;
+    let set = |document: &mut Value, mode: &str, factor: f64, cutoff: f64| {
+        document["materials"][0]["alphaMode"] = json!(mode);
+        document["materials"][0]["alphaCutoff"] = json!(cutoff);
+        let surface = &mut document["materials"][0]["pbrMetallicRoughness"];
+        surface["baseColorFactor"] = json!([1, 1, 1, factor]);
+    };
+    // An opaque image leaves a pane.
+    set(&mut document, "BLEND", 0.25, 0.5);
+    assert_eq!(alpha_of(&document), None);
+    assert_eq!(scene(&document).materials[0].transmit, [0.75; 3]);
+    document["images"][0] = clear;
+    assert_eq!(alpha_of(&document), Some(Alpha::Blend(0.25)));
+    assert_eq!(scene(&document).materials[0].transmit, [0.0; 3]);
+    for (mode, factor, cutoff, expected) in [
+        ("OPAQUE", 0.5, 0.5, None),
+        ("MASK", 1.0, 0.5, Some(Alpha::CutOut(0.5))),
+        ("MASK", 0.5, 0.25, Some(Alpha::CutOut(0.5))),
+        ("MASK", 0.5, 0.75, Some(Alpha::Blend(0.0))),
+        ("MASK", 0.5, 0.0, None),
+    ] {
+        set(&mut document, mode, factor, cutoff);
+        assert_eq!(alpha_of(&document), expected, "{mode} {factor} {cutoff}");
+        assert_eq!(
+            scene(&document).materials[0].diffuse,
+            Diffuse::Plain([1.0; 3])
+        );
+    }
 }

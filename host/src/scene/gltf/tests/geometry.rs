@@ -134,7 +134,12 @@ fn files_of_other_projects() {
 
 #[test]
 fn normals_stay_at_right_angles_to_the_surface() {
-    let normals = [[0.6_f32, 0.0, 0.8], [0.0, 0.0, 1.0], [0.0, 0.0, 2.0], [0.0, 0.0, 1.0]];
+    let normals = [
+        [0.6_f32, 0.0, 0.8],
+        [0.0, 0.0, 1.0],
+        [0.0, 0.0, 2.0],
+        [0.0, 0.0, 1.0],
+    ];
     let mut bytes = square();
     bytes.extend(normals.iter().flatten().flat_map(|x| x.to_le_bytes()));
     let mut document = document();
@@ -152,9 +157,15 @@ fn normals_stay_at_right_angles_to_the_surface() {
     let normals = scene(&document).objects[0].normals.clone();
     assert_eq!(normals.triangles, [[0, 2, 1], [0, 3, 2]]);
     let expected = DVec3::new(-0.6, 0.0, 0.4).normalize();
-    assert!((normals.vectors[0] - expected).length() < 1e-6, "{normals:?}");
+    assert!(
+        (normals.vectors[0] - expected).length() < 1e-6,
+        "{normals:?}"
+    );
     // As many normals as vertices.
     document["accessors"][2]["count"] = json!(3);
     let error = read(document.to_string().as_bytes()).unwrap_err();
-    assert!(error.cause.contains("has 4 vertices and 3 normals"), "{error}");
+    assert!(
+        error.cause.contains("has 4 vertices and 3 normals"),
+        "{error}"
+    );
 }

@@ -135,7 +135,10 @@ fn flattened_instances_stand_where_copies_do() {
 
 #[test]
 fn node_that_moves_is_an_instance_whatever_it_saves() {
-    let mut document = shared(4, json!([{"mesh": 0}, {"mesh": 0, "translation": [1, 0, 0]}]));
+    let mut document = shared(
+        4,
+        json!([{"mesh": 0}, {"mesh": 0, "translation": [1, 0, 0]}]),
+    );
     let views = document["bufferViews"].as_array_mut().unwrap();
     views.push(json!({"buffer": 0, "byteLength": 4}));
     views.push(json!({"buffer": 0, "byteLength": 12}));

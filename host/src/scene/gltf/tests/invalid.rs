@@ -155,7 +155,10 @@ fn nodes_that_multiply_beyond_all_memory_are_rejected_with_the_figure() {
     document["meshes"][0]["primitives"] = json!(vec![part; 4000]);
     let name = "n".repeat(1000);
     let count = 3000;
-    document["nodes"] = json!(vec![json!({"mesh": 0, "name": name, "scale": [1, 2, 1]}); count]);
+    document["nodes"] = json!(vec![
+        json!({"mesh": 0, "name": name, "scale": [1, 2, 1]});
+        count
+    ]);
     document["scenes"][0]["nodes"] = json!((0..count).collect::<Vec<_>>());
     let cause = cause(&document);
     assert!(cause.contains("GB of memory, for"), "{cause}");

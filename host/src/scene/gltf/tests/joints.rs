@@ -322,7 +322,9 @@ fn what_would_bend_or_shear_stays_and_is_named() {
                 path: "scale",
                 interpolation: "CUBICSPLINE",
                 times: vec![0.0, 1.0],
-                values: [0.0, 1.0, -15.0, 0.0, 2.0, 0.0].map(|x| vec![x; 3]).to_vec(),
+                values: [0.0, 1.0, -15.0, 0.0, 2.0, 0.0]
+                    .map(|x| vec![x; 3])
+                    .to_vec(),
             },
             "grows unevenly",
         ),

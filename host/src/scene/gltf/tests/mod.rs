@@ -8,7 +8,7 @@ mod joints;
 
 use super::*;
 use crate::scene::test_scenes::{self, load, load_allowing_outside, mesh};
-use crate::scene::{Camera, Diffuse, Light, Material};
+use crate::scene::{Alpha, Camera, Diffuse, Light, LightForm, Material, Wrap};
 use base64::Engine as _;
 use base64::engine::general_purpose::STANDARD;
 use serde_json::{Value, json};

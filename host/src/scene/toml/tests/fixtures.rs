@@ -14,7 +14,11 @@ fn fixture(name: &str) -> Scene {
 }
 
 fn kinds(scene: &Scene) -> BTreeSet<&'static str> {
-    scene.objects.iter().map(|object| object.shape.kind()).collect()
+    scene
+        .objects
+        .iter()
+        .map(|object| object.shape.kind())
+        .collect()
 }
 
 #[test]
@@ -105,7 +109,10 @@ fn each_stress_scene_holds_one_shape_and_nothing_that_reflects() {
 fn the_arm_has_six_instances_on_a_chain_of_joints() {
     let scene = fixture("robot-arm.toml");
     let names: Vec<_> = scene.joints.iter().map(|it| it.name.as_str()).collect();
-    assert_eq!(names, ["turret", "shoulder", "elbow", "wrist", "left", "right"]);
+    assert_eq!(
+        names,
+        ["turret", "shoulder", "elbow", "wrist", "left", "right"]
+    );
     assert_eq!((scene.parts.len(), scene.instances.len()), (4, 6));
     // It comes back, and the hand is down at the ball on its way.
     let [start, there, end] = [0.0, 2.0, 4.0].map(|seconds| scene.instances_at(seconds));
@@ -114,5 +121,8 @@ fn the_arm_has_six_instances_on_a_chain_of_joints() {
         assert!(one.distance(other) < 1e-9, "{one} {other}");
     }
     let hand = there[3].placement.translation;
-    assert!(hand.distance(glam::DVec3::new(1.64, 0.83, 0.0)) < 0.01, "{hand}");
+    assert!(
+        hand.distance(glam::DVec3::new(1.64, 0.83, 0.0)) < 0.01,
+        "{hand}"
+    );
 }

@@ -1,8 +1,8 @@
 //! Scenes made of several files.
 
-use crate::shape::Sphere;
 use super::{load_in, material_of, named};
 use crate::scene::{IMPORTERS, Light, Shape};
+use crate::shape::Sphere;
 use glam::DVec3;
 use std::path::Path;
 use tempfile::TempDir;
@@ -367,5 +367,8 @@ fn keys_for_molecules_reach_the_imports_of_an_import() {
     let wanted = import("both.toml") + "assembly = \"7\"";
     let error = load_in(folder.path(), &wanted).unwrap_err();
     assert!(error.file.ends_with("a.pdb"), "{error}");
-    assert!(error.cause.contains("there is no assembly \"7\""), "{error}");
+    assert!(
+        error.cause.contains("there is no assembly \"7\""),
+        "{error}"
+    );
 }

@@ -1,7 +1,7 @@
 //! Joints: what hangs on what, and the tracks that move it.
 
 use super::{load, load_in, scene};
-use crate::scene::{Posed, ImportOptions, Instances, Interpolation, Scene, Track, TrackTarget};
+use crate::scene::{ImportOptions, Instances, Interpolation, Posed, Scene, Track, TrackTarget};
 use glam::{DQuat, DVec3};
 
 const PART: &str = "[[part]]\nname = 'link'\n\

@@ -7,6 +7,7 @@ mod imports;
 mod joints;
 mod objects;
 mod parts;
+mod textures;
 mod tracks;
 mod transforms;
 

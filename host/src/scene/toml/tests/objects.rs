@@ -49,7 +49,7 @@ fn the_documented_example_holds_what_it_says() {
         samples: 4,
         depth: 6,
         cutoff: 0.002,
-        shadows: true,
+        ..RenderSettings::default()
     };
     assert_eq!(scene.render, render);
     assert_eq!(scene.ambient, [0.1; 3]);
@@ -291,7 +291,11 @@ fn meshes_are_smooth_below_an_angle() {
     for (smooth, is_flat) in [("", true), ("smooth = 40", true), ("smooth = 91", false)] {
         let normals = &scene(&roof(smooth)).objects[0].normals;
         assert_eq!(normals.is_flat(), is_flat, "{smooth}");
-        let ridge = normals.vectors.iter().filter(|it| it.z.abs() > 0.99).count();
+        let ridge = normals
+            .vectors
+            .iter()
+            .filter(|it| it.z.abs() > 0.99)
+            .count();
         assert_eq!(ridge, if is_flat { 0 } else { 2 });
     }
     let error = rejection(&roof("smooth = 200")).to_string();

@@ -1,8 +1,8 @@
 //! Shapes after transforms.
 
-use crate::shape::{Cone, Cuboid, Disc, Sphere};
 use super::{assert_near, named, rejection, scene, volume};
 use crate::scene::{Scene, Shape};
+use crate::shape::{Cone, Cuboid, Disc, Sphere};
 use glam::DVec3;
 
 /// A scene with one object, in the groups whose transforms are given, the outermost first.
@@ -202,7 +202,8 @@ fn discs_and_cones_follow_a_mirror() {
         panic!()
     };
     assert_eq!((center, normal), (DVec3::NEG_X, DVec3::NEG_X));
-    let Shape::Disc(Disc { normal, radius, .. }) = only(DISC, &["rotate = [0, 0, 90], scale = 3"]) else {
+    let Shape::Disc(Disc { normal, radius, .. }) = only(DISC, &["rotate = [0, 0, 90], scale = 3"])
+    else {
         panic!()
     };
     assert_eq!((normal, radius), (DVec3::Y, 3.0));

@@ -1,0 +1,83 @@
+//! The record of what makes a light more than a point that shines alike in all directions and at all distances.
+
+use crate::format::layout::records;
+use crate::format::record::Light;
+use bytemuck::{Pod, Zeroable};
+
+/// The ratio 1.
+const ONE: i64 = 1 << 30;
+/// The longest length, with 13 fraction bits.
+const LONGEST: i64 = 1 << 30;
+/// The longest edge: two of them are a length.
+const EDGE: i64 = 1 << 28;
+
+records! {
+    /// The form of a light at a position: what shines, where to, and how its light falls off.
+    #[derive(Clone, Copy, Debug, PartialEq, Eq, Pod, Zeroable)]
+    #[repr(C)]
+    #[bytes(56)]
+    pub struct LightForm {
+        /// What shines: 0 the position itself, 1 a sphere around it, 2 a rectangle with a corner there, 3 a disc around
+        /// it, 4 a triangle with a corner there.
+        #[valid(Kind: 0..=4)]
+        pub shape: u32,
+        /// The distance at which the light has its color, with 13 fraction bits: it falls off with the distance's square. 0
+        /// for light that does not fall off. Of what has an area, the color is the radiance times a factor, and this
+        /// the length whose square is the area over π (of a sphere: its radius), over the factor's root.
+        #[valid(LightReference: 0..=LONGEST)]
+        pub reference: i32,
+        /// The distance at which light ends, with 13 fraction bits; 0 for none.
+        #[valid(LightRange: 0..=LONGEST)]
+        pub range: i32,
+        /// The cosine of the angle at which a spot ends, 30 fraction bits; -2^30 where there is none.
+        #[valid(ConeCosine: -ONE..=ONE)]
+        pub cone_cosine: i32,
+        /// By how much the cosine of the angle to which a spot is fully bright is larger, 30 fraction bits.
+        #[valid(ConeWidth: 0..=ONE)]
+        pub cone_width: i32,
+        /// The direction of a spot, or the side on which a rectangle or disc shines: length 1, 30 fraction bits.
+        #[valid(Normal: -ONE..=ONE)]
+        pub normal: [i32; 3],
+        /// `[edge][axis]`: the edges of a rectangle (any parallelogram) or a triangle, or two perpendicular radii of a disc, lengths with 13 fraction bits. The
+        /// first number is the radius of a sphere.
+        #[valid(LightEdge: -EDGE..=EDGE)]
+        pub edges: [[i32; 3]; 2],
+    }
+}
+
+impl LightForm {
+    /// The shape of a sphere.
+    pub const SPHERE: u32 = 1;
+    /// The shape of a rectangle.
+    pub const RECTANGLE: u32 = 2;
+    /// The shape of a disc.
+    pub const DISC: u32 = 3;
+    /// The shape of a triangle.
+    pub const TRIANGLE: u32 = 4;
+}
+
+impl Light {
+    /// Whether the light is a point with a form.
+    const FORM: u32 = 2;
+    /// Whether it is an area.
+    const AREA: u32 = 3;
+
+    /// What [`directional`](Self::directional) is for a light whose form has a number below 2^30.
+    pub const fn with_form(number: u32, is_area: bool) -> u32 {
+        number << 2 | if is_area { Self::AREA } else { Self::FORM }
+    }
+
+    /// The number of its form; `None` for a plain point light and for a directional one.
+    pub const fn form(&self) -> Option<u32> {
+        if self.directional & Self::FORM != 0 {
+            Some(self.directional >> 2)
+        } else {
+            None
+        }
+    }
+
+    /// Whether an area shines in place of a point.
+    pub const fn is_area(&self) -> bool {
+        self.directional & Self::AREA == Self::AREA
+    }
+}

@@ -1,0 +1,67 @@
+//! Textures, and the maps of materials.
+
+use crate::format::layout::records;
+use bytemuck::{Pod, Zeroable};
+
+records! {
+    /// The maps of a material.
+    #[derive(Clone, Copy, Debug, PartialEq, Eq, Pod, Zeroable)]
+    #[repr(C)]
+    #[bytes(4)]
+    pub struct SurfaceMaps {
+        /// The texture that weights the diffuse color, counted from 1; 0 for none.
+        pub color: u16,
+        /// Where the texture's alpha is used: 0 for blending, else what alpha, of 255, is opaque; less is not there.
+        pub cutoff: u8,
+        /// Where the texture's alpha is used: a factor of it, of which 255 is 1.
+        pub opacity: u8,
+    }
+
+    /// An image, and how it is looked up. Colors are square roots of linear light: 255 is 1.
+    #[derive(Clone, Copy, Debug, PartialEq, Eq, Pod, Zeroable)]
+    #[repr(C)]
+    #[bytes(12)]
+    pub struct Texture {
+        /// Its first byte among the texels. Texels are stored row by row, the upper row first.
+        pub first: u32,
+        /// Width in texels.
+        #[valid(TextureWidth: 1..=4096)]
+        pub width: u16,
+        /// Height in texels.
+        #[valid(TextureHeight: 1..=4096)]
+        pub height: u16,
+        /// How a texel is stored: 0 as an index of 8 bits into 256 colors of 4 bytes, which lie before the texels; 1 as
+        /// RGB565, the lower byte first; 2 as red, green, blue; 3 as red, green, blue, alpha.
+        #[valid(TextureForm: 0..=3)]
+        pub form: u8,
+        /// 0 for the nearest texel, 1 for the bilinear mean of four.
+        #[valid(TextureFilter: 0..=1)]
+        pub filter: u8,
+        /// Beyond the image, along u and v: 0 it repeats, 1 it repeats in a mirror, 2 its edge goes on.
+        #[valid(TextureWrap: 0..=2)]
+        pub wrap: [u8; 2],
+    }
+}
+
+impl Texture {
+    /// Bytes of the palette before the texels.
+    pub const fn palette_bytes(&self) -> usize {
+        if self.form == 0 { 1024 } else { 0 }
+    }
+
+    /// Bytes per texel.
+    pub const fn texel_bytes(&self) -> usize {
+        match self.form {
+            0 => 1,
+            1 => 2,
+            2 => 3,
+            _ => 4,
+        }
+    }
+
+    /// Bytes of palette and texels: at most 2^26 and 1024.
+    pub const fn bytes(&self) -> usize {
+        let texels = self.width as usize * self.height as usize;
+        self.palette_bytes() + texels * self.texel_bytes()
+    }
+}

@@ -1,0 +1,86 @@
+//! Colors and texture coordinates of hits.
+
+use crate::accel::Number;
+use crate::geometry::Shapes;
+use crate::geometry::attributes::{COORDINATE_BITS, Weights};
+use crate::instances::map::{Map, PlacedSurface};
+use crate::query::hit::{Hit, find};
+use crate::scene::Scene;
+use crate::target::{TEXTURE, VERTEX_COLORS};
+
+impl<N: Number> Hit<N> {
+    /// Returns the texture coordinates at the hit, u to the right and v down: a multiple of 2^-20 each, from -1024 to
+    /// 1024. `scene` is that of the query. `None` unless the hit is of a mesh in a scene with texture coordinates.
+    ///
+    /// ```
+    /// # static BLOB: &[u8] =
+    /// #     gridel_core::include_blob!(concat!(env!("CARGO_MANIFEST_DIR"), "/../fixtures/blobs/dual-split.gridel"));
+    /// use gridel_core::{Ray, Scene, Stack};
+    ///
+    /// let scene = Scene::from_bytes(BLOB)?;
+    /// let mut stack = Stack::<32>::new();
+    /// let down = Ray::<f32>::from_f64(scene.bounds(), [0.0, 1e6, 0.0], [0.0, -1.0, 0.0], 0.0, 1e9)?;
+    /// let hit = scene.closest_hit(&down, stack.as_view()).expect("a sphere");
+    /// assert_eq!(hit.mapped_coordinates(&scene), None);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    pub fn mapped_coordinates(&self, scene: &Scene<'_>) -> Option<[f64; 2]> {
+        let found = self.coordinates(scene)?;
+        Some(found.map(|it| f64::from(it) / f64::from(1 << COORDINATE_BITS)))
+    }
+
+    /// The texture coordinates with [`COORDINATE_BITS`] fraction bits; `None` where there are none.
+    #[inline(always)]
+    pub(crate) fn coordinates(&self, scene: &Scene<'_>) -> Option<[i32; 2]> {
+        if !TEXTURE {
+            return None;
+        }
+        let (shapes, vertices, weights) = self.weights(scene)?;
+        let corners = shapes.coordinates().corners(vertices)?;
+        Some(weights.coordinates(corners))
+    }
+
+    /// The color of the vertices at the hit: linear ratios with 30 fraction bits. `None` where there is none.
+    #[inline(always)]
+    pub(crate) fn vertex_color(&self, scene: &Scene<'_>) -> Option<[i32; 3]> {
+        if !VERTEX_COLORS {
+            return None;
+        }
+        let (shapes, vertices, weights) = self.weights(scene)?;
+        let all = shapes.colors();
+        if vertices.iter().all(|&vertex| vertex >= all.len()) {
+            return None;
+        }
+        let color = |vertex: usize| all.get(vertex).copied().unwrap_or([255; 4]);
+        Some(weights.color(vertices.map(color)))
+    }
+
+    /// The primitives among which the triangle is that was hit, its vertices, and the weights of these.
+    #[inline(always)]
+    fn weights<'s>(&self, scene: &'s Scene<'_>) -> Option<(&'s Shapes<'s>, [usize; 3], Weights)> {
+        let slot = self.triangle_slot()?;
+        let (shapes, point, normal) = if self.instance().is_some() {
+            self.placed_point(scene)?
+        } else {
+            (&scene.space.shapes, self.point, self.normal)
+        };
+        let vertices = shapes.triangles.corners(slot)?;
+        let position = |vertex| shapes.vertices.position(vertex);
+        let [a, b, c] = vertices;
+        let corners = [position(a)?, position(b)?, position(c)?];
+        Some((shapes, vertices, Weights::at(corners, point, normal)))
+    }
+
+    /// The primitives of the part, and point and normal there.
+    #[cold]
+    #[inline(never)]
+    fn placed_point<'s>(&self, scene: &'s Scene<'_>) -> Option<(&'s Shapes<'s>, [N; 3], [N; 3])> {
+        let (instance, part) = find(scene, self.instance()?)?;
+        let there = Map::<N>::new(instance).in_part(&PlacedSurface {
+            point: self.point,
+            normal: self.normal,
+            error: self.error,
+        });
+        Some((&part.space.shapes, there.point, there.normal))
+    }
+}

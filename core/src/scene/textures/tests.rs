@@ -1,0 +1,245 @@
+use super::*;
+use bytemuck::Zeroable;
+
+const ONE: i32 = 1 << COORDINATE_BITS;
+
+/// Two by two texels: black, white, red, green.
+const TEXELS: [u8; 12] = [0, 0, 0, 255, 255, 255, 255, 0, 0, 0, 255, 0];
+
+fn image(form: u8, filter: u8, wrap: u8) -> Texture {
+    Texture {
+        width: 2,
+        height: 2,
+        form,
+        filter,
+        wrap: [wrap; 2],
+        ..Texture::zeroed()
+    }
+}
+
+fn look_up(texels: &[u8], texture: Texture, at: [f64; 2]) -> [f64; 3] {
+    let textures = Textures {
+        maps: &[],
+        textures: &[texture],
+        texels,
+    };
+    textures.validate().expect("valid");
+    let at = at.map(|it| (it * f64::from(ONE)).floor() as i32);
+    let found = textures.lookup(&texture, at).color;
+    found.map(|it| f64::from(it) / f64::from(1 << 30))
+}
+
+const BLACK: [f64; 3] = [0.0; 3];
+const WHITE: [f64; 3] = [1.0; 3];
+const RED: [f64; 3] = [1.0, 0.0, 0.0];
+const GREEN: [f64; 3] = [0.0, 1.0, 0.0];
+
+#[test]
+fn nearest_texels_repeat_mirror_and_clamp() {
+    let at = |wrap, u, v| look_up(&TEXELS, image(2, 0, wrap), [u, v]);
+    for wrap in 0..=2 {
+        assert_eq!(at(wrap, 0.0, 0.0), BLACK);
+        assert_eq!(at(wrap, 0.75, 0.25), WHITE);
+        assert_eq!(at(wrap, 0.25, 0.75), RED);
+        assert_eq!(at(wrap, 0.999_999, 0.999_999), GREEN);
+    }
+    assert_eq!(at(0, 1.25, 0.25), BLACK);
+    assert_eq!(at(0, -0.25, 0.25), WHITE);
+    assert_eq!(at(1, 1.25, 0.25), WHITE);
+    assert_eq!(at(1, -0.25, 0.25), BLACK);
+    assert_eq!(at(1, 2.25, 0.25), BLACK);
+    assert_eq!(at(2, 1.25, 0.25), WHITE);
+    assert_eq!(at(2, -7.0, 0.25), BLACK);
+    assert_eq!(at(2, 2047.0, 2047.0), GREEN);
+    assert_eq!(at(0, -2048.0, -2048.0), BLACK);
+}
+
+#[test]
+fn bilinear_texels_are_mixed_as_linear_light() {
+    let at = |wrap, u, v| look_up(&TEXELS, image(2, 1, wrap), [u, v]);
+    for wrap in 0..=2 {
+        assert_eq!(at(wrap, 0.25, 0.25), BLACK);
+        assert_eq!(at(wrap, 0.75, 0.25), WHITE);
+        let middle = at(wrap, 0.5, 0.5);
+        let expected = [0.5, 0.5, 0.25];
+        assert!(
+            middle
+                .iter()
+                .zip(expected)
+                .all(|(a, b)| (a - b).abs() < 1e-8),
+            "{middle:?}"
+        );
+    }
+    // At the seam the other edge, or this one again.
+    assert_eq!(at(0, 0.0, 0.25), [0.5; 3]);
+    assert_eq!(at(1, 0.0, 0.25), BLACK);
+    assert_eq!(at(2, 0.0, 0.25), BLACK);
+    assert_eq!(at(0, 0.999_999, 0.25)[0], at(0, -1e-6, 0.25)[0]);
+}
+
+#[test]
+fn all_forms_hold_white_black_and_primaries_exactly() {
+    let packed: Vec<u8> = [0x0000_u16, 0xffff, 0xf800, 0x07e0]
+        .iter()
+        .flat_map(|it| it.to_le_bytes())
+        .collect();
+    let wide: Vec<u8> = TEXELS
+        .chunks(3)
+        .flat_map(|it| [it[0], it[1], it[2], 9])
+        .collect();
+    let mut indexed = wide.clone();
+    indexed.resize(1024, 0);
+    indexed.extend([0, 1, 2, 3]);
+    for (form, texels) in [
+        (0, &indexed),
+        (1, &packed),
+        (2, &TEXELS.to_vec()),
+        (3, &wide),
+    ] {
+        for (place, expected) in [
+            ([0.2, 0.2], BLACK),
+            ([0.7, 0.2], WHITE),
+            ([0.2, 0.7], RED),
+            ([0.7, 0.7], GREEN),
+        ] {
+            assert_eq!(
+                look_up(texels, image(form, 0, 0), place),
+                expected,
+                "{form}"
+            );
+        }
+    }
+}
+
+#[test]
+fn textures_beyond_their_texels_are_rejected() {
+    let check = |texture: Texture, bytes: usize| {
+        let texels = vec![0; bytes];
+        let textures = Textures {
+            maps: &[],
+            textures: &[texture],
+            texels: &texels,
+        };
+        textures.validate().is_ok()
+    };
+    for (form, bytes) in [(0, 1028), (1, 8), (2, 12), (3, 16)] {
+        let texture = image(form, 1, 0);
+        assert!(check(texture, bytes));
+        assert!(!check(texture, bytes - 1));
+        assert!(!check(
+            Texture {
+                first: 1,
+                ..texture
+            },
+            bytes
+        ));
+        assert!(!check(
+            Texture {
+                first: u32::MAX,
+                ..texture
+            },
+            bytes
+        ));
+        assert!(!check(
+            Texture {
+                width: 4096,
+                height: 4096,
+                ..texture
+            },
+            bytes
+        ));
+    }
+    let texture = image(2, 0, 0);
+    assert!(!check(
+        Texture {
+            width: 0,
+            ..texture
+        },
+        99
+    ));
+    assert!(!check(
+        Texture {
+            height: 4097,
+            ..texture
+        },
+        1 << 16
+    ));
+    assert!(!check(Texture { form: 4, ..texture }, 99));
+    assert!(!check(
+        Texture {
+            filter: 2,
+            ..texture
+        },
+        99
+    ));
+    assert!(!check(
+        Texture {
+            wrap: [0, 3],
+            ..texture
+        },
+        99
+    ));
+    let maps = [SurfaceMaps {
+        color: 2,
+        ..SurfaceMaps::zeroed()
+    }];
+    let textures = Textures {
+        maps: &maps,
+        textures: &[texture],
+        texels: &TEXELS,
+    };
+    assert!(textures.validate().is_err());
+}
+
+#[test]
+fn largest_texture_is_looked_up_at_its_last_texel() {
+    let texture = Texture {
+        width: 4096,
+        height: 4096,
+        ..image(1, 0, 2)
+    };
+    let mut texels = vec![0; texture.bytes()];
+    let last = texels.len() - 2;
+    texels[last..].copy_from_slice(&[255; 2]);
+    assert_eq!(look_up(&texels, texture, [1.0, 1.0]), WHITE);
+    let texture = Texture {
+        filter: 1,
+        ..texture
+    };
+    assert_eq!(look_up(&texels, texture, [1.0, 1.0]), WHITE);
+}
+
+#[test]
+fn alpha_is_that_of_palettes_and_wide_texels_alone() {
+    let colors: Vec<u8> = [0, 85, 170, 255]
+        .iter()
+        .flat_map(|&alpha| [9, 9, 9, alpha])
+        .collect();
+    let mut indexed = colors.clone();
+    indexed.resize(1024, 0);
+    indexed.extend([0, 1, 2, 3]);
+    let packed = [9; 12].to_vec();
+    for filter in [0, 1] {
+        for (form, texels) in [(0, &indexed), (1, &packed), (2, &packed), (3, &colors)] {
+            let texture = image(form, filter, 0);
+            let textures = Textures {
+                maps: &[],
+                textures: &[texture],
+                texels,
+            };
+            textures.validate().expect("valid");
+            let at = |u: f64, v: f64| {
+                let at = [u, v].map(|it| (it * f64::from(ONE)) as i32);
+                f64::from(textures.alpha(&texture, at)) / f64::from(1 << 30)
+            };
+            let has_alpha = matches!(form, 0 | 3);
+            let expected = |alpha: f64| if has_alpha { alpha } else { 1.0 };
+            let near = |found: f64, alpha: f64| (found - expected(alpha)).abs() < 1e-8;
+            assert!(near(at(0.25, 0.25), 0.0) && near(at(0.75, 0.75), 1.0));
+            assert!(near(at(0.75, 0.25), 85.0 / 255.0));
+            if filter == 1 {
+                assert!(near(at(0.5, 0.5), 0.5), "{form}");
+            }
+        }
+    }
+}

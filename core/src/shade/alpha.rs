@@ -1,0 +1,110 @@
+//! Alpha: where a texture is not there, or not wholly, rays and light go straight on.
+//!
+//! A hit brings what its surface does, weighted by alpha, and sends one more ray straight on with the rest. That ray
+//! counts as a bounce. Glass ignores alpha: it lets light through by itself. Cost: beside the ray, one texel or four.
+
+use crate::accel::Number;
+use crate::format::Effects;
+use crate::format::record::Material;
+use crate::observe::count::Observer;
+use crate::observe::event::{Event, RayKind};
+use crate::query::Hit;
+use crate::ray::Ray;
+use crate::scene::Scene;
+use crate::scene::textures::ratio;
+use crate::shade::Color;
+use crate::shade::effect::{Effect, Tracer};
+use crate::shade::surface::{Bounce, Filter, Secondary, Surface};
+
+pub(crate) struct Alpha;
+
+impl Effect for Alpha {
+    type State<N: Number> = ();
+
+    const EFFECT: Effects = Effects::ALPHA;
+    const FILTERS: bool = true;
+
+    #[inline(always)]
+    fn is_required_by_material(material: &Material) -> bool {
+        material.maps & Material::MAPS_ALPHA != 0 && material.transmit == [0; 3]
+    }
+
+    #[inline(always)]
+    fn surface<'s, N: Number, X: Tracer<'s, N>>(
+        tracer: &mut X,
+        (): &mut (),
+        _: &Ray<N>,
+        surface: &mut Surface<'_, N>,
+    ) {
+        if !surface.required.contains(Self::EFFECT) {
+            return;
+        }
+        let alpha = alpha(tracer.scene(), surface.material, surface.hit);
+        surface.passing = surface.weight.scaled(N::ONE - alpha);
+        surface.weight = surface.weight.scaled(alpha);
+        if X::Observer::ENABLED {
+            tracer.count().event(Event::Alpha {
+                alpha: alpha.ratio_to_f64(),
+            });
+        }
+    }
+
+    #[inline(always)]
+    fn filter<'s, N: Number, X: Tracer<'s, N>>(
+        tracer: &mut X,
+        (): &mut (),
+        _: &Ray<N>,
+        filter: &mut Filter<'_, N>,
+    ) {
+        if !Self::is_required_by_material(filter.material) {
+            return;
+        }
+        let alpha = alpha(tracer.scene(), filter.material, filter.hit);
+        if alpha < N::ONE {
+            filter.passes = true;
+            filter.left = filter.left.scaled(N::ONE - alpha);
+        }
+    }
+
+    #[inline(always)]
+    fn bounce<'s, N: Number, X: Tracer<'s, N>>(
+        tracer: &mut X,
+        (): &mut (),
+        surface: &Surface<'_, N>,
+        _: &mut Bounce<N>,
+    ) {
+        if surface.required.contains(Self::EFFECT) && surface.passing != Color::BLACK {
+            let secondary = Secondary {
+                kind: RayKind::Refracted,
+                direction: surface.direction,
+                outward: !surface.hit.front,
+                weight: surface.passing,
+            };
+            tracer.send(surface.hit, secondary);
+        }
+    }
+}
+
+/// How much of a surface is there: 1 where it has no texture coordinates.
+#[inline(always)]
+fn alpha<N: Number>(scene: &Scene<'_>, material: &Material, hit: &Hit<N>) -> N {
+    let found = || {
+        let textures = scene.textures.get()?;
+        let maps = textures.maps_of(material)?;
+        let texture = textures.texture(maps.color)?;
+        let coordinates = hit.coordinates(scene)?;
+        Some((maps, textures.alpha(texture, coordinates)))
+    };
+    let Some((maps, alpha)) = found() else {
+        return N::ONE;
+    };
+    if maps.cutoff == 0 {
+        return N::ratio(alpha) * N::ratio(ratio(u32::from(maps.opacity) << 16));
+    }
+    // In integers, so that all number formats decide alike.
+    if alpha >= ratio(u32::from(maps.cutoff) << 16) {
+        N::ONE
+    } else {
+        N::ZERO
+    }
+}

@@ -1,0 +1,155 @@
+//! Lights with an area: every sample of a pixel sees one point of each.
+//!
+//! - **Sphere**: a direction of the cone in which it is seen, all alike (Shirley, Wang and Zimmerman, "Monte Carlo
+//!   Techniques for Direct Lighting Calculations", 1996). Nothing is drawn that the surface does not see.
+//! - **Rectangle, triangle and disc**: a point of the area, all alike, whose brightness the [falloff](super::falloff) weighs by
+//!   distance and angle. Sampling the solid angle of a rectangle (Ureña, Fajardo and King, 2013) takes arc cosines,
+//!   which `fixed` does not have, and all formats must draw the same points.
+
+use crate::accel::Number;
+use crate::format::Effects;
+use crate::format::light_form::LightForm;
+use crate::format::record::Light;
+use crate::number::{Angle, extent};
+use crate::observe::count::Observer;
+use crate::observe::event::Event;
+use crate::shade::effect::{Effect, Tracer};
+use crate::shade::light::{Reach, largest, length};
+use crate::shade::surface::{Aim, Cone, Lighting, Surface};
+
+pub(crate) struct AreaLight;
+
+impl Effect for AreaLight {
+    type State<N: Number> = ();
+
+    const EFFECT: Effects = Effects::AREA_LIGHT;
+
+    fn is_required_by_light(light: &Light) -> bool {
+        light.is_area()
+    }
+
+    #[inline(always)]
+    fn aim<'s, N: Number, X: Tracer<'s, N>>(
+        tracer: &mut X,
+        (): &mut (),
+        number: u32,
+        light: &Light,
+        aim: &mut Aim<N>,
+    ) {
+        if !light.is_area() {
+            return;
+        }
+        if let Some(form) = tracer.scene().light_form(light) {
+            // Lights beyond the first 4,096 share points with these.
+            let point = tracer.point(number as u16 & 0xfff);
+            *aim = at(form, aim, point);
+        }
+    }
+
+    #[inline(always)]
+    fn face<'s, N: Number, X: Tracer<'s, N>>(
+        tracer: &mut X,
+        (): &mut (),
+        _: &Surface<'_, N>,
+        lighting: &mut Lighting<'_, N>,
+        _: &mut bool,
+    ) {
+        if X::Observer::ENABLED && lighting.light.is_area() {
+            let way = lighting.way.map(N::far_to_f64);
+            let longest = way
+                .iter()
+                .fold(0.0, |longest: f64, it| longest.max(it.abs()));
+            let reach = lighting.distance.map_or(0.0, N::far_to_f64);
+            let from = lighting.origin.map(N::length_to_f64);
+            let axis = |k: usize| from[k] + way[k] / longest * reach;
+            let point = [axis(0), axis(1), axis(2)];
+            tracer.count().event(Event::FromArea { point });
+        }
+    }
+}
+
+/// The way to a random point of a light, given that to its position.
+#[inline(never)]
+fn at<N: Number>(form: &LightForm, aim: &Aim<N>, [u, v]: [u32; 2]) -> Aim<N> {
+    let ratio = |point: u32| N::ratio((point >> 2) as i32);
+    let turn = || Angle(v).sin_cos().map(N::ratio);
+    let [along, across] = match form.shape {
+        LightForm::SPHERE => return on_sphere(form, aim, ratio(u), turn()),
+        LightForm::RECTANGLE => [ratio(u), ratio(v)],
+        // The half of a parallelogram beyond the third side is turned onto the other half.
+        LightForm::TRIANGLE if (u >> 2) + (v >> 2) > 1 << 30 => {
+            [N::ONE - ratio(u), N::ONE - ratio(v)]
+        }
+        LightForm::TRIANGLE => [ratio(u), ratio(v)],
+        LightForm::DISC => {
+            let (radius, [sine, cosine]) = (ratio(u).sqrt(), turn());
+            [radius * cosine, radius * sine]
+        }
+        _ => return *aim,
+    };
+    let [first, second] = form.edges;
+    let axis = |k: usize| {
+        let offset = length::<N>(first[k]) * along + length::<N>(second[k]) * across;
+        aim.way[k] + offset.widen()
+    };
+    let way = [axis(0), axis(1), axis(2)];
+    Aim {
+        way,
+        distance: Some(largest::<N>(way)),
+        cone: None,
+    }
+}
+
+/// The way to where a random direction meets a sphere; no way from inside of it.
+fn on_sphere<N: Number>(form: &LightForm, aim: &Aim<N>, u: N, [sine, cosine]: [N; 2]) -> Aim<N> {
+    let hidden = Aim {
+        way: [N::Wide::default(); 3],
+        distance: None,
+        cone: None,
+    };
+    let Some(reach) = Reach::of(aim.way, aim.distance) else {
+        return hidden;
+    };
+    let radius = length::<N>(form.edges[0][0]).half();
+    let widest = radius.div(reach.half_length);
+    if widest <= N::ZERO || widest >= N::ONE {
+        return hidden;
+    }
+    let square = widest * widest;
+    let one = N::ONE.half();
+    // 1 - cos of the cone's angle, and of the direction's.
+    let widening = one.div(one + (N::ONE - square).sqrt().half());
+    let cap = square * widening;
+    let sag = cap * u;
+    let away = (sag + (sag - sag * sag)).sqrt().min(widest);
+    let toward = N::ONE - sag;
+    let [first, second] = beside(reach.unit);
+    let (right, up) = (away * cosine, away * sine);
+    let axis = |k: usize| reach.unit[k] * toward + first[k] * right + second[k] * up;
+    let direction = [axis(0), axis(1), axis(2)];
+    // In halves, from the middle of the chord to the surface.
+    let part = away.div(widest).min(N::ONE);
+    let inward = radius * (N::ONE - part * part).sqrt();
+    let end = (reach.half_length * toward - inward) * extent(direction);
+    Aim {
+        way: direction.map(N::widen),
+        distance: Some(end.widen() + end.widen()),
+        cone: Some(Cone {
+            half_distance: reach.half_length,
+            widening,
+        }),
+    }
+}
+
+/// Two directions that are perpendicular to one of length 1 and to each other (Duff, Burgess, Christensen, Hery, Kensler,
+/// Liani and Villemin, "Building an Orthonormal Basis, Revisited", 2017).
+fn beside<N: Number>([x, y, z]: [N; 3]) -> [[N; 3]; 2] {
+    let one = N::ONE.half();
+    let signed = |value: N| if z < N::ZERO { -value } else { value };
+    let scale = -one.div(one + z.abs().half());
+    let mixed = x * y * scale;
+    [
+        [N::ONE + x * x * scale, mixed, signed(-x)],
+        [signed(mixed), signed(N::ONE + y * y * scale), -y],
+    ]
+}

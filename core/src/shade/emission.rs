@@ -1,0 +1,40 @@
+//! Surfaces that send out light of their own, such as lamps that are seen.
+//!
+//! Light leaves the front of a surface, the side to which its normal points. That it lights other surfaces is a matter
+//! of the lights of the scene: the compiler makes lights with an area of surfaces that glow.
+
+use crate::accel::Number;
+use crate::format::Effects;
+use crate::observe::count::Observer;
+use crate::observe::event::Event;
+use crate::shade::Color;
+use crate::shade::effect::{Effect, Tracer};
+use crate::shade::surface::Surface;
+
+pub(crate) struct Emission;
+
+impl Effect for Emission {
+    type State<N: Number> = ();
+
+    const EFFECT: Effects = Effects::EMISSION;
+
+    #[inline(always)]
+    fn emit<'s, N: Number, X: Tracer<'s, N>>(
+        tracer: &mut X,
+        (): &mut (),
+        surface: &Surface<'_, N>,
+        local: &mut Color<N>,
+    ) {
+        // No material says so, as with other effects: a section of the blob does.
+        let emission = tracer.scene().emission(surface.hit.object);
+        if let Some(radiance) = emission.filter(|_| surface.hit.front) {
+            let emitted = Color::radiance(radiance);
+            *local = local.plus(emitted);
+            if X::Observer::ENABLED {
+                tracer.count().event(Event::Emitted {
+                    radiance: emitted.to_f64(),
+                });
+            }
+        }
+    }
+}

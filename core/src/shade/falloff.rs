@@ -1,0 +1,158 @@
+//! Light that falls off with the square of the distance, spots, and the brightness of areas.
+//!
+//! A light's form states the distance at which the light has its color. So one radiance of 20 fraction bits serves for
+//! every distance: `fixed` holds what arrives up to 2048 times display white, and beyond that saturates.
+
+use crate::accel::Number;
+use crate::format::Effects;
+use crate::format::light_form::LightForm;
+use crate::format::record::Light;
+use crate::observe::count::Observer;
+use crate::observe::event::Event;
+use crate::shade::Color;
+use crate::shade::effect::{Effect, Tracer};
+use crate::shade::light::length;
+use crate::shade::surface::{Lighting, Surface};
+
+pub(crate) struct Falloff;
+
+impl Effect for Falloff {
+    type State<N: Number> = ();
+
+    const EFFECT: Effects = Effects::FALLOFF;
+
+    fn is_required_by_light(light: &Light) -> bool {
+        light.form().is_some()
+    }
+
+    #[inline(always)]
+    fn face<'s, N: Number, X: Tracer<'s, N>>(
+        tracer: &mut X,
+        (): &mut (),
+        _: &Surface<'_, N>,
+        lighting: &mut Lighting<'_, N>,
+        is_reached: &mut bool,
+    ) {
+        if let Some(form) = tracer.scene().light_form(lighting.light) {
+            let is_shone_on = shines(form, lighting.to_light) && is_in_range(form, lighting);
+            if X::Observer::ENABLED && !is_shone_on {
+                tracer.count().event(Event::Outside);
+            }
+            *is_reached = *is_reached && is_shone_on;
+        }
+    }
+
+    #[inline(always)]
+    fn light<'s, N: Number, X: Tracer<'s, N>>(
+        tracer: &mut X,
+        (): &mut (),
+        _: &Surface<'_, N>,
+        lighting: &Lighting<'_, N>,
+        arriving: &mut Color<N>,
+    ) {
+        if let Some(form) = tracer.scene().light_form(lighting.light) {
+            *arriving = falling(form, lighting, *arriving);
+            if X::Observer::ENABLED {
+                tracer.count().event(Event::Fallen {
+                    arriving: arriving.to_f64(),
+                });
+            }
+        }
+    }
+}
+
+/// The cosine between the light's direction and the way to a surface, given the way back.
+fn cosine<N: Number>(form: &LightForm, to_light: [N; 3]) -> N {
+    let cos = -N::from_wide(N::dot(form.normal.map(N::ratio), to_light));
+    // Nothing proves the length of the normal.
+    cos.max(-N::ONE).min(N::ONE)
+}
+
+/// Whether a light shines towards a surface.
+fn shines<N: Number>(form: &LightForm, to_light: [N; 3]) -> bool {
+    match form.shape {
+        LightForm::SPHERE => true,
+        LightForm::RECTANGLE | LightForm::DISC | LightForm::TRIANGLE => {
+            cosine(form, to_light) > N::ZERO
+        }
+        _ => !has_cone(form) || cosine(form, to_light) > N::ratio(form.cone_cosine),
+    }
+}
+
+/// Whether a light's range reaches a surface.
+#[inline(always)]
+fn is_in_range<N: Number>(form: &LightForm, lighting: &Lighting<'_, N>) -> bool {
+    form.range == 0
+        || lighting
+            .half_distance()
+            .is_some_and(|half| half < length::<N>(form.range).half())
+}
+
+fn has_cone(form: &LightForm) -> bool {
+    form.cone_cosine > -(1 << 30)
+}
+
+/// What arrives of a light's color.
+#[inline(never)]
+fn falling<N: Number>(form: &LightForm, lighting: &Lighting<'_, N>, color: Color<N>) -> Color<N> {
+    let middle = lighting.cone.map(|cone| cone.half_distance);
+    let Some(half) = middle.or_else(|| lighting.half_distance()) else {
+        return Color::BLACK;
+    };
+    let mut arriving = fallen(color, length::<N>(form.reference).half(), half);
+    if form.range > 0 {
+        // KHR_lights_punctual: 1 minus the fourth power of the distance over the range.
+        let part = half.div(length::<N>(form.range).half());
+        if part >= N::ONE {
+            return Color::BLACK;
+        }
+        let square = part * part;
+        arriving = arriving.scaled(N::ONE - square * square);
+    }
+    if let Some(cone) = lighting.cone {
+        // A cone around a sphere takes 2 s² / (1 + cos) of π, where s is the sine of its angle.
+        let arriving = arriving.scaled(cone.widening);
+        return arriving.plus(arriving);
+    }
+    match form.shape {
+        LightForm::RECTANGLE | LightForm::DISC | LightForm::TRIANGLE => {
+            arriving.scaled(cosine(form, lighting.to_light).max(N::ZERO))
+        }
+        _ if has_cone(form) => {
+            let within = cosine(form, lighting.to_light) - N::ratio(form.cone_cosine);
+            let width = N::ratio(form.cone_width);
+            if within >= width {
+                return arriving;
+            }
+            let part = within.max(N::ZERO).div(width);
+            arriving.scaled(part).scaled(part)
+        }
+        _ => arriving,
+    }
+}
+
+/// How often a distance is doubled at most until it is no shorter than another.
+const DOUBLINGS: u32 = 32;
+
+/// A color at a reference distance, at another one; both are given by their halves. A reference of 0 is none.
+fn fallen<N: Number>(color: Color<N>, reference: N, distance: N) -> Color<N> {
+    if reference <= N::ZERO {
+        return color;
+    }
+    if distance <= N::ZERO {
+        return Color::BLACK;
+    }
+    // No ratio is above 1, which not every format could hold.
+    let (mut far, mut doublings) = (distance, 0);
+    while far < reference && doublings < DOUBLINGS {
+        far = far + far;
+        doublings += 1;
+    }
+    let ratio = reference.div(far).min(N::ONE);
+    let mut fallen = color.scaled(ratio).scaled(ratio);
+    for _ in 0..doublings {
+        let twice = fallen.plus(fallen);
+        fallen = twice.plus(twice);
+    }
+    fallen
+}

@@ -1,0 +1,105 @@
+//! Colors of vertices and textures, in exact arithmetic.
+//!
+//! A color of vertices is interpolated in real arithmetic. A texture is defined at multiples of 2^-20 of the image, at or
+//! below the coordinates, by integers: where several of them are possible, all are looked up.
+
+use super::hit::{Hit, ratio_of};
+use super::number::*;
+use super::shade;
+use super::world::{Form, Paint, World};
+use gridel_core::format::record::Material;
+
+/// The most places of a texture that are looked up for a point.
+const MOST_PLACES: i64 = 64;
+
+/// What weights the diffuse color, and whether it is open what of a texture is shown.
+pub struct Weight<N> {
+    pub color: Three<N>,
+    pub is_open: bool,
+}
+
+/// Colors of vertices and a texture at a hit; `None` where the point is known too badly.
+pub fn weight<N: Enclosure>(
+    world: &World<'_>,
+    hit: &Hit<N>,
+    material: &Material,
+) -> Option<Weight<N>> {
+    let white = Weight {
+        color: [N::one(); 3],
+        is_open: false,
+    };
+    let solid = &world.space(hit.instance).solids[hit.solid as usize];
+    let Form::Triangle {
+        corners, normal, ..
+    } = solid.form
+    else {
+        return Some(white);
+    };
+    let Paint {
+        colors,
+        coordinates,
+    } = solid.paint;
+    let has_texture = material.maps & Material::MAPS_TEXTURE != 0;
+    let coordinates = coordinates.filter(|_| has_texture);
+    if colors.is_none() && coordinates.is_none() {
+        return Some(white);
+    }
+    let (_, weights) = shade::weights(world, hit, corners, normal)?;
+    let mut found = white;
+    if let Some(colors) = colors {
+        found.color = [0, 1, 2].map(|channel: usize| mixed(weights, colors.map(|it| it[channel])));
+    }
+    if let Some(coordinates) = coordinates {
+        let texture = texture(world, material, weights, coordinates);
+        found.color = times(found.color, texture.color);
+        found.is_open = texture.is_open;
+    }
+    Some(found)
+}
+
+/// The mean of the squares of roots of 8 bits.
+fn mixed<N: Enclosure>(weights: Three<N>, roots: [u8; 3]) -> N {
+    let squares = roots.map(|root| i64::from(root) * i64::from(root));
+    let [a, b, c] = squares.map(N::int);
+    let sum = weights[0] * a + weights[1] * b + weights[2] * c;
+    let ratio = sum.over(N::int(255 * 255)).unwrap_or(N::zero());
+    ratio.at_least(N::zero()).at_most(N::one())
+}
+
+fn texture<N: Enclosure>(
+    world: &World<'_>,
+    material: &Material,
+    weights: Three<N>,
+    coordinates: [[i32; 2]; 3],
+) -> Weight<N> {
+    // The first and the last of the multiples along u and v.
+    let [u, v] = [0, 1].map(|axis: usize| {
+        let at = |corner: usize| weights[corner] * N::int(coordinates[corner][axis].into());
+        let [low, high] = (at(0) + at(1) + at(2)).bounds();
+        [low.floor() as i64, high.floor() as i64]
+    });
+    let places = |[low, high]: [i64; 2]| high.saturating_sub(low).saturating_add(1);
+    let count = places(u).saturating_mul(places(v));
+    let mut range: Option<[[i32; 2]; 3]> = None;
+    if (1..=MOST_PLACES).contains(&count) {
+        for v in v[0]..=v[1] {
+            for u in u[0]..=u[1] {
+                let color = world.scene.texture_color(material, [u as i32, v as i32]);
+                let color = color.unwrap_or([1 << 30; 3]);
+                range = Some(match range {
+                    None => color.map(|it| [it, it]),
+                    Some(range) => [0, 1, 2].map(|k: usize| {
+                        let [low, high] = range[k];
+                        [low.min(color[k]), high.max(color[k])]
+                    }),
+                });
+            }
+        }
+    }
+    // Any color.
+    let range = range.unwrap_or([[0, 1 << 30]; 3]);
+    Weight {
+        color: range.map(|[low, high]| ratio_of::<N>(low).hull(ratio_of(high))),
+        is_open: range.iter().any(|[low, high]| low != high),
+    }
+}

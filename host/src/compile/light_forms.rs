@@ -1,0 +1,126 @@
+//! The forms of lights as records.
+
+use super::CompileError;
+use crate::scene::{Color, LightForm, LightShape};
+use crate::shape::{Lattice, unit};
+use glam::DVec3;
+use gridel_core::format::light_form::LightForm as Record;
+use std::f64::consts::PI;
+
+/// The longest distance of a form, in units.
+const LONGEST: f64 = (1 << 17) as f64;
+/// The longest edge, in units.
+const LONGEST_EDGE: f64 = (1 << 15) as f64;
+
+/// By how many steps of the lattice light starts above a surface of the scene: more than the lattice moves that, and
+/// than arithmetic errs.
+const LIFT: f64 = 4.0;
+
+fn lift_length(form: &LightForm, lattice: &Lattice) -> f64 {
+    if form.is_surface {
+        LIFT * lattice.step()
+    } else {
+        0.0
+    }
+}
+
+/// From the position of a light to where it shines from: above the surface that it has in the scene, which must not
+/// stand in its way.
+pub fn lift(form: &LightForm, lattice: &Lattice) -> DVec3 {
+    let normal = match form.shape {
+        LightShape::Point | LightShape::Sphere { .. } => return DVec3::ZERO,
+        LightShape::Rectangle { edges } | LightShape::Triangle { edges } => {
+            edges[0].cross(edges[1])
+        }
+        LightShape::Disc { normal, .. } => normal,
+    };
+    unit(normal) * lift_length(form, lattice)
+}
+
+/// The record of a form, and the light's color in it: brought to the range where it is most precise, unless a track
+/// gives the light other colors.
+pub fn form_record(
+    form: &LightForm,
+    color: Color,
+    lattice: &Lattice,
+    number: usize,
+    has_color_track: bool,
+) -> Result<(Record, Color), CompileError> {
+    let units = |length: f64| length / lattice.unit();
+    let limited = |what: &'static str, length: f64, most: f64| {
+        let fits = units(length) <= most;
+        let most = most * lattice.unit();
+        fits.then_some(()).ok_or(CompileError::LightForm {
+            number,
+            what,
+            length,
+            most,
+        })
+    };
+    let q13 = |length: f64| (units(length) * 8192.0).round() as i32;
+    let (shape, normal, edges, mut reference) = match form.shape {
+        LightShape::Point => {
+            let direction = form.spot.map_or(DVec3::ZERO, |spot| unit(spot.direction));
+            let reference = if form.falls_off { 1.0 } else { 0.0 };
+            (0, direction, [DVec3::ZERO; 2], reference)
+        }
+        LightShape::Sphere { radius } => (
+            Record::SPHERE,
+            DVec3::ZERO,
+            [
+                DVec3::X * (radius + lift_length(form, lattice)),
+                DVec3::ZERO,
+            ],
+            radius,
+        ),
+        LightShape::Rectangle { edges } => {
+            let across = edges[0].cross(edges[1]);
+            (
+                Record::RECTANGLE,
+                unit(across),
+                edges,
+                (across.length() / PI).sqrt(),
+            )
+        }
+        LightShape::Triangle { edges } => {
+            let across = edges[0].cross(edges[1]);
+            let reference = (0.5 * across.length() / PI).sqrt();
+            (Record::TRIANGLE, unit(across), edges, reference)
+        }
+        LightShape::Disc { normal, radius } => {
+            let normal = unit(normal);
+            let first = normal.any_orthonormal_vector();
+            let edges = [first * radius, normal.cross(first) * radius];
+            (Record::DISC, normal, edges, radius)
+        }
+    };
+    for edge in edges {
+        limited("edge or radius", edge.length(), LONGEST_EDGE)?;
+    }
+    // The color is as precise as it can be, and the distance at which the light has it makes up for that.
+    let (peak, mut color) = (color.into_iter().fold(0.0, f64::max), color);
+    if reference > 0.0 && peak > 0.0 {
+        if !has_color_track {
+            reference *= peak.sqrt();
+            color = color.map(|channel| channel / peak);
+        }
+        limited("distance at which it has its color", reference, LONGEST)?;
+    }
+    limited("range", form.range.unwrap_or(0.0), LONGEST)?;
+    let q30 = |ratio: f64| (ratio * f64::from(1 << 30)).round() as i32;
+    let cosine = |degrees: f64| degrees.to_radians().cos();
+    let cone = form
+        .spot
+        .map(|spot| [cosine(spot.outer), cosine(spot.inner)]);
+    let record = Record {
+        shape,
+        // A light that is there is never without a distance.
+        reference: q13(reference).max(i32::from(reference > 0.0)),
+        range: form.range.map_or(0, |range| q13(range).max(1)),
+        cone_cosine: cone.map_or(-(1 << 30), |[outer, _]| q30(outer)),
+        cone_width: cone.map_or(0, |[outer, inner]| q30(inner) - q30(outer)),
+        normal: normal.to_array().map(q30),
+        edges: edges.map(|edge| edge.to_array().map(q13)),
+    };
+    Ok((record, color))
+}

@@ -1,0 +1,497 @@
+//! Textures as a blob holds them, within a budget of bytes.
+//!
+//! Without a budget an image of at most 256 colors becomes a palette, and any other RGB888. With one, the image that
+//! takes the most bytes is made coarser until all fit: RGB565 (not where alpha is used), then a palette of 256 colors, then half the size, again and
+//! again. Images wider or higher than 4096 are halved in any case.
+
+use super::CompileError;
+use super::section::{Section, section};
+use crate::scene::{Alpha, Image, Material, Texture, Wrap, linear_of_srgb};
+use crate::table::{grouped, printable};
+use gridel_core::format::SectionKind;
+use gridel_core::format::record;
+use serde::Serialize;
+use std::collections::{HashMap, HashSet};
+use std::fmt;
+use std::sync::Arc;
+
+/// Most texels of a side.
+const MOST_SIDE: u32 = 4096;
+/// Most colors of a palette.
+const COLORS: usize = 256;
+
+/// A color as roots of linear light, and alpha.
+type Roots = [u8; 4];
+
+/// How a texture is stored.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct TextureFigures {
+    /// Where it comes from.
+    pub name: String,
+    pub width: u32,
+    pub height: u32,
+    /// `palette`, `rgb565`, `rgb888` or `rgba8888`.
+    pub form: &'static str,
+    pub bytes: u64,
+}
+
+impl fmt::Display for TextureFigures {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self {
+            name,
+            width,
+            height,
+            form,
+            bytes,
+        } = self;
+        let (name, bytes) = (printable(name), grouped(*bytes));
+        write!(f, "{name}, {width} x {height}, {form}, {bytes} bytes")
+    }
+}
+
+/// A channel of linear light as a blob holds it; of scenes whose colors are display values, the channel itself counts.
+pub fn root(linear: f64, display_values: bool) -> u8 {
+    let channel = linear.clamp(0.0, 1.0);
+    let channel = if display_values {
+        srgb_of_linear(channel)
+    } else {
+        channel
+    };
+    (libm::sqrt(channel) * 255.0).round() as u8
+}
+
+/// Undoes [`linear_of_srgb`].
+fn srgb_of_linear(linear: f64) -> f64 {
+    if linear <= 0.003_130_8 {
+        linear * 12.92
+    } else {
+        1.055 * libm::pow(linear, 1.0 / 2.4) - 0.055
+    }
+}
+
+/// The textures of the materials in use.
+#[derive(Debug, Default)]
+pub struct Textures {
+    images: Vec<Arc<Image>>,
+    /// For each image, whether its alpha is used.
+    has_alpha: Vec<bool>,
+    textures: Vec<(usize, Texture)>,
+    maps: Vec<record::SurfaceMaps>,
+}
+
+impl Textures {
+    /// What a material's record says of its maps.
+    pub fn maps(&mut self, material: &Material) -> u16 {
+        let Some(texture) = &material.texture else {
+            return 0;
+        };
+        let alpha = material.alpha.filter(|_| material.transmit == [0.0; 3]);
+        let known = self.images.iter().position(|it| *it == texture.image);
+        let image = known.unwrap_or_else(|| {
+            self.images.push(Arc::clone(&texture.image));
+            self.has_alpha.push(false);
+            self.images.len() - 1
+        });
+        self.has_alpha[image] |= alpha.is_some();
+        let same = |(number, other): &(usize, Texture)| {
+            *number == image && other.wrap == texture.wrap && other.bilinear == texture.bilinear
+        };
+        let known = self.textures.iter().position(same);
+        let color = known.unwrap_or_else(|| {
+            self.textures.push((image, texture.clone()));
+            self.textures.len() - 1
+        });
+        let of_255 = |it: f64| (it.clamp(0.0, 1.0) * 255.0).round() as u8;
+        let (cutoff, opacity) = match alpha {
+            None => (0, 0),
+            Some(Alpha::Blend(factor)) => (0, of_255(factor)),
+            // Alpha of 8 bits that is as large or larger.
+            Some(Alpha::CutOut(least)) => {
+                ((least.clamp(0.0, 1.0) * 255.0).ceil().max(1.0) as u8, 255)
+            }
+        };
+        // Too many are an error later.
+        let limit = |number: usize| (number + 1).min(record::Material::MAPS_NUMBER.into()) as u16;
+        let maps = record::SurfaceMaps {
+            color: limit(color),
+            cutoff,
+            opacity,
+        };
+        let known = self.maps.iter().position(|it| *it == maps);
+        let number = known.unwrap_or_else(|| {
+            self.maps.push(maps);
+            self.maps.len() - 1
+        });
+        let uses_alpha = match alpha {
+            Some(_) => record::Material::MAPS_ALPHA,
+            None => 0,
+        };
+        limit(number) | record::Material::MAPS_TEXTURE | uses_alpha
+    }
+
+    /// The sections, and how each image is stored.
+    pub fn sections(
+        self,
+        display_values: bool,
+        budget: Option<u64>,
+    ) -> Result<(Vec<Section>, Vec<TextureFigures>), CompileError> {
+        let most = record::Material::MAPS_NUMBER.into();
+        let count = self.textures.len().max(self.maps.len());
+        if count > most {
+            let what = "textures";
+            return Err(CompileError::TooMany { what, count, most });
+        }
+        if count == 0 {
+            return Ok((Vec::new(), Vec::new()));
+        }
+        let roots: [u8; 256] = std::array::from_fn(|it| {
+            let channel = it as f64 / 255.0;
+            root(linear_of_srgb(channel), display_values)
+        });
+        let images = self.images.iter().zip(&self.has_alpha);
+        let images = images.map(|(image, has_alpha)| Stored::of(image, *has_alpha, &roots));
+        let mut images: Vec<Stored> = images.collect();
+        let total = |images: &[Stored]| images.iter().map(Stored::bytes).sum::<u64>();
+        while budget.is_some_and(|most| total(&images) > most) {
+            let largest = images.iter_mut().max_by_key(|it| it.bytes());
+            if !largest.is_some_and(Stored::make_coarser) {
+                return Err(CompileError::TextureBytes {
+                    bytes: total(&images),
+                    most: budget.unwrap_or(0),
+                });
+            }
+        }
+        let mut texels = Vec::new();
+        let mut firsts = Vec::new();
+        for image in &images {
+            firsts.push(texels.len() as u32);
+            texels.extend(image.encoded());
+            let (count, most) = (texels.len(), i32::MAX as usize);
+            if count > most {
+                let what = "bytes of textures";
+                return Err(CompileError::TooMany { what, count, most });
+            }
+        }
+        let textures = self.textures.iter().map(|(number, texture)| {
+            let image = &images[*number];
+            record::Texture {
+                first: firsts[*number],
+                width: image.width as u16,
+                height: image.height as u16,
+                form: image.form as u8,
+                filter: u8::from(texture.bilinear),
+                wrap: texture.wrap.map(|it| match it {
+                    Wrap::Repeat => 0,
+                    Wrap::Mirror => 1,
+                    Wrap::Clamp => 2,
+                }),
+            }
+        });
+        let textures: Vec<_> = textures.collect();
+        let figures = images.iter().map(|it| TextureFigures {
+            name: it.name.clone(),
+            width: it.width,
+            height: it.height,
+            form: it.form.name(),
+            bytes: it.bytes(),
+        });
+        let sections = vec![
+            section(SectionKind::SurfaceMaps, &self.maps),
+            section(SectionKind::Textures, &textures),
+            section(SectionKind::Texels, &texels),
+        ];
+        Ok((sections, figures.collect()))
+    }
+}
+
+/// The forms of texels, as [`record::Texture`] numbers them.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Form {
+    Palette = 0,
+    Rgb565 = 1,
+    Rgb888 = 2,
+    Rgba8888 = 3,
+}
+
+impl Form {
+    fn name(self) -> &'static str {
+        match self {
+            Self::Palette => "palette",
+            Self::Rgb565 => "rgb565",
+            Self::Rgb888 => "rgb888",
+            Self::Rgba8888 => "rgba8888",
+        }
+    }
+}
+
+/// An image on its way into a blob.
+struct Stored {
+    name: String,
+    width: u32,
+    height: u32,
+    pixels: Vec<Roots>,
+    has_alpha: bool,
+    form: Form,
+}
+
+impl Stored {
+    fn of(image: &Image, has_alpha: bool, roots: &[u8; 256]) -> Self {
+        let [width, height] = image.size();
+        let pixels = image.pixels().iter();
+        let has_alpha = has_alpha && !image.is_opaque();
+        let pixels = pixels.map(|&[r, g, b, alpha]| {
+            let [r, g, b] = [r, g, b].map(|it| roots[usize::from(it)]);
+            [r, g, b, if has_alpha { alpha } else { 255 }]
+        });
+        let mut stored = Self {
+            name: image.name.clone(),
+            width,
+            height,
+            pixels: pixels.collect(),
+            has_alpha,
+            form: match has_alpha {
+                true => Form::Rgba8888,
+                false => Form::Rgb888,
+            },
+        };
+        while stored.width > MOST_SIDE || stored.height > MOST_SIDE {
+            stored.halve();
+        }
+        let mut colors = HashSet::new();
+        let is_few = stored.pixels.iter().all(|it| {
+            colors.insert(*it);
+            colors.len() <= COLORS
+        });
+        let as_palette = Form::Palette;
+        if is_few && stored.bytes_as(as_palette) < stored.bytes() {
+            stored.form = as_palette;
+        }
+        stored
+    }
+
+    fn bytes(&self) -> u64 {
+        self.bytes_as(self.form)
+    }
+
+    fn bytes_as(&self, form: Form) -> u64 {
+        let texture = record::Texture {
+            first: 0,
+            width: self.width as u16,
+            height: self.height as u16,
+            form: form as u8,
+            filter: 0,
+            wrap: [0; 2],
+        };
+        texture.bytes() as u64
+    }
+
+    /// Takes fewer bytes and loses as little as can be; false where it cannot.
+    fn make_coarser(&mut self) -> bool {
+        match self.form {
+            Form::Rgb888 => self.form = Form::Rgb565,
+            Form::Rgb565 | Form::Rgba8888 if self.bytes_as(Form::Palette) < self.bytes() => {
+                self.form = Form::Palette;
+            }
+            _ if self.width * self.height == 1 => return false,
+            _ => {
+                self.halve();
+                let direct = match self.has_alpha {
+                    true => Form::Rgba8888,
+                    false => Form::Rgb565,
+                };
+                if self.bytes_as(direct) < self.bytes() {
+                    self.form = direct;
+                }
+            }
+        }
+        true
+    }
+
+    /// Makes width and height half as large, rounded up: the mean of linear light.
+    fn halve(&mut self) {
+        let (width, height) = (self.width.div_ceil(2), self.height.div_ceil(2));
+        let mut pixels = Vec::with_capacity((width * height) as usize);
+        for y in 0..height {
+            for x in 0..width {
+                let (mut sum, mut alpha) = ([0_u32; 3], 0);
+                for (dx, dy) in [(0, 0), (1, 0), (0, 1), (1, 1)] {
+                    let x = (2 * x + dx).min(self.width - 1);
+                    let y = (2 * y + dy).min(self.height - 1);
+                    let pixel = self.pixels[(y * self.width + x) as usize];
+                    for (sum, root) in sum.iter_mut().zip(pixel) {
+                        *sum += u32::from(root) * u32::from(root);
+                    }
+                    alpha += u32::from(pixel[3]);
+                }
+                let [r, g, b] = sum.map(|it| libm::sqrt(f64::from(it) / 4.0).round() as u8);
+                pixels.push([r, g, b, ((alpha + 2) / 4) as u8]);
+            }
+        }
+        (self.width, self.height, self.pixels) = (width, height, pixels);
+    }
+
+    /// Palette and texels.
+    fn encoded(&self) -> Vec<u8> {
+        match self.form {
+            Form::Rgb888 => self
+                .pixels
+                .iter()
+                .flat_map(|it| [it[0], it[1], it[2]])
+                .collect(),
+            Form::Rgba8888 => self.pixels.as_flattened().to_vec(),
+            Form::Rgb565 => {
+                let pack = |&[r, g, b, _]: &Roots| {
+                    let bits = |root: u8, most: u32| (u32::from(root) * most + 127) / 255;
+                    let packed = bits(r, 31) << 11 | bits(g, 63) << 5 | bits(b, 31);
+                    (packed as u16).to_le_bytes()
+                };
+                self.pixels.iter().flat_map(pack).collect()
+            }
+            Form::Palette => {
+                let palette = palette(&self.pixels);
+                let mut bytes: Vec<u8> = Vec::with_capacity(self.bytes() as usize);
+                bytes.extend(palette.as_flattened());
+                bytes.resize(4 * COLORS, 0);
+                let mut nearest: HashMap<Roots, u8> = HashMap::new();
+                bytes.extend(self.pixels.iter().map(|pixel| {
+                    *nearest.entry(*pixel).or_insert_with(|| {
+                        let entries = (0..).zip(&palette);
+                        let best = entries.min_by_key(|(_, entry)| distance(pixel, entry));
+                        best.map_or(0, |(number, _): (usize, _)| number as u8)
+                    })
+                }));
+                bytes
+            }
+        }
+    }
+}
+
+fn distance(a: &Roots, b: &Roots) -> u32 {
+    let apart = |k: usize| u32::from(a[k].abs_diff(b[k])).pow(2);
+    // Green looks brightest, and blue darkest.
+    3 * apart(0) + 6 * apart(1) + apart(2) + 6 * apart(3)
+}
+
+/// At most [`COLORS`] colors for pixels: all of them, or the means of boxes by Heckbert's median cut (1982).
+fn palette(pixels: &[Roots]) -> Vec<Roots> {
+    let mut counts: HashMap<Roots, u64> = HashMap::new();
+    for pixel in pixels {
+        *counts.entry(*pixel).or_default() += 1;
+    }
+    let mut all: Vec<(Roots, u64)> = counts.into_iter().collect();
+    all.sort_unstable();
+    let mut boxes = vec![all];
+    while boxes.len() < COLORS {
+        let range = |colors: &[(Roots, u64)], k: usize| {
+            let channel = colors.iter().map(|(color, _)| color[k]);
+            let highest = channel.clone().max().unwrap_or(0);
+            highest - channel.min().unwrap_or(0)
+        };
+        // The longest side of all boxes is cut.
+        let sides = boxes.iter().enumerate().flat_map(|(number, colors)| {
+            [0, 1, 2, 3].map(|k: usize| (range(colors, k), std::cmp::Reverse(number), k))
+        });
+        let Some((1.., std::cmp::Reverse(number), axis)) = sides.max() else {
+            break;
+        };
+        let mut colors = std::mem::take(&mut boxes[number]);
+        colors.sort_unstable_by_key(|(color, _)| (color[axis], *color));
+        let half = colors.iter().map(|(_, count)| count).sum::<u64>() / 2;
+        let mut sum = 0;
+        let middle = colors.iter().position(|(_, count)| {
+            sum += count;
+            sum > half
+        });
+        let middle = middle.unwrap_or(1).clamp(1, colors.len() - 1);
+        boxes.push(colors.split_off(middle));
+        boxes[number] = colors;
+    }
+    let mean = |colors: &Vec<(Roots, u64)>| {
+        let count: u64 = colors.iter().map(|(_, count)| count).sum();
+        [0, 1, 2, 3].map(|k: usize| {
+            let sum: u64 = colors
+                .iter()
+                .map(|(color, count)| u64::from(color[k]) * count)
+                .sum();
+            ((sum + count / 2) / count.max(1)) as u8
+        })
+    };
+    boxes.iter().filter(|it| !it.is_empty()).map(mean).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn image(width: u32, height: u32, color: impl Fn(u32, u32) -> [u8; 4]) -> Image {
+        let pixels = (0..width * height).map(|it| color(it % width, it / width));
+        Image::new("test", width, height, pixels.collect()).unwrap()
+    }
+
+    fn stored(image: Image, budget: Option<u64>) -> Result<TextureFigures, CompileError> {
+        let mut textures = Textures::default();
+        let material = Material {
+            texture: Some(Texture::of(Arc::new(image))),
+            ..Material::default()
+        };
+        assert_eq!(textures.maps(&material), 1 | record::Material::MAPS_TEXTURE);
+        assert_eq!(textures.maps(&material), 1 | record::Material::MAPS_TEXTURE);
+        let (_, mut figures) = textures.sections(false, budget)?;
+        Ok(figures.remove(0))
+    }
+
+    #[test]
+    fn budget_chooses_forms_and_sizes() {
+        let many = || {
+            image(64, 64, |x, y| {
+                [4 * x as u8, 4 * y as u8, (x ^ y) as u8, 255]
+            })
+        };
+        for (budget, form, width) in [
+            (None, "rgb888", 64),
+            (Some(12_288), "rgb888", 64),
+            (Some(12_287), "rgb565", 64),
+            (Some(8191), "palette", 64),
+            (Some(5119), "palette", 32),
+            (Some(2047), "rgb565", 16),
+            (Some(2), "rgb565", 1),
+        ] {
+            let figures = stored(many(), budget).unwrap();
+            assert_eq!((figures.form, figures.width), (form, width), "{budget:?}");
+            assert!(budget.is_none_or(|most| figures.bytes <= most));
+        }
+        assert!(matches!(
+            stored(many(), Some(1)),
+            Err(CompileError::TextureBytes { .. })
+        ));
+        let few = image(64, 64, |x, _| [x as u8, 0, 0, 255]);
+        assert_eq!(stored(few, None).unwrap().form, "palette");
+        let wide = image(8192, 2, |_, _| [9, 9, 9, 255]);
+        assert_eq!(stored(wide, None).unwrap().width, 4096);
+    }
+
+    #[test]
+    fn roots_are_within_a_step_of_a_display() {
+        for encoded in 0..=255_u8 {
+            let linear = linear_of_srgb(f64::from(encoded) / 255.0);
+            let root = f64::from(root(linear, false)) / 255.0;
+            let back = srgb_of_linear(root * root) * 255.0;
+            assert!(
+                (back - f64::from(encoded)).abs() <= 1.0,
+                "{encoded}: {back}"
+            );
+        }
+        assert_eq!(
+            [root(1.0, false), root(0.0, false), root(1.0, true)],
+            [255, 0, 255]
+        );
+    }
+
+    #[test]
+    fn palette_of_few_colors_is_exact() {
+        let pixels: Vec<Roots> = (0..=255).map(|it| [it, 255 - it, 7, it / 2]).collect();
+        let mut found = palette(&pixels);
+        found.sort_unstable();
+        assert_eq!(found, pixels);
+    }
+}

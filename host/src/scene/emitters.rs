@@ -1,0 +1,312 @@
+//! Objects that glow as lights, and lights that are seen as objects.
+
+use super::attributes::Attributes;
+use super::light_form::{LightForm, LightShape};
+use super::model::{Color, Diffuse, Light, Material, Object, Scene};
+use super::{Normals, Shape, SourceSpan};
+use glam::DVec3;
+use std::borrow::Cow;
+
+/// The most faces of an object that glows for each of them to be a light.
+pub const MOST_FACES: usize = 32;
+
+const BLACK: Color = [0.0; 3];
+
+impl Scene {
+    /// The scene with a light for each sphere, disc, face of a box and triangle of a mesh that glows, unless its material
+    /// says that it does not light others; and with an object for each light that is seen. Two triangles that make a
+    /// parallelogram are one light. Lights and objects are added behind the others, once: a scene from here changes no
+    /// more.
+    ///
+    /// ```
+    /// # let file = "[material.lamp]\nemission = 5\n\
+    /// #     [[object]]\nkind = 'sphere'\ncenter = [0, 0, 0]\nradius = 1\nmaterial = 'lamp'";
+    /// # let imported = gridel_host::scene::read("lamp.toml".as_ref(), file.into(), &Default::default())?;
+    /// // Readers of scene files have done it.
+    /// assert_eq!(imported.scene.lights.len(), 1);
+    /// assert_eq!(*imported.scene.with_emitters(), imported.scene);
+    /// # Ok::<(), gridel_host::scene::SceneError>(())
+    /// ```
+    pub fn with_emitters(&self) -> Cow<'_, Self> {
+        let is_seen = |form: &Option<LightForm>| form.is_some_and(|form| form.is_visible);
+        let glows = self.materials.iter().any(Material::lights_others);
+        if !glows && !self.light_forms.iter().any(is_seen) {
+            return Cow::Borrowed(self);
+        }
+        let mut scene = self.clone();
+        scene.light_emitters();
+        scene.show_lights();
+        Cow::Owned(scene)
+    }
+
+    fn light_emitters(&mut self) {
+        for number in 0..self.objects.len() {
+            let object = &self.objects[number];
+            let material = &self.materials[object.material];
+            if !material.lights_others() {
+                continue;
+            }
+            let (color, name) = (material.emission, object.name.clone());
+            for (position, shape) in faces(&object.shape) {
+                let form = LightForm {
+                    shape,
+                    is_surface: true,
+                    ..LightForm::default()
+                };
+                self.add_light(Light::Point { position, color }, form, name.clone());
+            }
+        }
+        for material in &mut self.materials {
+            material.lights = false;
+        }
+    }
+
+    fn add_light(&mut self, light: Light, form: LightForm, name: String) {
+        self.light_names.resize(self.lights.len(), String::new());
+        self.light_forms.resize(self.lights.len(), None);
+        self.lights.push(light);
+        self.light_names.push(name);
+        self.light_forms.push(Some(form));
+    }
+
+    fn show_lights(&mut self) {
+        for number in 0..self.lights.len() {
+            let form = self.light_forms.get_mut(number).and_then(Option::as_mut);
+            let Some(form) = form.filter(|form| form.is_visible) else {
+                continue;
+            };
+            form.is_visible = false;
+            let Light::Point { position, color } = self.lights[number] else {
+                continue;
+            };
+            let Some(shape) = seen(position, &form.shape) else {
+                continue;
+            };
+            form.is_surface = true;
+            let name = match self.light_names.get(number) {
+                Some(name) if !name.is_empty() => name.clone(),
+                _ => format!("light {number}"),
+            };
+            self.objects.push(Object {
+                name: name.clone(),
+                material: self.materials.len(),
+                shape,
+                normals: Normals::default(),
+                attributes: Attributes::default(),
+                place: SourceSpan::default(),
+            });
+            self.materials.push(Material {
+                name,
+                diffuse: Diffuse::Plain(BLACK),
+                emission: color,
+                lights: false,
+                ..Material::default()
+            });
+        }
+    }
+
+    /// Names of objects that glow and do not light others, though they should: those of parts, and those with shapes that
+    /// no light has, or with too many faces.
+    pub fn emitters_without_light(&self) -> impl Iterator<Item = &str> {
+        let lights = |object: &&Object| self.materials[object.material].lights_others();
+        let own = self.objects.iter();
+        let own = own.filter(|object| faces(&object.shape).is_empty());
+        let in_parts = self.parts.iter().flat_map(|part| &part.objects);
+        let all = own.chain(in_parts).filter(lights);
+        all.map(|object| object.name.as_str())
+    }
+}
+
+impl Material {
+    fn lights_others(&self) -> bool {
+        self.lights && self.emission != BLACK
+    }
+}
+
+/// The positions and shapes of the lights of an object; none for one that is no light.
+fn faces(shape: &Shape) -> Vec<(DVec3, LightShape)> {
+    match shape {
+        Shape::Sphere(sphere) => {
+            let radius = sphere.radius;
+            vec![(sphere.center, LightShape::Sphere { radius })]
+        }
+        Shape::Disc(disc) => {
+            let (normal, radius) = (disc.normal, disc.radius);
+            vec![(disc.center, LightShape::Disc { normal, radius })]
+        }
+        Shape::Box(cuboid) => {
+            let (low, high) = (cuboid.min, cuboid.max);
+            let side = high - low;
+            let mut faces = Vec::new();
+            for axis in 0..3 {
+                let [first, second] = [(axis + 1) % 3, (axis + 2) % 3].map(|it| {
+                    let mut edge = DVec3::ZERO;
+                    edge[it] = side[it];
+                    edge
+                });
+                let mut above = low;
+                above[axis] = high[axis];
+                for (corner, edges) in [(low, [second, first]), (above, [first, second])] {
+                    faces.push((corner, LightShape::Rectangle { edges }));
+                }
+            }
+            faces
+        }
+        Shape::Mesh {
+            vertices,
+            triangles,
+        } if triangles.len() <= MOST_FACES => of_mesh(vertices, triangles),
+        _ => Vec::new(),
+    }
+}
+
+fn of_mesh(vertices: &[DVec3], triangles: &[[u32; 3]]) -> Vec<(DVec3, LightShape)> {
+    let corners = |triangle: &[u32; 3]| triangle.map(|corner| vertices[corner as usize]);
+    let mut faces = Vec::new();
+    let mut rest = triangles.iter().map(corners).peekable();
+    while let Some(face) = rest.next() {
+        let other = rest.peek().and_then(|next| parallelogram(face, *next));
+        if let Some(face) = other {
+            rest.next();
+            faces.push(face);
+            continue;
+        }
+        let [a, b, c] = face;
+        let edges = [b - a, c - a];
+        if edges[0].cross(edges[1]) != DVec3::ZERO {
+            faces.push((a, LightShape::Triangle { edges }));
+        }
+    }
+    faces
+}
+
+/// The parallelogram of two triangles with a common edge.
+fn parallelogram(first: [DVec3; 3], second: [DVec3; 3]) -> Option<(DVec3, LightShape)> {
+    // The corner of the first that the second lacks, and the other way round.
+    let lone = (0..3).find(|&it| !second.contains(&first[it]))?;
+    let [a, b, c] = [first[lone], first[(lone + 1) % 3], first[(lone + 2) % 3]];
+    let far = second.into_iter().find(|it| !first.contains(it))?;
+    let shares = second.contains(&b) && second.contains(&c);
+    let edges = [b - a, c - a];
+    let across = edges[0].cross(edges[1]);
+    let own = (second[1] - second[0]).cross(second[2] - second[0]);
+    let size = edges[0].abs().max(edges[1].abs()).max_element();
+    let is_fourth = (far - (b + edges[1])).abs().max_element() <= 1e-9 * size;
+    let is_one = shares && is_fourth && across != DVec3::ZERO && across.dot(own) > 0.0;
+    is_one.then_some((a, LightShape::Rectangle { edges }))
+}
+
+/// The shape that is seen of a light with an area.
+fn seen(position: DVec3, shape: &LightShape) -> Option<Shape> {
+    let mesh = |vertices: Vec<DVec3>, triangles: Vec<[u32; 3]>| Shape::Mesh {
+        vertices,
+        triangles,
+    };
+    Some(match *shape {
+        LightShape::Point => return None,
+        LightShape::Sphere { radius } => Shape::Sphere(crate::shape::Sphere {
+            center: position,
+            radius,
+        }),
+        LightShape::Disc { normal, radius } => Shape::Disc(crate::shape::Disc {
+            center: position,
+            normal,
+            radius,
+        }),
+        LightShape::Rectangle { edges: [a, b] } => mesh(
+            vec![position, position + a, position + a + b, position + b],
+            vec![[0, 1, 2], [0, 2, 3]],
+        ),
+        LightShape::Triangle { edges: [a, b] } => {
+            mesh(vec![position, position + a, position + b], vec![[0, 1, 2]])
+        }
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::scene::read;
+
+    fn scene(text: &str) -> Scene {
+        let imported = read("lamp.toml".as_ref(), text.into(), &Default::default());
+        imported.unwrap_or_else(|error| panic!("{error}")).scene
+    }
+
+    /// The area of a light, and the sum of the directions to which it shines.
+    fn area(scene: &Scene, number: usize) -> (f64, DVec3) {
+        let form = scene.light_forms[number].unwrap();
+        assert!(form.is_surface && !form.is_visible);
+        match form.shape {
+            LightShape::Rectangle { edges } => {
+                let across = edges[0].cross(edges[1]);
+                (across.length(), across)
+            }
+            LightShape::Triangle { edges } => {
+                let across = 0.5 * edges[0].cross(edges[1]);
+                (across.length(), across)
+            }
+            _ => panic!("no flat light"),
+        }
+    }
+
+    #[test]
+    fn boxes_shine_outwards_from_six_faces() {
+        let scene = scene(
+            "[material.lamp]\nemission = [4, 3, 2]\n\
+             [[object]]\nkind = 'box'\nmin = [0, 0, 0]\nmax = [1, 2, 3]\nmaterial = 'lamp'",
+        );
+        assert_eq!(scene.lights.len(), 6);
+        let areas = (0..6).map(|number| area(&scene, number));
+        let (sum, closed) = areas.fold((0.0, DVec3::ZERO), |(sum, all), (area, across)| {
+            (sum + area, all + across)
+        });
+        assert_eq!((sum, closed), (22.0, DVec3::ZERO));
+        let middle = DVec3::new(0.5, 1.0, 1.5);
+        for number in 0..6 {
+            let Light::Point { position, color } = scene.lights[number] else {
+                panic!("no light with a position");
+            };
+            assert_eq!(color, [4.0, 3.0, 2.0]);
+            assert!(area(&scene, number).1.dot(position - middle) > 0.0);
+        }
+    }
+
+    #[test]
+    fn meshes_shine_from_parallelograms_and_triangles() {
+        let scene = scene(
+            "[material.lamp]\nemission = 4\n\
+             [[object]]\nkind = 'mesh'\nvertices = [[0, 0, 0], [2, 0, 0], [2, 1, 0], [0, 1, 0], [9, 9, 9]]\n\
+             faces = [[0, 1, 2], [0, 2, 3], [0, 1, 4]]\nmaterial = 'lamp'",
+        );
+        assert_eq!(scene.lights.len(), 2);
+        assert_eq!(area(&scene, 0), (2.0, DVec3::new(0.0, 0.0, 2.0)));
+        assert!(matches!(
+            scene.light_forms[1].unwrap().shape,
+            LightShape::Triangle { .. }
+        ));
+    }
+
+    #[test]
+    fn visible_lights_are_objects_that_light_once() {
+        let scene = scene(
+            "[[light]]\nkind = 'rectangle'\ncorner = [0, 5, 0]\nedges = [[1, 0, 0], [0, 0, 1]]\nradiance = 3\n\
+             visible = true\nname = 'lamp'\n\
+             [[object]]\nkind = 'sphere'\ncenter = [0, 0, 0]\nradius = 1",
+        );
+        assert_eq!((scene.lights.len(), scene.objects.len()), (1, 2));
+        let lamp = &scene.objects[1];
+        assert_eq!(lamp.name, "lamp");
+        assert_eq!(scene.materials[lamp.material].emission, [3.0; 3]);
+        assert_eq!(*scene.with_emitters(), scene);
+    }
+
+    #[test]
+    fn materials_may_glow_without_lighting_others() {
+        let scene = scene(
+            "[material.lamp]\nemission = 4\nlights = false\n\
+             [[object]]\nkind = 'sphere'\ncenter = [0, 0, 0]\nradius = 1\nmaterial = 'lamp'",
+        );
+        assert_eq!(scene.lights.len(), 0);
+    }
+}

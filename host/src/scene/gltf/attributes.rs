@@ -1,0 +1,203 @@
+//! Colors of vertices, texture coordinates, and textures.
+
+use super::buffers::fetch;
+use super::{Importer, material};
+use crate::scene::texture::texture_transform;
+use crate::scene::{Attributes, Image, Material, SceneError, Texture, Wrap};
+use glam::{DAffine2, DVec2};
+use gltf::image::Source;
+use gltf::texture::{MagFilter, WrappingMode};
+use gltf::{Primitive, Semantic};
+use std::borrow::Cow;
+use std::sync::Arc;
+
+impl Importer<'_> {
+    /// The colors and texture coordinates of a primitive with so many vertices and these triangles.
+    pub(super) fn attributes(
+        &mut self,
+        place: &str,
+        part: &Primitive<'_>,
+        (vertices, triangles): (usize, &[[u32; 3]]),
+    ) -> Result<Attributes, SceneError> {
+        let mut attributes = Attributes::default();
+        let as_many = |found: usize, what: &str| {
+            if found == vertices {
+                return Ok(());
+            }
+            let cause = format!("{place} has {vertices} vertices and {found} {what}");
+            Err(SceneError::new(self.path, cause, "export the file again"))
+        };
+        if let Some(accessor) = part.get(&Semantic::Colors(0)) {
+            let colors = self.buffers.colors(&accessor)?;
+            as_many(colors.len(), "colors")?;
+            let clear = colors.iter().filter(|it| it[3] < 1.0).count();
+            let solid = colors
+                .iter()
+                .map(|&[r, g, b, _]| [r, g, b].map(|it| it.clamp(0.0, 1.0)));
+            attributes.colors = solid.collect();
+            self.warn_of(usize::from(clear > 0), "the alpha of COLOR_0 is ignored");
+        }
+        let material = part.material();
+        let texture = material.pbr_metallic_roughness().base_color_texture();
+        let Some(texture) = texture.filter(|it| it.texture().source().is_some()) else {
+            return Ok(attributes);
+        };
+        let transformed = texture.texture_transform().and_then(|it| it.tex_coord());
+        let set = transformed.unwrap_or(texture.tex_coord());
+        let Some(accessor) = part.get(&Semantic::TexCoords(set)) else {
+            self.warn(format!(
+                "{place} has a texture and no TEXCOORD_{set}; its plain color is used"
+            ));
+            return Ok(attributes);
+        };
+        let coordinates = self.buffers.coordinates(&accessor)?;
+        let as_many = coordinates.len() == vertices;
+        if !as_many {
+            let found = coordinates.len();
+            let cause = format!("{place} has {vertices} vertices and {found} texture coordinates");
+            return Err(self.error(cause, "export the file again"));
+        }
+        attributes.coordinates = coordinates.into_iter().map(DVec2::from_array).collect();
+        attributes.triangles = triangles.to_vec();
+        Ok(attributes)
+    }
+
+    /// The material of a primitive, each read once.
+    pub(super) fn material(&mut self, part: &Primitive<'_>) -> Result<usize, SceneError> {
+        let material = part.material();
+        if let Some(&known) = self.materials.get(&material.index()) {
+            return Ok(known);
+        }
+        let plain = material::read(&material, false);
+        let texture = self.texture(&material, &plain)?;
+        let is_opaque = texture.as_ref().is_none_or(|it| it.image.is_opaque());
+        let alpha = material::alpha(&material).filter(|_| !is_opaque);
+        let made = match alpha {
+            None => plain,
+            Some(_) => material::read(&material, true),
+        };
+        let made = Material {
+            texture,
+            alpha,
+            ..made
+        };
+        if alpha.is_some() && made.transmit != [0.0; 3] {
+            let name = &made.name;
+            self.warn(format!(
+                "the alpha of the texture of material {name:?} is ignored, because it is glass"
+            ));
+        }
+        let number = self.scene.materials.len();
+        self.scene.materials.push(made);
+        self.materials.insert(material.index(), number);
+        Ok(number)
+    }
+
+    /// The texture of the base color.
+    fn texture(
+        &mut self,
+        material: &gltf::Material<'_>,
+        made: &Material,
+    ) -> Result<Option<Texture>, SceneError> {
+        let surface = material.pbr_metallic_roughness();
+        let name = &made.name;
+        let others = [
+            surface.metallic_roughness_texture().is_some(),
+            material.normal_texture().is_some(),
+            material.occlusion_texture().is_some(),
+            material.emissive_texture().is_some(),
+            material
+                .transmission()
+                .is_some_and(|it| it.transmission_texture().is_some()),
+            material
+                .volume()
+                .is_some_and(|it| it.thickness_texture().is_some()),
+        ];
+        let names = [
+            "metallic-roughness",
+            "normal",
+            "occlusion",
+            "emissive",
+            "transmission",
+            "thickness",
+        ];
+        let ignored: Vec<_> = names.iter().zip(others).filter(|it| it.1).collect();
+        if !ignored.is_empty() {
+            let all: Vec<&str> = ignored.iter().map(|it| *it.0).collect();
+            let all = all.join(", ");
+            self.warn(format!(
+                "textures of material {name:?} are not drawn: {all}"
+            ));
+        }
+        let Some(info) = surface.base_color_texture() else {
+            return Ok(None);
+        };
+        if made.mirror != [0.0; 3] || made.transmit != [0.0; 3] {
+            self.warn(format!(
+                "the texture of material {name:?} weights its diffuse color alone, not what it mirrors or lets through"
+            ));
+        }
+        let Some(source) = info.texture().source() else {
+            self.warn(format!(
+                "the texture of material {name:?} names no image that Gridel reads; its plain color is used"
+            ));
+            return Ok(None);
+        };
+        let Some(image) = self.image(&source)? else {
+            return Ok(None);
+        };
+        let sampler = info.texture().sampler();
+        let wrap = |mode: WrappingMode| match mode {
+            WrappingMode::Repeat => Wrap::Repeat,
+            WrappingMode::MirroredRepeat => Wrap::Mirror,
+            WrappingMode::ClampToEdge => Wrap::Clamp,
+        };
+        let transform = info.texture_transform().map(|it| {
+            let [scale, offset] =
+                [it.scale(), it.offset()].map(|it| DVec2::from(it.map(f64::from)));
+            texture_transform(scale, it.rotation().into(), offset)
+        });
+        Ok(Some(Texture {
+            wrap: [wrap(sampler.wrap_s()), wrap(sampler.wrap_t())],
+            bilinear: sampler.mag_filter() != Some(MagFilter::Nearest),
+            transform: transform.unwrap_or(DAffine2::IDENTITY),
+            ..Texture::of(image)
+        }))
+    }
+
+    /// Reads an image, each once; `None` for a file that is not there.
+    fn image(&mut self, image: &gltf::Image<'_>) -> Result<Option<Arc<Image>>, SceneError> {
+        if let Some(known) = self.images.get(&image.index()) {
+            return Ok(known.clone());
+        }
+        let what = format!("image {}", image.index());
+        let bytes = match image.source() {
+            Source::View { view, .. } => match self.buffers.view(&view) {
+                Some(bytes) => Cow::Borrowed(bytes),
+                None => {
+                    let number = view.index();
+                    let cause =
+                        format!("{what} reads buffer view {number}, which its buffer lacks");
+                    let remedy = "copy the file again, as binary, or export it again";
+                    return Err(self.error(cause, remedy));
+                }
+            },
+            Source::Uri { uri, .. } => match fetch(self.path, &what, uri, self.access) {
+                Ok(bytes) => Cow::Owned(bytes),
+                // As with textures of OBJ files: it was often left behind.
+                Err(error) if error.cause.contains("cannot be read") => {
+                    self.warn(format!("{}; the plain color is used", error.cause));
+                    self.images.insert(image.index(), None);
+                    return Ok(None);
+                }
+                Err(error) => return Err(error),
+            },
+        };
+        let name = image.name().map_or_else(|| what.clone(), str::to_owned);
+        let decoded = Image::decode(&name, &bytes)
+            .map_err(|[cause, remedy]| self.error(format!("{what} ({name:?}) {cause}"), &remedy))?;
+        let decoded = Some(Arc::new(decoded));
+        self.images.insert(image.index(), decoded.clone());
+        Ok(decoded)
+    }
+}

@@ -1,0 +1,231 @@
+//! Images for textures: PNG and JPEG.
+
+use std::fmt;
+use std::io::Cursor;
+
+/// Most texels of an image that is read: 8192 by 8192.
+const MOST_TEXELS: usize = 1 << 26;
+/// Most texels of a side of an image that is read.
+const MOST_SIDE: usize = 1 << 15;
+
+/// An image of 8 bits per channel, in sRGB.
+#[derive(Clone, PartialEq, Eq)]
+pub struct Image {
+    /// Where it comes from, for messages.
+    pub name: String,
+    width: u32,
+    height: u32,
+    pixels: Vec<[u8; 4]>,
+}
+
+impl fmt::Debug for Image {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self {
+            name,
+            width,
+            height,
+            ..
+        } = self;
+        write!(f, "Image({name:?}, {width}x{height})")
+    }
+}
+
+/// Why an image cannot be read: the cause, and a remedy.
+pub(super) type Fault = [String; 2];
+
+impl Image {
+    /// Makes an image from pixels row by row, the upper row first: red, green, blue and alpha in sRGB. `None` unless
+    /// there are as many pixels as that, and at least one.
+    ///
+    /// ```
+    /// use gridel_host::scene::Image;
+    ///
+    /// assert!(Image::new("two", 2, 1, vec![[0; 4]; 2]).is_some());
+    /// assert!(Image::new("two", 2, 2, vec![[0; 4]; 2]).is_none());
+    /// ```
+    pub fn new(name: &str, width: u32, height: u32, pixels: Vec<[u8; 4]>) -> Option<Self> {
+        let count = (width as usize).checked_mul(height as usize)?;
+        (count > 0 && count == pixels.len()).then(|| Self {
+            name: String::from(name),
+            width,
+            height,
+            pixels,
+        })
+    }
+
+    /// One white pixel.
+    pub(crate) fn blank() -> Self {
+        Self {
+            name: String::new(),
+            width: 1,
+            height: 1,
+            pixels: vec![[255; 4]],
+        }
+    }
+
+    /// Width and height in pixels.
+    pub fn size(&self) -> [u32; 2] {
+        [self.width, self.height]
+    }
+
+    /// Pixels row by row, the upper row first: red, green, blue and alpha in sRGB.
+    pub fn pixels(&self) -> &[[u8; 4]] {
+        &self.pixels
+    }
+
+    /// Returns the mean of all pixels, as linear light.
+    ///
+    /// ```
+    /// use gridel_host::scene::Image;
+    ///
+    /// let image = Image::new("half", 2, 1, vec![[0, 0, 0, 255], [255, 0, 255, 255]]).unwrap();
+    /// assert_eq!(image.mean(), [0.5, 0.0, 0.5]);
+    /// ```
+    pub fn mean(&self) -> [f64; 3] {
+        let mut counts = [[0_u64; 256]; 3];
+        for pixel in &self.pixels {
+            for (counts, channel) in counts.iter_mut().zip(pixel) {
+                counts[usize::from(*channel)] += 1;
+            }
+        }
+        counts.map(|counts| {
+            let linear = |value: usize| linear_of_srgb(value as f64 / 255.0);
+            let sum = counts.iter().enumerate();
+            let sum: f64 = sum
+                .map(|(value, &count)| count as f64 * linear(value))
+                .sum();
+            sum / self.pixels.len() as f64
+        })
+    }
+
+    /// Returns whether every pixel is opaque.
+    ///
+    /// ```
+    /// use gridel_host::scene::Image;
+    ///
+    /// let image = Image::new("half", 2, 1, vec![[0, 0, 0, 255], [0, 0, 0, 254]]).unwrap();
+    /// assert!(!image.is_opaque());
+    /// ```
+    pub fn is_opaque(&self) -> bool {
+        self.pixels.iter().all(|pixel| pixel[3] == 255)
+    }
+
+    /// Reads a PNG or JPEG file, told apart by their content.
+    pub(super) fn decode(name: &str, bytes: &[u8]) -> Result<Self, Fault> {
+        let (width, height, pixels) = if bytes.starts_with(b"\x89PNG\r\n\x1a\n") {
+            png(bytes)?
+        } else if bytes.starts_with(b"\xff\xd8") {
+            jpeg(bytes)?
+        } else {
+            return Err(fault(
+                "is neither PNG nor JPEG",
+                "convert it to PNG or JPEG",
+            ));
+        };
+        Self::new(name, width as u32, height as u32, pixels)
+            .ok_or_else(|| fault("has no pixels", "save the image again"))
+    }
+}
+
+fn fault(cause: impl Into<String>, remedy: &str) -> Fault {
+    [cause.into(), String::from(remedy)]
+}
+
+/// Width, height and pixels.
+type Decoded = (usize, usize, Vec<[u8; 4]>);
+
+/// Rejects sizes for which no memory should be taken.
+fn check_size(width: usize, height: usize) -> Result<(), Fault> {
+    let texels = width.saturating_mul(height);
+    if width > MOST_SIDE || height > MOST_SIDE || texels > MOST_TEXELS {
+        return Err(fault(
+            format!(
+                "has {width}x{height} pixels; at most {MOST_TEXELS} are read, and {MOST_SIDE} along a side"
+            ),
+            "make the image smaller",
+        ));
+    }
+    Ok(())
+}
+
+fn png(bytes: &[u8]) -> Result<Decoded, Fault> {
+    let broken = |error: png::DecodingError| {
+        fault(format!("is broken: {error}"), "save the image again as PNG")
+    };
+    let limits = png::Limits {
+        bytes: 4 * MOST_TEXELS,
+    };
+    let mut decoder = png::Decoder::new_with_limits(Cursor::new(bytes), limits);
+    decoder.set_transformations(png::Transformations::normalize_to_color8());
+    let mut reader = decoder.read_info().map_err(broken)?;
+    let (width, height) = (reader.info().width as usize, reader.info().height as usize);
+    check_size(width, height)?;
+    let size = reader
+        .output_buffer_size()
+        .ok_or_else(|| fault("is too large", "make the image smaller"))?;
+    let mut buffer = vec![0; size];
+    let info = reader.next_frame(&mut buffer).map_err(broken)?;
+    let channels = info.color_type.samples();
+    let pixels = buffer[..info.buffer_size()].chunks_exact(channels);
+    Ok((width, height, pixels.map(pixel).collect()))
+}
+
+fn jpeg(bytes: &[u8]) -> Result<Decoded, Fault> {
+    use zune_jpeg::zune_core::bytestream::ZCursor;
+    use zune_jpeg::zune_core::colorspace::ColorSpace;
+    use zune_jpeg::zune_core::options::DecoderOptions;
+    let broken = |error: zune_jpeg::errors::DecodeErrors| {
+        let remedy = "save the image again as a baseline or progressive JPEG, or as PNG";
+        fault(format!("is broken: {error}"), remedy)
+    };
+    // Without instructions that only some machines have, so that all decode the same bits.
+    let options = DecoderOptions::default()
+        .set_use_unsafe(false)
+        .set_strict_mode(true)
+        .set_max_width(MOST_SIDE)
+        .set_max_height(MOST_SIDE)
+        .jpeg_set_out_colorspace(ColorSpace::RGB);
+    let mut decoder = zune_jpeg::JpegDecoder::new_with_options(ZCursor::new(bytes), options);
+    decoder.decode_headers().map_err(broken)?;
+    let (width, height) = decoder
+        .dimensions()
+        .ok_or_else(|| fault("has no size", "save the image again"))?;
+    check_size(width, height)?;
+    let buffer = decoder.decode().map_err(broken)?;
+    let channels = buffer.len() / (width * height).max(1);
+    if !(1..=4).contains(&channels) {
+        return Err(fault("is cut short", "copy the file again, as binary"));
+    }
+    Ok((
+        width,
+        height,
+        buffer.chunks_exact(channels).map(pixel).collect(),
+    ))
+}
+
+/// A pixel of gray, or red, green and blue, with alpha or without.
+fn pixel(channels: &[u8]) -> [u8; 4] {
+    match *channels {
+        [gray] => [gray, gray, gray, 255],
+        [gray, alpha] => [gray, gray, gray, alpha],
+        [red, green, blue] => [red, green, blue, 255],
+        [red, green, blue, alpha, ..] => [red, green, blue, alpha],
+        [] => [0; 4],
+    }
+}
+
+/// A channel in sRGB, 0 to 1, as linear light (IEC 61966-2-1).
+///
+/// ```
+/// assert!((gridel_host::scene::linear_of_srgb(0.5) - 0.21404).abs() < 1e-5);
+/// ```
+pub fn linear_of_srgb(encoded: f64) -> f64 {
+    if encoded <= 0.04045 {
+        encoded / 12.92
+    } else {
+        libm::pow((encoded + 0.055) / 1.055, 2.4)
+    }
+}
+
+#[cfg(test)]
+pub(crate) mod tests;

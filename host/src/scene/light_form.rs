@@ -1,0 +1,87 @@
+//! What makes a light more than a point: an area, a falloff, a spot.
+
+use glam::{DAffine3, DVec3};
+
+/// The form of a point light.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct LightForm {
+    pub shape: LightShape,
+    /// Whether a point falls off with the square of the distance, and has its color at a distance of 1 scene unit.
+    pub falls_off: bool,
+    /// The distance at which light ends, in scene units.
+    pub range: Option<f64>,
+    pub spot: Option<Spot>,
+    /// Whether a light with an area is seen: it gets an object, by [`Scene::with_emitters`](super::Scene::with_emitters).
+    pub is_visible: bool,
+    /// Whether an object has the same surface, in whose way light must not start.
+    pub is_surface: bool,
+}
+
+impl Default for LightForm {
+    /// A point that falls off.
+    fn default() -> Self {
+        Self {
+            shape: LightShape::Point,
+            falls_off: true,
+            range: None,
+            spot: None,
+            is_visible: false,
+            is_surface: false,
+        }
+    }
+}
+
+/// What shines.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum LightShape {
+    /// The position itself.
+    Point,
+    /// A sphere around the position.
+    Sphere { radius: f64 },
+    /// A rectangle with a corner at the position; it shines to the side of the cross product of its edges.
+    Rectangle { edges: [DVec3; 2] },
+    /// A triangle with a corner at the position; it shines to the side of the cross product of its edges.
+    Triangle { edges: [DVec3; 2] },
+    /// A disc around the position; it shines to the side of its normal.
+    Disc { normal: DVec3, radius: f64 },
+}
+
+/// A cone to which light is limited.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Spot {
+    pub direction: DVec3,
+    /// Degrees from the direction to which the light is full, and at which it ends: 0 to 90.
+    pub inner: f64,
+    pub outer: f64,
+}
+
+impl LightForm {
+    /// The form, moved. A sphere and a disc grow with the cube root of the volume.
+    pub fn moved(&self, by: &DAffine3) -> Self {
+        let scale = by.matrix3.determinant().abs().cbrt();
+        let turned = |vector: DVec3| by.transform_vector3(vector);
+        Self {
+            shape: match self.shape {
+                LightShape::Point => LightShape::Point,
+                LightShape::Sphere { radius } => LightShape::Sphere {
+                    radius: radius * scale,
+                },
+                LightShape::Rectangle { edges } => LightShape::Rectangle {
+                    edges: edges.map(turned),
+                },
+                LightShape::Triangle { edges } => LightShape::Triangle {
+                    edges: edges.map(turned),
+                },
+                LightShape::Disc { normal, radius } => LightShape::Disc {
+                    normal: turned(normal),
+                    radius: radius * scale,
+                },
+            },
+            spot: self.spot.map(|spot| Spot {
+                direction: turned(spot.direction),
+                ..spot
+            }),
+            ..*self
+        }
+    }
+}

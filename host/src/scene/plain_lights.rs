@@ -1,0 +1,132 @@
+//! Scenes whose lights lose their area, or their falloff.
+
+use super::light_form::{LightForm, LightShape, Spot};
+use super::model::{Light, Scene};
+use super::track::Track;
+use glam::DVec3;
+use gridel_core::format::track::TrackTarget;
+use std::borrow::Cow;
+use std::f64::consts::PI;
+
+/// The light of an area that a point in its middle has instead: its color at a distance of 1 over its radiance.
+fn brightness(shape: &LightShape) -> f64 {
+    match *shape {
+        LightShape::Point => 1.0,
+        LightShape::Sphere { radius } | LightShape::Disc { radius, .. } => radius * radius,
+        LightShape::Rectangle { edges } => edges[0].cross(edges[1]).length() / PI,
+        LightShape::Triangle { edges } => 0.5 * edges[0].cross(edges[1]).length() / PI,
+    }
+}
+
+/// From the position of an area to its middle.
+fn to_middle(shape: &LightShape) -> DVec3 {
+    match *shape {
+        LightShape::Rectangle { edges } => 0.5 * (edges[0] + edges[1]),
+        LightShape::Triangle { edges } => (edges[0] + edges[1]) / 3.0,
+        _ => DVec3::ZERO,
+    }
+}
+
+/// The side to which an area shines.
+fn side(shape: &LightShape) -> Option<DVec3> {
+    match *shape {
+        LightShape::Point | LightShape::Sphere { .. } => None,
+        LightShape::Rectangle { edges } | LightShape::Triangle { edges } => {
+            Some(edges[0].cross(edges[1]))
+        }
+        LightShape::Disc { normal, .. } => Some(normal),
+    }
+}
+
+/// Makes points of areas, as bright from far away.
+pub(super) fn shrink_areas(scene: &mut Scene) {
+    if let Cow::Owned(expanded) = scene.with_emitters() {
+        *scene = expanded;
+    }
+    for (number, form) in scene.light_forms.iter_mut().enumerate() {
+        let Some(form) = form.as_mut().filter(|it| it.shape != LightShape::Point) else {
+            continue;
+        };
+        let Some(Light::Point { position, color }) = scene.lights.get_mut(number) else {
+            continue;
+        };
+        let (factor, middle) = (brightness(&form.shape), to_middle(&form.shape));
+        *position += middle;
+        *color = color.map(|channel| channel * factor);
+        let mut tracks = scene.tracks.iter_mut();
+        change_tracks(&mut tracks, number, factor, middle);
+        *form = LightForm {
+            shape: LightShape::Point,
+            is_surface: false,
+            spot: side(&form.shape).map(|direction| Spot {
+                direction,
+                inner: 0.0,
+                outer: 90.0,
+            }),
+            ..*form
+        };
+    }
+}
+
+/// Makes points that shine alike in all directions and at all distances: as bright as where the camera looks.
+pub(super) fn remove_falloff(scene: &mut Scene) {
+    shrink_areas(scene);
+    let looked_at = match scene.camera {
+        Some(camera) => camera.target,
+        None => middle(scene),
+    };
+    for (number, form) in scene.light_forms.iter_mut().enumerate() {
+        let Some(form) = form.take() else {
+            continue;
+        };
+        let Some(Light::Point { position, color }) = scene.lights.get_mut(number) else {
+            continue;
+        };
+        let distance = position.distance(looked_at);
+        if form.falls_off && distance > 0.0 {
+            let factor = distance.powi(-2);
+            *color = color.map(|channel| channel * factor);
+            change_tracks(&mut scene.tracks.iter_mut(), number, factor, DVec3::ZERO);
+        }
+    }
+    scene.light_forms.clear();
+}
+
+/// The middle of all that has an end.
+fn middle(scene: &Scene) -> DVec3 {
+    let shapes = scene.all_objects().map(|object| object.shape.bounds());
+    let [low, high] = shapes
+        .filter(|[low, high]| low.is_finite() && high.is_finite())
+        .fold([DVec3::INFINITY, DVec3::NEG_INFINITY], |[low, high], it| {
+            [low.min(it[0]), high.max(it[1])]
+        });
+    let middle = 0.5 * (low + high);
+    if middle.is_finite() {
+        middle
+    } else {
+        DVec3::ZERO
+    }
+}
+
+/// Multiplies the colors of a light's tracks, and moves its positions.
+fn change_tracks<'t>(
+    tracks: &mut impl Iterator<Item = &'t mut Track>,
+    number: usize,
+    factor: f64,
+    by: DVec3,
+) {
+    for track in tracks.filter(|track| track.index == number) {
+        for key in &mut track.keys {
+            if track.target == TrackTarget::LightColor {
+                for values in [&mut key.value, &mut key.entering, &mut key.leaving] {
+                    *values = values.map(|value| value * factor);
+                }
+            }
+            if track.target == TrackTarget::LightPosition {
+                for (value, by) in key.value.iter_mut().zip(by.to_array()) {
+                    *value += by;
+                }
+            }
+        }
+    }
+}

@@ -1,0 +1,97 @@
+//! Textures of materials.
+
+use super::access::Access;
+use super::image::{Fault, Image};
+use glam::{DAffine2, DVec2};
+use std::collections::HashMap;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+/// An image that weights the diffuse color of a material.
+///
+/// ```
+/// use gridel_host::scene::{Image, Texture, Wrap};
+///
+/// let image = Image::new("gray", 1, 1, vec![[128, 128, 128, 255]]).unwrap();
+/// let texture = Texture::of(image.into());
+/// assert_eq!(texture.wrap, [Wrap::Repeat; 2]);
+/// ```
+#[derive(Clone, Debug, PartialEq)]
+pub struct Texture {
+    pub image: Arc<Image>,
+    /// Beyond the image, along u and v.
+    pub wrap: [Wrap; 2],
+    /// Whether four texels are mixed; otherwise the nearest one counts.
+    pub bilinear: bool,
+    /// Takes the coordinates of meshes to those of the image.
+    pub transform: DAffine2,
+}
+
+/// How an image goes on beyond its edges.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+pub enum Wrap {
+    /// It repeats.
+    #[default]
+    Repeat,
+    /// It repeats, every second time mirrored.
+    Mirror,
+    /// Its edge goes on.
+    Clamp,
+}
+
+impl Texture {
+    /// A bilinear texture that repeats.
+    pub fn of(image: Arc<Image>) -> Self {
+        Self {
+            image,
+            wrap: [Wrap::Repeat; 2],
+            bilinear: true,
+            transform: DAffine2::IDENTITY,
+        }
+    }
+}
+
+/// The transform of texture coordinates as `KHR_texture_transform` defines it: scaled, turned by an angle in radians,
+/// moved.
+pub(super) fn texture_transform(scale: DVec2, radians: f64, offset: DVec2) -> DAffine2 {
+    let (sine, cosine) = (libm::sin(radians), libm::cos(radians));
+    DAffine2::from_cols(
+        DVec2::new(cosine, -sine) * scale.x,
+        DVec2::new(sine, cosine) * scale.y,
+        offset,
+    )
+}
+
+/// Images that were read, each once.
+pub(super) struct Images<'a> {
+    access: &'a Access,
+    files: HashMap<PathBuf, Arc<Image>>,
+}
+
+impl<'a> Images<'a> {
+    pub(super) fn new(access: &'a Access) -> Self {
+        Self {
+            access,
+            files: HashMap::new(),
+        }
+    }
+
+    /// The image in the file that `name` stands for in a scene file.
+    ///
+    /// # Errors
+    /// If it lies outside of the scene's folder, or is no image: cause and remedy.
+    pub(super) fn file(&mut self, scene: &Path, name: &str) -> Result<Arc<Image>, Fault> {
+        let path = self.access.resolve(scene, name)?;
+        if let Some(image) = self.files.get(&path) {
+            return Ok(Arc::clone(image));
+        }
+        let of_file = |[cause, remedy]: Fault| [format!("{} {cause}", path.display()), remedy];
+        let bytes = self
+            .access
+            .read(&path)
+            .map_err(|error| of_file([error.cause, error.remedy]))?;
+        let image = Arc::new(Image::decode(name, &bytes).map_err(of_file)?);
+        self.files.insert(path, Arc::clone(&image));
+        Ok(image)
+    }
+}

@@ -1,0 +1,406 @@
+//! Lights with an area, a falloff or a spot: pictures have the values that analysis gives.
+
+use gridel_core::{Effects, Format, Settings, Structure};
+use gridel_host::blob::Blob;
+use gridel_host::compile::{Options, compile};
+use gridel_host::render::{Job, render};
+use gridel_tests::effort::full;
+use std::f64::consts::PI;
+
+/// Scrambles: the pixels of a picture, each of which has one of its own.
+const SCRAMBLES: usize = 16;
+
+/// A scene with a white surface, seen by 4 by 4 pixels that show nearly one point of it.
+fn scene(lights: &str, eye: &str, target: &str, objects: &str) -> Blob {
+    let text = format!(
+        "[camera]\neye = {eye}\ntarget = {target}\nup = [0.3, 0.2, 1]\nfov = 0.2\n\
+         [render]\nwidth = 4\nheight = 4\nsamples = 1\n\
+         [material.white]\ndiffuse = 1\n{objects}\n{lights}"
+    );
+    let imported =
+        gridel_host::scene::read("light.toml".as_ref(), text.into(), &Default::default());
+    let imported = imported.unwrap_or_else(|error| panic!("{error}: {lights}"));
+    let options = Options::default();
+    compile(&imported.scene, &options).expect("a blob").blob
+}
+
+/// The mean of the pixels, from 0 to 1, and its standard error.
+fn measured(blob: &Blob, format: Format, samples: u16) -> (f64, f64) {
+    let scene = blob.scene().expect("a scene");
+    let settings = Settings {
+        samples,
+        ..Settings::of(&scene)
+    };
+    let job = Job::whole(format, Structure::List, settings);
+    let picture = render(&scene, &job, &|| ()).expect("a picture");
+    let values: Vec<f64> = picture
+        .pixels
+        .iter()
+        .map(|it| f64::from(it[0]) / 65_535.0)
+        .collect();
+    assert_eq!(values.len(), SCRAMBLES);
+    let mean = values.iter().sum::<f64>() / SCRAMBLES as f64;
+    let squares = values
+        .iter()
+        .map(|value| (value - mean).powi(2))
+        .sum::<f64>();
+    (
+        mean,
+        (squares / (SCRAMBLES * (SCRAMBLES - 1)) as f64).sqrt(),
+    )
+}
+
+/// Half a step of a pixel, and of the lattice.
+const ROUNDING: f64 = 2e-5;
+
+fn check(name: &str, blob: &Blob, exact: f64) {
+    for format in Format::ALL {
+        for samples in if full() {
+            vec![16, 256, 4096]
+        } else {
+            vec![16, 256]
+        } {
+            let (mean, error) = measured(blob, format, samples);
+            eprintln!("{name} {format:?} {samples}: {mean:.6} +- {error:.6}, exact {exact:.6}");
+            let off = (mean - exact).abs();
+            assert!(
+                off <= 3.0 * error + ROUNDING + 2e-4 * exact,
+                "{name} {format:?} {samples}"
+            );
+            let most = if format == Format::Fixed {
+                0.005
+            } else {
+                0.002
+            };
+            assert!(
+                samples < 4096 || off <= most * exact + ROUNDING,
+                "{name} {format:?}"
+            );
+        }
+    }
+}
+
+const FLOOR: &str =
+    "[[object]]\nkind = 'box'\nmin = [-900, -100, -900]\nmax = [1500, 0, 1500]\nmaterial = 'white'";
+
+/// The irradiance that the light of the Cornell box gives, over its radiance: integrated over the light with midpoints
+/// of 400 by 400 cells.
+#[test]
+fn cornell_light_gives_the_analytic_irradiance() {
+    const LIGHT: &str = "[[light]]\nkind = 'rectangle'\ncorner = [213, 548.8, 227]\n\
+                         edges = [[130, 0, 0], [0, 0, 105]]\nradiance = 15";
+    for ([x, z], ratio) in [
+        ([278.0, 279.6], 0.044_632_5),
+        ([100.0, 100.0], 0.030_656_7),
+        ([500.0, 500.0], 0.025_732_2),
+    ] {
+        let blob = scene(
+            LIGHT,
+            &format!("[{x}, 30, {z}]"),
+            &format!("[{x}, 0, {z}]"),
+            FLOOR,
+        );
+        assert!(
+            blob.scene()
+                .expect("a scene")
+                .effects()
+                .contains(Effects::AREA_LIGHT)
+        );
+        check("floor", &blob, 15.0 * ratio / PI);
+    }
+    let wall = "[[object]]\nkind = 'box'\nmin = [-500, -500, 559.2]\nmax = [1000, 1000, 700]\nmaterial = 'white'";
+    let blob = scene(LIGHT, "[278, 274.4, 530]", "[278, 274.4, 559.2]", wall);
+    check("wall", &blob, 15.0 * 0.043_652_6 / PI);
+}
+
+/// A light that shines away lights nothing.
+#[test]
+fn rectangles_and_discs_shine_to_one_side() {
+    for light in [
+        "kind = 'rectangle'\ncorner = [0, 100, 0]\nedges = [[0, 0, 50], [50, 0, 0]]",
+        "kind = 'disc'\ncenter = [0, 100, 0]\nradius = 20\nnormal = [0, 1, 0]",
+    ] {
+        let light = format!("[[light]]\n{light}\nradiance = 50");
+        let blob = scene(&light, "[10, 30, 10]", "[10, 0, 10]", FLOOR);
+        for format in Format::ALL {
+            assert_eq!(measured(&blob, format, 4), (0.0, 0.0), "{light} {format:?}");
+        }
+    }
+}
+
+/// A sphere above a floor: L (r / d)². A disc above its axis: L r² / (r² + h²).
+#[test]
+fn spheres_and_discs_give_the_analytic_irradiance() {
+    for (radius, height) in [(20.0_f64, 100.0_f64), (60.0, 100.0), (0.5, 200.0)] {
+        let radiance = (0.4 * (height / radius).powi(2)).min(2000.0);
+        let light = |rest: &str| {
+            format!(
+                "[[light]]\ncenter = [0, {height}, 0]\nradius = {radius}\nradiance = {radiance}\n{rest}"
+            )
+        };
+        let blob = scene(&light("kind = 'sphere'"), "[0, 10, 0]", "[0, 0, 0]", FLOOR);
+        check("sphere", &blob, radiance * (radius / height).powi(2));
+        let disc = light("kind = 'disc'\nnormal = [0, -1, 0]");
+        let blob = scene(&disc, "[0, 10, 0]", "[0, 0, 0]", FLOOR);
+        let square = radius * radius;
+        check(
+            "disc",
+            &blob,
+            radiance * square / (square + height * height),
+        );
+    }
+}
+
+/// An edge under the middle of a far light hides half of it.
+#[test]
+fn half_plane_hides_half_of_a_light() {
+    let light = "[[light]]\nkind = 'rectangle'\ncorner = [-20, 1000, -20]\n\
+                 edges = [[40, 0, 0], [0, 0, 40]]\nradiance = 800";
+    let edge =
+        "[[object]]\nkind = 'box'\nmin = [0, 400, -900]\nmax = [900, 420, 900]\nmaterial = 'white'";
+    let without = 800.0 * 1600.0 / 1e6 / PI * (1.0 - 4.0 * 400.0 / 3.0 / 1e6);
+    for (objects, exact) in [
+        (String::from(FLOOR), without),
+        (format!("{FLOOR}\n{edge}"), without / 2.0),
+    ] {
+        let blob = scene(light, "[0, 60, 0]", "[0, 0, 0]", &objects);
+        check("edge", &blob, exact);
+    }
+}
+
+/// The error falls at least as N^-0.7 from 16 to 4,096 samples; of random points it falls as N^-0.5.
+#[test]
+fn soft_shadows_converge() {
+    let light = "[[light]]\nkind = 'rectangle'\ncorner = [-20, 100, -20]\n\
+                 edges = [[40, 0, 0], [0, 0, 40]]\nradiance = 10";
+    let ball = "[[object]]\nkind = 'sphere'\ncenter = [8, 50, 5]\nradius = 12\nmaterial = 'white'";
+    let blob = scene(
+        light,
+        "[3, 20, 0]",
+        "[3, 0, 0]",
+        &format!("{FLOOR}\n{ball}"),
+    );
+    let many = 4096;
+    let (few_error, many_error) = (
+        measured(&blob, Format::F64, 16).1,
+        measured(&blob, Format::F64, many).1,
+    );
+    let exponent = (few_error / many_error).log2() / (f64::from(many) / 16.0).log2();
+    eprintln!("{few_error:.6} {many_error:.6}: N^-{exponent:.2}");
+    assert!(exponent >= 0.7, "{exponent}");
+}
+
+/// A point light with a falloff has its color at a distance of 1, spots end, and a range ends light.
+#[test]
+fn points_fall_off_and_spots_end() {
+    let at = |rest: &str| {
+        format!("[[light]]\nposition = [0, 50, 0]\ncolor = 1000\nfalloff = 'square'\n{rest}")
+    };
+    let view = |lights: &str, x: f64| {
+        scene(
+            lights,
+            &format!("[{x}, 20, 0]"),
+            &format!("[{x}, 0, 0]"),
+            FLOOR,
+        )
+    };
+    let lit = |x: f64| 1000.0 * 50.0 / (x * x + 2500.0_f64).powf(1.5);
+    check("point", &view(&at("kind = 'point'"), 30.0), lit(30.0));
+    let part = 1.0 - (3400.0_f64 / 10_000.0).powi(2);
+    check(
+        "range",
+        &view(&at("kind = 'point'\nrange = 100"), 30.0),
+        lit(30.0) * part,
+    );
+    let spot = at("kind = 'spot'\ndirection = [0, -1, 0]\ninner = 20\nouter = 40");
+    check("spot", &view(&spot, 5.0), lit(5.0));
+    let cosine = |degrees: f64| degrees.to_radians().cos();
+    let edge =
+        (cosine((0.6_f64).atan().to_degrees()) - cosine(40.0)) / (cosine(20.0) - cosine(40.0));
+    check(
+        "edge of a spot",
+        &view(&spot, 30.0),
+        lit(30.0) * edge * edge,
+    );
+    assert_eq!(measured(&view(&spot, 45.0), Format::Fixed, 1), (0.0, 0.0));
+}
+
+/// A light that is seen lights as one that is not: its own surface does not stand in its way.
+#[test]
+fn visible_lights_light_as_invisible_ones() {
+    let rectangle = 15.0 * 0.044_632_5 / PI;
+    for (light, exact) in [
+        (
+            "kind = 'rectangle'\ncorner = [213, 548.8, 227]\nedges = [[130, 0, 0], [0, 0, 105]]\nradiance = 15",
+            rectangle,
+        ),
+        (
+            "kind = 'sphere'\ncenter = [278, 100, 279.6]\nradius = 20\nradiance = 10",
+            10.0 * 0.04,
+        ),
+        (
+            "kind = 'disc'\ncenter = [278, 100, 279.6]\nnormal = [0, -1, 0]\nradius = 20\nradiance = 10",
+            10.0 * 400.0 / 10_400.0,
+        ),
+    ] {
+        for visible in [true, false] {
+            let text = format!("[[light]]\n{light}\nvisible = {visible}");
+            let blob = scene(&text, "[278, 30, 279.6]", "[278, 0, 279.6]", FLOOR);
+            let effects = blob.scene().expect("a scene").effects();
+            assert_eq!(effects.contains(Effects::EMISSION), visible);
+            check("visible", &blob, exact);
+        }
+    }
+}
+
+/// Objects that glow are lights: a box and a mesh give what their faces give.
+#[test]
+fn surfaces_that_glow_light_others_and_are_seen() {
+    let lamp = "[material.lamp]\ndiffuse = 0\nemission = 15";
+    let mesh = format!(
+        "{lamp}\n[[object]]\nkind = 'mesh'\nvertices = [[213, 548.8, 227], [343, 548.8, 227], \
+         [343, 548.8, 332], [213, 548.8, 332]]\nfaces = [[0, 1, 2], [0, 2, 3]]\nmaterial = 'lamp'\n{FLOOR}"
+    );
+    let blob = scene("", "[278, 30, 279.6]", "[278, 0, 279.6]", &mesh);
+    check("mesh", &blob, 15.0 * 0.044_632_5 / PI);
+    // Of a box, the lower face alone is seen from below.
+    let cuboid = format!(
+        "{lamp}\n[[object]]\nkind = 'box'\nmin = [213, 548.8, 227]\nmax = [343, 600, 332]\nmaterial = 'lamp'\n{FLOOR}"
+    );
+    let blob = scene("", "[278, 30, 279.6]", "[278, 0, 279.6]", &cuboid);
+    check("box", &blob, 15.0 * 0.044_632_5 / PI);
+    // The front glows, and the back does not.
+    let half = mesh.replace("emission = 15", "emission = 0.5");
+    for format in Format::ALL {
+        let below = scene("", "[278, 30, 279.6]", "[278, 548.8, 279.6]", &half);
+        let (mean, _) = measured(&below, format, 1);
+        assert!((mean - 0.5).abs() < ROUNDING, "{format:?} {mean}");
+        let above = scene("", "[278, 900, 279.6]", "[278, 548.8, 279.6]", &half);
+        assert_eq!(measured(&above, format, 1).0, 0.0, "{format:?}");
+    }
+}
+
+/// A triangle gives half of the parallelogram that it is a half of, on the axis of symmetry.
+#[test]
+fn triangles_shine_from_their_area() {
+    let lamp = |faces: &str| {
+        let objects = format!(
+            "[material.lamp]\nemission = 12\n[[object]]\nkind = 'mesh'\nvertices = [[-50, 200, -50], \
+             [50, 200, -50], [50, 200, 50], [-50, 200, 50]]\nfaces = {faces}\nmaterial = 'lamp'\n{FLOOR}"
+        );
+        scene("", "[0, 30, 0]", "[0, 0, 0]", &objects)
+    };
+    // Midpoints of 2000 by 2000 cells of the square.
+    let mut sum = 0.0;
+    for x in 0..2000 {
+        for z in 0..2000 {
+            let at = |cell: i32| (f64::from(cell) + 0.5) / 20.0 - 50.0;
+            let square = at(x).powi(2) + at(z).powi(2) + 40_000.0;
+            sum += 40_000.0 / (square * square) / 400.0;
+        }
+    }
+    check("square", &lamp("[[0, 1, 2], [0, 2, 3]]"), 12.0 * sum / PI);
+    check("triangle", &lamp("[[0, 1, 2]]"), 12.0 * sum / PI / 2.0);
+}
+
+/// A scene that shows its background alone.
+fn background(render: &str) -> Blob {
+    let text = format!(
+        "background = [0.18, 1, 8]\n[camera]\neye = [0, 0, 5]\ntarget = [0, 0, 9]\n\
+         [render]\nwidth = 4\nheight = 4\n{render}\n\
+         [[object]]\nkind = 'sphere'\ncenter = [0, 0, 0]\nradius = 1"
+    );
+    let imported = gridel_host::scene::read("tone.toml".as_ref(), text.into(), &Default::default());
+    compile(&imported.expect("a scene").scene, &Options::default())
+        .expect("a blob")
+        .blob
+}
+
+fn pixel(blob: &Blob, format: Format, samples: u16) -> [f64; 3] {
+    let scene = blob.scene().expect("a scene");
+    let settings = Settings {
+        samples,
+        ..Settings::of(&scene)
+    };
+    let job = Job::whole(format, Structure::List, settings);
+    let picture = render(&scene, &job, &|| ()).expect("a picture");
+    picture.pixels[5].map(|channel| f64::from(channel) / 65_535.0)
+}
+
+/// Tones are mapped by their formulas, after the mean of any number of samples.
+#[test]
+fn tones_are_mapped_by_their_formulas() {
+    let reinhard = |x: f64| x / (1.0 + x);
+    let aces = |x: f64| (x * (2.51 * x + 0.03) / (x * (2.43 * x + 0.59) + 0.14)).min(1.0);
+    let none = |x: f64| x.min(1.0);
+    let curves: [fn(f64) -> f64; 3] = [none, reinhard, aces];
+    for (name, curve) in ["none", "reinhard", "aces"].into_iter().zip(curves) {
+        for stops in [0.0, -3.0, 1.0] {
+            let blob = background(&format!("tone_mapping = '{name}'\nexposure = {stops}"));
+            let is_mapped = blob
+                .scene()
+                .expect("a scene")
+                .effects()
+                .contains(Effects::TONE_MAPPING);
+            assert_eq!(is_mapped, name != "none");
+            for format in Format::ALL {
+                for samples in [1, 64, 65, 4096] {
+                    let found = pixel(&blob, format, samples);
+                    for (found, radiance) in found.into_iter().zip([0.18, 1.0, 8.0]) {
+                        let exact = curve((radiance * f64::exp2(stops)).min(16.0));
+                        assert!(
+                            (found - exact).abs() < 4e-5,
+                            "{name} {stops} {format:?} {samples}: {found}, exact {exact}"
+                        );
+                    }
+                }
+            }
+        }
+    }
+}
+
+/// Exposure multiplies lights of every kind, and is no effect: it costs nothing.
+#[test]
+fn exposure_multiplies_all_light() {
+    let lights = "[[light]]\nkind = 'rectangle'\ncorner = [-20, 100, -20]\nedges = [[40, 0, 0], [0, 0, 40]]\n\
+                  radiance = 3\n[[light]]\nkind = 'directional'\ndirection = [0, -1, 0]\ncolor = 0.1\n\
+                  [[light]]\nkind = 'point'\nposition = [0, 50, 0]\ncolor = 0.2";
+    let at = |stops: f64| {
+        let text = format!(
+            "ambient = 0.05\n[camera]\neye = [0, 30, 0]\ntarget = [0, 0, 0]\nup = [1, 0, 0]\nfov = 0.2\n\
+             [render]\nwidth = 4\nheight = 4\nexposure = {stops}\n[material.white]\ndiffuse = 1\n{FLOOR}\n{lights}"
+        );
+        let imported =
+            gridel_host::scene::read("light.toml".as_ref(), text.into(), &Default::default());
+        compile(&imported.expect("a scene").scene, &Options::default())
+            .expect("a blob")
+            .blob
+    };
+    let (plain, dark) = (at(0.0), at(-2.0));
+    let effects = |blob: &Blob| blob.scene().expect("a scene").effects();
+    assert_eq!(effects(&plain), effects(&dark));
+    for format in Format::ALL {
+        let (bright, dim) = (pixel(&plain, format, 16), pixel(&dark, format, 16));
+        for (bright, dim) in bright.into_iter().zip(dim) {
+            assert!(bright > 0.3 && bright < 1.0);
+            assert!(
+                (bright / 4.0 - dim).abs() < 4e-5,
+                "{format:?} {bright} {dim}"
+            );
+        }
+    }
+}
+
+/// `fixed` holds what arrives up to 2048 times white, of lights of any brightness.
+#[test]
+fn fixed_agrees_with_floats_over_the_range_of_radiance() {
+    for (radius, distance) in [(1.6, 100.0), (5.0, 100.0), (30.0, 100.0), (0.2, 12.0)] {
+        // As bright as makes the point half white, up to the largest radiance.
+        let radiance = 0.5_f64 * (distance / radius) * (distance / radius);
+        let light = format!(
+            "[[light]]\nkind = 'sphere'\ncenter = [0, {distance}, 0]\nradius = {radius}\nradiance = {radiance}"
+        );
+        let blob = scene(&light, "[0, 10, 0]", "[0, 0, 0]", FLOOR);
+        check("range", &blob, 0.5);
+    }
+}
