@@ -51,7 +51,7 @@ impl<'a> Textures<'a> {
     /// Proves that maps have textures, and textures their texels.
     pub(crate) fn validate(&self) -> Result<(), BlobError> {
         let section = SectionKind::SurfaceMaps;
-        for (index, maps) in self.maps.iter().enumerate() {
+        for (index, maps) in (0..self.maps.len()).zip(self.maps) {
             let at = At { section, index };
             let most = self.textures.len() as i64;
             at.within(Field::TextureNumber, maps.color.into(), 0, most)?;
