@@ -9,6 +9,12 @@ pub(crate) const VERTEX_COLORS: bool = cfg!(feature = "vertex-colors");
 /// Whether the code for textures is in this build.
 pub(crate) const TEXTURE: bool = cfg!(feature = "texture");
 
+/// Whether the code for an environment is in this build.
+pub(crate) const ENVIRONMENT: bool = cfg!(feature = "environment");
+
+/// A value that only builds with [`ENVIRONMENT`] hold.
+pub(crate) type EnvironmentOnly<T> = InSomeBuilds<T, { ENVIRONMENT as usize }>;
+
 /// Whether the code of the structure `wide`, and of the clusters in its leaves, is in this build.
 pub(crate) const WIDE: bool = cfg!(feature = "wide");
 
@@ -30,6 +36,15 @@ pub(crate) type VertexColorsOnly<T> = InSomeBuilds<T, { VERTEX_COLORS as usize }
 
 /// A value that only builds with the code for textures hold.
 pub(crate) type TextureOnly<T> = InSomeBuilds<T, { TEXTURE as usize }>;
+
+/// A value that only builds with the code for depth of field hold.
+pub(crate) type DepthOfFieldOnly<T> =
+    InSomeBuilds<T, { cfg!(feature = "depth-of-field") as usize }>;
+
+/// A value that only builds with the code for indirect light hold.
+pub(crate) type IndirectOnly<T> = InSomeBuilds<T, { cfg!(feature = "indirect") as usize }>;
+/// A value that only builds with the code for rough materials hold.
+pub(crate) type GlossyOnly<T> = InSomeBuilds<T, { cfg!(feature = "glossy") as usize }>;
 
 /// A value that builds hold for which `COUNT` is 1; it has no size where `COUNT` is 0.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -15,7 +15,7 @@ use embedded_graphics::pixelcolor::{Rgb565, Rgb888};
 use embedded_graphics::prelude::*;
 use embedded_graphics::primitives::{PrimitiveStyle, Rectangle};
 use embedded_graphics::text::Text;
-use gridel_core::format::limits::{MAX_RAY_DEPTH, MAX_STACK_DEPTH};
+use gridel_core::format::limits::MAX_STACK_DEPTH;
 use gridel_core::render::{Renderer, Settings, Workspace};
 use gridel_core::{DualSplit, Effects, NoCount, Scene};
 use gridel_host::compile::{Options, compile};
@@ -52,7 +52,7 @@ where
         ..Settings::of(scene)
     };
     let renderer = Renderer::<f32, DualSplit, { Effects::ALL.0 }>::with_settings(scene, settings)?;
-    let mut space = Workspace::<f32, MAX_STACK_DEPTH, { MAX_RAY_DEPTH + 1 }>::new();
+    let mut space = Workspace::<f32, MAX_STACK_DEPTH, { Effects::MAX_WORK_DEPTH }>::new();
     let mut space = space.as_view();
     renderer.check_workspace(&space)?;
 

@@ -8,7 +8,7 @@
 //! [`show`] is what firmware does: it allocates nothing. In place of a [`Panel`], which stands for
 //! a display of the ST7789 family and its bus, it is given the board's own.
 
-use gridel_core::format::limits::{MAX_RAY_DEPTH, MAX_STACK_DEPTH};
+use gridel_core::format::limits::MAX_STACK_DEPTH;
 use gridel_core::render::WorkspaceView;
 use gridel_core::{
     Accel, DualSplit, Effects, NoCount, Number, Renderer, Rgb565, Settings, Workspace,
@@ -155,7 +155,7 @@ pub fn panel(scene: &Path) -> Result<Panel, Box<dyn Error>> {
         ..Settings::of(&scene)
     };
     let renderer = Renderer::<f32, DualSplit, { Effects::ALL.0 }>::with_settings(&scene, settings)?;
-    let mut space = Workspace::<f32, MAX_STACK_DEPTH, { MAX_RAY_DEPTH + 1 }>::new();
+    let mut space = Workspace::<f32, MAX_STACK_DEPTH, { Effects::MAX_WORK_DEPTH }>::new();
     let mut space = space.as_view();
     renderer.check_workspace(&space)?;
     let [first, second] = [(); 2].map(|()| Box::leak(Box::new([0; CHUNK])));

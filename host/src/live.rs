@@ -92,7 +92,10 @@ impl Light {
         let lattice = Lattice::of_blob(scene);
         let size = sides.into_iter().fold(0.0, f64::max) * lattice.unit();
         let record = light_record(self, &lattice, size, number)?;
-        let form = scene.lights().get(number).filter(|it| it.form().is_some());
+        let form = scene
+            .lights()
+            .get(number)
+            .filter(|it| it.form().is_some() || it.is_environment());
         Ok(match form {
             Some(light) if record.directional == 0 => record::Light {
                 directional: light.directional,

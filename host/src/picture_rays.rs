@@ -2,7 +2,7 @@
 
 use crate::observed::Observed;
 use gridel_core::accel::DynAccel;
-use gridel_core::format::limits::{MAX_RAY_DEPTH, MAX_STACK_DEPTH};
+use gridel_core::format::limits::MAX_STACK_DEPTH;
 use gridel_core::render::RenderError;
 use gridel_core::{Effects, Number, Ray, RayKind, Renderer, Scene, Settings, Structure, Workspace};
 use rayon::prelude::*;
@@ -29,7 +29,7 @@ pub struct PictureRays<N: Number> {
     pub primary: Vec<Ray<N>>,
     /// Towards lights.
     pub shadow: Vec<Ray<N>>,
-    /// Off mirrors and glass, and through glass.
+    /// Off mirrors, glass and diffuse surfaces, and through glass.
     pub bounced: Vec<Ray<N>>,
 }
 
@@ -42,7 +42,9 @@ impl<N: Number> PictureRays<N> {
         match kind {
             RayKind::Primary => self.primary.push(ray),
             RayKind::Shadow => self.shadow.push(ray),
-            RayKind::Reflected | RayKind::Refracted => self.bounced.push(ray),
+            RayKind::Reflected | RayKind::Refracted | RayKind::Diffuse | RayKind::Glossy => {
+                self.bounced.push(ray);
+            }
         }
     }
 
@@ -85,7 +87,7 @@ impl<N: Number> PictureRays<N> {
 
     fn of_row(renderer: &Renderer<'_, '_, N, DynAccel, { Effects::ALL.0 }>, y: u16) -> Self {
         let mut rays = Self::default();
-        let mut space = Workspace::<N, MAX_STACK_DEPTH, { MAX_RAY_DEPTH + 1 }>::new();
+        let mut space = Workspace::<N, MAX_STACK_DEPTH, { Effects::MAX_WORK_DEPTH }>::new();
         let mut space = space.as_view();
         for x in 0..renderer.settings().width {
             let mut observed = Observed {

@@ -13,7 +13,7 @@ pub use linear::{LinearPicture, render_linear};
 
 use crate::observed::Observed;
 use gridel_core::accel::DynAccel;
-use gridel_core::format::limits::{MAX_RAY_DEPTH, MAX_STACK_DEPTH};
+use gridel_core::format::limits::MAX_STACK_DEPTH;
 use gridel_core::render::RenderError;
 use gridel_core::{
     Accel, Counters, DualSplit, Effects, Fixed, Format, NoCount, Number, Observer, Renderer, Scene,
@@ -248,7 +248,7 @@ fn render_row<N: Number, A: Accel, C: Observer, const EFFECTS: u32>(
     counter: impl Fn() -> C,
     mut counted: impl FnMut(C),
 ) {
-    let mut space = Workspace::<N, MAX_STACK_DEPTH, { MAX_RAY_DEPTH + 1 }>::new();
+    let mut space = Workspace::<N, MAX_STACK_DEPTH, { Effects::MAX_WORK_DEPTH }>::new();
     let mut space = space.as_view();
     for (x, pixel) in (x..=u16::MAX).zip(pixels) {
         let mut count = counter();

@@ -20,7 +20,7 @@ use embedded_graphics::pixelcolor::raw::{LittleEndian, RawU1};
 use embedded_graphics::pixelcolor::{BinaryColor, IntoStorage};
 use embedded_graphics::prelude::DrawTargetExt;
 use embedded_graphics::primitives::Rectangle;
-use gridel_core::format::limits::{MAX_RAY_DEPTH, MAX_STACK_DEPTH};
+use gridel_core::format::limits::MAX_STACK_DEPTH;
 use gridel_core::render::Pixel;
 use gridel_core::{
     Counters, DualSplit, Effects, Format, Renderer, Rgb565, Settings, Structure, Workspace,
@@ -118,7 +118,7 @@ fn pixels_outside_of_a_display_are_not_traced() {
     };
     let renderer = Renderer::<f32, DualSplit, { Effects::ALL.0 }>::with_settings(&scene, settings);
     let renderer = renderer.expect("a renderer");
-    let mut space = Workspace::<f32, MAX_STACK_DEPTH, { MAX_RAY_DEPTH + 1 }>::new();
+    let mut space = Workspace::<f32, MAX_STACK_DEPTH, { Effects::MAX_WORK_DEPTH }>::new();
     let mut space = space.as_view();
     const BYTES: usize = buffer_size::<BinaryColor>(64, 48);
     let mut screen = Framebuffer::<BinaryColor, RawU1, LittleEndian, 64, 48, BYTES>::new();

@@ -12,6 +12,7 @@ pub mod effort;
 pub mod exact_box;
 pub mod fuzz;
 pub mod judge;
+pub mod measured;
 pub mod moved;
 pub mod query;
 pub mod scenes;

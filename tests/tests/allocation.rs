@@ -1,6 +1,6 @@
 //! Between loading a blob and the last pixel nothing is allocated, in any format and structure.
 
-use gridel_core::format::limits::{MAX_RAY_DEPTH, MAX_STACK_DEPTH};
+use gridel_core::format::limits::MAX_STACK_DEPTH;
 use gridel_core::{
     Accel, Bvh, Effects, Fixed, Flagged, List, NoCount, Number, Renderer, Rgb888, Scene, Settings,
     Workspace,
@@ -54,7 +54,7 @@ fn nothing_is_allocated_between_load_and_last_pixel() {
 
 fn render<N: Number, A: Accel>(blob: &[u8]) {
     let mut row = [Rgb888::default(); 24];
-    let mut space = Workspace::<N, MAX_STACK_DEPTH, { MAX_RAY_DEPTH + 1 }>::new();
+    let mut space = Workspace::<N, MAX_STACK_DEPTH, { Effects::MAX_WORK_DEPTH }>::new();
     let before = ALLOCATIONS.get();
     let scene = Scene::from_bytes(blob).expect("the compiler's own blob");
     let settings = Settings::of(&scene);

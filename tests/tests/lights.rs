@@ -4,11 +4,8 @@ use gridel_core::{Effects, Format, Settings, Structure};
 use gridel_host::blob::Blob;
 use gridel_host::compile::{Options, compile};
 use gridel_host::render::{Job, render};
-use gridel_tests::effort::full;
+use gridel_tests::measured::{ROUNDING, check, measured, read};
 use std::f64::consts::PI;
-
-/// Scrambles: the pixels of a picture, each of which has one of its own.
-const SCRAMBLES: usize = 16;
 
 /// A scene with a white surface, seen by 4 by 4 pixels that show nearly one point of it.
 fn scene(lights: &str, eye: &str, target: &str, objects: &str) -> Blob {
@@ -17,67 +14,9 @@ fn scene(lights: &str, eye: &str, target: &str, objects: &str) -> Blob {
          [render]\nwidth = 4\nheight = 4\nsamples = 1\n\
          [material.white]\ndiffuse = 1\n{objects}\n{lights}"
     );
-    let imported =
-        gridel_host::scene::read("light.toml".as_ref(), text.into(), &Default::default());
-    let imported = imported.unwrap_or_else(|error| panic!("{error}: {lights}"));
-    let options = Options::default();
-    compile(&imported.scene, &options).expect("a blob").blob
-}
-
-/// The mean of the pixels, from 0 to 1, and its standard error.
-fn measured(blob: &Blob, format: Format, samples: u16) -> (f64, f64) {
-    let scene = blob.scene().expect("a scene");
-    let settings = Settings {
-        samples,
-        ..Settings::of(&scene)
-    };
-    let job = Job::whole(format, Structure::List, settings);
-    let picture = render(&scene, &job, &|| ()).expect("a picture");
-    let values: Vec<f64> = picture
-        .pixels
-        .iter()
-        .map(|it| f64::from(it[0]) / 65_535.0)
-        .collect();
-    assert_eq!(values.len(), SCRAMBLES);
-    let mean = values.iter().sum::<f64>() / SCRAMBLES as f64;
-    let squares = values
-        .iter()
-        .map(|value| (value - mean).powi(2))
-        .sum::<f64>();
-    (
-        mean,
-        (squares / (SCRAMBLES * (SCRAMBLES - 1)) as f64).sqrt(),
-    )
-}
-
-/// Half a step of a pixel, and of the lattice.
-const ROUNDING: f64 = 2e-5;
-
-fn check(name: &str, blob: &Blob, exact: f64) {
-    for format in Format::ALL {
-        for samples in if full() {
-            vec![16, 256, 4096]
-        } else {
-            vec![16, 256]
-        } {
-            let (mean, error) = measured(blob, format, samples);
-            eprintln!("{name} {format:?} {samples}: {mean:.6} +- {error:.6}, exact {exact:.6}");
-            let off = (mean - exact).abs();
-            assert!(
-                off <= 3.0 * error + ROUNDING + 2e-4 * exact,
-                "{name} {format:?} {samples}"
-            );
-            let most = if format == Format::Fixed {
-                0.005
-            } else {
-                0.002
-            };
-            assert!(
-                samples < 4096 || off <= most * exact + ROUNDING,
-                "{name} {format:?}"
-            );
-        }
-    }
+    compile(&read(&text), &Options::default())
+        .expect("a blob")
+        .blob
 }
 
 const FLOOR: &str =

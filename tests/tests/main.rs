@@ -13,12 +13,16 @@ mod certify;
 mod cylinder_cube;
 #[path = "deform/main.rs"]
 mod deform;
+mod depth_of_field;
 mod distances;
 #[path = "documents/main.rs"]
 mod documents;
+mod environment;
 mod explain;
 mod fixed_point;
+mod glossy;
 mod grids;
+mod indirect;
 mod instances;
 mod large_scenes;
 #[path = "lattice/main.rs"]

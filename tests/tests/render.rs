@@ -5,7 +5,7 @@
 //! fixtures/check.toml` writes them anew; the difference belongs into the same commit.
 
 use glam::DVec3;
-use gridel_core::format::limits::{MAX_RAY_DEPTH, MAX_STACK_DEPTH};
+use gridel_core::format::limits::MAX_STACK_DEPTH;
 use gridel_core::{
     Counters, Effects, Flagged, Format, NoCount, Number, Renderer, Rgb888, Scene, Settings,
     Structure, Workspace,
@@ -161,7 +161,7 @@ fn bytes<N: Number, const EFFECTS: u32>(scene: &Scene<'_>) -> Vec<[u8; 3]> {
     let settings = small(scene);
     let renderer =
         Renderer::<N, Flagged, EFFECTS>::with_settings(scene, settings).expect("a renderer");
-    let mut space = Workspace::<N, MAX_STACK_DEPTH, { MAX_RAY_DEPTH + 1 }>::new();
+    let mut space = Workspace::<N, MAX_STACK_DEPTH, { Effects::MAX_WORK_DEPTH }>::new();
     let mut pixels = Vec::new();
     let size = [settings.width, settings.height];
     let sink = |_, _, pixel: Rgb888| pixels.push(pixel.0);
@@ -175,7 +175,7 @@ fn steps_do_not_matter<N: Number>(name: &str, scene: &Scene<'_>) {
     let settings = small(scene);
     let renderer = Renderer::<N, Flagged, { Effects::ALL.0 }>::with_settings(scene, settings);
     let renderer = renderer.expect("a renderer");
-    let mut space = Workspace::<N, MAX_STACK_DEPTH, { MAX_RAY_DEPTH + 1 }>::new();
+    let mut space = Workspace::<N, MAX_STACK_DEPTH, { Effects::MAX_WORK_DEPTH }>::new();
     let (corner, size) = ([5, 7], [settings.width - 9, settings.height - 11]);
     let mut whole = Vec::new();
     let mut counted = Counters::default();
@@ -225,7 +225,7 @@ fn coarse_to_fine<N: Number, const EFFECTS: u32>(
     size: [u16; 2],
     budget: u32,
 ) -> Vec<(u16, u16, [u8; 3])> {
-    let mut space = Workspace::<N, MAX_STACK_DEPTH, { MAX_RAY_DEPTH + 1 }>::new();
+    let mut space = Workspace::<N, MAX_STACK_DEPTH, { Effects::MAX_WORK_DEPTH }>::new();
     let places = (corner[1]..corner[1] + size[1])
         .flat_map(|y| (corner[0]..corner[0] + size[0]).map(move |x| (x, y)));
     let mut drawn: Vec<_> = places.map(|(x, y)| (x, y, [0; 3])).collect();
@@ -263,7 +263,7 @@ fn cursors_can_be_dropped_and_ends_are_ends() {
     let renderer =
         Renderer::<f32, Flagged, { Effects::ALL.0 }>::with_settings(&scene, small(&scene));
     let renderer = renderer.expect("a renderer");
-    let mut space = Workspace::<f32, MAX_STACK_DEPTH, { MAX_RAY_DEPTH + 1 }>::new();
+    let mut space = Workspace::<f32, MAX_STACK_DEPTH, { Effects::MAX_WORK_DEPTH }>::new();
     let pixel = |space: &mut Workspace<_, _, _>| {
         renderer.linear(24, 20, &mut space.as_view(), &mut NoCount)
     };

@@ -297,7 +297,7 @@ typedef struct gridel_picture {
   uint16_t height;
   // Samples per pixel, 1 to 256.
   uint16_t samples;
-  // How often a ray may be reflected or refracted, 0 to 16.
+  // How often a ray may be reflected or refracted, 0 to 32.
   uint16_t depth;
   // 1 to dither, else 0.
   uint16_t dither;

@@ -187,7 +187,7 @@ pub unsafe extern "C" fn gridel_render_from_f64(
 
 /// Entries of the stack, and places for rays that wait. What a build has no code for takes no place.
 fn depths(scene: &Scene<'_>, depth: u8) -> [usize; 2] {
-    [scene.stack_depth(), Effects(EFFECTS).work_depth(depth)]
+    [scene.stack_depth(), scene.effects().work_depth(depth)]
 }
 
 /// # Safety

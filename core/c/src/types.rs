@@ -212,7 +212,7 @@ pub struct gridel_picture {
     pub height: u16,
     /// Samples per pixel, 1 to 256.
     pub samples: u16,
-    /// How often a ray may be reflected or refracted, 0 to 16.
+    /// How often a ray may be reflected or refracted, 0 to 32.
     pub depth: u16,
     /// 1 to dither, else 0.
     pub dither: u16,

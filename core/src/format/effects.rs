@@ -4,7 +4,7 @@
 //! An effect is a file in [`shade`](crate::shade) and a row in the table below. Its code is a Cargo
 //! feature of the same name.
 
-use crate::format::limits::work_depth;
+use crate::format::limits::{MAX_RAY_DEPTH, work_depth};
 use core::fmt;
 
 /// Hands the table of effects to a macro: constant, bit in the blob, name and Cargo feature, type and
@@ -14,12 +14,19 @@ use core::fmt;
 macro_rules! effects {
     ($macro:ident) => {
         $macro! {
+            /// The environment: a map of light around the scene, and a sun in it. It comes first, because others reduce
+            /// what arrives from it.
+            ENVIRONMENT = 17, "environment", Environment in environment, casts 0,
+                required by "a scene with an environment";
             /// Shadows: light is blocked on its way to a surface. One shadow ray per light and hit.
             SHADOW = 0, "shadow", Shadow in shadow, casts 0,
                 required by "a light and an object, unless the scene file turns shadows off";
             /// Highlights of the lights.
             HIGHLIGHT = 1, "highlight", Highlight in highlight, casts 0,
                 required by "a material whose highlight is not 0";
+            /// Rough mirrors and rough glass: rays leave by random facets of the surface.
+            GLOSSY = 18, "glossy", Glossy in glossy, casts 0,
+                required by "a material with a roughness above 0";
             /// Mirrors: one more ray per hit.
             MIRROR = 2, "mirror", Mirror in mirror, casts 1,
                 required by "a material whose mirror is not 0";
@@ -56,6 +63,12 @@ macro_rules! effects {
             /// Surfaces that send out light of their own.
             EMISSION = 14, "emission", Emission in emission, casts 0,
                 required by "a material that glows";
+            /// Depth of field: what is not in focus is blurred.
+            DEPTH_OF_FIELD = 15, "depth-of-field", DepthOfField in depth_of_field, casts 0,
+                required by "a camera with an aperture";
+            /// Indirect light: surfaces light each other. One more ray per hit.
+            INDIRECT = 16, "indirect", Indirect in indirect, casts 1,
+                required by "a scene file that asks for bounces of diffuse light";
         }
     };
 }
@@ -143,8 +156,8 @@ impl Effects {
     /// ```
     /// use gridel_core::Effects;
     ///
-    /// let opaque = Effects::ALL.without(Effects::GLASS).without(Effects::ABSORPTION);
-    /// assert_eq!(opaque.to_string(), "shadow, highlight, mirror, checker, smooth, vertex-colors, texture, alpha");
+    /// let both = Effects::MIRROR.with(Effects::GLASS);
+    /// assert_eq!(both.without(Effects::GLASS).to_string(), "mirror");
     /// ```
     pub const fn without(self, other: Effects) -> Effects {
         Effects(self.0 & !other.0)
@@ -168,13 +181,28 @@ impl Effects {
     /// assert_eq!(Effects::GLASS.work_depth(4), 5);
     /// // Shadow rays do not wait.
     /// assert_eq!(Effects::SHADOW.work_depth(4), 0);
+    /// // A mirrored, a refracted and a diffuse ray.
+    /// assert_eq!(Effects::GLASS.with(Effects::INDIRECT).work_depth(4), 9);
     /// ```
     pub const fn work_depth(self, depth: u8) -> usize {
-        if depth > 0 && self.0 & Self::CASTING.0 != 0 {
-            work_depth(depth)
-        } else {
+        if depth == 0 || self.0 & Self::CASTING.0 == 0 {
             0
+        } else if self.contains(Self::INDIRECT) && self.casts_two() {
+            // All but one of the rays of every hit wait.
+            work_depth(depth) + depth as usize
+        } else {
+            work_depth(depth)
         }
+    }
+
+    /// Places for waiting rays that every scene finds enough.
+    pub const MAX_WORK_DEPTH: usize = Self::AVAILABLE.work_depth(MAX_RAY_DEPTH as u8);
+
+    /// Whether a hit causes two rays, diffuse ones apart: one that is mirrored, and one that goes on.
+    const fn casts_two(self) -> bool {
+        let mirrors = self.contains(Self::MIRROR) || self.contains(Self::GLASS);
+        let goes_on = self.contains(Self::GLASS) || self.contains(Self::ALPHA);
+        mirrors && goes_on
     }
 
     /// The names of the effects in this set.

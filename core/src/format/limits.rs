@@ -7,7 +7,10 @@ pub const MAX_STACK_DEPTH: usize = 160;
 pub const MAX_LEVELS: usize = 48;
 
 /// The largest ray depth of a scene.
-pub const MAX_RAY_DEPTH: usize = 16;
+pub const MAX_RAY_DEPTH: usize = if INDIRECT { 32 } else { 16 };
+
+/// How often light may be reflected diffusely at most.
+pub const MAX_BOUNCES: usize = 32;
 
 /// Most samples per pixel.
 pub const MAX_SAMPLES: u16 = 4096;
@@ -15,7 +18,7 @@ pub const MAX_SAMPLES: u16 = 4096;
 /// Most bytes of a name.
 pub const MAX_NAME_BYTES: usize = 255;
 
-/// Places for waiting rays that a ray depth needs.
+/// Places for waiting rays that a ray depth needs where a hit causes up to two.
 pub const fn work_depth(depth: u8) -> usize {
     depth as usize + 1
 }
@@ -48,6 +51,9 @@ pub const SCALES: [i32; 2] = [1 << 10, 1 << 30];
 /// The powers of two by which an instance scales from scene units to units of its part.
 pub const INSTANCE_EXPONENT: [i64; 2] = [-4, 18];
 
+/// The least α of rough materials, with 30 fraction bits: that of a roughness of 0.05.
+pub const LEAST_ROUGHNESS: i32 = 2_684_354;
+
 /// The narrowest and the widest [angle](crate::Angle) that a camera of a track sees.
 pub const FIELD_OF_VIEW: [i32; 2] = [2, i32::MAX];
 
@@ -62,6 +68,9 @@ pub(crate) const WIDE_INDICES: bool = cfg!(feature = "wide-indices");
 
 /// Whether this build holds the code for shapes without bounds.
 pub(crate) const UNBOUNDED: bool = cfg!(feature = "unbounded");
+
+/// Whether this build holds the code for indirect light.
+pub(crate) const INDIRECT: bool = cfg!(feature = "indirect");
 
 /// Whether this build holds the code for smooth normals.
 pub(crate) const SMOOTH: bool = cfg!(feature = "smooth");

@@ -6,12 +6,14 @@
 pub(crate) mod checksum;
 pub mod cluster;
 pub(crate) mod effects;
+pub mod environment;
 mod error;
 mod index;
 pub mod instance;
 pub(crate) mod kind;
 pub mod layout;
 mod leaf;
+pub mod lens;
 pub mod light_form;
 pub mod limits;
 pub(crate) mod link;

@@ -232,9 +232,30 @@ macro_rules! sections {
             Texels = 79, "texels", [u8], "byte" of "textures";
             /// [`LightForm`](crate::format::light_form::LightForm)s: what makes lights more than points.
             LightForms = 80, "light-forms", [light_form::LightForm], "form" of "lights";
-            /// For each of the first materials, the radiance of the light that it sends out, 20 fraction bits; others send
+            /// For each of the first materials, the [light](crate::format::record::Emission) that it sends out; others send
             /// out none. Absent where no material glows.
-            Emissions = 81, "emissions", [[i32; 3]], "emission" of "";
+            Emissions = 81, "emissions", [record::Emission], "emission" of "";
+            /// One [`Lens`](crate::format::lens::Lens): what the camera has in place of a pinhole.
+            Lens = 90, "lens", [lens::Lens], "" of "";
+            /// How often light may be reflected diffusely between the eye and a light: 1 to 32. Absent where surfaces do not
+            /// light each other.
+            Indirect = 91, "indirect", [u32], "" of "";
+            /// One [`Environment`](crate::format::environment::Environment): the light around the scene.
+            Environment = 92, "environment", [environment::Environment], "" of "";
+            /// The radiance of the environment, in texels of an octahedral map, row by row: red, green and blue of 9 bits
+            /// each from the lowest bit on, then an exponent of 5 bits, 0 to 22. A channel times 2 to the exponent is the
+            /// radiance with 20 fraction bits.
+            EnvironmentTexels = 93, "environment-texels", [u32], "texel" of "environment";
+            /// For each row of the map, what part of the light comes from the rows before it, 32 fraction bits.
+            EnvironmentRows = 94, "environment-rows", [u32], "row" of "environment";
+            /// For each texel, what part of the light of its row comes from the texels before it, 16 fraction bits.
+            EnvironmentColumns = 95, "environment-columns", [u16], "column" of "environment";
+            /// For each of the first materials, the width of its facets' distribution (the α of GGX, the roughness squared), 30
+            /// fraction bits; 0 for a smooth one, as others are. Absent where no material is rough.
+            Roughnesses = 96, "roughnesses", [i32], "roughness" of "";
+            /// For each of the first forms of lights, 1 where rays meet a surface of the scene that shines so, else 0, as for
+            /// others. Absent where no material is rough.
+            ShownForms = 97, "shown-forms", [u8], "mark" of "light-forms";
             $(
                 #[doc = concat!(
                     "[`", stringify!($record), "`](crate::geometry::", stringify!($module),

@@ -3,7 +3,7 @@
 use crate::format::kind::shapes;
 use crate::format::layout::{SectionLayout, Stored};
 use crate::format::section::sections;
-use crate::format::{SectionKind, cluster, instance, light_form, record, track};
+use crate::format::{SectionKind, cluster, environment, instance, lens, light_form, record, track};
 
 macro_rules! layouts {
     ($(

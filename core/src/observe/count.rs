@@ -89,6 +89,8 @@ pub struct Counters {
     pub reflected: u64,
     /// Refracted rays.
     pub refracted: u64,
+    /// Diffuse rays, of indirect light.
+    pub diffuse: u64,
 }
 
 impl Counters {
@@ -106,7 +108,7 @@ impl Counters {
 
     /// All rays but those from the camera.
     pub fn secondary(&self) -> u64 {
-        self.shadow + self.reflected + self.refracted
+        self.shadow + self.reflected + self.refracted + self.diffuse
     }
 
     /// The counts of two parts of the work.
@@ -121,6 +123,7 @@ impl Counters {
             shadow: self.shadow + other.shadow,
             reflected: self.reflected + other.reflected,
             refracted: self.refracted + other.refracted,
+            diffuse: self.diffuse + other.diffuse,
         }
     }
 }
@@ -150,8 +153,9 @@ impl Observer for Counters {
         let counter = match kind {
             RayKind::Primary => &mut self.primary,
             RayKind::Shadow => &mut self.shadow,
-            RayKind::Reflected => &mut self.reflected,
+            RayKind::Reflected | RayKind::Glossy => &mut self.reflected,
             RayKind::Refracted => &mut self.refracted,
+            RayKind::Diffuse => &mut self.diffuse,
         };
         *counter = counter.wrapping_add(1);
     }

@@ -19,6 +19,11 @@ pub enum RayKind {
     Reflected,
     /// Into glass or out of it.
     Refracted,
+    /// Off a surface in a random direction.
+    Diffuse,
+    /// Off a rough mirror or rough glass, and from there through glass: the lights that it may meet were reflected where
+    /// it was sent.
+    Glossy,
 }
 
 /// Something that happened.
@@ -35,6 +40,11 @@ pub enum Event {
         depth: u8,
         /// The factor of its radiance.
         weight: [f64; 3],
+    },
+    /// The ray from the camera starts from a point of the lens.
+    Lens {
+        /// The point, in units.
+        point: [f64; 3],
     },
     /// A structure is asked what a ray meets.
     Query {
@@ -151,6 +161,20 @@ pub enum Event {
         /// The point, in units.
         point: [f64; 3],
     },
+    /// The light that was just considered is the environment or the sun in it, and shines from a direction.
+    FromEnvironment {
+        /// The direction, of length 1.
+        direction: [f64; 3],
+        /// The place of the texel in the map, column and row; `None` for the sun.
+        texel: Option<[u32; 2]>,
+    },
+    /// The ray met nothing and brings the light of the environment.
+    Environment {
+        /// The place of the nearest texel in the map, column and row.
+        texel: [u32; 2],
+        /// Whether the sun is there.
+        sun: bool,
+    },
     /// The light that was just considered does not shine in this direction, or not so far.
     Outside,
     /// The light that was just considered falls off with distance or angle.
@@ -158,6 +182,8 @@ pub enum Event {
         /// The radiance that arrives, after shadows.
         arriving: [f64; 3],
     },
+    /// The surface that was hit, by a diffuse or a glossy ray, sends out light that its lights have brought already.
+    EmittedByLight,
     /// The surface that was hit sends out light of its own.
     Emitted {
         /// Its radiance.
@@ -187,6 +213,11 @@ pub enum Event {
         /// How much.
         radiance: [f64; 3],
     },
+    /// A facet of a rough surface is drawn, at which the ray is mirrored and refracted.
+    Facet {
+        /// Its normal, of length 1, on the side from which the ray came.
+        normal: [f64; 3],
+    },
     /// Glass splits a ray.
     Split {
         /// The part that is reflected; 1 is total reflection.
@@ -213,7 +244,8 @@ pub enum Event {
         /// Its place in 1/256 pixel from the left and from the top of the picture; `None` for a ray
         /// of the caller's own.
         place: Option<[i32; 2]>,
-        /// Its radiance, each channel limited to 0 to 1; to 16 where pixels are mapped by tone.
+        /// Its radiance, each channel limited to 0 to 1; to 16 where pixels are mapped by tone, or the scene has an
+        /// environment.
         radiance: [f64; 3],
     },
 }

@@ -2,7 +2,7 @@
 
 use crate::accel::{DynAccel, Number};
 use crate::format::Effects;
-use crate::format::limits::{MAX_RAY_DEPTH, MAX_STACK_DEPTH, work_depth};
+use crate::format::limits::MAX_STACK_DEPTH;
 use crate::render::renderer::{RenderError, Renderer, Settings};
 use crate::render::trace::Workspace;
 use crate::scene::Scene;
@@ -32,11 +32,9 @@ impl<'s, 'a> Renderer<'s, 'a, f32, DynAccel, { Effects::AVAILABLE.0 }> {
     }
 }
 
-/// Places for waiting rays that the largest ray depth needs.
-const MAX_WORK: usize = work_depth(MAX_RAY_DEPTH as u8);
-
-impl<N: Number> Workspace<N, MAX_STACK_DEPTH, MAX_WORK> {
-    /// An empty workspace that is large enough for every scene: 3 KB in `f32` and `fixed`.
+impl<N: Number> Workspace<N, MAX_STACK_DEPTH, { Effects::MAX_WORK_DEPTH }> {
+    /// An empty workspace that is large enough for every scene: 5 KB in `f32` and `fixed`, and 3 KB without the feature
+    /// `indirect`.
     ///
     /// ```
     /// # static BLOB: &[u8] =
@@ -46,7 +44,7 @@ impl<N: Number> Workspace<N, MAX_STACK_DEPTH, MAX_WORK> {
     /// let scene = Scene::from_bytes(BLOB)?;
     /// let mut space = Workspace::for_any_scene();
     /// Renderer::new(&scene)?.check_workspace(&space.as_view())?;
-    /// assert!(size_of_val(&space) < 3072);
+    /// assert!(size_of_val(&space) < 5120);
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
     pub const fn for_any_scene() -> Self {

@@ -28,7 +28,7 @@ pub struct Settings {
     /// Samples a pixel, 1 to 4,096; powers of two are spread best. Beyond 256 they share places within the pixel, and
     /// differ in what effects draw.
     pub samples: u16,
-    /// How often a ray may be reflected or refracted, 0 to 16.
+    /// How often a ray may be reflected or refracted, 0 to 16, or to 32 with the feature `indirect`.
     pub depth: u8,
     /// Whether pixels are dithered.
     pub dither: bool,
@@ -70,7 +70,7 @@ pub enum RenderError {
     },
     /// Not 1 to 4,096 samples.
     Samples(u16),
-    /// The depth is above 16.
+    /// The depth is above 16, or above 32 with the feature `indirect`.
     Depth(u8),
     /// The blob does not hold the structure.
     Structure(Structure),
@@ -250,7 +250,7 @@ impl<'s, 'a, N: Number, A: Accel, const EFFECTS: u32> Renderer<'s, 'a, N, A, EFF
             (
                 "work list",
                 space.work.capacity(),
-                Effects(EFFECTS).work_depth(self.settings.depth),
+                self.scene.effects().work_depth(self.settings.depth),
             ),
         ];
         for (what, found, needed) in rooms {

@@ -286,13 +286,15 @@ impl<N: Number, A: Accel, C: Observer, const EFFECTS: u32> Tracing<'_, '_, '_, N
             return;
         }
         let mut bounce = Bounce {
+            normal: surface.shading_normal,
             cos_in: -N::from_wide(N::dot(direction, surface.shading_normal)),
             mirrored: None,
+            facets: None,
         };
         All::bounce::<EFFECTS, N, _>(self, &mut state, &surface, &mut bounce);
         if let Some(mirrored) = bounce.mirrored {
             // Half the mirrored direction; its length does not matter.
-            let normal = surface.shading_normal;
+            let normal = bounce.normal;
             let axis = |k: usize| direction[k].half() + bounce.cos_in * normal[k];
             let secondary = Secondary {
                 kind: RayKind::Reflected,
@@ -300,7 +302,7 @@ impl<N: Number, A: Accel, C: Observer, const EFFECTS: u32> Tracing<'_, '_, '_, N
                 outward: hit.front,
                 weight: surface.weight.times(mirrored),
             };
-            self.send(&hit, secondary);
+            self.send(&hit, bounce.leaving(&hit, secondary));
         }
     }
 
@@ -368,12 +370,23 @@ impl<N: Number, A: Accel, C: Observer, const EFFECTS: u32> Tracing<'_, '_, '_, N
         if !is_reached {
             return Color::BLACK;
         }
-        All::reflect::<EFFECTS, N, _>(self, &mut state, surface, &lighting, &mut reflected);
+        let mut gain = 0;
+        All::reflect::<EFFECTS, N, _>(
+            self,
+            &mut state,
+            surface,
+            &lighting,
+            &mut reflected,
+            &mut gain,
+        );
         if reflected == Color::BLACK {
             return Color::BLACK;
         }
         let mut arriving = Color::radiance(lighting.light.color);
         All::light::<EFFECTS, N, _>(self, &mut state, surface, &lighting, &mut arriving);
+        for _ in 0..gain {
+            arriving = arriving.plus(arriving);
+        }
         arriving.times(reflected)
     }
 }
@@ -398,8 +411,13 @@ impl<'s, N: Number, A: Accel, C: Observer, const EFFECTS: u32> Tracer<'s, N>
     }
 
     #[inline(always)]
+    fn kind(&self) -> RayKind {
+        self.kind
+    }
+
+    #[inline(always)]
     fn point(&self, dimension: u16) -> [u32; 2] {
-        // A hit sends at most one ray of a kind.
+        // A hit sends at most one ray of a kind, or two that are glossy and draw the same points.
         let bounce = u16::from(self.depth) << 8 | self.kind as u16;
         self.sampler.point(bounce, dimension)
     }

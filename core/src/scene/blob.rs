@@ -1,14 +1,20 @@
 //! A scene: a checked view of a blob.
 
 use crate::accel::{Space, StructureViews};
+use crate::format::environment::Environment;
+use crate::format::lens::Lens;
 use crate::format::light_form::LightForm;
-use crate::format::record::{Header, Light, Material, Texture, UnitBox, View};
+use crate::format::record::{Emission, Header, Light, Material, Texture, UnitBox, View};
 use crate::format::{Effects, Indices, Kind, Structure};
 use crate::geometry::{Geometry, PrimitiveId};
 use crate::instances::placed::Placed;
+use crate::scene::environment::EnvironmentMap;
 use crate::scene::textures::Textures;
 use crate::simd::SimdLevel;
-use crate::target::{InstancesOnly, TextureOnly, WideOnly, inline_on_hosts_hint_on_boards};
+use crate::target::{
+    DepthOfFieldOnly, EnvironmentOnly, GlossyOnly, IndirectOnly, InstancesOnly, TextureOnly,
+    WideOnly, inline_on_hosts_hint_on_boards,
+};
 
 /// A checked view of a blob: a few hundred bytes that borrow from it.
 ///
@@ -24,19 +30,34 @@ pub struct Scene<'a> {
     pub(crate) lights: &'a [Light],
     pub(crate) light_forms: &'a [LightForm],
     pub(crate) materials: &'a [Material],
-    pub(crate) emissions: &'a [[i32; 3]],
+    pub(crate) emissions: &'a [Emission],
+    pub(in crate::scene) lens: DepthOfFieldOnly<&'a [Lens]>,
+    pub(in crate::scene) bounces: IndirectOnly<u8>,
     pub(in crate::scene) object_first: Indices<'a>,
     pub(in crate::scene) object_material: Indices<'a>,
     pub(in crate::scene) order: Indices<'a>,
     pub(in crate::scene) effects: Effects,
+    /// What its rough materials are.
+    pub(crate) rough: GlossyOnly<Rough<'a>>,
     /// Its textures.
     pub(crate) textures: TextureOnly<Textures<'a>>,
+    /// The light around it.
+    pub(crate) environment: EnvironmentOnly<EnvironmentMap<'a>>,
     /// Its instances and parts.
     pub(crate) placed: InstancesOnly<Placed<'a, Scene<'a>>>,
     /// Whether any primitive's test needs the norm of the ray's direction.
     pub(crate) needs_norm: bool,
     /// Whether any primitive is in no structure because it has no box.
     pub(crate) has_unbounded: bool,
+}
+
+/// The sections of rough materials.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Rough<'a> {
+    /// The α of the first materials.
+    pub(crate) alphas: &'a [i32],
+    /// For each of the first forms of lights, 1 where rays meet a surface that shines so.
+    pub(crate) shown_forms: &'a [u8],
 }
 
 impl<'a> Scene<'a> {
@@ -84,17 +105,50 @@ impl<'a> Scene<'a> {
         self.light_forms
     }
 
-    /// For each of the first materials, the radiance of the light that it sends out, with 20 fraction bits; none where
-    /// no material glows.
-    pub fn emissions(&self) -> &'a [[i32; 3]] {
+    /// For each of the first materials, the light that it sends out; none where no material glows.
+    pub fn emissions(&self) -> &'a [Emission] {
         self.emissions
     }
 
-    /// The radiance of the light that an object sends out.
+    /// The light that an object sends out.
     #[inline(always)]
-    pub(crate) fn emission(&self, object: u32) -> Option<[i32; 3]> {
+    pub(crate) fn emission(&self, object: u32) -> Option<&'a Emission> {
         let number = self.material_number(object);
-        self.emissions.get(number as usize).copied()
+        self.emissions.get(number as usize)
+    }
+
+    /// The camera's lens; `None` for a pinhole.
+    #[inline(always)]
+    pub fn lens(&self) -> Option<&'a Lens> {
+        self.lens.get()?.first()
+    }
+
+    /// How often light may be reflected diffusely between the eye and a light; 0 where surfaces do not light each other.
+    #[inline(always)]
+    pub fn bounces(&self) -> u8 {
+        self.bounces.get().copied().unwrap_or(0)
+    }
+
+    /// For each of the first materials, the α of its facets' distribution, with 30 fraction bits, 0 for a smooth one; none
+    /// where no material is rough.
+    pub fn roughnesses(&self) -> &'a [i32] {
+        self.rough.get().map_or(&[], |rough| rough.alphas)
+    }
+
+    /// The α of an object's facets; `None` for a smooth one.
+    #[inline(always)]
+    pub(crate) fn roughness(&self, object: u32) -> Option<i32> {
+        let rough = self.rough.get()?;
+        let number = self.material_number(object);
+        let alpha = rough.alphas.get(number as usize).copied();
+        alpha.filter(|&alpha| alpha != 0)
+    }
+
+    /// Whether rays meet a surface that shines as a light does. It is known where materials are rough.
+    #[inline(always)]
+    pub(crate) fn is_shown(&self, light: &Light) -> bool {
+        let mark = || self.rough.get()?.shown_forms.get(light.form()? as usize);
+        mark() == Some(&1)
     }
 
     /// The form of a light.
@@ -257,6 +311,18 @@ impl<'a> Scene<'a> {
         let textures = self.textures.get()?;
         let texture = textures.texture(textures.maps_of(material)?.color)?;
         Some(textures.lookup(texture, coordinates).color)
+    }
+
+    /// The environment.
+    pub fn environment(&self) -> Option<&'a Environment> {
+        self.environment.get()?.record
+    }
+
+    /// The radiance with 20 fraction bits, without that of the sun, that rays bring from a direction, given by the
+    /// direction's place in the octahedral map: see [`Environment`]. `None` without an environment.
+    pub fn environment_radiance(&self, place: [i32; 2]) -> Option<[i32; 3]> {
+        let map = self.environment.get()?;
+        Some(map.mixed(map.record?, place))
     }
 
     /// A primitive as it lies on the lattice, given by its kind and its slot among those of that kind.

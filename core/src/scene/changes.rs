@@ -8,7 +8,7 @@ use crate::format::record::{Light, Material, View};
 use crate::format::{BlobError, Effects, SectionKind};
 use crate::scene::Scene;
 use crate::scene::check::{check_light, check_material};
-use crate::scene::read::check_view;
+use crate::scene::read::{check_lens, check_view};
 
 impl<'a> Scene<'a> {
     /// The scene seen by another camera, in other surroundings or with other defaults for pictures.
@@ -35,6 +35,7 @@ impl<'a> Scene<'a> {
     /// If a number is out of its range, or this build lacks what the view calls for.
     pub fn with_view(&self, view: &'a View) -> Result<Self, BlobError> {
         check_view(view)?;
+        check_lens(self.lens(), view)?;
         Ok(Self {
             view,
             effects: self.effects.with(view.effects()),
@@ -66,7 +67,7 @@ impl<'a> Scene<'a> {
     pub fn with_lights(&self, lights: &'a [Light]) -> Result<Self, BlobError> {
         let mut effects = self.effects;
         for (index, light) in lights.iter().enumerate() {
-            check_light(index, light, self.light_forms.len())?;
+            check_light(index, light, self)?;
             if self.lights.is_empty() {
                 effects = effects.with(light.effects());
             }

@@ -1,7 +1,7 @@
 //! The proofs that [`Scene::from_bytes`] makes, in the order in which each relies on those before.
 
 use crate::accel::StructureViews;
-use crate::format::limits::{FARTHEST, SMOOTH};
+use crate::format::limits::{FARTHEST, LEAST_ROUGHNESS, SMOOTH};
 use crate::format::range::{At, Ranges, exactly};
 use crate::format::record::{Header, Light, Material};
 use crate::format::{
@@ -11,7 +11,7 @@ use crate::number::Fixed;
 use crate::number::Scalar;
 use crate::scene::Scene;
 use crate::scene::parts::check_placed;
-use crate::target::VERTEX_COLORS;
+use crate::target::{ENVIRONMENT, VERTEX_COLORS};
 
 /// Proves that no byte of a blob was changed since it was written.
 pub(crate) fn check_sum(blob: &[u8], header: &Header) -> Result<(), BlobError> {
@@ -49,13 +49,17 @@ fn check_lights(scene: &Scene<'_>) -> Result<(), BlobError> {
         let section = SectionKind::LightForms;
         form.check_ranges(At { section, index }.location())?;
     }
+    if let Some(environment) = scene.environment.get() {
+        environment.validate()?;
+    }
     let mut lights = scene.lights.iter().enumerate();
-    lights.try_for_each(|(index, light)| check_light(index, light, scene.light_forms.len()))
+    lights.try_for_each(|(index, light)| check_light(index, light, scene))
 }
 
 /// Proves the ranges of a light.
 #[inline(always)]
-pub(super) fn check_light(index: usize, light: &Light, forms: usize) -> Result<(), BlobError> {
+pub(super) fn check_light(index: usize, light: &Light, scene: &Scene<'_>) -> Result<(), BlobError> {
+    let forms = scene.light_forms.len();
     let section = SectionKind::Lights;
     let at = At { section, index };
     light.check_ranges(at.location())?;
@@ -63,6 +67,7 @@ pub(super) fn check_light(index: usize, light: &Light, forms: usize) -> Result<(
         Some(form) if forms > 0 => {
             at.within(Field::LightForm, form.into(), 0, forms as i64 - 1)?;
         }
+        None if ENVIRONMENT && scene.environment.get().is_some_and(|it| it.has(light)) => (),
         _ => at.within(Field::Kind, light.directional.into(), 0, 1)?,
     }
     let most = if light.directional == 1 {
@@ -96,6 +101,30 @@ fn check_materials(scene: &Scene<'_>) -> Result<(), BlobError> {
     required = required.with(check_smooth(scene)?);
     required = required.with(check_vertex_colors(scene)?);
     required = required.with(check_glow(scene)?);
+    let called = [
+        (
+            SectionKind::Lens,
+            Effects::DEPTH_OF_FIELD,
+            scene.lens().is_some(),
+        ),
+        (
+            SectionKind::Indirect,
+            Effects::INDIRECT,
+            scene.bounces() > 0,
+        ),
+        (
+            SectionKind::Environment,
+            Effects::ENVIRONMENT,
+            scene.environment().is_some(),
+        ),
+    ];
+    for (section, effect, is_required) in called {
+        let effect = effect.only_if(is_required);
+        let is_known = Effects(header.effects).contains(effect);
+        Location::Section(section).ensure(is_known, Reason::MissingEffect)?;
+        required = required.with(effect);
+    }
+    required = required.with(check_roughness(scene)?);
     let view = scene.view.effects();
     let called = Effects(header.effects).contains(view);
     Location::Section(SectionKind::View).ensure(called, Reason::MissingEffect)?;
@@ -129,10 +158,30 @@ fn check_smooth(scene: &Scene<'_>) -> Result<Effects, BlobError> {
 /// require it.
 fn check_glow(scene: &Scene<'_>) -> Result<Effects, BlobError> {
     let section = SectionKind::Emissions;
-    for (index, radiance) in scene.emissions.iter().enumerate() {
-        At { section, index }.all_within(Field::Emission, radiance, 0, i32::MAX.into())?;
+    for (index, emission) in (0..scene.emissions.len()).zip(scene.emissions) {
+        emission.check_ranges(At { section, index }.location())?;
     }
     let required = Effects::EMISSION.only_if(!scene.emissions.is_empty());
+    let is_known = Effects(scene.space.header.effects).contains(required);
+    Location::Section(section).ensure(is_known, Reason::MissingEffect)?;
+    Ok(required)
+}
+
+/// What rough materials require; an error where a roughness is out of its range, or the header does not require it.
+fn check_roughness(scene: &Scene<'_>) -> Result<Effects, BlobError> {
+    let Some(rough) = scene.rough.get() else {
+        return Ok(Effects::NONE);
+    };
+    let section = SectionKind::Roughnesses;
+    for (index, &alpha) in (0..rough.alphas.len()).zip(rough.alphas) {
+        let least = if alpha == 0 { 0 } else { LEAST_ROUGHNESS };
+        At { section, index }.within(Field::Roughness, alpha.into(), least.into(), ONE)?;
+    }
+    for (index, &mark) in (0..rough.shown_forms.len()).zip(rough.shown_forms) {
+        let section = SectionKind::ShownForms;
+        At { section, index }.within(Field::ShownForm, mark.into(), 0, 1)?;
+    }
+    let required = Effects::GLOSSY.only_if(!rough.alphas.is_empty());
     let is_known = Effects(scene.space.header.effects).contains(required);
     Location::Section(section).ensure(is_known, Reason::MissingEffect)?;
     Ok(required)

@@ -7,6 +7,7 @@ mod blob;
 mod changes;
 mod check;
 mod coordinates;
+pub(crate) mod environment;
 mod features;
 mod load;
 mod motion;

@@ -4,7 +4,8 @@ use crate::accel::StructureViews;
 use crate::accel::space::Space;
 use crate::accel::stack::Entry;
 use crate::format::instance::Part;
-use crate::format::limits::{DISPLAY_VALUES, INSTANCES};
+use crate::format::lens::Lens;
+use crate::format::limits::{DISPLAY_VALUES, FARTHEST, INDIRECT, INSTANCES, MAX_BOUNCES};
 use crate::format::range::{At, Ranges, exactly};
 use crate::format::record::{ALIGNMENT, ENDIANNESS, Header, MAGIC, VERSION, View};
 use crate::format::{
@@ -14,9 +15,14 @@ use crate::geometry::Shapes;
 use crate::instances::placed::Placed;
 use crate::instances::top::Top;
 use crate::scene::Scene;
+use crate::scene::blob::Rough;
+use crate::scene::environment::EnvironmentMap;
 use crate::scene::textures::Textures;
 use crate::simd::SimdLevel;
-use crate::target::{AllStructuresOnly, InstancesOnly, TEXTURE, TextureOnly, WideOnly};
+use crate::target::{
+    AllStructuresOnly, DepthOfFieldOnly, ENVIRONMENT, EnvironmentOnly, GlossyOnly, IndirectOnly,
+    InstancesOnly, TEXTURE, TextureOnly, WideOnly,
+};
 use core::mem::size_of;
 
 /// The header of what is a blob of this version and byte order, and as long as it says.
@@ -104,6 +110,26 @@ pub(crate) fn scene<'a>(
         true => Textures::read(sections)?,
         false => Textures::default(),
     };
+    let lens = match const { Effects::AVAILABLE.contains(Effects::DEPTH_OF_FIELD) } {
+        true => the_lens(sections, view)?,
+        false => &[],
+    };
+    let bounces = match INDIRECT {
+        true => the_bounces(sections)?,
+        false => 0,
+    };
+    let environment = match ENVIRONMENT {
+        true => EnvironmentMap::read(sections)?,
+        false => EnvironmentMap::default(),
+    };
+    let mut rough = Rough {
+        alphas: &[],
+        shown_forms: &[],
+    };
+    if const { Effects::AVAILABLE.contains(Effects::GLOSSY) } {
+        rough.alphas = sections.records(SectionKind::Roughnesses)?;
+        rough.shown_forms = sections.records(SectionKind::ShownForms)?;
+    }
     Ok(Scene {
         space: Space {
             header,
@@ -125,10 +151,14 @@ pub(crate) fn scene<'a>(
             true => sections.records(SectionKind::Emissions)?,
             false => &[],
         },
+        lens: DepthOfFieldOnly::new(|| lens),
+        bounces: IndirectOnly::new(|| bounces),
         object_first: Indices::read(sections, SectionKind::ObjectFirst)?,
         object_material: Indices::read(sections, SectionKind::ObjectMaterial)?,
         order: Indices::read(sections, SectionKind::Order)?,
+        rough: GlossyOnly::new(|| rough),
         textures: TextureOnly::new(|| textures),
+        environment: EnvironmentOnly::new(|| environment),
         placed: placed(sections, parts)?,
         needs_norm: shapes.needs_norm(),
         has_unbounded: shapes.has_unbounded(),
@@ -181,6 +211,52 @@ fn the_view<'a>(sections: &Sections<'a>) -> Result<&'a View, BlobError> {
     };
     check_view(view)?;
     Ok(view)
+}
+
+/// The camera's lens, if it has one.
+fn the_lens<'a>(sections: &Sections<'a>, view: &View) -> Result<&'a [Lens], BlobError> {
+    let section = SectionKind::Lens;
+    let lenses: &[Lens] = sections.records(section)?;
+    if lenses.len() > 1 {
+        return Err(BlobError::Count {
+            section,
+            found: lenses.len(),
+            expected: 1,
+        });
+    }
+    check_lens(lenses.first(), view)?;
+    Ok(lenses)
+}
+
+/// Proves that rays may start from all of a lens where a view has its eye.
+pub(super) fn check_lens(lens: Option<&Lens>, view: &View) -> Result<(), BlobError> {
+    let Some(lens) = lens else {
+        return Ok(());
+    };
+    let section = SectionKind::Lens;
+    let at = At { section, index: 0 };
+    lens.check_ranges(at.location())?;
+    let most = FARTHEST.wrapping_sub(lens.radius);
+    at.all_within(Field::Eye, &view.eye, -most, most)
+}
+
+/// How often light is reflected diffusely.
+fn the_bounces(sections: &Sections<'_>) -> Result<u8, BlobError> {
+    let section = SectionKind::Indirect;
+    let bounces: &[u32] = sections.records(section)?;
+    match *bounces {
+        [] => Ok(0),
+        [bounces] => {
+            let at = At { section, index: 0 };
+            at.within(Field::Bounces, bounces.into(), 1, MAX_BOUNCES as i64)?;
+            Ok(bounces as u8)
+        }
+        _ => Err(BlobError::Count {
+            section,
+            found: bounces.len(),
+            expected: 1,
+        }),
+    }
 }
 
 /// Proves the ranges of a view, and that this build has what it calls for.

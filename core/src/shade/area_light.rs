@@ -13,6 +13,7 @@ use crate::format::record::Light;
 use crate::number::{Angle, extent};
 use crate::observe::count::Observer;
 use crate::observe::event::Event;
+use crate::shade::basis::beside;
 use crate::shade::effect::{Effect, Tracer};
 use crate::shade::light::{Reach, largest, length};
 use crate::shade::surface::{Aim, Cone, Lighting, Surface};
@@ -139,17 +140,4 @@ fn on_sphere<N: Number>(form: &LightForm, aim: &Aim<N>, u: N, [sine, cosine]: [N
             widening,
         }),
     }
-}
-
-/// Two directions that are perpendicular to one of length 1 and to each other (Duff, Burgess, Christensen, Hery, Kensler,
-/// Liani and Villemin, "Building an Orthonormal Basis, Revisited", 2017).
-fn beside<N: Number>([x, y, z]: [N; 3]) -> [[N; 3]; 2] {
-    let one = N::ONE.half();
-    let signed = |value: N| if z < N::ZERO { -value } else { value };
-    let scale = -one.div(one + z.abs().half());
-    let mixed = x * y * scale;
-    [
-        [N::ONE + x * x * scale, mixed, signed(-x)],
-        [signed(mixed), signed(N::ONE + y * y * scale), -y],
-    ]
 }

@@ -8,6 +8,7 @@ use crate::accel::Number;
 use crate::format::Effects;
 use crate::format::record::{Light, Material, View};
 use crate::observe::count::Observer;
+use crate::observe::event::RayKind;
 use crate::query::Hit;
 use crate::ray::Ray;
 use crate::scene::Scene;
@@ -29,6 +30,9 @@ pub(crate) trait Tracer<'s, N: Number> {
     fn scene(&self) -> &'s Scene<'s>;
 
     fn count(&mut self) -> &mut Self::Observer;
+
+    /// The purpose of the ray that is followed.
+    fn kind(&self) -> RayKind;
 
     /// A random point of the unit square, with 32 fraction bits, for the ray that is followed: see
     /// [`Sampler::point`](crate::shade::sampler::Sampler::point), which says what a dimension is.
@@ -72,8 +76,9 @@ macro_rules! places {
             /// True if it acts on light that comes through surfaces.
             const FILTERS: bool = false;
 
-            /// True if it acts on the mean of samples that are brighter than display white.
+            /// True if it acts on the mean of samples that are brighter than display white, or needs that mean to be right.
             const DEVELOPS: bool = false;
+
 
             /// Whether a material requires it.
             fn is_required_by_material(material: &Material) -> bool {
@@ -225,8 +230,14 @@ places! {
     /// A surface faces a light: the start of the way there may change, and whether the light reaches it.
     fn face(surface: &Surface<'_, N>, lighting: &mut Lighting<'_, N>, is_reached: &mut bool);
 
-    /// A surface reflects a light that it faces: the reflected ratio may change.
-    fn reflect(surface: &Surface<'_, N>, lighting: &Lighting<'_, N>, reflected: &mut Color<N>);
+    /// A surface reflects a light that it faces: the reflected ratio may change. Times 2 to the power of `gain` it may
+    /// be above 1.
+    fn reflect(
+        surface: &Surface<'_, N>,
+        lighting: &Lighting<'_, N>,
+        reflected: &mut Color<N>,
+        gain: &mut u32
+    );
 
     /// Light arrives from a light at a surface that reflects it: its radiance may change.
     fn light(surface: &Surface<'_, N>, lighting: &Lighting<'_, N>, arriving: &mut Color<N>);

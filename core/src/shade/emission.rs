@@ -6,7 +6,7 @@
 use crate::accel::Number;
 use crate::format::Effects;
 use crate::observe::count::Observer;
-use crate::observe::event::Event;
+use crate::observe::event::{Event, RayKind};
 use crate::shade::Color;
 use crate::shade::effect::{Effect, Tracer};
 use crate::shade::surface::Surface;
@@ -27,8 +27,16 @@ impl Effect for Emission {
     ) {
         // No material says so, as with other effects: a section of the blob does.
         let emission = tracer.scene().emission(surface.hit.object);
-        if let Some(radiance) = emission.filter(|_| surface.hit.front) {
-            let emitted = Color::radiance(radiance);
+        if let Some(emission) = emission.filter(|_| surface.hit.front) {
+            // The surface that sent such a ray has been lit by it, or has reflected it by the formula.
+            let is_counted = matches!(tracer.kind(), RayKind::Diffuse | RayKind::Glossy);
+            if emission.lights != 0 && is_counted {
+                if X::Observer::ENABLED {
+                    tracer.count().event(Event::EmittedByLight);
+                }
+                return;
+            }
+            let emitted = Color::radiance(emission.radiance);
             *local = local.plus(emitted);
             if X::Observer::ENABLED {
                 tracer.count().event(Event::Emitted {

@@ -64,7 +64,7 @@ impl Effect for Glass {
             N::ratio(material.inverse_ior),
             hit.front,
             surface.direction,
-            surface.shading_normal,
+            bounce.normal,
             bounce.cos_in,
         );
         if X::Observer::ENABLED {
@@ -80,14 +80,14 @@ impl Effect for Glass {
             outward: !hit.front,
             weight: surface.weight.times(transmit.scaled(N::ONE - reflected)),
         };
-        tracer.send(hit, secondary);
+        tracer.send(hit, bounce.leaving(hit, secondary));
     }
 }
 
 /// The split of a ray at a glass surface.
-struct Split<N> {
+pub(super) struct Split<N> {
     /// The part that is reflected; 1 is total internal reflection.
-    reflected: N,
+    pub(super) reflected: N,
     /// The direction of the rest, of any length.
     refracted: [N; 3],
 }
@@ -106,7 +106,13 @@ fn fresnel<N: Number>(k: N, cos_in: N, cos_out: N) -> N {
 
 /// Splits a ray of direction `d` (of length 1) at a surface. `normal` points to where the ray came
 /// from, `cos_in` is the cosine between them; `entering` says that the ray goes into the glass.
-fn split<N: Number>(k: N, entering: bool, d: [N; 3], normal: [N; 3], cos_in: N) -> Split<N> {
+pub(super) fn split<N: Number>(
+    k: N,
+    entering: bool,
+    d: [N; 3],
+    normal: [N; 3],
+    cos_in: N,
+) -> Split<N> {
     if k == N::ONE {
         return Split {
             reflected: N::ZERO,

@@ -27,6 +27,7 @@ impl Effect for Highlight {
         surface: &Surface<'_, N>,
         lighting: &Lighting<'_, N>,
         reflected: &mut Color<N>,
+        _: &mut u32,
     ) {
         let material = surface.material;
         if !surface.required.contains(Self::EFFECT) {

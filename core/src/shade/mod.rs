@@ -5,23 +5,25 @@
 //!
 //! | place | when | today |
 //! |---|---|---|
-//! | `camera` | a ray leaves the camera | |
+//! | `camera` | a ray leaves the camera | depth of field |
 //! | `arrive` | a ray has come to a hit | absorption |
-//! | `surface` | a ray hits a surface | checker, smooth, vertex colors, texture, alpha |
+//! | `surface` | a ray hits a surface | checker, smooth, vertex colors, texture, alpha, indirect |
 //! | `emit` | a surface sends out light of its own | emission |
-//! | `aim` | a surface looks for a light | area light |
+//! | `aim` | a surface looks for a light | area light, environment |
 //! | `face` | a surface faces a light | smooth, falloff |
-//! | `reflect` | a surface reflects a light | highlight |
-//! | `light` | light arrives at a surface | shadow, falloff |
+//! | `reflect` | a surface reflects a light | highlight, glossy |
+//! | `light` | light arrives at a surface | environment, shadow, falloff |
 //! | `filter` | a surface is in the way of light | glass, absorption, alpha |
-//! | `miss` | a ray hits nothing | |
-//! | `bounce` | a surface sends rays on | mirror, glass, alpha |
-//! | `leave` | a ray leaves a hit | smooth |
+//! | `miss` | a ray hits nothing | environment |
+//! | `bounce` | a surface sends rays on | glossy, mirror, glass, alpha, indirect |
+//! | `leave` | a ray leaves a hit | smooth, glossy, indirect |
 //! | `pixel` | all rays of a sample were traced | |
 //! | `develop` | the mean of a pixel's samples is known | tone mapping |
 
+mod basis;
 mod color;
 pub(crate) mod effect;
+pub(crate) mod facets;
 pub(crate) mod light;
 mod material;
 pub(crate) mod sampler;

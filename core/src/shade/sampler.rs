@@ -18,7 +18,7 @@
 //! | 0 to 0x0fff | the light of this number | `aim` |
 //! | 0x1000 | the lens | `camera` |
 //! | 0x1001 | time | `camera` |
-//! | 0x1010, 0x1011 | a glossy reflection, a glossy transmission | `bounce` |
+//! | 0x1010 | the facet of a rough surface | `bounce` |
 //! | 0x1020 | the environment as a light | `aim` |
 //! | 0x1030, 0x1031 | the direction of indirect light, and whether there is any | `bounce` |
 //!

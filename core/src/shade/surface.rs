@@ -9,6 +9,7 @@ use crate::query::Hit;
 use crate::ray::Ray;
 use crate::scene::Scene;
 use crate::shade::Color;
+use crate::shade::facets::Facets;
 
 /// A surface that a ray has hit.
 pub(crate) struct Surface<'h, N: Number> {
@@ -87,10 +88,14 @@ pub(crate) struct Filter<'h, N: Number> {
 
 /// A surface that may send rays on.
 pub(crate) struct Bounce<N: Number> {
-    /// The cosine between the normal and the way back to where the ray came from.
+    /// The normal at which the ray is mirrored and refracted: that for shading, unless an effect draws a facet.
+    pub(crate) normal: [N; 3],
+    /// The cosine between that normal and the way back to where the ray came from.
     pub(crate) cos_in: N,
     /// The ratio that is mirrored, `None` if no effect mirrors. All effects share one mirrored ray.
     pub(crate) mirrored: Option<Color<N>>,
+    /// The facets of which the normal is one; `None` for a smooth surface.
+    pub(crate) facets: Option<Facets<N>>,
 }
 
 impl<N: Number> Bounce<N> {
@@ -101,6 +106,21 @@ impl<N: Number> Bounce<N> {
             Some(mirrored) => mirrored.plus_up_to_one(ratio),
             None => ratio,
         });
+    }
+
+    /// The weight of a ray that leaves, without what facets keep.
+    #[inline(always)]
+    pub(crate) fn leaving(&self, hit: &Hit<N>, secondary: Secondary<N>) -> Secondary<N> {
+        match &self.facets {
+            None => secondary,
+            Some(facets) => {
+                let left = facets.unmasked(hit, secondary.direction, secondary.outward);
+                Secondary {
+                    weight: secondary.weight.scaled(left),
+                    ..secondary
+                }
+            }
+        }
     }
 }
 

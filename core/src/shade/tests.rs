@@ -25,18 +25,18 @@ macro_rules! with_mocks {
 }
 
 with_mocks! {
-    Shift = 16,
-    Fog = 17,
-    Tint = 18,
-    Matt = 19,
-    Falloff = 20,
-    Veil = 21,
-    Sky = 22,
-    Pane = 23,
-    ToneMap = 24,
-    Trail = 25,
-    Bump = 26,
-    Print = 27,
+    Shift = 20,
+    Fog = 21,
+    Tint = 22,
+    Matt = 23,
+    Falloff = 24,
+    Veil = 25,
+    Sky = 26,
+    Pane = 27,
+    ToneMap = 28,
+    Trail = 29,
+    Bump = 30,
+    Print = 31,
 }
 
 /// The pixels of the tiny scene, with one sample each, and the rays that they take.

@@ -15,7 +15,8 @@ use clap::Args;
 use gridel_core::{Format, Scene, Structure};
 use gridel_host::blob::is_blob;
 use gridel_host::compile::{
-    self, Builder, Figures, KeptNames, LeftOut, Report, TableStats, TextureFigures,
+    self, Builder, EnvironmentFigures, Figures, KeptNames, LeftOut, Report, TableStats,
+    TextureFigures,
 };
 use gridel_host::emit::{self, Emitted};
 use gridel_host::measure::Deforming;
@@ -125,6 +126,9 @@ struct Built<'r> {
     effects: Vec<CalledFor>,
     /// How each image of a texture is stored.
     textures: &'r [TextureFigures],
+    /// How the environment is stored.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    environment: Option<EnvironmentFigures>,
     supplied: &'r [String],
     tables: &'r [TableStats],
     /// Where the scene has names that the blob is to have.
@@ -317,6 +321,7 @@ impl<'r> Built<'r> {
             sah_cost: report.sah_cost,
             effects: CalledFor::in_report(report),
             textures: &report.textures,
+            environment: report.environment,
             supplied: &report.supplied,
             tables: &report.tables,
             names: report.names,
@@ -422,6 +427,9 @@ impl<'r> Built<'r> {
         }
         for texture in self.textures {
             line("texture", texture.to_string());
+        }
+        if let Some(environment) = self.environment {
+            line("environment", environment.to_string());
         }
         if let Some(report) = self.memory {
             let remains = |account: &Account| {

@@ -95,6 +95,7 @@ struct Stats {
     shadow: u64,
     reflected: u64,
     refracted: u64,
+    diffuse: u64,
     planes: u64,
     boxes: u64,
     cells: u64,
@@ -272,6 +273,7 @@ fn stats(arguments: &Arguments, picture: &Picture, time: Duration) -> Option<Sta
         shadow,
         reflected,
         refracted,
+        diffuse,
     } = counters;
     Some(Stats {
         rays: counters.rays(),
@@ -279,6 +281,7 @@ fn stats(arguments: &Arguments, picture: &Picture, time: Duration) -> Option<Sta
         shadow,
         reflected,
         refracted,
+        diffuse,
         planes,
         boxes,
         cells,
@@ -338,6 +341,7 @@ impl Stats {
             ("  shadow", self.shadow),
             ("  reflected", self.reflected),
             ("  refracted", self.refracted),
+            ("  diffuse", self.diffuse),
             ("planes tested", self.planes),
             ("boxes tested", self.boxes),
             ("cells entered", self.cells),

@@ -183,6 +183,7 @@ impl Source {
             warn(&warning);
             warnings.push(warning);
         }
+        warnings.extend(report.environment.and_then(|it| it.warning()));
         if let Some(warning) = far_moved(&report, compiling.lattice_bits) {
             warn(&warning);
             warnings.push(warning);

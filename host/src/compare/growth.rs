@@ -135,6 +135,7 @@ fn part(scene: &Scene, primitives: &[Part]) -> Scene {
     Scene {
         camera: None,
         objects: objects.collect(),
+        environment: scene.environment.clone(),
         lights: scene.lights.clone(),
         materials: scene.materials.clone(),
         light_names: Vec::new(),

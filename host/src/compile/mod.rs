@@ -9,6 +9,7 @@ mod context;
 mod coordinates;
 mod cuts;
 mod dual_split;
+mod environment;
 mod error;
 mod estimate;
 mod exposure;
@@ -47,6 +48,7 @@ pub use builder::Builder;
 pub(crate) use camera::place;
 pub use candidates::census::{Census, CubeCensus};
 pub use candidates::lists::Figures;
+pub use environment::EnvironmentFigures;
 pub use error::CompileError;
 pub use framing::{BACKGROUND, framing};
 pub use lattice::BITS as LATTICE_BITS;
@@ -294,6 +296,7 @@ fn compile_as(
         longest_list,
         effects: shading_data.required_by.clone(),
         textures: shading_data.texture_figures.clone(),
+        environment: shading_data.environment.as_ref().map(|it| it.figures),
         supplied: shading_data.supplied.clone(),
         setup,
         tables,

@@ -1,6 +1,7 @@
 //! The compiler's report.
 
 use super::candidates::lists::Figures;
+use super::environment::EnvironmentFigures;
 use super::names::KeptNames;
 use super::primitives::LeftOut;
 use super::textures::TextureFigures;
@@ -36,6 +37,8 @@ pub struct Report {
     pub effects: Vec<(String, Vec<String>)>,
     /// How each image of a texture is stored.
     pub textures: Vec<TextureFigures>,
+    /// How the environment is stored.
+    pub environment: Option<EnvironmentFigures>,
     /// Parts that the compiler supplied because the scene has none.
     pub supplied: Vec<String>,
     /// The time that the structures took to build, from primitives on the lattice to records.

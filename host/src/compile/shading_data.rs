@@ -3,6 +3,7 @@
 use super::CompileError;
 use super::camera::place;
 use super::coordinates::Coordinates;
+use super::environment::EnvironmentData;
 use super::exposure::Exposure;
 use super::extent::Shapes;
 use super::framing::{BACKGROUND, framing_of};
@@ -17,6 +18,7 @@ use crate::table::printable;
 use bytemuck::Zeroable;
 use glam::DVec3;
 use gridel_core::Effects;
+use gridel_core::format::lens::Lens;
 use gridel_core::format::light_form::LightForm;
 use gridel_core::format::limits::FARTHEST;
 use gridel_core::format::record::{self, View};
@@ -33,8 +35,18 @@ pub struct ShadingData {
     pub lights: Vec<record::Light>,
     /// What makes lights more than points.
     pub light_forms: Vec<LightForm>,
-    /// The radiance of each material that an object has; empty where none glows.
-    pub emissions: Vec<[i32; 3]>,
+    /// What each material that an object has sends out; empty where none glows.
+    pub emissions: Vec<record::Emission>,
+    /// What the camera has in place of a pinhole: one, or none.
+    pub lens: Vec<Lens>,
+    /// How often light may be reflected diffusely: one number, or none.
+    pub bounces: Vec<u32>,
+    /// The light around the scene.
+    pub environment: Option<EnvironmentData>,
+    /// The α of each material that an object has, up to the last rough one; empty where none is rough.
+    pub roughnesses: Vec<i32>,
+    /// For each form of a light, whether an object shows it; empty where none is rough.
+    pub shown_forms: Vec<u8>,
     /// Materials that an object has.
     pub materials: Vec<record::Material>,
     /// For each object, its place in `materials`.
@@ -72,7 +84,13 @@ impl ShadingData {
             None => BACKGROUND,
         });
         let (mut lights, mut ambient) = (scene.lights.clone(), scene.ambient);
-        if lights.is_empty() && ambient == [0.0; 3] {
+        let lights_itself = scene.render.bounces > 0
+            && scene
+                .materials
+                .iter()
+                .any(|material| material.emission != [0.0; 3]);
+        let is_lit = lights_itself || scene.environment.is_some();
+        if lights.is_empty() && ambient == [0.0; 3] && !is_lit {
             let (direction, shoulder) = over_a_shoulder(shapes, &camera);
             supplied.push(format!(
                 "a directional light from above the camera's {shoulder} shoulder, and some light from \
@@ -85,7 +103,7 @@ impl ShadingData {
             });
             ambient = [AMBIENT; 3];
         }
-        if scene.camera.is_none() && scene.background.is_none() {
+        if scene.camera.is_none() && scene.background.is_none() && scene.environment.is_none() {
             supplied.push(String::from("a light background"));
         }
         let size = (highest - lowest).max_element();
@@ -125,15 +143,34 @@ impl ShadingData {
                 continue;
             };
             let what = || format!("material {}", printable(&material.name));
-            let emission = radiance(exposure.of_color(material.emission, what)?);
+            let emission = record::Emission {
+                radiance: radiance(exposure.of_color(material.emission, what)?),
+                lights: material.is_sampled.into(),
+            };
             if emissions.len() <= number as usize {
-                emissions.resize(number as usize + 1, [0; 3]);
+                emissions.resize(number as usize + 1, record::Emission::default());
             }
             emissions[number as usize] = emission;
             required_by.push((Effects::EMISSION, what()));
         }
+        let mut roughnesses = Vec::new();
+        for (material, number) in scene.materials.iter().zip(&numbers) {
+            let Some(number) = number.filter(|_| material.is_rough()) else {
+                continue;
+            };
+            if roughnesses.len() <= number as usize {
+                roughnesses.resize(number as usize + 1, 0);
+            }
+            let roughness = material.roughness.clamp(Material::LEAST_ROUGHNESS, 1.0);
+            [roughnesses[number as usize], ..] = ratio([roughness * roughness; 3]);
+            required_by.push((
+                Effects::GLOSSY,
+                format!("material {}", printable(&material.name)),
+            ));
+        }
         let mut light_forms = Vec::new();
-        let lights = lights
+        let mut shown_forms = Vec::new();
+        let mut lights = lights
             .iter()
             .enumerate()
             .map(|(number, light)| {
@@ -148,6 +185,9 @@ impl ShadingData {
                     .tracks
                     .iter()
                     .any(|track| (track.target, track.index) == (TrackTarget::LightColor, number));
+                if !roughnesses.is_empty() {
+                    shown_forms.push(u8::from(form.is_surface));
+                }
                 let (form, color) = form_record(&form, color, lattice, number, has_color_track)?;
                 let light = Light::Point { position, color };
                 let directional =
@@ -160,6 +200,13 @@ impl ShadingData {
                 })
             })
             .collect::<Result<Vec<_>, CompileError>>()?;
+        let environment = scene.environment.as_ref();
+        let environment = environment.map(|it| EnvironmentData::of(it, scene.up, &exposure));
+        let environment = environment.transpose()?;
+        if let Some(environment) = &environment {
+            lights.extend(&environment.lights);
+            required_by.push(EnvironmentData::required_by());
+        }
         // A scene file may turn shadows off.
         let unwanted = if scene.render.shadows {
             Effects::NONE
@@ -175,10 +222,21 @@ impl ShadingData {
             view.effects(),
             String::from("the `tone_mapping` of pictures"),
         ));
+        let lens = lens_record(scene, &camera, lattice, size)?;
+        required_by.push((
+            Effects::DEPTH_OF_FIELD.only_if(lens.is_some()),
+            String::from("the camera's `aperture`"),
+        ));
+        let bounces = Some(scene.render.bounces).filter(|&bounces| bounces > 0);
+        required_by.push((
+            Effects::INDIRECT.only_if(bounces.is_some()),
+            String::from("the `bounces` of pictures"),
+        ));
         if scene.all_objects().next().is_some() {
             let effects = (0..).zip(lights.iter().map(record::Light::effects));
             required_by.extend(effects.map(|(number, effects): (usize, _)| {
-                (effects.without(unwanted), format!("light {number}"))
+                let effects = effects.without(unwanted.with(Effects::ENVIRONMENT));
+                (effects, format!("light {number}"))
             }));
         }
         let effects = required_by
@@ -214,6 +272,11 @@ impl ShadingData {
             lights,
             light_forms,
             emissions,
+            lens: lens.into_iter().collect(),
+            bounces: bounces.into_iter().map(u32::from).collect(),
+            environment,
+            roughnesses,
+            shown_forms,
             materials,
             object_material,
             effects,
@@ -263,10 +326,46 @@ fn view_record(scene: &Scene) -> Result<View, CompileError> {
         width: render.width.clamp(1, u16::MAX.into()) as u16,
         height: render.height.clamp(1, u16::MAX.into()) as u16,
         samples: render.samples,
-        depth: render.depth,
+        depth: render.depth.max(render.bounces),
         encoding,
         ..View::zeroed()
     })
+}
+
+/// The lens of a camera.
+fn lens_record(
+    scene: &Scene,
+    camera: &Camera,
+    lattice: &Lattice,
+    size: f64,
+) -> Result<Option<Lens>, CompileError> {
+    let Some(lens) = scene.lens else {
+        return Ok(None);
+    };
+    let focus = lens
+        .focus
+        .unwrap_or_else(|| (camera.target - camera.eye).length());
+    // At least one sub-step.
+    let steps = |length: f64| (length / lattice.unit() * 8192.0).round().max(1.0);
+    let eye = lattice.in_units(camera.eye).abs().max_element() * 8192.0;
+    let (radius, focus_steps) = (steps(lens.radius), steps(focus));
+    let far = [
+        ("lens of the camera", eye.ceil() + radius),
+        ("plane of focus", focus_steps),
+    ];
+    for (what, steps) in far {
+        if steps > FARTHEST as f64 {
+            return Err(CompileError::FarAway {
+                what: what.into(),
+                distance: steps / 8192.0 * lattice.unit(),
+                size,
+            });
+        }
+    }
+    Ok(Some(Lens {
+        radius: radius as i64,
+        focus: focus_steps as i64,
+    }))
 }
 
 /// A place that may lie beyond the scene, in units with 13 fraction bits.

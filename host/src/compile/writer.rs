@@ -2,6 +2,7 @@
 
 use super::CompileError;
 use super::context::BuildContext;
+use super::environment::EnvironmentData;
 use super::instances::Role;
 use super::layout::Layout;
 use super::names::{KeptNames, Names};
@@ -111,7 +112,17 @@ pub fn parts(context: &BuildContext<'_>, layouts: Vec<Layout>) -> Parts {
     sections.push(section(SectionKind::Lights, &shading_data.lights));
     sections.push(section(SectionKind::LightForms, &shading_data.light_forms));
     sections.push(section(SectionKind::Emissions, &shading_data.emissions));
+    sections.push(section(SectionKind::Lens, &shading_data.lens));
+    sections.push(section(SectionKind::Indirect, &shading_data.bounces));
+    sections.extend(
+        shading_data
+            .environment
+            .iter()
+            .flat_map(EnvironmentData::sections),
+    );
     sections.push(section(SectionKind::Materials, &shading_data.materials));
+    sections.push(section(SectionKind::Roughnesses, &shading_data.roughnesses));
+    sections.push(section(SectionKind::ShownForms, &shading_data.shown_forms));
     if objects != total && objects > 1 {
         sections.push(indices(SectionKind::ObjectFirst, &object_first, 2));
     }

@@ -59,6 +59,12 @@ pub struct Ray {
     /// How much of the surface is there, where the alpha of a texture says so.
     pub alpha: Option<f64>,
     pub lights: Vec<Lighting>,
+    /// The point of the lens from which a ray of the camera starts, in scene units.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub from_lens: Option<[f64; 3]>,
+    /// Whether the surface sends out light that its lights have brought already.
+    #[serde(skip_serializing_if = "std::ops::Not::not")]
+    pub is_emitted_by_light: bool,
     /// The radiance that the surface sends out.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub emitted: Option<[f64; 3]>,
@@ -66,6 +72,12 @@ pub struct Ray {
     pub added: [f64; 3],
     /// Whether that is the background.
     pub background: bool,
+    /// The texel of the environment that it brings, column and row, and whether it brings the sun.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub environment: Option<([u32; 2], bool)>,
+    /// The normal of the facet that is drawn at a rough surface.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub facet: Option<[f64; 3]>,
     /// The part that glass reflects.
     pub reflected: Option<f64>,
     /// Rays that it would cause if they could change anything.
@@ -126,6 +138,9 @@ pub struct Lighting {
     /// The point of an area from which this sample sees light, in scene units.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub from_area: Option<[f64; 3]>,
+    /// The direction from which this sample sees the environment, or the sun in it.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub from_environment: Option<[f64; 3]>,
     /// The radiance that arrives of a light that falls off, after shadows.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub arriving: Option<[f64; 3]>,
@@ -170,6 +185,8 @@ fn kind_name(kind: RayKind) -> &'static str {
         RayKind::Shadow => "shadow",
         RayKind::Reflected => "reflected",
         RayKind::Refracted => "refracted",
+        RayKind::Diffuse => "diffuse",
+        RayKind::Glossy => "glossy",
     }
 }
 
@@ -286,9 +303,13 @@ impl<'t> Reader<'t> {
             texture: None,
             alpha: None,
             lights: Vec::new(),
+            from_lens: None,
+            is_emitted_by_light: false,
             emitted: None,
             added: [0.0; 3],
             background: false,
+            environment: None,
+            facet: None,
             reflected: None,
             dropped: Vec::new(),
             too_deep: false,
@@ -364,11 +385,19 @@ impl Ray {
                 }
             }
             Event::Emitted { radiance } => self.emitted = Some(radiance),
+            Event::EmittedByLight => self.is_emitted_by_light = true,
+            Event::Lens { point } => self.from_lens = Some(frame.place(point).to_array()),
             Event::FromArea { point } => {
                 if let Some(lighting) = self.lights.last_mut() {
                     lighting.from_area = Some(frame.place(point).to_array());
                 }
             }
+            Event::FromEnvironment { direction, .. } => {
+                if let Some(lighting) = self.lights.last_mut() {
+                    lighting.from_environment = Some(direction);
+                }
+            }
+            Event::Environment { texel, sun } => self.environment = Some((texel, sun)),
             Event::Outside => {
                 if let Some(lighting) = self.lights.last_mut() {
                     lighting.outcome = LightOutcome::Outside;
@@ -383,6 +412,7 @@ impl Ray {
                 self.added = radiance;
                 self.background = source == Source::Background;
             }
+            Event::Facet { normal } => self.facet = Some(normal),
             Event::Split { reflected } => self.reflected = Some(reflected),
             Event::Dropped { kind, weight } => self.dropped.push(Weighted {
                 kind: kind_name(kind),
@@ -428,6 +458,7 @@ impl Lighting {
             shadow: Vec::new(),
             filtered: Vec::new(),
             from_area: None,
+            from_environment: None,
             arriving: None,
             radiance: [0.0; 3],
             outcome,

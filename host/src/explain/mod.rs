@@ -16,7 +16,7 @@ pub use walk::{Candidate, Culled, Plane, Side, Step, Tested, Verdict, Walk};
 use crate::render::{ALL, OPAQUE, PAGE, chosen};
 use crate::trace::{Frame, Rejection, SceneRay};
 use gridel_core::accel::DynAccel;
-use gridel_core::format::limits::{MAX_RAY_DEPTH, MAX_STACK_DEPTH};
+use gridel_core::format::limits::MAX_STACK_DEPTH;
 use gridel_core::render::{Pixel, RenderError};
 use gridel_core::{
     Effects, Event, Fixed, Format, Number, Observer, Renderer, Rgb888, Scene, Settings, Structure,
@@ -112,7 +112,7 @@ fn watch<N: Number, const EFFECTS: u32>(
     subject: Subject,
 ) -> Recording {
     let renderer = Renderer::<N, DynAccel, EFFECTS>::with_settings(scene, settings)?;
-    let mut space = Box::new(Workspace::<N, MAX_STACK_DEPTH, { MAX_RAY_DEPTH + 1 }>::new());
+    let mut space = Box::new(Workspace::<N, MAX_STACK_DEPTH, { Effects::MAX_WORK_DEPTH }>::new());
     let mut space = space.as_view();
     let mut recorder = Recorder::default();
     let linear = match subject {

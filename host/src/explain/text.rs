@@ -199,8 +199,21 @@ impl Shown<'_> {
                 counted(walk.candidates, "primitive"),
             )?;
         }
+        if let Some(point) = ray.from_lens {
+            let point = vector(point, significant);
+            writeln!(f, "{indent}  the lens lets it through at {point}")?;
+        }
         match &ray.hit {
             Some(hit) => self.hit(f, &indent, ray, hit)?,
+            None if ray.environment.is_some() => {
+                let (texel, sun) = ray.environment.unwrap_or_default();
+                let sun = if sun { " and the sun" } else { "" };
+                let [column, row] = texel;
+                writeln!(
+                    f,
+                    "{indent}  hits nothing: the environment at texel {column}, {row}{sun}"
+                )?;
+            }
             None if ray.background => writeln!(f, "{indent}  hits nothing: the background")?,
             None => writeln!(f, "{indent}  is not traced: it has no direction")?,
         }
@@ -266,11 +279,24 @@ impl Shown<'_> {
                 color(weight)
             )?;
         }
+        if ray.is_emitted_by_light {
+            writeln!(
+                f,
+                "{indent}  glows; its light has come by rays to lights already"
+            )?;
+        }
         if let Some(radiance) = ray.emitted {
             writeln!(f, "{indent}  glows with {}", color(radiance))?;
         }
         for lighting in &ray.lights {
             writeln!(f, "{indent}  {}", self.outcome(lighting))?;
+        }
+        if let Some(normal) = ray.facet {
+            writeln!(
+                f,
+                "{indent}  rough: rays leave by the facet with the normal {}",
+                vector(normal, significant)
+            )?;
         }
         if let Some(reflected) = ray.reflected {
             writeln!(
@@ -310,7 +336,13 @@ impl Shown<'_> {
         };
         let from = match lighting.from_area {
             Some(point) => format!(", from its point {},", vector(point, significant)),
-            None => String::new(),
+            None => match lighting.from_environment {
+                Some(direction) => format!(
+                    ", from the direction {} of the environment,",
+                    vector(direction, significant)
+                ),
+                None => String::new(),
+            },
         };
         let arriving = match lighting.arriving {
             Some(arriving) => format!(", and falls off to {}", color(arriving)),

@@ -3,10 +3,10 @@
 use super::{ALL, Job, chosen};
 use crate::observed::Observed;
 use gridel_core::accel::DynAccel;
-use gridel_core::format::limits::{MAX_RAY_DEPTH, MAX_STACK_DEPTH};
+use gridel_core::format::limits::MAX_STACK_DEPTH;
 use gridel_core::format::record::View;
 use gridel_core::render::RenderError;
-use gridel_core::{Fixed, Format, Number, Renderer, Scene, Workspace};
+use gridel_core::{Effects, Fixed, Format, Number, Renderer, Scene, Workspace};
 use rayon::prelude::*;
 use std::ops::Range;
 
@@ -81,7 +81,7 @@ fn rows<N: Number>(
     let rows = job.rows.clone().into_par_iter();
     rows.zip(pixels.par_chunks_mut(width.into()))
         .for_each(|(y, row)| {
-            let mut space = Workspace::<N, MAX_STACK_DEPTH, { MAX_RAY_DEPTH + 1 }>::new();
+            let mut space = Workspace::<N, MAX_STACK_DEPTH, { Effects::MAX_WORK_DEPTH }>::new();
             let mut space = space.as_view();
             for (x, pixel) in (0..width).zip(row) {
                 let mut observed = Observed::default();

@@ -40,6 +40,7 @@ impl Scene {
     }
 
     fn light_emitters(&mut self) {
+        let mut lit = Vec::new();
         for number in 0..self.objects.len() {
             let object = &self.objects[number];
             let material = &self.materials[object.material];
@@ -47,7 +48,11 @@ impl Scene {
                 continue;
             }
             let (color, name) = (material.emission, object.name.clone());
-            for (position, shape) in faces(&object.shape) {
+            let faces = faces(&object.shape);
+            if !faces.is_empty() {
+                lit.push(number);
+            }
+            for (position, shape) in faces {
                 let form = LightForm {
                     shape,
                     is_surface: true,
@@ -56,8 +61,34 @@ impl Scene {
                 self.add_light(Light::Point { position, color }, form, name.clone());
             }
         }
+        self.mark_sampled(&lit);
         for material in &mut self.materials {
             material.lights = false;
+        }
+    }
+
+    /// Marks the material of objects that have lights; where others without have it, too, a copy of it.
+    fn mark_sampled(&mut self, lit: &[usize]) {
+        let mut marked = vec![None; self.materials.len()];
+        for &number in lit {
+            let material = self.objects[number].material;
+            let with_lights = lit
+                .iter()
+                .filter(|&&it| self.objects[it].material == material);
+            let has_all = with_lights.count()
+                == self
+                    .all_objects()
+                    .filter(|it| it.material == material)
+                    .count();
+            let to = *marked[material].get_or_insert_with(|| {
+                if has_all {
+                    return material;
+                }
+                self.materials.push(self.materials[material].clone());
+                self.materials.len() - 1
+            });
+            self.materials[to].is_sampled = true;
+            self.objects[number].material = to;
         }
     }
 
@@ -100,6 +131,7 @@ impl Scene {
                 diffuse: Diffuse::Plain(BLACK),
                 emission: color,
                 lights: false,
+                is_sampled: true,
                 ..Material::default()
             });
         }

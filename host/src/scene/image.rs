@@ -127,7 +127,7 @@ impl Image {
     }
 }
 
-fn fault(cause: impl Into<String>, remedy: &str) -> Fault {
+pub(super) fn fault(cause: impl Into<String>, remedy: &str) -> Fault {
     [cause.into(), String::from(remedy)]
 }
 
@@ -135,7 +135,7 @@ fn fault(cause: impl Into<String>, remedy: &str) -> Fault {
 type Decoded = (usize, usize, Vec<[u8; 4]>);
 
 /// Rejects sizes for which no memory should be taken.
-fn check_size(width: usize, height: usize) -> Result<(), Fault> {
+pub(super) fn check_size(width: usize, height: usize) -> Result<(), Fault> {
     let texels = width.saturating_mul(height);
     if width > MOST_SIDE || height > MOST_SIDE || texels > MOST_TEXELS {
         return Err(fault(

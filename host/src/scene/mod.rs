@@ -13,6 +13,7 @@ mod bad;
 #[cfg(test)]
 mod damaged;
 mod emitters;
+mod environment;
 mod error;
 mod files;
 mod flatten;
@@ -28,6 +29,7 @@ mod options;
 mod placement;
 mod plain_lights;
 mod polygon;
+mod radiance;
 mod size;
 mod source_span;
 #[cfg(test)]
@@ -43,6 +45,7 @@ mod words;
 pub use crate::shape::Shape;
 pub use attributes::Attributes;
 pub use emitters::MOST_FACES;
+pub use environment::{Environment, Panorama, Sky, Sun};
 pub use error::SceneError;
 pub use files::Files;
 pub use image::{Image, linear_of_srgb};
@@ -51,8 +54,8 @@ pub(crate) use joint::JointTracks;
 pub use joint::{LARGEST_SCALE, LEAST_SCALE};
 pub use light_form::{LightForm, LightShape, Spot};
 pub use model::{
-    Alpha, Camera, Color, Diffuse, Instance, Joint, Light, Material, Object, Part, RenderSettings,
-    Scene, ToneMapping,
+    Alpha, Camera, Color, Diffuse, Instance, Joint, Lens, Light, Material, Object, Part,
+    RenderSettings, Scene, ToneMapping,
 };
 pub use normals::{Normals, NormalsChoice};
 pub use options::{

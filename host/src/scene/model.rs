@@ -1,6 +1,7 @@
 //! The scene as data.
 
 use super::attributes::Attributes;
+use super::environment::Environment;
 use super::light_form::LightForm;
 use super::normals::{Normals, NormalsChoice};
 use super::placement::Placement;
@@ -20,6 +21,8 @@ pub struct Scene {
     /// Where the picture is taken from; without one [the compiler frames](fn@crate::compile::framing) the
     /// scene's bounds.
     pub camera: Option<Camera>,
+    /// What the camera has in place of a pinhole.
+    pub lens: Option<Lens>,
     /// Which way is up, for that frame.
     pub up: Up,
     /// The color of rays that hit nothing; without one it is black, or light if there is no camera
@@ -30,6 +33,8 @@ pub struct Scene {
     pub display_values: bool,
     /// Light that reaches every surface from everywhere, multiplied with its diffuse color.
     pub ambient: Color,
+    /// The light around the scene, in place of the background.
+    pub environment: Option<Environment>,
     /// Point and directional lights.
     pub lights: Vec<Light>,
     /// Names of the lights, in their order; empty, or missing at the end, where there is none.
@@ -54,6 +59,16 @@ pub struct Scene {
     pub render: RenderSettings,
     /// Whether the format has no names, so that all are made of kinds and numbers; blobs leave them out.
     pub unnamed: bool,
+}
+
+/// A thin lens around the eye: what is not in focus is blurred.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Lens {
+    /// Half of the aperture, in scene units: above 0.
+    pub radius: f64,
+    /// The distance of the plane on which the picture is sharp, along the camera's axis; without one that of the camera's
+    /// target.
+    pub focus: Option<f64>,
 }
 
 /// A pinhole camera.
@@ -110,6 +125,9 @@ pub struct Material {
     pub shininess: u16,
     /// Weight of the mirrored ray; black for none.
     pub mirror: Color,
+    /// How rough a mirror or glass is: 0 for a smooth one, or [`LEAST_ROUGHNESS`](Self::LEAST_ROUGHNESS) to 1. Its
+    /// square is the α of GGX.
+    pub roughness: f64,
     /// Weight of what glass brings (Fresnel-split reflection and refraction); black for opaque.
     pub transmit: Color,
     /// Index of refraction relative to the surroundings, 1 to 4; used when `transmit` is not black.
@@ -120,6 +138,9 @@ pub struct Material {
     pub emission: Color,
     /// Whether objects that send out light are lights, too.
     pub lights: bool,
+    /// Whether lights stand for all objects of this material, as [`Scene::with_emitters`] makes them: indirect light does
+    /// not bring its light again.
+    pub is_sampled: bool,
     /// The image that weights the diffuse color of meshes with texture coordinates.
     pub texture: Option<Texture>,
     /// How the alpha of the texture is used; glass ignores it.
@@ -260,8 +281,11 @@ pub struct RenderSettings {
     pub height: u32,
     /// Samples a pixel: 1 to 4,096.
     pub samples: u16,
-    /// How many times a ray may be reflected or refracted: 0 to 16.
+    /// How many times a ray may be reflected or refracted: 0 to 32.
     pub depth: u8,
+    /// How many times light may be reflected diffusely on its way from a light to the eye, beside the last time: 0 to 32. 0 for
+    /// surfaces that do not light each other.
+    pub bounces: u8,
     /// A secondary ray that can change no channel by more than this (1.0 being display white) is
     /// not traced.
     pub cutoff: f64,
@@ -279,11 +303,23 @@ impl Default for RenderSettings {
             height: 240,
             samples: 1,
             depth: 5,
+            bounces: 0,
             cutoff: 1.0 / 512.0,
             shadows: true,
             exposure: 0.0,
             tone_mapping: ToneMapping::None,
         }
+    }
+}
+
+impl Material {
+    /// The least roughness of what is rough.
+    pub const LEAST_ROUGHNESS: f64 = 0.05;
+
+    /// Returns whether rays are mirrored or refracted by facets.
+    pub fn is_rough(&self) -> bool {
+        let sends = self.mirror != [0.0; 3] || self.transmit != [0.0; 3];
+        self.roughness > 0.0 && sends
     }
 }
 
@@ -295,11 +331,13 @@ impl Default for Material {
             highlight: [0.0; 3],
             shininess: 32,
             mirror: [0.0; 3],
+            roughness: 0.0,
             transmit: [0.0; 3],
             ior: 1.5,
             absorption: [0.0; 3],
             emission: [0.0; 3],
             lights: true,
+            is_sampled: false,
             texture: None,
             alpha: None,
         }
@@ -343,10 +381,12 @@ impl Default for Scene {
     fn default() -> Self {
         Self {
             camera: None,
+            lens: None,
             up: Up::Y,
             background: None,
             display_values: false,
             ambient: [0.0; 3],
+            environment: None,
             lights: Vec::new(),
             light_names: Vec::new(),
             light_forms: Vec::new(),

@@ -25,6 +25,11 @@ const REMOVALS: [(Effects, &str, Removal); Effects::NAMED.len()] = [
         |scene| each_material(scene, |material| material.highlight = [0.0; 3]),
     ),
     (
+        Effects::GLOSSY,
+        "rough mirrors and rough glass are smooth",
+        |scene| each_material(scene, |material| material.roughness = 0.0),
+    ),
+    (
         Effects::MIRROR,
         "mirrors show their diffuse color and highlights alone",
         |scene| {
@@ -99,6 +104,11 @@ const REMOVALS: [(Effects, &str, Removal); Effects::NAMED.len()] = [
         |scene| scene.render.tone_mapping = ToneMapping::None,
     ),
     (
+        Effects::ENVIRONMENT,
+        "rays that hit nothing show the background, and no light comes from there",
+        |scene| scene.environment = None,
+    ),
+    (
         Effects::EMISSION,
         "what glows lights others and is dark itself",
         |scene| {
@@ -107,6 +117,16 @@ const REMOVALS: [(Effects, &str, Removal); Effects::NAMED.len()] = [
             }
             each_material(scene, |material| material.emission = [0.0; 3]);
         },
+    ),
+    (
+        Effects::DEPTH_OF_FIELD,
+        "the picture is sharp everywhere",
+        |scene| scene.lens = None,
+    ),
+    (
+        Effects::INDIRECT,
+        "surfaces do not light each other",
+        |scene| scene.render.bounces = 0,
     ),
 ];
 
@@ -204,8 +224,17 @@ mod tests {
         kind = 'point'
         position = [4, 5, 6]
         color = [1, 1, 1]
+        [camera]
+        eye = [0, 0, 9]
+        target = [0, 0, 0]
+        aperture = 0.5
         [render]
         tone_mapping = 'aces'
+        bounces = 2
+        [environment]
+        zenith = 1
+        horizon = 0.5
+        ground = 0
         [material.lamp]
         emission = 2
         [[object]]
@@ -222,6 +251,7 @@ mod tests {
         diffuse = [0.5, 0.5, 0.5]
         highlight = [0.3, 0.3, 0.3]
         mirror = [0.2, 0.2, 0.2]
+        roughness = 0.4
         transmit = [0.4, 0.4, 0.4]
         absorption = [0.1, 0.2, 0.3]
         [material.squares]
@@ -244,8 +274,11 @@ mod tests {
         let imported = read("all.toml".as_ref(), ALL.into(), &Default::default());
         let mut scene = imported.unwrap().scene;
         let image = Image::new("two", 2, 1, vec![[0, 0, 0, 255], [255; 4]]);
-        scene.materials[1].texture = image.map(|it| Texture::of(it.into()));
-        scene.materials[1].alpha = Some(Alpha::Blend(0.5));
+        // Glass has no alpha.
+        let mut materials = scene.materials.iter_mut();
+        let squares = materials.find(|it| it.name == "squares").unwrap();
+        squares.texture = image.map(|it| Texture::of(it.into()));
+        squares.alpha = Some(Alpha::Blend(0.5));
         scene
     }
 

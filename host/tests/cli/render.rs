@@ -155,7 +155,7 @@ fn wrong_numbers_are_usage_errors() {
     for threads in ["0", "2000", "99999999999"] {
         fails(&["--threads", threads], &["--threads"]);
     }
-    fails(&["--depth", "17"], &["--depth"]);
+    fails(&["--depth", "33"], &["--depth"]);
     fails(&["--format", "f16"], &["fixed, f32, f64"]);
     fails(&["--accel", "kd-tree"], &["list, bvh, flagged, dual-split"]);
     fails(&["--heat-map", "a.png"], &["another name"]);

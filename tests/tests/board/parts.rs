@@ -6,8 +6,9 @@ use glam::{DQuat, DVec2, DVec3};
 use gridel_core::{Kind, Structure};
 use gridel_host::compile::Options;
 use gridel_host::scene::{
-    Alpha, Camera, Diffuse, Image, Instance, Light, LightForm, LightShape, Material, Normals,
-    Object, Part, Placement, Scene, Shape, SourceSpan, Spot, Texture, ToneMapping,
+    Alpha, Camera, Diffuse, Environment, Image, Instance, Lens, Light, LightForm, LightShape,
+    Material, Normals, Object, Part, Placement, Scene, Shape, Sky, SourceSpan, Spot, Texture,
+    ToneMapping,
 };
 use gridel_host::shape::{Cuboid, Sphere};
 use gridel_tests::shapes::examples;
@@ -21,12 +22,16 @@ const TRIANGLE: &str = Kind::Triangle.name();
 const INSTANCES: &str = "instances";
 
 /// A part's name, and how to require it.
-type Effects = [(&'static str, fn(&mut Scene)); 14];
+type Effects = [(&'static str, fn(&mut Scene)); 18];
 
 const EFFECTS: Effects = [
     ("shadow", |scene| scene.render.shadows = true),
     ("highlight", |scene| scene.materials[0].highlight = [0.5; 3]),
     ("mirror", |scene| scene.materials[0].mirror = [0.5; 3]),
+    ("glossy", |scene| {
+        scene.materials[0].mirror = [0.5; 3];
+        scene.materials[0].roughness = 0.3;
+    }),
     ("glass", |scene| scene.materials[0].transmit = [0.9; 3]),
     ("absorption", |scene| {
         scene.materials[0].transmit = [0.9; 3];
@@ -68,6 +73,23 @@ const EFFECTS: Effects = [
     ("emission", |scene| {
         scene.materials[0].emission = [0.2; 3];
         scene.materials[0].lights = false;
+    }),
+    ("depth-of-field", |scene| {
+        scene.lens = Some(Lens {
+            radius: 0.2,
+            focus: None,
+        });
+    }),
+    ("indirect", |scene| scene.render.bounces = 2),
+    ("environment", |scene| {
+        scene.environment = Some(Environment {
+            size: 16,
+            ..Environment::of(Sky::Gradient {
+                zenith: [0.2, 0.3, 0.6],
+                horizon: [0.6; 3],
+                ground: [0.1; 3],
+            })
+        });
     }),
 ];
 

@@ -72,6 +72,11 @@ fn scene_page_lists_exactly_the_keys_of_tables() {
         ("Camera", "[camera]\nunknown = 1"),
         ("Render", "[render]\nunknown = 1"),
         ("Lights", "[[light]]\nunknown = 1"),
+        ("Environment", "[environment]\nunknown = 1"),
+        (
+            "Sun",
+            "[environment]\nzenith = 1\nhorizon = 1\nground = 1\nsun = { unknown = 1 }",
+        ),
         ("Tracks", "[[track]]\nunknown = 1"),
         ("Materials", "[material.a]\nunknown = 1"),
         ("Checkerboard", "[material.a]\nchecker = { unknown = 1 }"),

@@ -48,7 +48,14 @@ fn blobs() -> Vec<Vec<u8>> {
             ..scene::LightForm::default()
         }),
     ];
+    scene.environment = Some(scene::Environment::of(scene::Sky::Gradient {
+        zenith: [1.0; 3],
+        horizon: [0.5; 3],
+        ground: [0.1; 3],
+    }));
     scene.materials[0].emission = [2.0; 3];
+    scene.materials[0].mirror = [0.5; 3];
+    scene.materials[0].roughness = 0.5;
     scene.tracks = vec![scene::Track {
         target: TrackTarget::CameraOrbit,
         index: 0,

@@ -159,3 +159,43 @@ fn lights_with_forms_say_from_where_they_shine_and_how_they_fall_off() {
         assert_eq!(spot.from_area, None);
     }
 }
+
+/// The facet that is drawn at a rough mirror, and the ray that leaves by it.
+#[test]
+fn rough_mirrors_say_which_facet_is_drawn() {
+    let text = "
+        ambient = 0.5
+        background = 0.5
+        [material.rough]
+        mirror = 0.9
+        roughness = 0.3
+        [[object]]
+        kind = 'box'
+        min = [-5, -1, -5]
+        max = [5, 0, 5]
+        material = 'rough'";
+    let imported =
+        gridel_host::scene::read("rough.toml".as_ref(), text.into(), &Default::default());
+    let blob = scenes::blob(&imported.expect("a scene").scene, 24);
+    let scene = blob.scene().expect("a scene");
+    let ray = SceneRay {
+        origin: glam::DVec3::new(0.5, 3.0, 0.5),
+        direction: -glam::DVec3::Y,
+        tmin: 0.0,
+        tmax: f64::INFINITY,
+    };
+    for format in Format::ALL {
+        let explanation = explanation(&scene, format, Structure::Bvh, ray);
+        let [hit, leaving] = &explanation.samples[0].rays[..] else {
+            panic!("two rays: {:?}", explanation.samples[0].rays);
+        };
+        let facet = glam::DVec3::from(hit.facet.expect("a facet"));
+        assert!(
+            (facet.length() - 1.0).abs() < 1e-5 && facet.y > 0.5,
+            "{facet}"
+        );
+        assert_eq!(leaving.kind, "glossy");
+        assert!(leaving.weight[0] <= 0.9 && leaving.weight[0] > 0.3);
+        assert!(leaving.background && leaving.facet.is_none());
+    }
+}

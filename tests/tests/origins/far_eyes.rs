@@ -1,7 +1,7 @@
 //! Pictures from far away.
 
 use glam::DVec3;
-use gridel_core::format::limits::{MAX_RAY_DEPTH, MAX_STACK_DEPTH};
+use gridel_core::format::limits::MAX_STACK_DEPTH;
 use gridel_core::render::RenderError;
 use gridel_core::{
     DualSplit, Effects, Fixed, NoCount, Number, Renderer, Settings, Structure, Workspace,
@@ -44,7 +44,7 @@ fn rendered<N: Number>(scene: &mut SceneFile, away: f64) -> Result<Vec<[u16; 3]>
         ..Settings::of(&scene)
     };
     let renderer = Renderer::<N, DualSplit, { Effects::ALL.0 }>::with_settings(&scene, settings)?;
-    let mut space = Box::new(Workspace::<N, MAX_STACK_DEPTH, { MAX_RAY_DEPTH + 1 }>::new());
+    let mut space = Box::new(Workspace::<N, MAX_STACK_DEPTH, { Effects::MAX_WORK_DEPTH }>::new());
     let mut view = space.as_view();
     let pixels = (0..24 * 24).map(|k| renderer.linear(k % 24, k / 24, &mut view, &mut NoCount));
     Ok(pixels.collect())

@@ -17,7 +17,7 @@ pub use nodes::{
     BoundingSphere, DualNode, FlaggedPair, GridShape, Pair, SpherePair, WideNode, plane_word,
 };
 pub use points::{Sphere16, Sphere24, UnitBox, Vertex16, Vertex24};
-pub use shading::{Light, Material, View};
+pub use shading::{Emission, Light, Material, View};
 pub use texture::{SurfaceMaps, Texture};
 
 /// The first bytes of every blob. The last two betray a file that was mangled as text.

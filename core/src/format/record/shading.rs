@@ -68,6 +68,20 @@ records! {
         pub encoding: u8,
     }
 
+    /// The light that a material sends out.
+    #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Pod, Zeroable)]
+    #[repr(C)]
+    #[bytes(16)]
+    pub struct Emission {
+        /// Its radiance, 20 fraction bits.
+        #[valid(Emission: 0..=RADIANCE)]
+        pub radiance: [i32; 3],
+        /// 1 if the scene has lights of the same places, areas and radiance, so that diffuse rays must not bring it again;
+        /// else 0.
+        #[valid(EmissionLights: 0..=1)]
+        pub lights: u32,
+    }
+
     /// A light.
     #[derive(Clone, Copy, Debug, PartialEq, Eq, Pod, Zeroable)]
     #[repr(C)]
@@ -80,7 +94,8 @@ records! {
         #[valid(Color: 0..=RADIANCE)]
         pub color: [i32; 3],
         /// 0 for a point light, 1 for a directional one. Else a light at a position with a
-        /// [form](crate::format::light_form::LightForm): its number times 4, and 2 for a point or 3 for an area.
+        /// [form](crate::format::light_form::LightForm): its number times 4, and 2 for a point or 3 for an area. 4 and 5 are
+        /// the map and the sun of the [environment](crate::format::environment::Environment).
         pub directional: u32,
     }
 

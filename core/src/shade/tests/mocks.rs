@@ -87,6 +87,7 @@ impl Effect for Matt {
         _: &Surface<'_, N>,
         _: &Lighting<'_, N>,
         reflected: &mut Color<N>,
+        _: &mut u32,
     ) {
         *reflected = Color::BLACK;
     }

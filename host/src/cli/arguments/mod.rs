@@ -64,7 +64,7 @@ pub struct PictureOptions {
     )]
     samples: Option<u16>,
 
-    /// Reflections and refractions of a ray, 0 to 16 [default: that of the scene]
+    /// Reflections and refractions of a ray, 0 to 32 [default: that of the scene]
     #[arg(
         long,
         value_name = "N",

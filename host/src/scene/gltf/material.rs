@@ -13,6 +13,10 @@
 //! | emission | emissive factor times `KHR_materials_emissive_strength`: 1 is display white |
 //! | absorption | -ln(attenuation color) / attenuation distance |
 //!
+//! The mirror of a metal without textures and of a roughness from 0.05 to below 1 is rough instead: mirror c m with that
+//! roughness, of which the diffuse color has no part and the highlight only that of m = 0. Others are as above: a
+//! metalness and a roughness of 1 are also what a file without either has.
+//!
 //! Where the alpha mode is `BLEND`, alpha is what of the material is there, and the rest is a pane; but for textures
 //! with alpha.
 
@@ -86,21 +90,31 @@ pub(super) fn read(material: &gltf::Material<'_>, alpha_is_used: bool) -> Materi
         AlphaMode::Blend if !alpha_is_used => alpha,
         _ => 1.0,
     };
+    // Factors of a texture that is not read say little, and what is mirrored has no texture.
+    let is_plain = surface.metallic_roughness_texture().is_none()
+        && surface.base_color_texture().is_none();
+    let is_glossy =
+        metal > 0.0 && is_plain && (Material::LEAST_ROUGHNESS..1.0).contains(&rough);
     let times = |factor: f64| base.map(|channel| channel * factor * there);
     let power = 2.0 / (rough * rough * rough * rough).max(1e-9) - 2.0;
     let shininess = power.round().clamp(1.0, 1024.0);
-    let facing = base.map(|channel| 0.04 * (1.0 - metal) + channel * metal);
+    let facing = base.map(|channel| {
+        let by_metal = if is_glossy { 0.0 } else { channel * metal };
+        0.04 * (1.0 - metal) + by_metal
+    });
+    let scattered = if is_glossy { 0.0 } else { rough };
     let volume = material.volume().filter(|v| v.thickness_factor() > 0.0);
     let glass = times(through * (1.0 - metal));
     Material {
-        diffuse: Diffuse::Plain(times((1.0 - metal) * (1.0 - through) + metal * rough)),
+        diffuse: Diffuse::Plain(times((1.0 - metal) * (1.0 - through) + metal * scattered)),
         highlight: if rough < 1.0 {
             facing.map(|channel| (channel * (shininess + 8.0) / 8.0).min(1.0) * there)
         } else {
             [0.0; 3]
         },
         shininess: shininess as u16,
-        mirror: times(metal * (1.0 - rough)),
+        mirror: times(metal * (1.0 - scattered)),
+        roughness: if is_glossy { rough } else { 0.0 },
         transmit: glass.map(|channel| channel + 1.0 - there),
         ior: match &volume {
             Some(_) => taken_ior(material.ior().unwrap_or(1.5)),
@@ -114,6 +128,7 @@ pub(super) fn read(material: &gltf::Material<'_>, alpha_is_used: bool) -> Materi
             f64::from(factor * strength).clamp(0.0, 2047.0)
         }),
         lights: true,
+        is_sampled: false,
         name,
         texture: None,
         alpha: None,

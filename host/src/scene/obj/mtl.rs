@@ -4,7 +4,8 @@
 //! have none. `illum` 3, 5 and 8 mirror with `Ks`. `illum` 4, 6, 7 and 9 are glass of index `Ni`
 //! that lets `Tf` through. Otherwise `d` below 1 (or `Tr` above 0, of which `d` takes precedence)
 //! is a pane that does not bend light: glass of index 1. `Ka` is not needed, because ambient light
-//! takes the diffuse color. `Ke` is the radiance that the surface sends out. `map_Kd` weights `Kd`, with its options `-o`, `-s` and `-clamp`. Everything else is ignored, with a warning.
+//! takes the diffuse color. `Ke` is the radiance that the surface sends out.
+//! `Pr` is the roughness of what mirrors and of glass. `map_Kd` weights `Kd`, with its options `-o`, `-s` and `-clamp`. Everything else is ignored, with a warning.
 
 use crate::scene::text::{Source, Warnings};
 use crate::scene::texture::Images;
@@ -25,6 +26,7 @@ struct Statements {
     transparency: Option<f64>,
     illumination: Option<u32>,
     emission: Color,
+    roughness: f64,
     texture: Option<Texture>,
 }
 
@@ -83,6 +85,7 @@ pub(super) fn read(
             "Tr" => material.transparency = Some(reader.number()?.clamp(0.0, 1.0)),
             "illum" => material.illumination = Some(reader.number()?.clamp(0.0, 255.0) as u32),
             "Ke" => material.emission = reader.color_up_to(2047.0, number, warnings)?.unwrap_or_default(),
+            "Pr" => material.roughness = taken_roughness(reader.number()?),
             "Ka" | "sharpness" => {}
             "map_Kd" => material.texture = reader.texture(number, images, warnings)?,
             _ if keyword.starts_with("map_")
@@ -162,9 +165,19 @@ impl Statements {
             transmit: self.filter.unwrap_or([1.0; 3]).map(|c| c * (1.0 - opacity)),
             ior: density.clamp(1.0, 4.0),
             emission: self.emission,
+            roughness: self.roughness,
             texture: self.texture.clone(),
             ..default
         }
+    }
+}
+
+/// The roughness that a file gives in terms of [`Material::roughness`]: what is nearly smooth is smooth.
+fn taken_roughness(roughness: f64) -> f64 {
+    if roughness < Material::LEAST_ROUGHNESS {
+        0.0
+    } else {
+        roughness.min(1.0)
     }
 }
 

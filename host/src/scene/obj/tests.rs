@@ -50,6 +50,16 @@ fn parts_follow_the_file() {
 }
 
 #[test]
+fn mirrors_and_glass_may_be_rough() {
+    for (rough, taken) in [(0.5, 0.5), (0.01, 0.0), (2.0, 1.0)] {
+        let (mirror, _) = material(&format!("newmtl a\nKs .5\nillum 3\nPr {rough}\n"));
+        assert_eq!((mirror.mirror, mirror.roughness), ([0.5; 3], taken));
+        assert_eq!(mirror.is_rough(), taken > 0.0);
+    }
+    assert!(!material("newmtl a\nKd .5\nPr .5\n").0.is_rough());
+}
+
+#[test]
 fn faces_may_come_before_their_vertices() {
     let scene = read(&format!("f 1 2 3\no later\n{CORNERS}")).unwrap().scene;
     assert_eq!(mesh(&scene.objects[0]).0.len(), 3);

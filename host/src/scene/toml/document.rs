@@ -12,7 +12,7 @@ use super::place::Placer;
 use super::source::Source;
 use super::track::{self, Targets};
 use super::value::Fields;
-use super::{light, view};
+use super::{environment, light, view};
 use crate::scene::importer::Input;
 use crate::scene::texture::Images;
 use crate::scene::{Camera, Color, Light, Scene, SceneError};
@@ -25,6 +25,7 @@ const KEYS: &[&str] = &[
     "render",
     "background",
     "ambient",
+    "environment",
     "light",
     "material",
     "object",
@@ -50,6 +51,7 @@ pub(super) fn read(input: Input<'_>, imports: &mut Imports) -> Result<Scene, Sce
         &[KEYS],
     )?;
     let camera = root.or("camera", None, |table| view::camera(table).map(Some))?;
+    let (camera, lens) = camera.map_or((None, None), |(camera, lens)| (Some(camera), lens));
     let render = root.or("render", None, |table| view::render(table).map(Some))?;
     let lights = root.or("light", Vec::new(), light::lights)?;
     let mut names = Vec::with_capacity(lights.len());
@@ -63,6 +65,9 @@ pub(super) fn read(input: Input<'_>, imports: &mut Imports) -> Result<Scene, Sce
     let (lights, light_names, light_forms) = (plain, names, forms);
     let background = root.or("background", None, |value| value.radiance().map(Some))?;
     let ambient = root.or("ambient", None, |value| value.radiance().map(Some))?;
+    let environment = root.or("environment", None, |table| {
+        environment::read(table, input.access).map(Some)
+    })?;
     let tracks = root.or("track", Vec::new(), track::read)?;
     let mut images = Images::new(input.access);
     let mut palette = root.or("material", Palette::default(), |tables| {
@@ -99,7 +104,9 @@ pub(super) fn read(input: Input<'_>, imports: &mut Imports) -> Result<Scene, Sce
 
     let mut scene = Scene {
         camera,
+        lens,
         background,
+        environment,
         ambient: ambient.unwrap_or(BLACK),
         lights,
         light_names,
@@ -145,6 +152,9 @@ pub(super) fn read(input: Input<'_>, imports: &mut Imports) -> Result<Scene, Sce
             }
         }
         scene.background = scene.background.or(import.background);
+        if scene.environment.is_none() {
+            scene.environment.clone_from(&import.environment);
+        }
         if let Some(room) = import.room {
             let room = joint::moved_room(room, &item.transform);
             scene.room = Some(scene.room.map_or(room, |own| joint::around(own, room)));

@@ -15,6 +15,7 @@ const KEYS: &[&str] = &[
     "highlight",
     "shininess",
     "mirror",
+    "roughness",
     "transmit",
     "ior",
     "absorption",
@@ -124,6 +125,7 @@ fn material(table: Value<'_>, images: &mut Images<'_>) -> Result<Material, Scene
             Ok(value.integer_in(1..=1024)? as u16)
         })?,
         mirror: fields.or("mirror", default.mirror, Value::reflectance)?,
+        roughness: roughness(&fields)?,
         transmit: fields.or("transmit", default.transmit, Value::reflectance)?,
         ior: fields.or("ior", default.ior, |value| value.number_in(1.0..=4.0))?,
         absorption: fields.or("absorption", default.absorption, Value::coefficients)?,
@@ -133,6 +135,27 @@ fn material(table: Value<'_>, images: &mut Images<'_>) -> Result<Material, Scene
         lights: fields.or("lights", default.lights, Value::boolean)?,
         ..default
     })
+}
+
+/// How rough a mirror or glass is.
+fn roughness(fields: &Fields<'_>) -> Result<f64, SceneError> {
+    let Some(value) = fields.get("roughness") else {
+        return Ok(Material::default().roughness);
+    };
+    if fields.get("mirror").is_none() && fields.get("transmit").is_none() {
+        return Err(value.error(
+            "`roughness` is that of a mirror or of glass, and there is none",
+            "add `mirror` or `transmit`, or remove it",
+        ));
+    }
+    let roughness = value.number_in(0.0..=1.0)?;
+    if roughness > 0.0 && roughness < Material::LEAST_ROUGHNESS {
+        return Err(value.error(
+            format!("the roughness is {roughness}; it must be 0, or 0.05 to 1"),
+            "write 0 for a smooth surface, or 0.05",
+        ));
+    }
+    Ok(roughness)
 }
 
 /// How the alpha of the texture is used, which glass ignores.

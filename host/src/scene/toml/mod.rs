@@ -2,6 +2,7 @@
 
 mod census;
 mod document;
+mod environment;
 mod hinge;
 mod import;
 mod imported_track;

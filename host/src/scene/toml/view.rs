@@ -1,17 +1,19 @@
 //! The tables that say how a scene is seen: `[camera]` and `[render]`.
 
-use super::value::Value;
-use crate::scene::{Camera, RenderSettings, SceneError, ToneMapping};
+use super::value::{Fields, Value};
+use crate::scene::{Camera, Lens, RenderSettings, SceneError, ToneMapping};
 use glam::DVec3;
-use gridel_core::format::limits::MAX_SAMPLES;
+use gridel_core::format::limits::{MAX_BOUNCES, MAX_RAY_DEPTH, MAX_SAMPLES};
 
 /// The largest width and height of a picture.
 const MAX_SIDE: u32 = 65_535;
 /// How many times as wide as high a picture can be.
 const MAX_ASPECT: u32 = 64;
 
-pub(super) fn camera(table: Value<'_>) -> Result<Camera, SceneError> {
-    let fields = table.fields("camera", &[&["eye", "target", "up", "fov"]])?;
+/// Reads the camera and its lens.
+pub(super) fn camera(table: Value<'_>) -> Result<(Camera, Option<Lens>), SceneError> {
+    let keys = ["eye", "target", "up", "fov", "aperture", "focus"];
+    let fields = table.fields("camera", &[&keys])?;
     let camera = Camera {
         eye: fields.require("eye")?.vector()?,
         target: fields.require("target")?.vector()?,
@@ -38,7 +40,20 @@ pub(super) fn camera(table: Value<'_>) -> Result<Camera, SceneError> {
             "set `up` to a direction across the view, such as [0, 0, 1] for a view from above";
         return Err(fields.get("up").unwrap_or(target).error(cause, remedy));
     }
-    Ok(camera)
+    Ok((camera, lens(&fields)?))
+}
+
+fn lens(fields: &Fields<'_>) -> Result<Option<Lens>, SceneError> {
+    let aperture = fields.or("aperture", 0.0, |value| value.number_in(0.0..=f64::MAX))?;
+    let focus = fields.or("focus", None, |value| value.positive().map(Some))?;
+    if let Some(value) = fields.get("focus").filter(|_| aperture == 0.0) {
+        return Err(value.error(
+            "a camera without an `aperture` is a pinhole, and has no `focus`: its picture is sharp everywhere",
+            "write the lens's diameter in scene units, such as `aperture = 0.1`, or remove `focus`",
+        ));
+    }
+    let radius = 0.5 * aperture;
+    Ok((radius > 0.0).then_some(Lens { radius, focus }))
 }
 
 pub(super) fn field_of_view(value: Value<'_>) -> Result<f64, SceneError> {
@@ -57,7 +72,7 @@ pub(super) fn field_of_view(value: Value<'_>) -> Result<f64, SceneError> {
 
 pub(super) fn render(table: Value<'_>) -> Result<RenderSettings, SceneError> {
     let keys = [
-        "width", "height", "samples", "depth", "cutoff", "shadows", "exposure", "tone_mapping",
+        "width", "height", "samples", "depth", "bounces", "cutoff", "shadows", "exposure", "tone_mapping",
     ];
     let fields = table.fields("render table", &[&keys])?;
     let default = RenderSettings::default();
@@ -79,7 +94,10 @@ pub(super) fn render(table: Value<'_>) -> Result<RenderSettings, SceneError> {
             Ok(value.integer_in(1..=MAX_SAMPLES.into())? as u16)
         })?,
         depth: fields.or("depth", default.depth, |value| {
-            Ok(value.integer_in(0..=16)? as u8)
+            Ok(value.integer_in(0..=MAX_RAY_DEPTH as u32)? as u8)
+        })?,
+        bounces: fields.or("bounces", default.bounces, |value| {
+            Ok(value.integer_in(0..=MAX_BOUNCES as u32)? as u8)
         })?,
         cutoff: fields.or("cutoff", default.cutoff, |value| value.number_in(0.0..=1.0))?,
         shadows: fields.or("shadows", default.shadows, Value::boolean)?,

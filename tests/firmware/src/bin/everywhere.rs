@@ -4,7 +4,7 @@
 #![no_main]
 
 use gridel_core::accel::DynAccel;
-use gridel_core::format::limits::{MAX_RAY_DEPTH, MAX_STACK_DEPTH};
+use gridel_core::format::limits::MAX_STACK_DEPTH;
 use gridel_core::{
     Effects, Fixed, NoCount, Number, Renderer, Rgb888, Scene, Settings, Structure, Workspace,
 };
@@ -13,7 +13,7 @@ use gridel_firmware::program;
 use gridel_firmware::report::{fail, line, words};
 use gridel_firmware::scene::{BLOB, WIDTH};
 
-type Space<N> = Workspace<N, MAX_STACK_DEPTH, { MAX_RAY_DEPTH + 1 }>;
+type Space<N> = Workspace<N, MAX_STACK_DEPTH, { Effects::MAX_WORK_DEPTH }>;
 
 struct Memory {
     fixed: Space<Fixed>,

@@ -20,7 +20,9 @@ use gridel_tests::fuzz::{Base, speaks};
 use header::{headers, names, prevalidated, section_tables};
 use hierarchies::{deep_hierarchy, hierarchies, wide_hierarchies};
 use instances::{instances, joints};
-use records::{light_forms, primitives, shading_data, textures};
+use records::{
+    environments, lens_and_bounces, light_forms, primitives, rough, shading_data, textures,
+};
 use tables::{candidates, cells};
 use tracks::{tracks, turned_camera};
 
@@ -151,6 +153,9 @@ fn every_field_and_reason_is_named_by_the_error_of_a_forged_blob() {
         shading_data(),
         textures(),
         light_forms(),
+        lens_and_bounces(),
+        environments(),
+        rough(),
         primitives(),
         hierarchies(),
         deep_hierarchy(),

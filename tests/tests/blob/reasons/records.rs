@@ -2,11 +2,13 @@
 
 use super::{Errors, Forgery, alone, everything};
 use gridel_core::Structure;
+use gridel_core::format::environment::Environment;
+use gridel_core::format::lens::Lens;
 use gridel_core::format::light_form::LightForm;
 use gridel_core::format::record::{
-    Light, Material, Sphere24, SurfaceMaps, Texture, Vertex24, View,
+    Emission, Light, Material, Sphere24, SurfaceMaps, Texture, Vertex24, View,
 };
-use gridel_core::format::{Effects, Field, Reason, SectionKind};
+use gridel_core::format::{BlobError, Effects, Field, Reason, SectionKind};
 use gridel_core::geometry::cone::Cone;
 use gridel_core::geometry::cuboid::Cuboid;
 use gridel_core::geometry::disc::Disc;
@@ -28,7 +30,7 @@ pub(super) fn shading_data() -> Errors {
         (Field::Height, &|it| it.height = 0),
         (Field::Samples, &|it| it.samples = 0),
         (Field::Samples, &|it| it.samples = 4097),
-        (Field::RayDepth, &|it| it.depth = 17),
+        (Field::RayDepth, &|it| it.depth = 33),
         (Field::Encoding, &|it| it.encoding = 4),
     ];
     for (field, forge) in fields {
@@ -100,11 +102,157 @@ pub(super) fn light_forms() -> Errors {
     errors.field("light 0", Field::LightForm, |it| {
         it.change(SectionKind::Lights, 0, |it: &mut Light| it.directional = 7)
     });
-    errors.field("emission 0", Field::Emission, |it| {
-        it.change(SectionKind::Emissions, 0, |it: &mut [i32; 3]| it[1] = -1)
-    });
+    let emissions: [Forgery<Emission>; 2] = [
+        (Field::Emission, &|it| it.radiance[1] = -1),
+        (Field::EmissionLights, &|it| it.lights = 2),
+    ];
+    for (field, forge) in emissions {
+        errors.field("emission 0", field, |it| {
+            it.change(SectionKind::Emissions, 0, forge)
+        });
+    }
     errors.reason("section emissions", Reason::MissingEffect, |it| {
         it.header().effects &= !Effects::EMISSION.0
+    });
+    errors
+}
+
+/// A lens, and bounces of diffuse light.
+pub(super) fn lens_and_bounces() -> Errors {
+    let text = "[camera]\neye = [0, 0, 9]\ntarget = [0, 0, 0]\naperture = 1\n[render]\nbounces = 3\n\
+                [[object]]\nkind = 'sphere'\ncenter = [0, 0, 0]\nradius = 1";
+    let imported = gridel_host::scene::read("lens.toml".as_ref(), text.into(), &Default::default());
+    let mut errors = alone(&imported.expect("a scene").scene, Structure::List, 24);
+    let lenses: [Forgery<Lens>; 3] = [
+        (Field::LensRadius, &|it| it.radius = 0),
+        (Field::Focus, &|it| it.focus = i64::MAX),
+        // From its edge no ray may start.
+        (Field::Eye, &|it| it.radius = 1 << 50),
+    ];
+    for (field, forge) in lenses {
+        errors.field("lens", field, |it| it.change(SectionKind::Lens, 0, forge));
+    }
+    for bounces in [0, 33] {
+        errors.field("indirect", Field::Bounces, |it| {
+            it.change(SectionKind::Indirect, 0, |it: &mut u32| *it = bounces)
+        });
+    }
+    for (section, effect) in [
+        ("section lens", Effects::DEPTH_OF_FIELD),
+        ("section indirect", Effects::INDIRECT),
+    ] {
+        errors.reason(section, Reason::MissingEffect, |it| {
+            it.header().effects &= !effect.0
+        });
+    }
+    errors
+}
+
+/// The light around a scene.
+pub(super) fn environments() -> Errors {
+    let text = "[environment]\nzenith = 1\nhorizon = 0.5\nground = 0.1\nsize = 16\nsun = { direction = [0, -1, 0] }\n\
+                [[object]]\nkind = 'sphere'\ncenter = [0, 0, 0]\nradius = 1";
+    let imported = gridel_host::scene::read("sky.toml".as_ref(), text.into(), &Default::default());
+    let mut errors = alone(&imported.expect("a scene").scene, Structure::List, 24);
+    let section = "section environment";
+    let fields: [Forgery<Environment>; 6] = [
+        (Field::EnvironmentSize, &|it| it.size_bits = 3),
+        (Field::EnvironmentSize, &|it| it.size_bits = 9),
+        (Field::SunDirection, &|it| it.sun_direction[1] = i32::MAX),
+        (Field::SunSize, &|it| it.sun_radius = -1),
+        (Field::SunSize, &|it| it.sun_radius = i32::MAX),
+        (Field::SunRadiance, &|it| it.sun_radiance[0] = -1),
+    ];
+    for (field, forge) in fields {
+        errors.field(section, field, |it| {
+            it.change(SectionKind::Environment, 0, forge)
+        });
+    }
+    errors.reason(section, Reason::ZeroDirection, |it| {
+        it.change(SectionKind::Environment, 0, |it: &mut Environment| {
+            it.sun_direction = [0; 3]
+        })
+    });
+    errors.reason(section, Reason::MissingEffect, |it| {
+        it.header().effects &= !Effects::ENVIRONMENT.0
+    });
+    errors.field("texel 7 of environment", Field::Exponent, |it| {
+        it.change(SectionKind::EnvironmentTexels, 7, |it: &mut u32| {
+            *it = 23 << 27
+        })
+    });
+    for (row, light, reason) in [(0, 1, Reason::FirstNotZero), (3, 0, Reason::LightOrder)] {
+        errors.reason(&format!("row {row} of environment"), reason, |it| {
+            it.change(SectionKind::EnvironmentRows, row, |it: &mut u32| {
+                *it = light
+            })
+        });
+    }
+    for (column, light, reason) in [(16, 1, Reason::FirstNotZero), (20, 0, Reason::LightOrder)] {
+        errors.reason(&format!("column {column} of environment"), reason, |it| {
+            it.change(SectionKind::EnvironmentColumns, column, |it: &mut u16| {
+                *it = light
+            })
+        });
+    }
+    // The sun is a light of the scene; without a size there is none.
+    errors.field("light 1", Field::Kind, |it| {
+        it.change(SectionKind::Environment, 0, |it: &mut Environment| {
+            it.sun_radius = 0
+        })
+    });
+    errors.field("light 0", Field::Kind, |it| {
+        it.change(SectionKind::Lights, 0, |it: &mut Light| it.directional = 8)
+    });
+    for (kind, expected) in [
+        (SectionKind::EnvironmentTexels, 256),
+        (SectionKind::EnvironmentRows, 16),
+        (SectionKind::EnvironmentColumns, 256),
+    ] {
+        let error = errors.forged(|it| it.drop_first(kind, 1));
+        let found = expected - 1;
+        assert_eq!(
+            error,
+            BlobError::Count {
+                section: kind,
+                found,
+                expected
+            }
+        );
+    }
+    let error = errors.forged(|it| it.remove(&[SectionKind::Environment]));
+    assert!(
+        matches!(
+            error,
+            BlobError::Count {
+                found: 256,
+                expected: 0,
+                ..
+            }
+        ),
+        "{error}"
+    );
+    errors
+}
+
+/// Rough materials.
+pub(super) fn rough() -> Errors {
+    let text = "[[light]]\nkind = 'disc'\ncenter = [0, 9, 0]\nnormal = [0, -1, 0]\nradius = 1\nradiance = 1\n\
+                [material.default]\nmirror = 0.5\nroughness = 0.5\n\
+                [[object]]\nkind = 'sphere'\ncenter = [0, 0, 0]\nradius = 1";
+    let imported =
+        gridel_host::scene::read("rough.toml".as_ref(), text.into(), &Default::default());
+    let mut errors = alone(&imported.expect("a scene").scene, Structure::List, 24);
+    for alpha in [-1, 1, (1 << 30) + 1] {
+        errors.field("roughness 0", Field::Roughness, |it| {
+            it.change(SectionKind::Roughnesses, 0, |it: &mut i32| *it = alpha)
+        });
+    }
+    errors.field("mark 0 of light-forms", Field::ShownForm, |it| {
+        it.change(SectionKind::ShownForms, 0, |it: &mut u8| *it = 2)
+    });
+    errors.reason("section roughnesses", Reason::MissingEffect, |it| {
+        it.header().effects &= !Effects::GLOSSY.0
     });
     errors
 }

@@ -20,9 +20,13 @@ fn materials() {
     );
     let steel = material(json!({"pbrMetallicRoughness": {
         "baseColorFactor": [0.5, 0.5, 0.5, 1], "metallicFactor": 1, "roughnessFactor": 0.25}}));
-    assert_eq!(steel.mirror, [0.375; 3]);
-    assert_eq!(steel.diffuse, Diffuse::Plain([0.125; 3]));
-    assert_eq!((steel.shininess, steel.highlight), (510, [1.0; 3]));
+    assert_eq!((steel.mirror, steel.roughness), ([0.5; 3], 0.25));
+    assert_eq!(steel.diffuse, Diffuse::Plain([0.0; 3]));
+    assert_eq!(steel.highlight, [0.0; 3]);
+    // What nothing says more of is not rough.
+    let unsaid = material(json!({"pbrMetallicRoughness": {"baseColorFactor": [0.5, 0.5, 0.5, 1]}}));
+    assert_eq!((unsaid.mirror, unsaid.roughness), ([0.0; 3], 0.0));
+    assert_eq!(unsaid.diffuse, Diffuse::Plain([0.5; 3]));
     let glass = material(json!({
     "pbrMetallicRoughness": {"metallicFactor": 0, "roughnessFactor": 0},
     "extensions": {

@@ -1,0 +1,191 @@
+//! The light around a scene: a picture of a sky or a room, and a sun in it.
+//!
+//! Rays that hit nothing bring it, and surfaces are lit by it through at most two of the scene's lights. Of the map each
+//! sample sees one direction, drawn in proportion to the brightness of texels; of the sun one, all alike. The map is an
+//! octahedral one (Praun and Hoppe, "Spherical Parametrization and Remeshing", 2003), whose lookup takes one division and
+//! no sines. Rays see it bilinear, lights see its texels: both have the same light, but for what is mixed across edges.
+
+use super::basis::beside;
+use crate::accel::Number;
+use crate::format::Effects;
+use crate::format::environment::Environment as Record;
+use crate::format::record::Light;
+use crate::number::Angle;
+use crate::observe::count::Observer;
+use crate::observe::event::{Event, RayKind};
+use crate::ray::Ray;
+use crate::scene::environment::{direction_of, texel_at, turned};
+use crate::shade::Color;
+use crate::shade::effect::{Effect, Tracer};
+use crate::shade::surface::{Aim, Lighting, Surface};
+
+pub(crate) struct Environment;
+
+/// The dimension of random points for the map.
+const DIMENSION: u16 = 0x1020;
+
+/// Whether rays of a kind bring the environment. Those whose light a surface has from the light of the environment must
+/// not bring it again.
+const fn is_seen_by(kind: RayKind) -> bool {
+    match kind {
+        RayKind::Primary | RayKind::Reflected | RayKind::Refracted => true,
+        RayKind::Shadow | RayKind::Diffuse | RayKind::Glossy => false,
+    }
+}
+
+impl Effect for Environment {
+    type State<N: Number> = ();
+
+    const EFFECT: Effects = Effects::ENVIRONMENT;
+
+    /// Half of all directions light no surface, and the others bring more for it than a display shows: the mean counts.
+    const DEVELOPS: bool = true;
+
+    fn is_required_by_light(light: &Light) -> bool {
+        light.is_environment()
+    }
+
+    #[inline(always)]
+    fn aim<'s, N: Number, X: Tracer<'s, N>>(
+        tracer: &mut X,
+        (): &mut (),
+        number: u32,
+        light: &Light,
+        aim: &mut Aim<N>,
+    ) {
+        let scene = tracer.scene();
+        if !light.is_environment() {
+            return;
+        }
+        let Some((map, record)) = scene
+            .environment
+            .get()
+            .and_then(|it| Some((it, it.record?)))
+        else {
+            return;
+        };
+        let way = if light.directional == Light::SUN {
+            // Lights beyond the first 4,096 share points with these.
+            in_sun::<N>(record, tracer.point(number as u16 & 0xfff))
+        } else {
+            let place = map.draw(record, tracer.point(DIMENSION));
+            direction_of(place).map(|axis| N::far(axis.into()))
+        };
+        *aim = Aim {
+            way,
+            distance: None,
+            cone: None,
+        };
+    }
+
+    #[inline(always)]
+    fn face<'s, N: Number, X: Tracer<'s, N>>(
+        tracer: &mut X,
+        (): &mut (),
+        _: &Surface<'_, N>,
+        lighting: &mut Lighting<'_, N>,
+        _: &mut bool,
+    ) {
+        if X::Observer::ENABLED && lighting.light.is_environment() {
+            let record = tracer.scene().environment();
+            let map = record.filter(|_| lighting.light.directional == Light::ENVIRONMENT);
+            let texel = map.map(|it| texel_at(it.size_bits, place_of(lighting.to_light).0));
+            tracer.count().event(Event::FromEnvironment {
+                direction: lighting.to_light.map(N::ratio_to_f64),
+                texel,
+            });
+        }
+    }
+
+    #[inline(always)]
+    fn light<'s, N: Number, X: Tracer<'s, N>>(
+        tracer: &mut X,
+        (): &mut (),
+        _: &Surface<'_, N>,
+        lighting: &Lighting<'_, N>,
+        arriving: &mut Color<N>,
+    ) {
+        if lighting.light.directional != Light::ENVIRONMENT {
+            return;
+        }
+        let map = tracer.scene().environment.get();
+        if let Some((map, record)) = map.and_then(|it| Some((it, it.record?))) {
+            let (place, half_sum) = place_of(lighting.to_light);
+            *arriving = Color::radiance(map.sampled(record, place, half_sum.to_q30()));
+        }
+    }
+
+    #[inline(always)]
+    fn miss<'s, N: Number, X: Tracer<'s, N>>(
+        tracer: &mut X,
+        (): &mut (),
+        ray: &Ray<N>,
+        radiance: &mut Color<N>,
+    ) {
+        let map = tracer.scene().environment.get();
+        let Some((map, record)) = map.and_then(|it| Some((it, it.record?))) else {
+            return;
+        };
+        if !is_seen_by(tracer.kind()) {
+            *radiance = Color::BLACK;
+            return;
+        }
+        let (place, _) = place_of(ray.slope);
+        let in_sun = is_in_sun(record, ray.slope);
+        *radiance = Color::radiance(map.mixed(record, place));
+        if in_sun {
+            *radiance = radiance.plus(Color::radiance(record.sun_radiance));
+        }
+        if X::Observer::ENABLED {
+            tracer.count().event(Event::Environment {
+                texel: texel_at(record.size_bits, place),
+                sun: in_sun,
+            });
+        }
+    }
+}
+
+/// The place of a direction on the map, and half the sum of the magnitudes of its components, which are at most 1 and the
+/// largest at least 1/2.
+#[inline(never)]
+fn place_of<N: Number>(direction: [N; 3]) -> ([i32; 2], N) {
+    let [x, y, z] = direction;
+    let sum = x.abs().half() + y.abs().half() + z.abs().half();
+    let inverse = N::ONE.half().div(sum);
+    let on_axis = |along: N| (along * inverse).to_q30().clamp(-(1 << 30), 1 << 30);
+    let place = [on_axis(x), on_axis(y)];
+    let is_below = z < N::ZERO;
+    (if is_below { turned(place) } else { place }, sum)
+}
+
+/// Whether a direction, of any length, leads to the sun.
+#[inline(never)]
+fn is_in_sun<N: Number>(record: &Record, direction: [N; 3]) -> bool {
+    if record.sun_radius == 0 {
+        return false;
+    }
+    let (direction, _) = N::normalize(direction);
+    let sun = record.sun_direction.map(N::ratio);
+    let off = |k: usize| direction[k].half() - sun[k].half();
+    let (off, radius) = ([off(0), off(1), off(2)], N::ratio(record.sun_radius).half());
+    N::dot(off, off) <= radius.wide(radius)
+}
+
+/// A random direction of the sun: the squares of lengths from its middle, on a sphere, are all alike.
+#[inline(never)]
+fn in_sun<N: Number>(record: &Record, [u, v]: [u32; 2]) -> [N::Wide; 3] {
+    let half = N::ratio(record.sun_radius).half() * N::ratio((u >> 2) as i32).sqrt();
+    let square = half * half;
+    let toward = N::ONE - (square + square);
+    let away = half * (N::ONE - square).sqrt();
+    let away = away + away;
+    let [sine, cosine] = Angle(v).sin_cos().map(N::ratio);
+    let (right, up) = (away * cosine, away * sine);
+    let sun = record.sun_direction.map(N::ratio);
+    let [first, second] = beside(sun);
+    let axis = |k: usize| sun[k] * toward + first[k] * right + second[k] * up;
+    [axis(0), axis(1), axis(2)].map(N::widen)
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,165 @@
+//! Rough surfaces: facets that are mirrors or glass, with the distribution GGX of their normals.
+//!
+//! - **Distribution and shadowing**: Walter, Marschner, Li and Torrance, "Microfacet Models for Refraction through Rough
+//!   Surfaces", 2007. What is reflected is masked on its two ways by one height (Heitz, "Understanding the
+//!   Masking-Shadowing Function in Microfacet-Based BRDFs", 2014), what is refracted on each way alone.
+//! - **Visible normals**: a facet is drawn as the ray sees it (Heitz, "Sampling the GGX Distribution of Visible
+//!   Normals", 2018), by a cap of the sphere (Dupuy and Benyoub, "Sampling Visible GGX Normals with Spherical Caps",
+//!   2023).
+//!
+//! Light that bounces between facets is lost, as is usual.
+
+use crate::accel::Number;
+use crate::format::limits::LEAST_ROUGHNESS;
+use crate::number::Angle;
+use crate::query::Hit;
+use crate::shade::basis::beside;
+
+/// The facets of a rough surface, seen by a ray.
+#[derive(Clone, Copy)]
+pub(crate) struct Facets<N> {
+    /// The surface's own normal for shading, on the side from which the ray came.
+    normal: [N; 3],
+    alpha: N,
+    square: N,
+    /// The cosine between the normal and the way back to where the ray came from, 0 to 1.
+    cos_in: N,
+    /// [`slant`](Self::slant) of that.
+    slant_in: N,
+}
+
+impl<N: Number> Facets<N> {
+    /// With an α of 30 fraction bits.
+    #[inline(always)]
+    pub(crate) fn new(alpha: i32, normal: [N; 3], cos_in: N) -> Self {
+        // In the range also in a blob that nobody proved.
+        let alpha = N::ratio(alpha.clamp(LEAST_ROUGHNESS, 1 << 30));
+        let mut facets = Self {
+            normal,
+            alpha,
+            square: alpha * alpha,
+            cos_in: cos_in.max(N::ZERO).min(N::ONE),
+            slant_in: N::ONE,
+        };
+        facets.slant_in = facets.slant(facets.cos_in);
+        facets
+    }
+
+    /// The root of α² + (1 - α²) cos², from α to 1: a way with this cosine is masked by 1 - 2 cos / (cos + slant).
+    #[inline(always)]
+    fn slant(&self, cos: N) -> N {
+        (self.square + (N::ONE - self.square) * cos * cos).sqrt()
+    }
+
+    /// The normal of a random facet that the ray sees.
+    #[inline(never)]
+    pub(crate) fn draw(&self, direction: [N; 3], [u, v]: [u32; 2]) -> [N; 3] {
+        let [first, second] = beside(self.normal);
+        let back = |axis: [N; 3]| -N::from_wide(N::dot(axis, direction));
+        // As if the surface were a hemisphere, which α flattens.
+        let stretched = [
+            self.alpha * back(first),
+            self.alpha * back(second),
+            self.cos_in,
+        ];
+        let ([x, y, z], length) = N::normalize(stretched);
+        if length <= N::ZERO {
+            return self.normal;
+        }
+        // A point of the cap above -z, all alike; 1 less its height.
+        let part = N::ratio((u >> 2) as i32);
+        let sag = part + part * z;
+        let across = sag * (N::ONE - sag.half());
+        let across = (across + across).max(N::ZERO).min(N::ONE).sqrt();
+        let [sine, cosine] = Angle(v).sin_cos().map(N::ratio);
+        // Halfway between it and the ray, as a mirror of the hemisphere lies.
+        let x = (across * cosine).half() + x.half();
+        let y = (across * sine).half() + y.half();
+        let z = N::ONE.half() - sag.half() + z.half();
+        let facet = [self.alpha * x, self.alpha * y, z.max(N::ZERO)];
+        let ([x, y, z], length) = N::normalize(facet);
+        if length <= N::ZERO {
+            return self.normal;
+        }
+        let normal = self.normal;
+        let axis = |k: usize| first[k] * x + second[k] * y + normal[k] * z;
+        [axis(0), axis(1), axis(2)]
+    }
+
+    /// The part of a ray's weight with which it leaves by a drawn facet, because no other one is in its way: 0 where it leads
+    /// to the wrong side of the surface. `outward` is the side of the geometric normal.
+    #[inline(never)]
+    pub(crate) fn unmasked(&self, hit: &Hit<N>, direction: [N; 3], outward: bool) -> N {
+        let (out, _) = N::normalize(direction);
+        let is_reflected = outward == hit.front;
+        let rise = N::from_wide(N::dot(out, self.normal));
+        let cos_out = if is_reflected { rise } else { -rise }.min(N::ONE);
+        let above = N::from_wide(N::dot(out, hit.normal));
+        let above = if outward { above } else { -above };
+        if cos_out <= N::ZERO || above <= N::ZERO {
+            N::ZERO
+        } else if is_reflected {
+            self.unmasked_reflection(cos_out)
+        } else {
+            let slant = self.slant(cos_out);
+            cos_out.div(cos_out.half() + slant.half()).min(N::ONE)
+        }
+    }
+
+    /// The part of what visible facets reflect that leaves with this cosine above 0.
+    #[inline(always)]
+    fn unmasked_reflection(&self, cos_out: N) -> N {
+        let seen = cos_out * (self.cos_in.half() + self.slant_in.half());
+        seen.div(self.half_masking(cos_out)).min(N::ONE)
+    }
+
+    /// Half of cos_out slant_in + cos_in slant_out: in the range of ratios.
+    #[inline(always)]
+    fn half_masking(&self, cos_out: N) -> N {
+        let slant_out = self.slant(cos_out);
+        (cos_out * self.slant_in).half() + (self.cos_in * slant_out).half()
+    }
+
+    /// What the facets reflect of a light in a direction that is `cos_out` above 0 over the surface, if each reflects all:
+    /// π times their part of all reflected light times `cos_out`, as a ratio and a power of two. `halfway` is the normal of
+    /// the facets that mirror the light to where the ray came from.
+    #[inline(never)]
+    pub(crate) fn reflect(&self, cos_out: N, halfway: [N; 3]) -> (N, u32) {
+        // The sine is precise where the angle is small, and 1 - cos² is not.
+        let [[a, b, c], [d, e, f]] = [self.normal, halfway];
+        let cross = |a: N, b: N, c: N, d: N| N::from_wide(a.wide(d) - b.wide(c));
+        let sine = [cross(b, c, e, f), cross(c, a, f, d), cross(a, b, d, e)];
+        let sine2 = N::from_wide(N::dot(sine, sine));
+        let cos = N::from_wide(N::dot(self.normal, halfway));
+        // α² over this, squared, is π times the distribution.
+        let spread = sine2 + self.square * cos * cos;
+        let spread = spread.max(self.square).min(N::ONE);
+        let (spread_part, spread_power) = scaled_up(spread);
+        let (masking_part, masking_power) = scaled_up(self.half_masking(cos_out));
+        // α² / spread² times cos_out / (4 half_masking).
+        let ratio = cos_out.half().half().div(masking_part);
+        let mut ratio = (self.square.div(spread) * ratio).div(spread_part);
+        let mut power = spread_power.wrapping_add(masking_power);
+        // The power is the least, as other ratios lose digits by it.
+        while ratio < N::ONE.half() && power > 0 {
+            ratio = ratio + ratio;
+            power = power.wrapping_sub(1);
+        }
+        (ratio.min(N::ONE), power)
+    }
+}
+
+/// A ratio above 0 as one of at least 1/2, over a power of two.
+#[inline(always)]
+fn scaled_up<N: Number>(mut ratio: N) -> (N, u32) {
+    let half = N::ONE.half();
+    let mut power = 0_u32;
+    while ratio < half && power < 30 {
+        ratio = ratio + ratio;
+        power = power.wrapping_add(1);
+    }
+    (ratio.max(half), power)
+}
+
+#[cfg(test)]
+mod tests;

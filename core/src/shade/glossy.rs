@@ -1,0 +1,134 @@
+//! Rough mirrors and rough glass: rays leave by random facets of the surface, and lights are reflected in all of them.
+//!
+//! One facet is drawn per hit, at which mirrors and glass send the rays that they send at a smooth surface. Lights that are
+//! surfaces, too, count once:
+//!
+//! - Below a roughness of 0.3 rays meet them, as in smooth mirrors. Random points of them would rarely lie where facets
+//!   mirror, and then be brighter than a sample can be.
+//! - From there on they are reflected by the formula, as are lights that no ray meets, and a ray that leaves by a facet
+//!   brings nothing of them.
+
+use crate::accel::Number;
+use crate::format::Effects;
+use crate::observe::count::Observer;
+use crate::observe::event::{Event, RayKind};
+use crate::query::Hit;
+use crate::shade::Color;
+use crate::shade::effect::{Effect, Tracer};
+use crate::shade::facets::Facets;
+use crate::shade::glass::split;
+use crate::shade::surface::{Bounce, Lighting, Secondary, Surface};
+
+pub(crate) struct Glossy;
+
+/// The α from which lights that are surfaces are reflected by the formula: that of a roughness of 0.3.
+const WIDE: i32 = 96_636_764;
+
+/// What the point of a facet is drawn by.
+const FACET: u16 = 0x1010;
+
+impl Effect for Glossy {
+    type State<N: Number> = ();
+
+    const EFFECT: Effects = Effects::GLOSSY;
+    const NEEDS_DIRECTION: bool = true;
+
+    #[inline(always)]
+    fn reflect<'s, N: Number, X: Tracer<'s, N>>(
+        tracer: &mut X,
+        (): &mut (),
+        surface: &Surface<'_, N>,
+        lighting: &Lighting<'_, N>,
+        reflected: &mut Color<N>,
+        gain: &mut u32,
+    ) {
+        // No material says so, as with other effects: a section of the blob does.
+        let scene = tracer.scene();
+        let Some(alpha) = scene.roughness(surface.hit.object) else {
+            return;
+        };
+        let is_met = scene.is_shown(lighting.light) || lighting.light.is_environment();
+        if alpha >= WIDE || !is_met {
+            (*reflected, *gain) = mirrored(alpha, surface, lighting.to_light, *reflected);
+        }
+    }
+
+    #[inline(always)]
+    fn bounce<'s, N: Number, X: Tracer<'s, N>>(
+        tracer: &mut X,
+        (): &mut (),
+        surface: &Surface<'_, N>,
+        bounce: &mut Bounce<N>,
+    ) {
+        let Some(alpha) = tracer.scene().roughness(surface.hit.object) else {
+            return;
+        };
+        let facets = Facets::new(alpha, bounce.normal, bounce.cos_in);
+        let facet = facets.draw(surface.direction, tracer.point(FACET));
+        bounce.normal = facet;
+        bounce.cos_in = -N::from_wide(N::dot(surface.direction, facet));
+        bounce.cos_in = bounce.cos_in.max(N::ZERO).min(N::ONE);
+        bounce.facets = Some(facets);
+        if X::Observer::ENABLED {
+            tracer.count().event(Event::Facet {
+                normal: facet.map(N::ratio_to_f64),
+            });
+        }
+    }
+
+    #[inline(always)]
+    fn leave<'s, N: Number, X: Tracer<'s, N>>(
+        tracer: &mut X,
+        (): &mut (),
+        hit: &Hit<N>,
+        secondary: &mut Secondary<N>,
+    ) {
+        let is_glossy = match secondary.kind {
+            RayKind::Reflected => tracer
+                .scene()
+                .roughness(hit.object)
+                .is_some_and(|alpha| alpha >= WIDE),
+            // Lights shine through glass and what is not there.
+            RayKind::Refracted => tracer.kind() == RayKind::Glossy,
+            _ => false,
+        };
+        if is_glossy {
+            secondary.kind = RayKind::Glossy;
+        }
+    }
+}
+
+/// Adds what facets mirror of a light to what is reflected of it, 2 to the power of the second number times as much.
+#[inline(never)]
+fn mirrored<N: Number>(
+    alpha: i32,
+    surface: &Surface<'_, N>,
+    to_light: [N; 3],
+    reflected: Color<N>,
+) -> (Color<N>, u32) {
+    let Surface { material, .. } = *surface;
+    let (normal, direction) = (surface.shading_normal, surface.direction);
+    // Halfway between the light and where the ray came from.
+    let axis = |k: usize| to_light[k].half() - direction[k].half();
+    let (halfway, _) = N::normalize([axis(0), axis(1), axis(2)]);
+    let cos_in = -N::from_wide(N::dot(direction, normal));
+    let cos_out = N::from_wide(N::dot(to_light, normal)).min(N::ONE);
+    let facets = Facets::new(alpha, normal, cos_in);
+    let (ratio, power) = facets.reflect(cos_out, halfway);
+    let mut color = Color::ratios(material.mirror);
+    if material.transmit != [0; 3] {
+        let cos = -N::from_wide(N::dot(direction, halfway));
+        let cos = cos.max(N::ZERO).min(N::ONE);
+        let k = N::ratio(material.inverse_ior);
+        let split = split(k, surface.hit.front, direction, halfway, cos);
+        let transmit = Color::ratios(material.transmit);
+        color = color.plus_up_to_one(transmit.scaled(split.reflected));
+    }
+    // Halves of both, so that the sum is at most 1.
+    let mut shrunk = reflected.scaled(N::ONE.half());
+    for _ in 0..power {
+        shrunk = shrunk.scaled(N::ONE.half());
+    }
+    let sum = shrunk.plus_up_to_one(color.scaled(ratio.half()));
+    (sum, power.wrapping_add(1))
+}

@@ -1,0 +1,90 @@
+//! Indirect light: a surface is lit by what it sees, along one random direction for each hit.
+//!
+//! Directions are drawn in proportion to the cosine to the normal, so a diffuse surface returns its color times the mean of
+//! what they bring (Kajiya, "The Rendering Equation", 1986; Malley's method: points of a disc raised to the hemisphere).
+//! What lights bring is left to the rays to them: a diffuse ray does not bring it again.
+
+use crate::accel::Number;
+use crate::format::Effects;
+use crate::format::limits::INDIRECT;
+use crate::number::Angle;
+use crate::observe::event::RayKind;
+use crate::query::Hit;
+use crate::ray::Ray;
+use crate::shade::basis::beside;
+use crate::shade::effect::{Effect, Tracer};
+use crate::shade::surface::{Bounce, Secondary, Surface};
+
+pub(crate) struct Indirect;
+
+/// The dimension of the sampler's points.
+const DIRECTION: u16 = 0x1030;
+
+impl Effect for Indirect {
+    /// How many diffuse reflections led to the surface.
+    type State<N: Number> = [u8; INDIRECT as usize];
+
+    const EFFECT: Effects = Effects::INDIRECT;
+
+    /// What a random direction brings may be brighter than a display shows: the mean counts.
+    const DEVELOPS: bool = true;
+
+    #[inline(always)]
+    fn surface<'s, N: Number, X: Tracer<'s, N>>(
+        tracer: &mut X,
+        state: &mut Self::State<N>,
+        _: &Ray<N>,
+        _: &mut Surface<'_, N>,
+    ) {
+        if tracer.kind() == RayKind::Diffuse
+            && let Some(reflections) = state.first_mut()
+        {
+            *reflections = reflections.saturating_add(1);
+        }
+    }
+
+    #[inline(always)]
+    fn bounce<'s, N: Number, X: Tracer<'s, N>>(
+        tracer: &mut X,
+        state: &mut Self::State<N>,
+        surface: &Surface<'_, N>,
+        _: &mut Bounce<N>,
+    ) {
+        let reflections = state.first().copied().unwrap_or(u8::MAX);
+        if reflections >= tracer.scene().bounces() {
+            return;
+        }
+        let secondary = Secondary {
+            kind: RayKind::Diffuse,
+            direction: around(surface.shading_normal, tracer.point(DIRECTION)),
+            outward: surface.hit.front,
+            weight: surface.weight.times(surface.diffuse),
+        };
+        tracer.send(surface.hit, secondary);
+    }
+
+    #[inline(always)]
+    fn leave<'s, N: Number, X: Tracer<'s, N>>(
+        tracer: &mut X,
+        _: &mut Self::State<N>,
+        _: &Hit<N>,
+        secondary: &mut Secondary<N>,
+    ) {
+        // Lights shine through glass and what is not there, too.
+        if secondary.kind == RayKind::Refracted && tracer.kind() == RayKind::Diffuse {
+            secondary.kind = RayKind::Diffuse;
+        }
+    }
+}
+
+/// A random direction around a normal, of length 1.
+#[inline(never)]
+fn around<N: Number>(normal: [N; 3], [u, v]: [u32; 2]) -> [N; 3] {
+    let square = N::ratio((u >> 2) as i32);
+    let (away, toward) = (square.sqrt(), (N::ONE - square).sqrt());
+    let [sine, cosine] = Angle(v).sin_cos().map(N::ratio);
+    let (along, across) = (away * cosine, away * sine);
+    let [first, second] = beside(normal);
+    let axis = |k: usize| first[k] * along + second[k] * across + normal[k] * toward;
+    [axis(0), axis(1), axis(2)]
+}

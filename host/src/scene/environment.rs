@@ -1,0 +1,173 @@
+//! The light around a scene, as scene files state it.
+
+use super::image::{Fault, Image, check_size, fault, linear_of_srgb};
+use super::radiance;
+use glam::DVec3;
+use std::fmt;
+use std::path::Path;
+use std::sync::Arc;
+
+/// A linear RGB color, as the scene's model has it.
+type Color = [f64; 3];
+
+/// The light around a scene: what rays that hit nothing see, and what surfaces are lit by.
+///
+/// ```
+/// use gridel_host::scene::{Environment, Sky};
+///
+/// let sky = Environment::of(Sky::Gradient {
+///     zenith: [0.2, 0.4, 1.0],
+///     horizon: [0.8; 3],
+///     ground: [0.1; 3],
+/// });
+/// assert_eq!(sky.size, 64);
+/// ```
+#[derive(Clone, Debug, PartialEq)]
+pub struct Environment {
+    pub sky: Sky,
+    /// What the radiance of the sky is multiplied with.
+    pub intensity: f64,
+    /// By how many degrees the picture is turned around the direction up, counterclockwise as seen from above.
+    pub rotation: f64,
+    /// Rows of the map in a blob: 16, 32, 64, 128 or 256.
+    pub size: u32,
+    pub sun: Option<Sun>,
+}
+
+/// The light from all directions.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Sky {
+    /// A picture of all directions. Its middle lies where a camera looks that begins an orbit: at -z, or at y where z points
+    /// up. Its right lies at x.
+    Picture(Arc<Panorama>),
+    /// Radiance that depends on the height alone: with h the sine of the elevation, above the horizon that of the horizon
+    /// goes over to that of the zenith as h (2 - h).
+    Gradient {
+        zenith: Color,
+        horizon: Color,
+        ground: Color,
+    },
+}
+
+/// A disc in the sky.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Sun {
+    /// The way that its light travels.
+    pub direction: DVec3,
+    /// The color of a directional light that gives as much light.
+    pub color: Color,
+    /// Degrees from edge to edge: above 0, up to 90.
+    pub angle: f64,
+}
+
+impl Environment {
+    /// A sky as it is, of 64 rows, without a sun.
+    pub const fn of(sky: Sky) -> Self {
+        Self {
+            sky,
+            intensity: 1.0,
+            rotation: 0.0,
+            size: 64,
+            sun: None,
+        }
+    }
+}
+
+impl Sun {
+    /// The length from the middle to the edge, on a sphere with radius 1.
+    pub fn radius(&self) -> f64 {
+        2.0 * libm::sin(self.angle.to_radians() / 4.0)
+    }
+
+    /// What a radiance is multiplied with for the [color](Self::color): the solid angle over π.
+    pub fn solid_angle_over_pi(&self) -> f64 {
+        self.radius() * self.radius()
+    }
+}
+
+/// A picture of all directions: columns are longitudes, and rows go from the zenith down.
+#[derive(Clone, PartialEq)]
+pub struct Panorama {
+    /// Where it comes from, for messages.
+    pub name: String,
+    width: usize,
+    height: usize,
+    pixels: Vec<[f32; 3]>,
+}
+
+impl fmt::Debug for Panorama {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self {
+            name,
+            width,
+            height,
+            ..
+        } = self;
+        write!(f, "Panorama({name:?}, {width}x{height})")
+    }
+}
+
+impl Panorama {
+    /// Makes a picture from pixels row by row, the upper row first: linear radiance. `None` unless there are as many pixels
+    /// as that, and at least one, and all channels are finite numbers at or above 0.
+    pub fn new(name: &str, width: usize, height: usize, pixels: Vec<[f32; 3]>) -> Option<Self> {
+        let count = width.checked_mul(height)?;
+        let mut channels = pixels.as_flattened().iter();
+        let is_valid = channels.all(|&it| it.is_finite() && it >= 0.0);
+        (count > 0 && count == pixels.len() && is_valid).then(|| Self {
+            name: String::from(name),
+            width,
+            height,
+            pixels,
+        })
+    }
+
+    /// Width and height in pixels.
+    pub fn size(&self) -> [usize; 2] {
+        [self.width, self.height]
+    }
+
+    /// Rows of pixels, the upper one first: linear radiance.
+    pub fn rows(&self) -> impl ExactSizeIterator<Item = &[[f32; 3]]> {
+        self.pixels.chunks_exact(self.width)
+    }
+
+    /// Reads a Radiance, PNG or JPEG file, told apart by their content.
+    pub(super) fn decode(name: &str, bytes: &[u8]) -> Result<Self, Fault> {
+        let (width, height, pixels) = if bytes.starts_with(b"#?") {
+            radiance::decode(bytes, check_size)?
+        } else {
+            let is_known = bytes.starts_with(b"\x89PNG") || bytes.starts_with(b"\xff\xd8");
+            if !is_known {
+                return Err(fault(
+                    "is neither Radiance (.hdr) nor PNG nor JPEG",
+                    "convert it to Radiance HDR or PNG",
+                ));
+            }
+            let image = Image::decode(name, bytes)?;
+            let linear: Vec<f32> = (0..=255_u8)
+                .map(|code| linear_of_srgb(f64::from(code) / 255.0) as f32)
+                .collect();
+            let pixels = image.pixels().iter();
+            let pixels = pixels.map(|[r, g, b, _]| [*r, *g, *b].map(|it| linear[usize::from(it)]));
+            let [width, height] = image.size().map(|it| it as usize);
+            (width, height, pixels.collect())
+        };
+        Self::new(name, width, height, pixels)
+            .ok_or_else(|| fault("has no pixels", "save the picture again"))
+    }
+
+    /// Reads the file that `name` stands for in a scene file.
+    pub(super) fn file(
+        access: &super::access::Access,
+        scene: &Path,
+        name: &str,
+    ) -> Result<Arc<Self>, Fault> {
+        let path = access.resolve(scene, name)?;
+        let of_file = |[cause, remedy]: Fault| [format!("{} {cause}", path.display()), remedy];
+        let bytes = access
+            .read(&path)
+            .map_err(|error| of_file([error.cause, error.remedy]))?;
+        Self::decode(name, &bytes).map(Arc::new).map_err(of_file)
+    }
+}

@@ -1,0 +1,76 @@
+//! Values of pixels, with their errors, beside what analysis gives.
+
+use crate::effort::full;
+use gridel_core::{Format, Settings, Structure};
+use gridel_host::blob::Blob;
+use gridel_host::render::{Job, render};
+use gridel_host::scene::Scene;
+
+/// Scrambles: the pixels of a picture, each of which has one of its own.
+pub const SCRAMBLES: usize = 16;
+
+/// The keys of a picture with as many pixels, which a narrow field of view makes show nearly one point.
+pub const SCRAMBLES_WIDE: &str = "width = 4\nheight = 4\n";
+
+/// The scene of a file in TOML.
+pub fn read(text: &str) -> Scene {
+    let read = gridel_host::scene::read("scene.toml".as_ref(), text.into(), &Default::default());
+    read.unwrap_or_else(|error| panic!("{error}: {text}")).scene
+}
+
+/// The mean of the pixels, from 0 to 1, and its standard error.
+pub fn measured(blob: &Blob, format: Format, samples: u16) -> (f64, f64) {
+    let scene = blob.scene().expect("a scene");
+    let settings = Settings {
+        samples,
+        ..Settings::of(&scene)
+    };
+    let job = Job::whole(format, Structure::List, settings);
+    let picture = render(&scene, &job, &|| ()).expect("a picture");
+    let values: Vec<f64> = picture
+        .pixels
+        .iter()
+        .map(|it| f64::from(it[0]) / 65_535.0)
+        .collect();
+    assert_eq!(values.len(), SCRAMBLES);
+    let mean = values.iter().sum::<f64>() / SCRAMBLES as f64;
+    let squares = values
+        .iter()
+        .map(|value| (value - mean).powi(2))
+        .sum::<f64>();
+    (
+        mean,
+        (squares / (SCRAMBLES * (SCRAMBLES - 1)) as f64).sqrt(),
+    )
+}
+
+/// Half a step of a pixel, and of the lattice.
+pub const ROUNDING: f64 = 2e-5;
+
+/// Each format has a value within three standard errors, and within 0.2 % (`fixed`: 0.5 %) at the most samples.
+pub fn check(name: &str, blob: &Blob, exact: f64) {
+    for format in Format::ALL {
+        for samples in if full() {
+            vec![16, 256, 4096]
+        } else {
+            vec![16, 256]
+        } {
+            let (mean, error) = measured(blob, format, samples);
+            eprintln!("{name} {format:?} {samples}: {mean:.6} +- {error:.6}, exact {exact:.6}");
+            let off = (mean - exact).abs();
+            assert!(
+                off <= 3.0 * error + ROUNDING + 2e-4 * exact,
+                "{name} {format:?} {samples}"
+            );
+            let most = if format == Format::Fixed {
+                0.005
+            } else {
+                0.002
+            };
+            assert!(
+                samples < 4096 || off <= most * exact + ROUNDING,
+                "{name} {format:?}"
+            );
+        }
+    }
+}
