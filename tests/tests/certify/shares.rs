@@ -1,7 +1,7 @@
 //! The share of pixels that are proved, for the fixtures and for scenes from elsewhere, and the table of them in
 //! EXACT.md.
 
-use super::{certified, settings};
+use super::{certified, fixtures, settings};
 use gridel_host::certify::{Enclosed, Reason};
 use gridel_tests::effort::{full, part_of};
 use gridel_tests::scenes;
@@ -76,7 +76,7 @@ fn the_share_of_proved_pixels_is_as_large_as_promised() {
         eprintln!("{row}");
         measured.push(row);
     };
-    for (name, scene) in scenes::fixtures() {
+    for (name, scene) in fixtures() {
         if name == "glass-chess" {
             measure("glass-chess", scene.clone(), [400, 300], LEAST);
         }
@@ -108,7 +108,7 @@ fn the_share_of_proved_pixels_is_as_large_as_promised() {
 #[test]
 fn the_table_of_proved_pixels_is_complete() {
     let rows = rows();
-    let fixtures = scenes::fixtures().into_iter().map(|(name, _)| name);
+    let fixtures = fixtures().map(|(name, _)| name);
     let real = REAL
         .iter()
         .filter_map(|(path, _)| path.split_once('/'))

@@ -59,16 +59,18 @@ fn picture_of_the_board_is_the_one_that_fixed_renders() {
     holds_picture("board.png", &picture, ENLARGED);
 }
 
-/// Whoever follows the link sees what textures and lights with an area look like.
+/// Whoever follows the links sees what the effects look like.
 #[test]
-fn picture_of_the_studio_is_the_one_of_its_file() {
-    let scene = scenes::read(&scenes::fixture_folder().join("studio.toml"));
-    let blob = compile(&scene, &Options::default()).expect("compiles").blob;
-    let scene = blob.scene().expect("the compiler's blob");
-    let settings = Settings::of(&scene);
-    let job = Job::whole(Format::F32, Structure::DualSplit, settings);
-    let picture = render(&scene, &job, &|| ()).expect("a picture");
-    holds_picture("studio.png", &picture, 2);
+fn pictures_of_effects_are_those_of_their_files() {
+    for (name, enlarged) in [("studio", 2), ("cornell", 2), ("sky", 2)] {
+        let file = scenes::fixture_folder().join(format!("{name}.toml"));
+        let blob = compile(&scenes::read(&file), &Options::default());
+        let blob = blob.expect("compiles").blob;
+        let scene = blob.scene().expect("the compiler's blob");
+        let job = Job::whole(Format::F32, Structure::DualSplit, Settings::of(&scene));
+        let picture = render(&scene, &job, &|| ()).expect("a picture");
+        holds_picture(&format!("{name}.png"), &picture, enlarged);
+    }
 }
 
 /// Compares a file with a picture, whose pixels it shows as squares of some rows and columns.
@@ -93,7 +95,14 @@ fn holds_picture(name: &str, picture: &Picture, enlarged: usize) {
 
 #[test]
 fn readme_shows_the_pictures() {
-    for name in ["glass-chess.png", "board.png", "studio.png", "accuracy.svg"] {
+    for name in [
+        "glass-chess.png",
+        "board.png",
+        "studio.png",
+        "cornell.png",
+        "sky.png",
+        "accuracy.svg",
+    ] {
         assert!(
             text(README).contains(&format!("fixtures/pictures/{name}")),
             "{name}"
