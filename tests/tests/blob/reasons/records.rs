@@ -130,10 +130,12 @@ pub(super) fn lens_and_bounces() -> Errors {
         (Field::Eye, &|it| it.radius = 1 << 50),
     ];
     for (field, forge) in lenses {
-        errors.field("lens", field, |it| it.change(SectionKind::Lens, 0, forge));
+        errors.field("section lens", field, |it| {
+            it.change(SectionKind::Lens, 0, forge)
+        });
     }
     for bounces in [0, 33] {
-        errors.field("indirect", Field::Bounces, |it| {
+        errors.field("section indirect", Field::Bounces, |it| {
             it.change(SectionKind::Indirect, 0, |it: &mut u32| *it = bounces)
         });
     }
