@@ -301,6 +301,7 @@ fn colors_of_faces_and_textures_are_warned_of() {
         [
             "3: textures are not drawn; the plain colors are used",
             "14: the color of a face is ignored; the surface has one color",
+            " colors of vertices without red, green or blue are ignored",
         ]
     );
 }

@@ -115,13 +115,14 @@ fn ignored_attributes_are_counted_in_one_warning_each() {
     assert_eq!(warnings(&document), [] as [&str; 0]);
     let part = json!({"attributes": {"POSITION": 0, "NORMAL": 0, "COLOR_1": 0}, "indices": 1});
     document["meshes"][0]["primitives"] = json!([part, part, part]);
-    document["materials"] = json!([{"alphaMode": "MASK", "name": "leaf"},
+    let thin = json!({"baseColorFactor": [1, 1, 1, 0.2]});
+    document["materials"] = json!([{"alphaMode": "MASK", "name": "leaf", "pbrMetallicRoughness": thin},
         {"emissiveFactor": [1, 0, 0], "name": "lamp"}]);
     assert_eq!(
         warnings(&document),
         [
             "COLOR_1 of a primitive is ignored; COLOR_0 is read (and 2 times more)",
-            "the alpha mask of material \"leaf\" is ignored; it is opaque",
+            "the alpha of material \"leaf\" is below its cutoff; it is opaque",
         ]
     );
 }
