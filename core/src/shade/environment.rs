@@ -24,12 +24,13 @@ pub(crate) struct Environment;
 /// The dimension of random points for the map.
 const DIMENSION: u16 = 0x1020;
 
-/// Whether rays of a kind bring the environment. Those whose light a surface has from the light of the environment must
-/// not bring it again.
-const fn is_seen_by(kind: RayKind) -> bool {
+/// Whether rays of a kind bring the map, and whether they bring the sun. Those whose light a surface has from a light of
+/// the scene must not bring it again.
+const fn is_seen_by(kind: RayKind) -> [bool; 2] {
     match kind {
-        RayKind::Primary | RayKind::Reflected | RayKind::Refracted => true,
-        RayKind::Shadow | RayKind::Diffuse | RayKind::Glossy => false,
+        RayKind::Primary | RayKind::Reflected | RayKind::Refracted => [true; 2],
+        RayKind::Glossy => [true, false],
+        RayKind::Shadow | RayKind::Diffuse => [false; 2],
     }
 }
 
@@ -126,12 +127,13 @@ impl Effect for Environment {
         let Some((map, record)) = map.and_then(|it| Some((it, it.record?))) else {
             return;
         };
-        if !is_seen_by(tracer.kind()) {
+        let [map_is_seen, sun_is_seen] = is_seen_by(tracer.kind());
+        if !map_is_seen {
             *radiance = Color::BLACK;
             return;
         }
         let (place, _) = place_of(ray.slope);
-        let in_sun = is_in_sun(record, ray.slope);
+        let in_sun = sun_is_seen && is_in_sun(record, ray.slope);
         *radiance = Color::radiance(map.mixed(record, place));
         if in_sun {
             *radiance = radiance.plus(Color::radiance(record.sun_radiance));

@@ -7,9 +7,12 @@
 //!   mirror, and then be brighter than a sample can be.
 //! - From there on they are reflected by the formula, as are lights that no ray meets, and a ray that leaves by a facet
 //!   brings nothing of them.
+//!
+//! The same holds for the sun of an environment. Its map is always met by rays.
 
 use crate::accel::Number;
 use crate::format::Effects;
+use crate::format::record::Light;
 use crate::observe::count::Observer;
 use crate::observe::event::{Event, RayKind};
 use crate::query::Hit;
@@ -47,8 +50,14 @@ impl Effect for Glossy {
         let Some(alpha) = scene.roughness(surface.hit.object) else {
             return;
         };
-        let is_met = scene.is_shown(lighting.light) || lighting.light.is_environment();
-        if alpha >= WIDE || !is_met {
+        let light = lighting.light;
+        let is_met = match light.directional {
+            // Facets that are seen at grazing angles mirror a small part of the map much brighter than the rest.
+            Light::ENVIRONMENT => true,
+            Light::SUN => alpha < WIDE,
+            _ => alpha < WIDE && scene.is_shown(light),
+        };
+        if !is_met {
             (*reflected, *gain) = mirrored(alpha, surface, lighting.to_light, *reflected);
         }
     }
