@@ -201,6 +201,10 @@ fn memory_page_shows_recorded_cost_of_shapes_and_effects() {
         ("area-light", "falloff"),
         ("tone-mapping", "base"),
         ("emission", "base"),
+        ("glossy", "mirror"),
+        ("depth-of-field", "base"),
+        ("indirect", "base"),
+        ("environment", "base"),
         ("sphere, triangle, shadow", "base"),
     ];
     let mut table = String::from(
