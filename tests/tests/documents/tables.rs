@@ -96,6 +96,11 @@ fn blobs() -> Vec<Vec<u8>> {
         place: scene::SourceSpan::default(),
     }];
     scene.objects.push(bent_sheet());
+    scene.lens = Some(scene::Lens {
+        radius: 0.1,
+        focus: None,
+    });
+    scene.render.bounces = 1;
     let compiled = compile(&scene, &options).expect("compiles");
     blobs.push(compiled.blob.bytes().to_vec());
     blobs
