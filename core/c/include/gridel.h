@@ -21,16 +21,16 @@
 #define GRIDEL_NONE 4294967295
 
 // Words of a `gridel_scene`.
-#define GRIDEL_SCENE_WORDS 64
+#define GRIDEL_SCENE_WORDS 80
 
 // Bytes of a stack that is deep enough for every scene.
 #define GRIDEL_STACK_BYTES_MAX 1928
 
 // Bytes of a workspace that is large enough for every scene, in `fixed` and in `f32`.
-#define GRIDEL_WORKSPACE_BYTES_MAX 3072
+#define GRIDEL_WORKSPACE_BYTES_MAX 5120
 
 // Bytes of a workspace that is large enough for every scene, in `f64`.
-#define GRIDEL_WORKSPACE_BYTES_MAX_F64 4096
+#define GRIDEL_WORKSPACE_BYTES_MAX_F64 7168
 
 // What a function returns: 0, or why it did nothing. `gridel_text` gives the sentence.
 enum gridel_status
@@ -82,7 +82,7 @@ enum gridel_status
   GRIDEL_STATUS_PICTURE_SIZE = 40,
   // The samples per pixel are not 1 to 256.
   GRIDEL_STATUS_PICTURE_SAMPLES = 41,
-  // The ray depth is above 16.
+  // The ray depth is above 32.
   GRIDEL_STATUS_PICTURE_DEPTH = 42,
   // The format of the pixels is unknown.
   GRIDEL_STATUS_PICTURE_FORMAT = 43,

@@ -229,7 +229,7 @@ pub fn workspace_bytes<N: Number>([stack, work]: Depths) -> usize {
                     size_of::<Workspace<N, $stack, $work>>()
                 };
             }
-            with_least!(work, [0 5 9], 17, bytes)
+            with_least!(work, [0 5 9 17 33], 65, bytes)
         }};
     }
     with_least!(stack, [8 16 24 32 48 96], 160, with_work)
@@ -251,16 +251,16 @@ pub unsafe fn workspace<'m, N: Number>(
                     unsafe { place(buffer, Workspace::<N, $stack, $work>::new()) }?.as_view()
                 };
             }
-            with_least!(work, [0 5 9], 17, workspace)
+            with_least!(work, [0 5 9 17 33], 65, workspace)
         }};
     }
     Ok(with_least!(stack, [8 16 24 32 48 96], 160, with_work))
 }
 
 const _: () = assert!(size_of::<Stack<160>>() <= crate::GRIDEL_STACK_BYTES_MAX);
-const _: () = assert!(size_of::<Workspace<f32, 160, 17>>() <= crate::GRIDEL_WORKSPACE_BYTES_MAX);
+const _: () = assert!(size_of::<Workspace<f32, 160, 65>>() <= crate::GRIDEL_WORKSPACE_BYTES_MAX);
 const _: () = assert!(
-    size_of::<Workspace<gridel_core::Fixed, 160, 17>>() <= crate::GRIDEL_WORKSPACE_BYTES_MAX
+    size_of::<Workspace<gridel_core::Fixed, 160, 65>>() <= crate::GRIDEL_WORKSPACE_BYTES_MAX
 );
 const _: () =
-    assert!(size_of::<Workspace<f64, 160, 17>>() <= crate::GRIDEL_WORKSPACE_BYTES_MAX_F64);
+    assert!(size_of::<Workspace<f64, 160, 65>>() <= crate::GRIDEL_WORKSPACE_BYTES_MAX_F64);

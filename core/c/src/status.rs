@@ -52,7 +52,7 @@ pub enum gridel_status {
     PictureSize = 40,
     /// The samples per pixel are not 1 to 256.
     PictureSamples = 41,
-    /// The ray depth is above 16.
+    /// The ray depth is above 32.
     PictureDepth = 42,
     /// The format of the pixels is unknown.
     PictureFormat = 43,

@@ -7,16 +7,16 @@ use core::ffi::c_void;
 pub const GRIDEL_NONE: u32 = 0xffff_ffff;
 
 /// Words of a `gridel_scene`.
-pub const GRIDEL_SCENE_WORDS: usize = 64;
+pub const GRIDEL_SCENE_WORDS: usize = 80;
 
 /// Bytes of a stack that is deep enough for every scene.
 pub const GRIDEL_STACK_BYTES_MAX: usize = 1928;
 
 /// Bytes of a workspace that is large enough for every scene, in `fixed` and in `f32`.
-pub const GRIDEL_WORKSPACE_BYTES_MAX: usize = 3072;
+pub const GRIDEL_WORKSPACE_BYTES_MAX: usize = 5120;
 
 /// Bytes of a workspace that is large enough for every scene, in `f64`.
-pub const GRIDEL_WORKSPACE_BYTES_MAX_F64: usize = 4096;
+pub const GRIDEL_WORKSPACE_BYTES_MAX_F64: usize = 7168;
 
 /// A scene: memory of the caller's that `gridel_load` fills in. It refers to the blob, which stays where it is. It may be
 /// moved and copied.
