@@ -158,6 +158,7 @@ fn program(part: &str) -> Vec<Footprint> {
         "base" => vec!["triangle"],
         "absorption" => vec!["triangle", "glass", "absorption"],
         "alpha" => vec!["triangle", "texture", "alpha"],
+        "glossy" => vec!["triangle", "glossy", "mirror"],
         "area-light" => vec!["triangle", "falloff", "area-light"],
         "sphere, triangle, shadow" => vec!["triangle", "sphere", "shadow"],
         part => vec!["triangle", part],
