@@ -80,7 +80,7 @@ enum gridel_status
   GRIDEL_STATUS_RAY_INTERVAL = 33,
   // The picture has no pixels, or is more than 64 times as wide as high.
   GRIDEL_STATUS_PICTURE_SIZE = 40,
-  // The samples per pixel are not 1 to 256.
+  // The samples per pixel are not 1 to 4096.
   GRIDEL_STATUS_PICTURE_SAMPLES = 41,
   // The ray depth is above 32.
   GRIDEL_STATUS_PICTURE_DEPTH = 42,
@@ -295,7 +295,7 @@ typedef struct gridel_picture {
   uint16_t width;
   // Pixels from top to bottom.
   uint16_t height;
-  // Samples per pixel, 1 to 256.
+  // Samples per pixel, 1 to 4096.
   uint16_t samples;
   // How often a ray may be reflected or refracted, 0 to 32.
   uint16_t depth;

@@ -210,7 +210,7 @@ pub struct gridel_picture {
     pub width: u16,
     /// Pixels from top to bottom.
     pub height: u16,
-    /// Samples per pixel, 1 to 256.
+    /// Samples per pixel, 1 to 4096.
     pub samples: u16,
     /// How often a ray may be reflected or refracted, 0 to 32.
     pub depth: u16,

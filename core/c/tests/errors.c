@@ -233,10 +233,10 @@ int main(int count_of_arguments, char **arguments) {
     wrong.width = 0;
     EXPECT(GRIDEL_STATUS_PICTURE_SIZE, renders[k](&scene, &wrong, &rectangle, row, stack));
     wrong = picture;
-    wrong.samples = 257;
+    wrong.samples = 4097;
     EXPECT(GRIDEL_STATUS_PICTURE_SAMPLES, renders[k](&scene, &wrong, &rectangle, row, stack));
     wrong = picture;
-    wrong.depth = 17;
+    wrong.depth = 33;
     EXPECT(GRIDEL_STATUS_PICTURE_DEPTH, renders[k](&scene, &wrong, &rectangle, row, stack));
     wrong.depth = 256;
     EXPECT(GRIDEL_STATUS_PICTURE_DEPTH, renders[k](&scene, &wrong, &rectangle, row, stack));
