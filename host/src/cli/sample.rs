@@ -107,6 +107,8 @@ static SAMPLES: &[Sample] = &[
         "robot-arm",
         "instances that move: an arm on a chain of joints"
     ),
+    fixture!("room", "a closed room with indirect light"),
+    fixture!("sky", "rough mirrors under a sky, through a lens"),
     fixture!("stress-triangle", "hard cases of triangles"),
     fixture!("stress-sphere", "hard cases of spheres"),
     fixture!("stress-box", "hard cases of boxes"),
