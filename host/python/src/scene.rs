@@ -279,6 +279,7 @@ impl NativeScene {
                 },
                 place: SourceSpan::default(),
                 normals: Default::default(),
+                attributes: Default::default(),
             });
         }
         let model = scene::Scene {
