@@ -37,6 +37,12 @@ pub(crate) type VertexColorsOnly<T> = InSomeBuilds<T, { VERTEX_COLORS as usize }
 /// A value that only builds with the code for textures hold.
 pub(crate) type TextureOnly<T> = InSomeBuilds<T, { TEXTURE as usize }>;
 
+/// A value that only builds with the code for the forms of lights hold.
+pub(crate) type FalloffOnly<T> = InSomeBuilds<T, { cfg!(feature = "falloff") as usize }>;
+
+/// A value that only builds with the code for surfaces that send out light hold.
+pub(crate) type EmissionOnly<T> = InSomeBuilds<T, { cfg!(feature = "emission") as usize }>;
+
 /// A value that only builds with the code for depth of field hold.
 pub(crate) type DepthOfFieldOnly<T> =
     InSomeBuilds<T, { cfg!(feature = "depth-of-field") as usize }>;

@@ -18,8 +18,14 @@ pub fn read(text: &str) -> Scene {
     read.unwrap_or_else(|error| panic!("{error}: {text}")).scene
 }
 
-/// The mean of the pixels, from 0 to 1, and its standard error.
+/// The mean of red of the pixels, from 0 to 1, and its standard error.
 pub fn measured(blob: &Blob, format: Format, samples: u16) -> (f64, f64) {
+    let ([mean, ..], error) = measured_color(blob, format, samples);
+    (mean, error)
+}
+
+/// The means of the pixels' channels, from 0 to 1, and the standard error of red.
+pub fn measured_color(blob: &Blob, format: Format, samples: u16) -> ([f64; 3], f64) {
     let scene = blob.scene().expect("a scene");
     let settings = Settings {
         samples,
@@ -27,21 +33,16 @@ pub fn measured(blob: &Blob, format: Format, samples: u16) -> (f64, f64) {
     };
     let job = Job::whole(format, Structure::List, settings);
     let picture = render(&scene, &job, &|| ()).expect("a picture");
-    let values: Vec<f64> = picture
-        .pixels
-        .iter()
-        .map(|it| f64::from(it[0]) / 65_535.0)
-        .collect();
-    assert_eq!(values.len(), SCRAMBLES);
-    let mean = values.iter().sum::<f64>() / SCRAMBLES as f64;
-    let squares = values
-        .iter()
-        .map(|value| (value - mean).powi(2))
-        .sum::<f64>();
-    (
-        mean,
-        (squares / (SCRAMBLES * (SCRAMBLES - 1)) as f64).sqrt(),
-    )
+    assert_eq!(picture.pixels.len(), SCRAMBLES);
+    let values = |channel: usize| {
+        let channel = picture.pixels.iter().map(move |it| it[channel]);
+        channel.map(|it| f64::from(it) / 65_535.0)
+    };
+    let mean = |channel: usize| values(channel).sum::<f64>() / SCRAMBLES as f64;
+    let means = [0, 1, 2].map(mean);
+    let squares: f64 = values(0).map(|value| (value - means[0]).powi(2)).sum();
+    let error = (squares / (SCRAMBLES * (SCRAMBLES - 1)) as f64).sqrt();
+    (means, error)
 }
 
 /// Half a step of a pixel, and of the lattice.

@@ -1,9 +1,13 @@
 //! Depth of field: circles of confusion have the sizes that a thin lens gives.
 
-use gridel_core::{Effects, Format, Settings, Structure};
+use gridel_core::accel::Number;
+use gridel_core::{
+    DualSplit, Effects, Format, NoCount, Ray, Renderer, Settings, Structure, Workspace,
+};
 use gridel_host::blob::Blob;
 use gridel_host::compile::{Options, compile};
 use gridel_host::render::{Job, render};
+use gridel_tests::every_format;
 use gridel_tests::measured::{SCRAMBLES_WIDE, measured, read};
 
 const APERTURE: f64 = 0.8;
@@ -190,4 +194,39 @@ fn lenses_of_all_sizes_bring_light() {
             assert!((0.24..=1.0).contains(&mean(0)), "{format:?}");
         }
     }
+}
+
+/// A ray of the caller's own passes no lens: it shows what it shows in the same scene with a pinhole.
+#[test]
+fn rays_of_the_callers_own_pass_no_lens() {
+    every_format!(shows_what_a_pinhole_shows());
+}
+
+fn shows_what_a_pinhole_shows<N: Number>() {
+    const EFFECTS: u32 = Effects::ALL.0;
+    let colors = |lens: &str| {
+        let blob = blob(&format!(
+            "background = 0.25\n[camera]\neye = [0, 0, 5]\ntarget = [0, 0, 0]\n{lens}\n\
+             [material.lamp]\ndiffuse = 0\nemission = 0.5\nlights = false\n\
+             [[object]]\nkind = 'box'\nmin = [-1, -1, -1]\nmax = [1, 1, 1]\nmaterial = 'lamp'"
+        ));
+        let scene = blob.scene().expect("a scene");
+        let renderer =
+            Renderer::<N, DualSplit, EFFECTS>::with_settings(&scene, Settings::of(&scene));
+        let renderer = renderer.expect("a renderer");
+        let mut space = Workspace::<N, 64, 99>::new();
+        let size = f64::from(scene.header().unit_exponent).exp2();
+        let colors = (0..64).map(|number| {
+            let x = f64::from(number) / 16.0 - 2.0;
+            // Past the camera, from the side of the box.
+            let origin = [x / size, 9.0 / size, 0.0];
+            let ray = Ray::<N>::from_f64(scene.bounds(), origin, [0.0, -1.0, 0.0], 0.0, f64::MAX);
+            renderer.linear_along(&ray.expect("a ray"), &mut space.as_view(), &mut NoCount)
+        });
+        colors.collect::<Vec<_>>()
+    };
+    let pinhole = colors("");
+    assert_eq!(colors("aperture = 3"), pinhole);
+    let lit = pinhole.iter().filter(|color| color[0] > 20_000).count();
+    assert!((28..36).contains(&lit), "{lit}");
 }

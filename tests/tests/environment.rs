@@ -5,14 +5,10 @@ use gridel_core::{Effects, Format, Settings, Structure};
 use gridel_host::blob::Blob;
 use gridel_host::compile::{Options, compile};
 use gridel_host::explain::{LightOutcome, Subject, explain};
-use gridel_host::render::{Job, render};
 use gridel_host::scene::{Environment, Panorama, Scene, Sky, read};
-use gridel_tests::effort::full;
+use gridel_tests::measured::{SCRAMBLES, check, measured_color};
 use std::f64::consts::{PI, TAU};
 use std::sync::Arc;
-
-/// Scrambles: the pixels of a picture, each of which has one of its own.
-const SCRAMBLES: usize = 16;
 
 /// A scene in which 4 by 4 pixels show nearly one point.
 fn scene(eye: &str, target: &str, rest: &str) -> Scene {
@@ -30,59 +26,6 @@ fn scene(eye: &str, target: &str, rest: &str) -> Scene {
 
 fn compiled(scene: &Scene) -> Blob {
     compile(scene, &Options::default()).expect("a blob").blob
-}
-
-/// The means of the pixels' channels, from 0 to 1, and the standard error of red.
-fn measured(blob: &Blob, format: Format, samples: u16) -> ([f64; 3], f64) {
-    let scene = blob.scene().expect("a scene");
-    let settings = Settings {
-        samples,
-        ..Settings::of(&scene)
-    };
-    let job = Job::whole(format, Structure::List, settings);
-    let picture = render(&scene, &job, &|| ()).expect("a picture");
-    assert_eq!(picture.pixels.len(), SCRAMBLES);
-    let values = |channel: usize| {
-        let channel = picture.pixels.iter().map(move |it| it[channel]);
-        channel.map(|it| f64::from(it) / 65_535.0)
-    };
-    let mean = |channel: usize| values(channel).sum::<f64>() / SCRAMBLES as f64;
-    let means = [0, 1, 2].map(mean);
-    let squares: f64 = values(0).map(|value| (value - means[0]).powi(2)).sum();
-    let error = (squares / (SCRAMBLES * (SCRAMBLES - 1)) as f64).sqrt();
-    (means, error)
-}
-
-/// Half a step of a pixel, and of the lattice.
-const ROUNDING: f64 = 2e-5;
-
-/// Red, with the most that it may be off at 4,096 samples in floats and in `fixed`.
-fn check(name: &str, blob: &Blob, exact: f64) {
-    let counts = if full() {
-        vec![16, 256, 4096]
-    } else {
-        vec![16, 256]
-    };
-    for format in Format::ALL {
-        for &samples in &counts {
-            let ([mean, ..], error) = measured(blob, format, samples);
-            eprintln!("{name} {format:?} {samples}: {mean:.6} +- {error:.6}, exact {exact:.6}");
-            let off = (mean - exact).abs();
-            assert!(
-                off <= 3.0 * error + ROUNDING + 2e-4 * exact,
-                "{name} {format:?} {samples}"
-            );
-            let most = if format == Format::Fixed {
-                0.005
-            } else {
-                0.002
-            };
-            assert!(
-                samples < 4096 || off <= most * exact + ROUNDING,
-                "{name} {format:?}"
-            );
-        }
-    }
 }
 
 const BALL: &str = "[[object]]\nkind = 'sphere'\ncenter = [0, 0, 0]\nradius = 1\nmaterial = 'gray'";
@@ -147,7 +90,7 @@ fn gradient_gives_the_analytic_irradiance() {
     // What the map makes of the curve is within 1 in 1,000 of it.
     let exact = 0.8 * 0.9 * 2.0 * (2.0 / 3.0 - 0.25);
     for format in Format::ALL {
-        let ([mean, ..], error) = measured(&blob, format, 1024);
+        let ([mean, ..], error) = measured_color(&blob, format, 1024);
         assert!(
             (mean / exact - 1.0).abs() < 1e-3 + 3.0 * error,
             "{format:?} {mean} {exact}"
@@ -232,8 +175,8 @@ fn mirrors_and_cameras_see_the_picture_where_geometry_says() {
         let direct = compiled(&scene);
         for format in Format::ALL {
             for (found, expected) in [
-                (measured(&mirrored, format, 1).0, expected),
-                (measured(&direct, format, 1).0, shown(eye)),
+                (measured_color(&mirrored, format, 1).0, expected),
+                (measured_color(&direct, format, 1).0, shown(eye)),
             ] {
                 for (found, expected) in found.into_iter().zip(expected) {
                     let off = (found - expected).abs();
@@ -264,8 +207,8 @@ fn bright_spots_converge() {
     // Within the range of a display.
     scene.render.exposure = -1.0;
     let blob = compiled(&scene);
-    let (mean, few) = measured(&blob, Format::F64, 16);
-    let (_, many) = measured(&blob, Format::F64, 4096);
+    let (mean, few) = measured_color(&blob, Format::F64, 16);
+    let (_, many) = measured_color(&blob, Format::F64, 4096);
     let exponent = (few / many).log2() / 8.0;
     eprintln!("{mean:?} {few:.6} {many:.6}: N^-{exponent:.2}");
     assert!(exponent >= 0.6, "{exponent}");

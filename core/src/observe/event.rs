@@ -244,8 +244,8 @@ pub enum Event {
         /// Its place in 1/256 pixel from the left and from the top of the picture; `None` for a ray
         /// of the caller's own.
         place: Option<[i32; 2]>,
-        /// Its radiance, each channel limited to 0 to 1; to 16 where pixels are mapped by tone, or the scene has an
-        /// environment.
+        /// Its radiance, each channel limited to 0 to 1; to 16 where effects act on the mean of samples, or
+        /// need it to be right.
         radiance: [f64; 3],
     },
 }

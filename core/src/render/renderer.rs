@@ -308,6 +308,7 @@ impl<'s, 'a, N: Number, A: Accel, const EFFECTS: u32> Renderer<'s, 'a, N, A, EFF
         Loop {
             scene: self.scene,
             depth: self.settings.depth,
+            from_camera: true,
         }
     }
 }

@@ -5,7 +5,7 @@ use crate::observe::count::Observer;
 use crate::observe::event::Event;
 use crate::ray::Ray;
 use crate::render::samples::Samples;
-use crate::render::trace::limited;
+use crate::render::trace::{Loop, limited};
 use crate::render::{Pixel, Renderer, WorkspaceView};
 use crate::shade::Color;
 use crate::shade::sampler::Sampler;
@@ -41,7 +41,8 @@ impl<N: Number, A: Accel, const EFFECTS: u32> Renderer<'_, '_, N, A, EFFECTS> {
         }
     }
 
-    /// Returns the color along a ray of the caller's own, linear; 65535 is white.
+    /// Returns the color along a ray of the caller's own, linear; 65535 is white. It passes no lens, and effects draw
+    /// the random points of the first sample of the first pixel.
     ///
     /// ```
     /// # static BLOB: &[u8] =
@@ -63,7 +64,10 @@ impl<N: Number, A: Accel, const EFFECTS: u32> Renderer<'_, '_, N, A, EFFECTS> {
         count: &mut C,
     ) -> [u16; 3] {
         space.work.clear();
-        let tracing = self.tracing();
+        let tracing = Loop {
+            from_camera: false,
+            ..self.tracing()
+        };
         let mut radiance = Color::BLACK;
         let camera = || Ok(*ray);
         let sampler = Sampler::new([0; 2], 0);

@@ -98,6 +98,8 @@ pub struct WorkspaceView<'w, N: Number> {
 pub(super) struct Loop<'s, 'a> {
     pub(super) scene: &'s Scene<'a>,
     pub(super) depth: u8,
+    /// Whether rays come from the camera, so that effects of its lens act on them; not so those of the caller's own.
+    pub(super) from_camera: bool,
 }
 
 impl Loop<'_, '_> {
@@ -144,7 +146,7 @@ impl Loop<'_, '_> {
             });
         }
         if let Some(mut ray) = ray {
-            if kind == RayKind::Primary {
+            if self.from_camera && kind == RayKind::Primary {
                 let mut state = tracing.state;
                 All::camera::<EFFECTS, N, _>(&mut tracing, &mut state, sampler.sample(), &mut ray);
                 tracing.state = state;
@@ -417,7 +419,7 @@ impl<'s, N: Number, A: Accel, C: Observer, const EFFECTS: u32> Tracer<'s, N>
 
     #[inline(always)]
     fn point(&self, dimension: u16) -> [u32; 2] {
-        // A hit sends at most one ray of a kind, or two that are glossy and draw the same points.
+        // A hit sends at most one ray of a kind, or two that are glossy or diffuse and draw the same points.
         let bounce = u16::from(self.depth) << 8 | self.kind as u16;
         self.sampler.point(bounce, dimension)
     }

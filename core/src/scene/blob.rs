@@ -12,8 +12,8 @@ use crate::scene::environment::EnvironmentMap;
 use crate::scene::textures::Textures;
 use crate::simd::SimdLevel;
 use crate::target::{
-    DepthOfFieldOnly, EnvironmentOnly, GlossyOnly, IndirectOnly, InstancesOnly, TextureOnly,
-    WideOnly, inline_on_hosts_hint_on_boards,
+    DepthOfFieldOnly, EmissionOnly, EnvironmentOnly, FalloffOnly, GlossyOnly, IndirectOnly,
+    InstancesOnly, TextureOnly, WideOnly, inline_on_hosts_hint_on_boards,
 };
 
 /// A checked view of a blob: a few hundred bytes that borrow from it.
@@ -28,9 +28,9 @@ pub struct Scene<'a> {
     pub(crate) structures: StructureViews<'a>,
     pub(crate) view: &'a View,
     pub(crate) lights: &'a [Light],
-    pub(crate) light_forms: &'a [LightForm],
+    pub(in crate::scene) light_forms: FalloffOnly<&'a [LightForm]>,
     pub(crate) materials: &'a [Material],
-    pub(crate) emissions: &'a [Emission],
+    pub(in crate::scene) emissions: EmissionOnly<&'a [Emission]>,
     pub(in crate::scene) lens: DepthOfFieldOnly<&'a [Lens]>,
     pub(in crate::scene) bounces: IndirectOnly<u8>,
     pub(in crate::scene) object_first: Indices<'a>,
@@ -102,19 +102,19 @@ impl<'a> Scene<'a> {
 
     /// The forms of lights, which lights name by their numbers.
     pub fn light_forms(&self) -> &'a [LightForm] {
-        self.light_forms
+        self.light_forms.get().copied().unwrap_or_default()
     }
 
     /// For each of the first materials, the light that it sends out; none where no material glows.
     pub fn emissions(&self) -> &'a [Emission] {
-        self.emissions
+        self.emissions.get().copied().unwrap_or_default()
     }
 
     /// The light that an object sends out.
     #[inline(always)]
     pub(crate) fn emission(&self, object: u32) -> Option<&'a Emission> {
         let number = self.material_number(object);
-        self.emissions.get(number as usize)
+        self.emissions().get(number as usize)
     }
 
     /// The camera's lens; `None` for a pinhole.
@@ -154,7 +154,7 @@ impl<'a> Scene<'a> {
     /// The form of a light.
     #[inline(always)]
     pub(crate) fn light_form(&self, light: &Light) -> Option<&'a LightForm> {
-        self.light_forms.get(light.form()? as usize)
+        self.light_forms().get(light.form()? as usize)
     }
 
     /// The materials.

@@ -45,7 +45,7 @@ pub(crate) fn check<'a>(scene: &Scene<'a>, sections: &Sections<'a>) -> Result<()
 const ONE: i64 = 1 << 30;
 
 fn check_lights(scene: &Scene<'_>) -> Result<(), BlobError> {
-    for (index, form) in scene.light_forms.iter().enumerate() {
+    for (index, form) in scene.light_forms().iter().enumerate() {
         let section = SectionKind::LightForms;
         form.check_ranges(At { section, index }.location())?;
     }
@@ -59,7 +59,7 @@ fn check_lights(scene: &Scene<'_>) -> Result<(), BlobError> {
 /// Proves the ranges of a light.
 #[inline(always)]
 pub(super) fn check_light(index: usize, light: &Light, scene: &Scene<'_>) -> Result<(), BlobError> {
-    let forms = scene.light_forms.len();
+    let forms = scene.light_forms().len();
     let section = SectionKind::Lights;
     let at = At { section, index };
     light.check_ranges(at.location())?;
@@ -158,10 +158,10 @@ fn check_smooth(scene: &Scene<'_>) -> Result<Effects, BlobError> {
 /// require it.
 fn check_glow(scene: &Scene<'_>) -> Result<Effects, BlobError> {
     let section = SectionKind::Emissions;
-    for (index, emission) in (0..scene.emissions.len()).zip(scene.emissions) {
+    for (index, emission) in (0..scene.emissions().len()).zip(scene.emissions()) {
         emission.check_ranges(At { section, index }.location())?;
     }
-    let required = Effects::EMISSION.only_if(!scene.emissions.is_empty());
+    let required = Effects::EMISSION.only_if(!scene.emissions().is_empty());
     let is_known = Effects(scene.space.header.effects).contains(required);
     Location::Section(section).ensure(is_known, Reason::MissingEffect)?;
     Ok(required)

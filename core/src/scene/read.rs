@@ -20,8 +20,8 @@ use crate::scene::environment::EnvironmentMap;
 use crate::scene::textures::Textures;
 use crate::simd::SimdLevel;
 use crate::target::{
-    AllStructuresOnly, DepthOfFieldOnly, ENVIRONMENT, EnvironmentOnly, GlossyOnly, IndirectOnly,
-    InstancesOnly, TEXTURE, TextureOnly, WideOnly,
+    AllStructuresOnly, DepthOfFieldOnly, ENVIRONMENT, EmissionOnly, EnvironmentOnly, FalloffOnly,
+    GlossyOnly, IndirectOnly, InstancesOnly, TEXTURE, TextureOnly, WideOnly,
 };
 use core::mem::size_of;
 
@@ -110,6 +110,14 @@ pub(crate) fn scene<'a>(
         true => Textures::read(sections)?,
         false => Textures::default(),
     };
+    let light_forms = match const { Effects::AVAILABLE.contains(Effects::FALLOFF) } {
+        true => sections.records(SectionKind::LightForms)?,
+        false => &[],
+    };
+    let emissions = match const { Effects::AVAILABLE.contains(Effects::EMISSION) } {
+        true => sections.records(SectionKind::Emissions)?,
+        false => &[],
+    };
     let lens = match const { Effects::AVAILABLE.contains(Effects::DEPTH_OF_FIELD) } {
         true => the_lens(sections, view)?,
         false => &[],
@@ -142,15 +150,9 @@ pub(crate) fn scene<'a>(
         effects: Effects(header.effects),
         view,
         lights: sections.records(SectionKind::Lights)?,
-        light_forms: match const { Effects::AVAILABLE.contains(Effects::FALLOFF) } {
-            true => sections.records(SectionKind::LightForms)?,
-            false => &[],
-        },
+        light_forms: FalloffOnly::new(|| light_forms),
         materials: sections.records(SectionKind::Materials)?,
-        emissions: match const { Effects::AVAILABLE.contains(Effects::EMISSION) } {
-            true => sections.records(SectionKind::Emissions)?,
-            false => &[],
-        },
+        emissions: EmissionOnly::new(|| emissions),
         lens: DepthOfFieldOnly::new(|| lens),
         bounces: IndirectOnly::new(|| bounces),
         object_first: Indices::read(sections, SectionKind::ObjectFirst)?,

@@ -79,7 +79,6 @@ macro_rules! places {
             /// True if it acts on the mean of samples that are brighter than display white, or needs that mean to be right.
             const DEVELOPS: bool = false;
 
-
             /// Whether a material requires it.
             fn is_required_by_material(material: &Material) -> bool {
                 false

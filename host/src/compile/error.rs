@@ -117,6 +117,15 @@ pub enum CompileError {
         size: f64,
     },
     #[error(
+        "the `{what}` of the camera is {found:.3e} scene units; at most {most:.3e} are possible"
+    )]
+    #[diagnostic(help("write a smaller `{what}` in `[camera]`"))]
+    Lens {
+        what: &'static str,
+        found: f64,
+        most: f64,
+    },
+    #[error(
         "the table of {structure}{size} takes {at_least}{needed} bytes, more than its budget of \
          {budget}"
     )]

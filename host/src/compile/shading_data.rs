@@ -2,17 +2,19 @@
 
 use super::CompileError;
 use super::camera::place;
+use super::checkerboard::{LARGEST_CELL, checker_origin, has_large_cells};
 use super::coordinates::Coordinates;
 use super::environment::EnvironmentData;
 use super::exposure::Exposure;
 use super::extent::Shapes;
 use super::framing::{BACKGROUND, framing_of};
 use super::joints;
+use super::lens;
 use super::light_forms::{form_record, lift};
 use super::section::Section;
 use super::textures::{TextureFigures, Textures};
 use super::tracks;
-use crate::scene::{Camera, Color, Diffuse, Light, Material, Scene, ToneMapping};
+use crate::scene::{Camera, Color, Diffuse, Light, Material, Object, Scene, ToneMapping};
 use crate::shape::{Lattice, unit};
 use crate::table::printable;
 use bytemuck::Zeroable;
@@ -84,11 +86,8 @@ impl ShadingData {
             None => BACKGROUND,
         });
         let (mut lights, mut ambient) = (scene.lights.clone(), scene.ambient);
-        let lights_itself = scene.render.bounces > 0
-            && scene
-                .materials
-                .iter()
-                .any(|material| material.emission != [0.0; 3]);
+        let glows = |object: &Object| scene.materials[object.material].emission != [0.0; 3];
+        let lights_itself = scene.render.bounces > 0 && scene.all_objects().any(glows);
         let is_lit = lights_itself || scene.environment.is_some();
         if lights.is_empty() && ambient == [0.0; 3] && !is_lit {
             let (direction, shoulder) = over_a_shoulder(shapes, &camera);
@@ -222,7 +221,7 @@ impl ShadingData {
             view.effects(),
             String::from("the `tone_mapping` of pictures"),
         ));
-        let lens = lens_record(scene, &camera, lattice, size)?;
+        let lens = lens::record(scene.lens.as_ref(), &camera, lattice)?;
         required_by.push((
             Effects::DEPTH_OF_FIELD.only_if(lens.is_some()),
             String::from("the camera's `aperture`"),
@@ -332,42 +331,6 @@ fn view_record(scene: &Scene) -> Result<View, CompileError> {
     })
 }
 
-/// The lens of a camera.
-fn lens_record(
-    scene: &Scene,
-    camera: &Camera,
-    lattice: &Lattice,
-    size: f64,
-) -> Result<Option<Lens>, CompileError> {
-    let Some(lens) = scene.lens else {
-        return Ok(None);
-    };
-    let focus = lens
-        .focus
-        .unwrap_or_else(|| (camera.target - camera.eye).length());
-    // At least one sub-step.
-    let steps = |length: f64| (length / lattice.unit() * 8192.0).round().max(1.0);
-    let eye = lattice.in_units(camera.eye).abs().max_element() * 8192.0;
-    let (radius, focus_steps) = (steps(lens.radius), steps(focus));
-    let far = [
-        ("lens of the camera", eye.ceil() + radius),
-        ("plane of focus", focus_steps),
-    ];
-    for (what, steps) in far {
-        if steps > FARTHEST as f64 {
-            return Err(CompileError::FarAway {
-                what: what.into(),
-                distance: steps / 8192.0 * lattice.unit(),
-                size,
-            });
-        }
-    }
-    Ok(Some(Lens {
-        radius: radius as i64,
-        focus: focus_steps as i64,
-    }))
-}
-
 /// A place that may lie beyond the scene, in units with 13 fraction bits.
 fn on_lattice(
     lattice: &Lattice,
@@ -456,42 +419,6 @@ fn material_record(material: &Material, lattice: &Lattice) -> record::Material {
     }
 }
 
-/// The largest cell of a checkerboard in units, twice as wide as a scene's box.
-const LARGEST_CELL: f64 = 131_071.0;
-
-/// Returns whether a material has a checkerboard whose cells are larger than a record holds.
-fn has_large_cells(material: &Material, lattice: &Lattice) -> bool {
-    matches!(material.diffuse, Diffuse::Checker { size, .. } if size > LARGEST_CELL * lattice.unit())
-}
-
-/// A corner of a checkerboard's cells on one axis, in units, no farther than [`LARGEST_CELL`] from the lattice's middle.
-/// The pattern is that of the given corner: everywhere, or, where cells are larger than that, in the scene's box.
-fn checker_origin(corner: f64, size: f64) -> f64 {
-    if size <= LARGEST_CELL {
-        // It repeats after two cells.
-        let first = corner.rem_euclid(2.0 * size);
-        return if first > LARGEST_CELL {
-            first - 2.0 * size
-        } else {
-            first
-        };
-    }
-    // The cell around the middle, in which it takes turns with its neighbors.
-    let cell = (-corner / size).floor();
-    let low = corner + cell * size;
-    let high = low + size;
-    let is_even = cell.rem_euclid(2.0) == 0.0;
-    // The nearer of its sides is kept, or lies beyond the box; the other is beyond it, too.
-    let edge = LARGEST_CELL / 2.0;
-    if -low <= high {
-        let side = low.max(-edge);
-        if is_even { side } else { side + LARGEST_CELL }
-    } else {
-        let side = high.min(edge);
-        if is_even { side - LARGEST_CELL } else { side }
-    }
-}
-
 /// A color of light as a blob's records hold it: 20 fraction bits, 0 to 2,047.999999; saturates.
 ///
 /// ```
@@ -505,34 +432,4 @@ pub fn radiance(color: Color) -> [i32; 3] {
 /// Ratios with 30 fraction bits, 0 to 1.
 fn ratio(color: Color) -> [i32; 3] {
     color.map(|channel| (channel.clamp(0.0, 1.0) * f64::from(1 << 30)).round() as i32)
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    /// The number of the cell that holds a place, counted from a corner.
-    fn parity(place: f64, corner: f64, size: f64) -> bool {
-        ((place - corner) / size).floor().rem_euclid(2.0) == 1.0
-    }
-
-    #[test]
-    fn checkerboards_of_every_size_keep_their_pattern_in_the_scenes_box() {
-        let sizes = [
-            1.0, 1e3, 40_000.0, 70_000.0, 131_000.0, 131_072.0, 2e5, 3e6, 1e12,
-        ];
-        for size in sizes {
-            for step in -40..=40 {
-                let corner = f64::from(step) * 0.0625 * size + 0.3;
-                let found = checker_origin(corner, size);
-                assert!(found.abs() <= LARGEST_CELL, "{found}");
-                for place in (-32_768..=32_768).step_by(512) {
-                    let place = f64::from(place) + 0.1;
-                    let expected = parity(place, corner, size);
-                    let found = parity(place, found, size.min(LARGEST_CELL));
-                    assert_eq!(found, expected, "{place} in cells of {size} from {corner}");
-                }
-            }
-        }
-    }
 }

@@ -274,8 +274,14 @@ impl<'t> Reader<'t> {
                     ..
                 } = self;
                 // The first ray of a sample is the one from the camera, or the one that was asked for.
-                let given = (current == 0 && !*light).then_some(self.first);
+                let first = (current == 0 && !*light).then_some(self.first);
                 if let Some(ray) = self.sample.rays.last_mut() {
+                    // Through a lens it starts from there.
+                    let from = ray.from_lens.map(|point| Given {
+                        origin: point.into(),
+                        direction: None,
+                    });
+                    let given = first.map(|first| from.unwrap_or(first));
                     let begin = |event: &Event| Walk::begin(frame, *format, given, event);
                     ray.take(scene, frame, begin, event, light);
                 }

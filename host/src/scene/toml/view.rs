@@ -44,7 +44,7 @@ pub(super) fn camera(table: Value<'_>) -> Result<(Camera, Option<Lens>), SceneEr
 }
 
 fn lens(fields: &Fields<'_>) -> Result<Option<Lens>, SceneError> {
-    let aperture = fields.or("aperture", 0.0, |value| value.number_in(0.0..=f64::MAX))?;
+    let aperture = fields.or("aperture", 0.0, aperture)?;
     let focus = fields.or("focus", None, |value| value.positive().map(Some))?;
     if let Some(value) = fields.get("focus").filter(|_| aperture == 0.0) {
         return Err(value.error(
@@ -54,6 +54,17 @@ fn lens(fields: &Fields<'_>) -> Result<Option<Lens>, SceneError> {
     }
     let radius = 0.5 * aperture;
     Ok((radius > 0.0).then_some(Lens { radius, focus }))
+}
+
+fn aperture(value: Value<'_>) -> Result<f64, SceneError> {
+    let aperture = value.number()?;
+    if aperture >= 0.0 {
+        return Ok(aperture);
+    }
+    Err(value.error(
+        format!("`{}` is {aperture}; it must be 0 or more", value.key),
+        "write the diameter of the lens in scene units, or 0 for a pinhole",
+    ))
 }
 
 pub(super) fn field_of_view(value: Value<'_>) -> Result<f64, SceneError> {
