@@ -332,7 +332,8 @@ fn the_call_stack_of_a_memory_report_is_enough_for_small_code() {
             ("sifive_e", "fixed"),
             ("mps2-an386", "f32"),
         ] {
-            let inspect = ["inspect", "quick.gridel", "--target", board];
+            let target = ["--target", board, "--flash", "1M"];
+            let inspect = [&["inspect", "quick.gridel"], &target[..]].concat();
             let report = folder.json(&inspect);
             let [fast, small] = ["fast", "small"].map(|build| {
                 report["memory_report"][build]["call_stack"]
