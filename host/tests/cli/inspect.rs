@@ -332,7 +332,7 @@ fn the_call_stack_of_a_memory_report_is_enough_for_small_code() {
             ("sifive_e", "fixed"),
             ("mps2-an386", "f32"),
         ] {
-            let target = ["--target", board, "--flash", "1M"];
+            let target = ["--target", board, "--flash", "1M", "--ram", "64K"];
             let inspect = [&["inspect", "quick.gridel"], &target[..]].concat();
             let report = folder.json(&inspect);
             let [fast, small] = ["fast", "small"].map(|build| {
@@ -376,6 +376,7 @@ fn the_call_stack_of_a_memory_report_is_enough_for_small_code() {
     assert_eq!(build(all).code, Some(0));
     let rejected = build(all - more);
     assert_eq!(rejected.code, Some(3));
+    let more = grouped(more);
     let advice = format!("without the feature `small` the call stack takes {more} bytes less");
     assert!(rejected.said().contains(&advice), "{}", rejected.said());
 }
