@@ -9,18 +9,17 @@ mod program;
 #[path = "browser/mod.rs"]
 mod browser;
 
-use base64::Engine;
-use base64::engine::general_purpose::STANDARD;
-use browser::Browser;
+#[path = "web/page.rs"]
+mod page;
+
 use flate2::Compression;
 use flate2::write::GzEncoder;
 use libtest_mimic::{Arguments, Failed, Trial};
-use program::Folder;
+use page::{Page, assert_no_message, choose, choose_format, content, settle, shown};
 use serde_json::json;
-use std::io::{BufRead, BufReader, Cursor, Write};
-use std::path::{Path, PathBuf};
-use std::process::{Child, Stdio};
-use std::time::{Duration, Instant};
+use std::io::{Cursor, Write};
+use std::path::PathBuf;
+use std::time::Duration;
 
 /// The most that the whole page may take, each file compressed.
 const MOST_BYTES: usize = 1_500_000;
@@ -67,130 +66,6 @@ fn main() {
     // Each has a browser of its own, which takes all cores.
     arguments.test_threads = Some(1);
     libtest_mimic::run(&arguments, trials.into()).exit();
-}
-
-/// A page that is served, and files of a test.
-struct Page {
-    folder: PathBuf,
-    files: Folder,
-    server: Child,
-    url: String,
-}
-
-impl Page {
-    fn serve(folder: &Path) -> Self {
-        let files = Folder::new();
-        for name in ["glass-chess", "quick"] {
-            let scene = program::fixture(name);
-            files.write(&format!("{name}.toml"), &scene);
-        }
-        let folder = folder.canonicalize().unwrap();
-        let mut command = files.command(&["web", "--port", "0", "--dir"]);
-        let mut server = command.arg(&folder).stdout(Stdio::piped()).spawn().unwrap();
-        let mut line = String::new();
-        let mut lines = BufReader::new(server.stdout.take().unwrap());
-        lines.read_line(&mut line).unwrap();
-        let url = line.split(' ').next().unwrap().to_owned();
-        assert!(url.starts_with("http://127.0.0.1:"), "{line}");
-        Self {
-            folder,
-            files,
-            server,
-            url,
-        }
-    }
-
-    /// A browser that shows the page, once the first picture is compared.
-    fn open(&self) -> Browser {
-        let browser = Browser::open();
-        browser.post("/url", &json!({"url": self.url}));
-        settle(&browser);
-        browser
-    }
-
-    /// The sRGB pixels of the program's picture.
-    fn rendered(&self, arguments: &[&str]) -> Vec<u8> {
-        let all = [&["render", "-o", "picture.ppm"], arguments].concat();
-        self.files.done(&all);
-        let file = self.files.read("picture.ppm");
-        let header = file.split_inclusive(|&byte| byte == b'\n').take(3);
-        let length: usize = header.map(<[u8]>::len).sum();
-        file[length..].to_vec()
-    }
-
-    /// Waits for a file that the browser saves.
-    fn saved(&self, name: &str) -> Vec<u8> {
-        let begun = Instant::now();
-        while !self.files.path(name).exists() {
-            assert!(begun.elapsed() < Duration::from_secs(30), "no {name}");
-            std::thread::sleep(Duration::from_millis(50));
-        }
-        self.files.read(name)
-    }
-}
-
-impl Drop for Page {
-    fn drop(&mut self) {
-        drop(self.server.kill());
-        drop(self.server.wait());
-    }
-}
-
-/// Waits until what was asked for is drawn and compared.
-fn settle(browser: &Browser) {
-    let begun = Instant::now();
-    loop {
-        match browser
-            .text("return document.documentElement.dataset.state ?? ''")
-            .as_str()
-        {
-            "done" => return,
-            "error" => panic!("{}", content(browser, "error-text")),
-            _ => {}
-        }
-        assert!(begun.elapsed() < Duration::from_secs(90), "no picture");
-        std::thread::sleep(Duration::from_millis(20));
-    }
-}
-
-fn content(browser: &Browser, id: &str) -> String {
-    browser.text(&format!(
-        "return document.getElementById('{id}').textContent"
-    ))
-}
-
-/// The pixels that the canvas shows, three bytes each.
-fn shown(browser: &Browser) -> Vec<u8> {
-    let text = browser.text(
-        "const canvas = document.getElementById('canvas');
-         const { data } = canvas.getContext('2d').getImageData(0, 0, canvas.width, canvas.height);
-         let text = '';
-         for (let at = 0; at < data.length; at += 4) text += String.fromCharCode(data[at], data[at + 1], data[at + 2]);
-         return btoa(text);",
-    );
-    STANDARD.decode(text).unwrap()
-}
-
-fn choose(browser: &Browser, id: &str, value: &str) {
-    browser.click(&format!("//*[@id='{id}']"));
-    let option = browser.id(&format!("//*[@id='{id}']/option[@value='{value}']"));
-    browser.post(&format!("/element/{option}/click"), &json!({}));
-    // A list that is open would take the next key.
-    let chosen = format!("document.getElementById('{id}').value === '{value}'");
-    browser.wait(&chosen);
-    settle(browser);
-}
-
-fn choose_format(browser: &Browser, format: &str) {
-    browser.click(&format!(
-        "//label[input[@name='format'][@value='{format}']]"
-    ));
-    settle(browser);
-}
-
-fn assert_no_message(browser: &Browser) {
-    let messages = browser.post("/se/log", &json!({"type": "browser"}));
-    assert_eq!(messages, json!([]));
 }
 
 fn page_is_small(page: &Page) {

@@ -1,8 +1,8 @@
 //! Hits as arrays of NumPy's.
 
+use crate::arguments::invalid;
 use crate::query::{self, Columns, Found, How};
 use crate::rays::Rays;
-use crate::scene::invalid;
 use gridel_core::Scene;
 use gridel_host::trace::SceneRay;
 use numpy::{IntoPyArray, PyArray1, PyArray2, PyArrayMethods};

@@ -1,8 +1,10 @@
 //! The Python module `gridel._gridel`: scenes, and queries of NumPy arrays. The package's Python files are what users
 //! import.
 
+mod arguments;
 mod closed;
 mod hit_arrays;
+mod meshes;
 mod query;
 mod rays;
 mod scene;

@@ -1,19 +1,22 @@
 //! Scenes as Python holds them.
 
+mod place;
+
+use crate::arguments::{format, invalid, options, structure};
 use crate::closed::closed;
 use crate::hit_arrays::{Arrays, Cast, HitArrays, MeshHitArrays, append, column, rows, zeros};
+use crate::meshes::{self, Mesh};
 use crate::query::{self, Any, FirstPrimitive, Found, How, NONE};
 use crate::rays::{Array, Points, Rays};
-use glam::DVec3;
-use gridel_core::{BlobError, Format, Scene, Settings, Structure};
+use gridel_core::{BlobError, Scene, Settings, Structure};
 use gridel_host::blob::{Blob, best_structures};
 use gridel_host::compile::{Options, compile};
 use gridel_host::picture::srgb;
 use gridel_host::render::{Job, render};
-use gridel_host::scene::{self, ImportOptions, Imported, Material, Object, Shape, SourceSpan};
+use gridel_host::scene::{self, ImportOptions, Imported, Shape};
 use gridel_host::trace::SceneRay;
-use numpy::{IntoPyArray, PyArray2, PyArrayMethods, PyReadonlyArray2, PyUntypedArray};
-use pyo3::exceptions::{PyFileNotFoundError, PyKeyError, PyValueError};
+use numpy::{IntoPyArray, PyArray2, PyArrayMethods, PyUntypedArray};
+use pyo3::exceptions::{PyFileNotFoundError, PyKeyError};
 use pyo3::prelude::*;
 use pyo3::types::PyBytes;
 use std::path::PathBuf;
@@ -40,45 +43,6 @@ pub struct NativeScene {
     firsts: Vec<u32>,
     displacement: f64,
     closed: OnceLock<Vec<bool>>,
-}
-
-pub fn invalid(error: impl std::fmt::Display) -> PyErr {
-    PyValueError::new_err(error.to_string())
-}
-
-fn structure(name: &str) -> PyResult<Structure> {
-    let found = Structure::ALL.into_iter().find(|it| it.name() == name);
-    found.ok_or_else(|| {
-        let names = Structure::ALL.map(Structure::name).join(", ");
-        invalid(format!(
-            "unknown structure `{name}`; the structures are {names}"
-        ))
-    })
-}
-
-fn format(name: &str) -> PyResult<Format> {
-    let found = Format::ALL.into_iter().find(|it| it.name() == name);
-    found.ok_or_else(|| {
-        invalid(format!(
-            "unknown number format `{name}`; use fixed, f32 or f64"
-        ))
-    })
-}
-
-fn options(accel: &[String], lattice_bits: u8) -> PyResult<Options> {
-    if !(16..=24).contains(&lattice_bits) {
-        return Err(invalid(format!(
-            "lattice_bits is {lattice_bits}; it must be 16 to 24"
-        )));
-    }
-    Ok(Options {
-        structures: accel
-            .iter()
-            .map(|name| structure(name))
-            .collect::<PyResult<_>>()?,
-        lattice_bits,
-        ..Options::default()
-    })
 }
 
 impl NativeScene {
@@ -143,60 +107,6 @@ impl NativeScene {
         let chosen = self.scene()?.choose(how.structure);
         chosen.ok_or_else(|| invalid("the structure is not there"))
     }
-
-    /// The corners of a triangle of a mesh as they were given, by its number; `None` of other primitives, and of those of
-    /// instances.
-    fn triangle(&self, primitive: u32) -> Option<[DVec3; 3]> {
-        let model = self.model.as_ref()?;
-        let object = self.firsts.partition_point(|&first| first <= primitive);
-        let object = object.checked_sub(1)?;
-        let Shape::Mesh {
-            vertices,
-            triangles,
-        } = &model.objects.get(object)?.shape
-        else {
-            return None;
-        };
-        let corners = triangles.get((primitive - self.firsts[object]) as usize)?;
-        Some(corners.map(|corner| vertices[corner as usize]))
-    }
-
-    /// Where a ray meets a triangle as it was given, in double precision, and the weights of its second and third corner;
-    /// by the hit's own t where the triangle is not a mesh's, or nearly parallel to the ray.
-    // Inlined, it computes what is used there, and nothing else.
-    #[inline(always)]
-    fn place(&self, ray: &SceneRay, hit: &Found) -> (f64, DVec3, [f64; 2]) {
-        let own = ray.origin + ray.direction * hit.t;
-        if hit.instance != NONE {
-            return (hit.t, own, [f64::NAN; 2]);
-        }
-        let Some([a, b, c]) = self.triangle(hit.primitive) else {
-            return (hit.t, own, [f64::NAN; 2]);
-        };
-        let (to_b, to_c) = (b - a, c - a);
-        let normal = to_b.cross(to_c);
-        let approach = normal.dot(ray.direction);
-        // Steeper than one in a thousand.
-        let is_steep =
-            approach * approach > 1e-6 * normal.length_squared() * ray.direction.length_squared();
-        let (t, place) = if is_steep {
-            let t = normal.dot(a - ray.origin) / approach;
-            (t, ray.origin + ray.direction * t)
-        } else {
-            (hit.t, own)
-        };
-        let relative = place - a;
-        let square = normal.length_squared();
-        let weight = |area: DVec3| (area.dot(normal) / square).clamp(0.0, 1.0);
-        let (u, v) = (weight(relative.cross(to_c)), weight(to_b.cross(relative)));
-        (t, place, [u, v])
-    }
-
-    /// The t of a hit, and the weights of the corners of its triangle.
-    fn weights(&self, ray: &SceneRay, hit: &Found) -> (f64, [f32; 2]) {
-        let (t, _, uv) = self.place(ray, hit);
-        (t, uv.map(|weight| weight as f32))
-    }
 }
 
 #[pymethods]
@@ -230,63 +140,12 @@ impl NativeScene {
     #[staticmethod]
     fn from_meshes(
         py: Python<'_>,
-        meshes: Vec<(PyReadonlyArray2<'_, f64>, PyReadonlyArray2<'_, i64>)>,
+        meshes: Vec<Mesh<'_>>,
         accel: Vec<String>,
         lattice_bits: u8,
     ) -> PyResult<Self> {
         let options = options(&accel, lattice_bits)?;
-        let mut objects = Vec::new();
-        for (number, (vertices, faces)) in meshes.iter().enumerate() {
-            let rows = |values: &[f64]| -> Vec<DVec3> {
-                let (rows, _) = values.as_chunks::<3>();
-                rows.iter().map(|&row| DVec3::from_array(row)).collect()
-            };
-            let (vertices, faces) = (
-                vertices.as_slice().map_err(invalid)?,
-                faces.as_slice().map_err(invalid)?,
-            );
-            let vertices = rows(vertices);
-            let (faces, _) = faces.as_chunks::<3>();
-            if let Some(place) = vertices.iter().position(|vertex| !vertex.is_finite()) {
-                return Err(invalid(format!(
-                    "mesh {number}: vertex {place} is not finite"
-                )));
-            }
-            let count = vertices.len();
-            let corner = |(place, face): (usize, &[i64; 3])| -> PyResult<[u32; 3]> {
-                if face
-                    .iter()
-                    .any(|&corner| corner < 0 || corner >= count as i64)
-                {
-                    return Err(invalid(format!(
-                        "mesh {number}: face {place} is {face:?}; vertices are numbered 0 to {}",
-                        count as i64 - 1
-                    )));
-                }
-                Ok(face.map(|corner| corner as u32))
-            };
-            let triangles = faces
-                .iter()
-                .enumerate()
-                .map(corner)
-                .collect::<PyResult<Vec<_>>>()?;
-            objects.push(Object {
-                name: format!("mesh {number}"),
-                material: 0,
-                shape: Shape::Mesh {
-                    vertices,
-                    triangles,
-                },
-                place: SourceSpan::default(),
-                normals: Default::default(),
-                attributes: Default::default(),
-            });
-        }
-        let model = scene::Scene {
-            materials: vec![Material::default()],
-            objects,
-            ..scene::Scene::default()
-        };
+        let model = meshes::model(&meshes)?;
         py.detach(|| Self::compiled(model, &options))
     }
 

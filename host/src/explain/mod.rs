@@ -1,10 +1,11 @@
 //! Explains a ray or a pixel: the nodes that are visited, the hits, and the light that they bring.
 //!
 //! The renderer reports it through [`Observer::event`]; this module only puts it in order: `walk.rs`
-//! keeps a query's way through a structure, `explanation.rs` the rays of a pixel and what they add up to,
+//! keeps a query's way through a structure, `reader.rs` finds the rays, `explanation.rs` has what they add up to,
 //! `text.rs` writes it down for people.
 
 mod explanation;
+mod reader;
 mod text;
 mod walk;
 

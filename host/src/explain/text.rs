@@ -1,10 +1,14 @@
 //! Explanations as text for people.
 
+mod walk;
+mod words;
+
 use super::explanation::{Explanation, Hit, LightOutcome, Lighting, Ray, Sample};
-use super::walk::{Culled, Plane, Side, Step, Tested, Verdict, Walk};
+use super::walk::Walk;
 use crate::compile::Names;
 use crate::table::{counted, printable, significant};
 use std::fmt::{self, Display, Formatter};
+use words::{bound, color, counted_were, peak, precise, vector};
 
 /// An explanation as text.
 pub struct Shown<'s> {
@@ -376,193 +380,5 @@ impl Shown<'_> {
                 format!("{light} reaches it, but the material reflects none of it")
             }
         }
-    }
-
-    fn walk(&self, f: &mut Formatter<'_>, walk: &Walk) -> fmt::Result {
-        write!(
-            f,
-            "  The ray's interval is {} to {}{}.",
-            along(walk, walk.interval[0]),
-            along(walk, walk.interval[1]),
-            if walk.any {
-                "; any hit ends the query"
-            } else {
-                ""
-            }
-        )?;
-        if walk.moved != 0.0 {
-            write!(
-                f,
-                " It enters the scene's box at {}, at distance {}.",
-                vector(walk.start, significant),
-                significant(walk.moved)
-            )?;
-        }
-        writeln!(f)?;
-        for step in &walk.steps {
-            match step {
-                Step::Opened { place } => writeln!(f, "  {place}")?,
-                Step::InstanceEntered { instance, part } => writeln!(
-                    f,
-                    "  {}: the ray goes on in part {part}, in whose coordinates the planes are",
-                    self.instance(*instance)
-                )?,
-                Step::InstanceLeft { instance, nearest } => writeln!(
-                    f,
-                    "  {} is left, {}",
-                    self.instance(*instance),
-                    match nearest {
-                        true => "with the closest hit so far",
-                        false => "without a closer hit",
-                    }
-                )?,
-                Step::Tested(tested) => writeln!(f, "    {}", tested_text(walk, tested))?,
-                Step::GivenUp { place, enters, hit } => writeln!(
-                    f,
-                    "  {place} is skipped: it begins at {}, behind the hit at {}",
-                    along(walk, *enters),
-                    along(walk, *hit)
-                )?,
-                Step::Candidate(candidate) => {
-                    let crossing = candidate.crossing.map(|[enter, leave]| {
-                        if enter == leave {
-                            format!("is hit at {}", along(walk, enter))
-                        } else {
-                            format!(
-                                "is hit from {} to {}",
-                                along(walk, enter),
-                                along(walk, leave)
-                            )
-                        }
-                    });
-                    let crossing = crossing.unwrap_or_else(|| String::from("is missed"));
-                    let verdict = match candidate.verdict {
-                        Verdict::Missed => "",
-                        Verdict::NotInInterval => ", outside of the ray's interval",
-                        Verdict::Farther => ", behind the closest hit",
-                        Verdict::Nearest => ": the closest hit so far",
-                    };
-                    let (kind, primitive) = (candidate.kind, candidate.primitive);
-                    let object = match candidate.instance {
-                        Some(_) => format!(" of {}", self.object(candidate.object)),
-                        None => String::new(),
-                    };
-                    writeln!(f, "    {kind} {primitive}{object} {crossing}{verdict}")?;
-                }
-            }
-        }
-        Ok(())
-    }
-}
-
-/// A node or cell that was tested, and what came of it.
-fn tested_text(walk: &Walk, tested: &Tested) -> String {
-    let along = |distance| along(walk, distance);
-    let plane = |plane: &Plane| {
-        let (axis, at) = (plane.axis, significant(plane.at));
-        format!("{axis} = {at} at {}", along(plane.distance))
-    };
-    let place = format!("{}{}", tested.place, between(&tested.planes));
-    match tested.culled {
-        Some(Culled::Empty) => format!("{place} is empty"),
-        Some(Culled::NotInVolume) => {
-            format!("{place} is culled: the ray is not in it within its interval")
-        }
-        None => format!(
-            "{place}: the ray is in it from {} to {}",
-            along(tested.span[0]),
-            along(tested.span[1])
-        ),
-        Some(Culled::Beside { leaves, enters }) => format!(
-            "{place} is culled: the ray leaves at {} before it enters at {}",
-            plane(&leaves),
-            plane(&enters)
-        ),
-        Some(Culled::Outside { along: plane }) => format!(
-            "{place} is culled: the ray is parallel to {} = {}, and outside",
-            plane.axis,
-            significant(plane.at)
-        ),
-        Some(Culled::BehindHit { enters, hit }) => format!(
-            "{place} is culled: {} lies behind the hit at {}",
-            plane(&enters),
-            along(hit)
-        ),
-        Some(Culled::NotInInterval) => {
-            format!("{place} is culled: it lies outside of the ray's interval")
-        }
-        Some(Culled::NotInParent {
-            plane: crossed,
-            around: [enter, leave],
-        }) => format!(
-            "{place} is culled: {} is outside of the ray's interval in the parent, {} to {}",
-            plane(&crossed),
-            along(enter),
-            along(leave)
-        ),
-        Some(Culled::Margin) => {
-            format!("{place} is culled by less than the rounding margin")
-        }
-    }
-}
-
-/// The planes of a test, if all are on one axis: what was tested is not all of a box.
-fn between(planes: &[Plane]) -> String {
-    let Some(axis) = planes.first().map(|plane| plane.axis) else {
-        return String::new();
-    };
-    if planes.iter().any(|plane| plane.axis != axis) {
-        return String::new();
-    }
-    let side = |side| planes.iter().find(|plane| plane.side == side);
-    let bounds = [(Side::Lower, "from"), (Side::Upper, "to")].map(|(wanted, word)| {
-        side(wanted).map_or(String::new(), |plane| {
-            format!(" {word} {}", significant(plane.at))
-        })
-    });
-    format!(" ({axis}{})", bounds.concat())
-}
-
-fn counted_were(number: usize, thing: &str) -> String {
-    let verb = if number == 1 { "was" } else { "were" };
-    format!("{} {verb}", counted(number, thing))
-}
-
-fn peak(color: [f64; 3]) -> f64 {
-    color.into_iter().fold(0.0, f64::max)
-}
-
-fn color([red, green, blue]: [f64; 3]) -> String {
-    format!("{red:.5} {green:.5} {blue:.5}")
-}
-
-fn vector(vector: [f64; 3], number: impl Fn(f64) -> String) -> String {
-    let [x, y, z] = vector.map(number);
-    format!("({x}, {y}, {z})")
-}
-
-/// A number with all digits that count where it is known within an error, and two more.
-fn precise(number: f64, error: f64) -> String {
-    let digits = (number.abs().log10().floor() - error.log10().floor()).clamp(0.0, 14.0);
-    if !digits.is_finite() || !(1e-5..1e15).contains(&number.abs()) {
-        return number.to_string();
-    }
-    let decimals = (digits + 2.0 - number.abs().log10().floor()).max(0.0);
-    format!("{number:.*}", decimals as usize)
-}
-
-/// An error, rounded up.
-fn bound(error: f64) -> String {
-    match error {
-        0.0 => String::from("0"),
-        _ => format!("{:.1e}", 1.06 * error),
-    }
-}
-
-/// A distance, with the precision that it has from where the kernels start.
-fn along(walk: &Walk, distance: f64) -> String {
-    match walk.moved {
-        0.0 => significant(distance),
-        moved => precise(distance, 1e-4 * (distance - moved).abs()),
     }
 }

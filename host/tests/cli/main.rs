@@ -16,6 +16,7 @@ mod instances;
 mod joints;
 mod linear;
 mod live;
+mod memory_report;
 mod merge;
 mod names;
 mod options;

@@ -2,6 +2,8 @@
 
 mod exact;
 mod hard;
+mod numbers;
+mod placed;
 mod shares;
 
 use exact::Exact;

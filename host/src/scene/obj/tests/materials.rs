@@ -1,0 +1,176 @@
+//! Materials and textures.
+
+use super::*;
+
+fn material(text: &str) -> (Material, Vec<String>) {
+    let mut warnings = Warnings::default();
+    let source = Source::from_bytes(Path::new("t.mtl"), text.into());
+    let access = Access::of(Path::new("t.mtl"), false);
+    let mut images = Images::new(&access);
+    let mut all = mtl::read(&source, &mut images, &mut warnings).unwrap();
+    (all.remove(0).1, warnings.into_sentences())
+}
+
+#[test]
+fn materials() {
+    let (plain, warnings) =
+        material("newmtl my red #2\nKd 1 0 .5\nKs .2 # grey\nNs 96.08\nillum 2\nKe 0 0 0\n");
+    assert_eq!(warnings, [] as [&str; 0]);
+    assert_eq!(plain.name, "my red #2");
+    assert_eq!(plain.diffuse, Diffuse::Plain([1.0, 0.0, 0.5]));
+    assert_eq!(
+        (plain.highlight, plain.shininess, plain.mirror),
+        ([0.2; 3], 96, [0.0; 3])
+    );
+    assert_eq!(plain.transmit, [0.0; 3]);
+
+    let (mirror, _) = material("newmtl a\nKs .9 .8 .7\nillum 3\n");
+    assert_eq!(mirror.mirror, [0.9, 0.8, 0.7]);
+
+    let (glass, _) = material("newmtl a\nKd 1 1 1\nillum 7\nNi 1.5\nTf .9 1 .9\nd 1\n");
+    assert_eq!((glass.transmit, glass.ior), ([0.9, 1.0, 0.9], 1.5));
+    assert_eq!(glass.diffuse, Diffuse::Plain([0.0; 3]));
+
+    let (pane, _) = material("newmtl a\nKd 1 1 1\nd -halo .25\nNi 1.45\n");
+    assert_eq!((pane.transmit, pane.ior), ([0.75; 3], 1.0));
+
+    let (opaque, warnings) = material("newmtl a\nTr 1\nillum 1\nKs 1 1 1\nmap_Kd a.jpg\n");
+    assert_eq!((opaque.transmit, opaque.highlight), ([0.0; 3], [0.0; 3]));
+    assert_eq!(warnings.len(), 2);
+}
+
+#[test]
+fn material_faults_name_their_own_file() {
+    let fault = |text: &str| {
+        let source = Source::from_bytes(Path::new("t.mtl"), text.into());
+        let access = Access::of(Path::new("t.mtl"), false);
+        let mut images = Images::new(&access);
+        mtl::read(&source, &mut images, &mut Warnings::default())
+            .unwrap_err()
+            .to_string()
+    };
+    assert_eq!(fault("newmtl a\nKd .5 .5\n"), "t.mtl:2: Kd has 2 numbers");
+    assert_eq!(fault("newmtl a\nNs\n"), "t.mtl:2: Ns has no value");
+    assert_eq!(
+        fault("newmtl a\nd x\n"),
+        "t.mtl:2: the value of d is \"x\", which is not a number"
+    );
+}
+
+#[test]
+fn a_missing_material_file_is_a_warning() {
+    let warnings = read(&format!("mtllib no such file.mtl\n{CORNERS}f 1 2 3\n"))
+        .unwrap()
+        .warnings;
+    assert_eq!(warnings.len(), 3);
+    assert!(
+        warnings[0].starts_with("t.obj:1: the material file \"no\" cannot be read"),
+        "{}",
+        warnings[0]
+    );
+}
+
+/// A square with a material file of one material, and a texture of two by one texels.
+fn textured(faces: &str, material: &str) -> Result<Imported, SceneError> {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("t.obj");
+    let corners = "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nvt 0 0\nvt 1 0\nvt 1 1\nvt 0\n";
+    let text = format!("mtllib t.mtl\n{corners}usemtl m\n{faces}");
+    std::fs::write(&path, text).unwrap();
+    std::fs::write(
+        folder.path().join("t.mtl"),
+        format!("newmtl m\n{material}\n"),
+    )
+    .unwrap();
+    let pixels = [[255, 0, 0, 255], [0, 0, 255, 255]];
+    let image = crate::scene::image::tests::png_of(2, 1, &pixels);
+    std::fs::write(folder.path().join("two colors.png"), image).unwrap();
+    std::fs::write(folder.path().join("broken.png"), "PNG").unwrap();
+    load(&path)
+}
+
+#[test]
+fn textures_are_read_with_their_options() {
+    let square = "f 1/1 2/2 3/3 4/4\n";
+    let plain = textured(square, "map_Kd two colors.png").unwrap();
+    let (object, material) = (&plain.scene.objects[0], &plain.scene.materials[0]);
+    assert_eq!(material.diffuse, Diffuse::Plain([1.0; 3]));
+    let texture = material.texture.as_ref().unwrap();
+    assert_eq!((texture.image.size(), texture.bilinear), ([2, 1], true));
+    assert_eq!(texture.wrap, [Wrap::Repeat; 2]);
+    // v points up in the file, and down here.
+    let placed = object.attributes.placed_on(Some(texture));
+    let found: Vec<_> = placed.coordinates.iter().map(|it| it.to_array()).collect();
+    assert_eq!(found, [[0.0, 1.0], [1.0, 1.0], [1.0, 0.0], [0.0, 1.0]]);
+    assert_eq!(placed.triangles, [[0, 1, 2], [0, 2, 3]]);
+    assert_eq!(plain.warnings, [] as [&str; 0]);
+
+    let statement = "Kd .5 .5 .5\nmap_Kd -s 2 3 1 -clamp on -o 0.25 0.5 -bm 1 two colors.png";
+    let placed = textured(square, statement).unwrap();
+    let material = &placed.scene.materials[0];
+    assert_eq!(material.diffuse, Diffuse::Plain([0.5; 3]));
+    let texture = material.texture.as_ref().unwrap();
+    assert_eq!(texture.wrap, [Wrap::Clamp; 2]);
+    let attributes = placed.scene.objects[0].attributes.placed_on(Some(texture));
+    // u becomes 2 u + 0.25; v, upwards, 3 v + 0.5.
+    let corner = attributes.coordinates[2];
+    assert!(
+        (corner - DVec2::new(2.25, 1.0 - 3.5)).length() < 1e-12,
+        "{corner}"
+    );
+    assert_eq!(placed.warnings.len(), 1);
+    assert!(placed.warnings[0].ends_with("the option -bm of a texture is ignored"));
+}
+
+#[test]
+fn faces_without_texture_coordinates_have_none() {
+    let faces = "f 1/1 2/2 3/3\nf 1 3 4\nf 1/1 2/2 3/9\nf -4/-4 -2/-2 -1/-1\n";
+    let imported = textured(faces, "map_Kd two colors.png").unwrap();
+    let attributes = &imported.scene.objects[0].attributes;
+    let none = Attributes::NONE;
+    assert_eq!(attributes.triangles, [[0, 1, 2], none, none, [3, 4, 5]]);
+    let [warning] = &imported.warnings[..] else {
+        panic!("{:?}", imported.warnings);
+    };
+    assert!(
+        warning.ends_with(
+            "t.obj:13: a face has texture coordinates that the file lacks, and no texture"
+        ),
+        "{warning}"
+    );
+}
+
+#[test]
+fn textures_that_cannot_be_read_are_named() {
+    let square = "f 1/1 2/2 3/3 4/4\n";
+    let missing = textured(square, "Kd .5 .5 .5\nmap_Kd none.png").unwrap();
+    assert_eq!(missing.scene.materials[0].texture, None);
+    let [warning] = &missing.warnings[..] else {
+        panic!("{:?}", missing.warnings);
+    };
+    assert!(
+        warning.contains("t.mtl:3") && warning.contains("none.png"),
+        "{warning}"
+    );
+    for (statement, expected) in [
+        ("map_Kd broken.png", "is neither PNG nor JPEG"),
+        ("map_Kd ../two.png", "outside of the scene's folder"),
+        ("map_Kd", "names no file"),
+    ] {
+        let error = textured(square, statement).unwrap_err().to_string();
+        assert!(
+            error.contains("t.mtl:2") && error.contains(expected),
+            "{error}"
+        );
+    }
+}
+
+#[test]
+fn mirrors_and_glass_may_be_rough() {
+    for (rough, taken) in [(0.5, 0.5), (0.01, 0.0), (2.0, 1.0)] {
+        let (mirror, _) = material(&format!("newmtl a\nKs .5\nillum 3\nPr {rough}\n"));
+        assert_eq!((mirror.mirror, mirror.roughness), ([0.5; 3], taken));
+        assert_eq!(mirror.is_rough(), taken > 0.0);
+    }
+    assert!(!material("newmtl a\nKd .5\nPr .5\n").0.is_rough());
+}

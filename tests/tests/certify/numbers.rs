@@ -1,0 +1,54 @@
+//! Numbers and colors of 320 bits.
+
+use gridel_host::shape::exact::{Real, Vector};
+
+pub fn real(value: f64) -> Real {
+    Real::of(value)
+}
+
+pub fn fraction(value: impl Into<i64>, bits: i32) -> Real {
+    // Integers below 2^62, in two parts that floats hold.
+    let value: i64 = value.into();
+    let (high, low) = (value >> 31, value & 0x7fff_ffff);
+    let power = f64::powi(2.0, -bits);
+    real(high as f64 * f64::powi(2.0, 31) * power) + real(low as f64 * power)
+}
+
+pub fn color(values: [i32; 3], bits: i32) -> Vector {
+    values.map(|x| fraction(x, bits))
+}
+
+pub fn product(a: &Vector, b: &Vector) -> Vector {
+    [0, 1, 2].map(|k| &a[k] * &b[k])
+}
+
+pub fn sum(a: &Vector, b: &Vector) -> Vector {
+    [0, 1, 2].map(|k| &a[k] + &b[k])
+}
+
+pub fn one() -> Real {
+    real(1.0)
+}
+
+pub fn black() -> Vector {
+    [real(0.0), real(0.0), real(0.0)]
+}
+
+pub fn peak(color: &Vector) -> Real {
+    let [a, b, c] = color.clone();
+    a.max(b).max(c)
+}
+
+/// e to the power of minus a number, by its series for a 2^32nd of it.
+pub fn decay(x: &Real) -> Real {
+    let small = x * real(f64::powi(2.0, -32));
+    let (mut term, mut result) = (one(), one());
+    for n in 1..24 {
+        term = -(term * &small) / real(f64::from(n));
+        result = result + &term;
+    }
+    for _ in 0..32 {
+        result = &result * &result;
+    }
+    result
+}
