@@ -22,6 +22,15 @@ pub struct RenderMetadata {
     pub dither: bool,
     /// For a scene that moves.
     pub moment: Option<Moment>,
+    /// For a picture in which motion is blurred.
+    pub exposure: Option<Exposure>,
+}
+
+/// How long a shutter is open, in ticks of the blob's tracks, and at how many moments of that time samples are taken.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Exposure {
+    pub open: u32,
+    pub moments: u16,
 }
 
 /// When a picture of a scene that moves is taken.
@@ -109,12 +118,18 @@ impl RenderMetadata {
             depth: job.settings.depth,
             dither: job.settings.dither,
             moment: None,
+            exposure: None,
         }
     }
 
     /// The same at a moment.
     pub fn at(self, moment: Option<Moment>) -> Self {
         Self { moment, ..self }
+    }
+
+    /// The same with motion blurred.
+    pub fn exposed(self, exposure: Option<Exposure>) -> Self {
+        Self { exposure, ..self }
     }
 }
 
@@ -143,9 +158,13 @@ impl fmt::Display for RenderMetadata {
             depth,
             dither,
             moment,
+            exposure,
         } = self;
         if let Some(Moment::Time(ticks)) = moment {
             write!(f, "time {ticks}, ")?;
+        }
+        if let Some(Exposure { open, moments }) = exposure {
+            write!(f, "shutter {open}, moments {moments}, ")?;
         }
         write!(
             f,
@@ -387,6 +406,7 @@ mod tests {
             depth: 5,
             dither,
             moment: None,
+            exposure: None,
         };
         format.write(&mut bytes, picture, &metadata).unwrap();
         bytes

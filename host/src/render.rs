@@ -9,18 +9,19 @@ mod linear;
 
 pub use aov::{Aov, Values, render_aovs};
 pub(crate) use first_hits::{PixelHit, first_hits};
-pub use linear::{LinearPicture, render_linear};
+pub use linear::{LinearPicture, render_linear, render_linear_moments};
 
 use crate::observed::Observed;
 use gridel_core::accel::DynAccel;
 use gridel_core::format::limits::MAX_STACK_DEPTH;
-use gridel_core::render::RenderError;
+use gridel_core::render::{RenderError, Shutter};
 use gridel_core::{
     Accel, Counters, DualSplit, Effects, Fixed, Format, NoCount, Number, Observer, Renderer, Scene,
     Settings, Structure, Wide, Workspace,
 };
 use rayon::prelude::*;
 use std::ops::Range;
+use std::slice::from_ref;
 
 /// Linear pixels of some rows of a picture, and what they cost.
 #[derive(Clone, Debug)]
@@ -90,21 +91,65 @@ pub fn render(
     job: &Job,
     progress: &(dyn Fn() + Sync),
 ) -> Result<Picture, RenderError> {
-    let scene = &chosen(scene, job.structure)?;
-    Ok(spread(job, progress, &*tracer(scene, job)?))
+    render_moments(from_ref(scene), job, progress)
+}
+
+/// Renders some rows of a scene that moves, at several moments while a shutter is open: see [`Shutter`]. Calls
+/// `progress` after every row, from any thread.
+///
+/// # Errors
+/// If the blob lacks the structure, a setting is out of its range, or there are more moments than samples per pixel.
+///
+/// ```
+/// # use gridel_host::compile::{Options, compile};
+/// # let file = "[[object]]\nkind = 'sphere'\ncenter = [0, 0, 0]\nradius = 1\nname = 'ball'\n\
+/// #     [camera]\neye = [0, 0, 5]\ntarget = [0, 0, 0]\n\
+/// #     [[track]]\ntarget = 'camera.orbit'\ntimes = [0, 4]\nvalues = [0, 360]";
+/// # let imported = gridel_host::scene::read("ball.toml".as_ref(), file.into(), &Default::default())?;
+/// # let blob = compile(&imported.scene, &Options::default())?.blob;
+/// # let scene = blob.scene()?;
+/// use gridel_core::{Format, Settings, Structure, Tracks};
+/// use gridel_host::render::{Job, render_moments};
+/// use gridel_host::state::{State, exposed};
+///
+/// let tracks = Tracks::from_bytes(blob.bytes())?;
+/// // The first tenth of a second, in four steps.
+/// let states = exposed(0, tracks.ticks_per_second() / 10, 4).map(|time| State::at(&scene, &tracks, time));
+/// let states = states.collect::<Result<Vec<_>, _>>()?;
+/// let moments = states.iter().map(|state| state.apply(&scene));
+/// let moments = moments.collect::<Result<Vec<_>, _>>()?;
+///
+/// let settings = Settings {
+///     width: 8,
+///     height: 6,
+///     samples: 16,
+///     ..Settings::of(&scene)
+/// };
+/// let job = Job::whole(Format::F32, Structure::DualSplit, settings);
+/// let picture = render_moments(&moments, &job, &|| ())?;
+/// assert_eq!(picture.pixels.len(), 48);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+pub fn render_moments(
+    moments: &[Scene<'_>],
+    job: &Job,
+    progress: &(dyn Fn() + Sync),
+) -> Result<Picture, RenderError> {
+    let moments = all_chosen(moments, job.structure)?;
+    Ok(spread(job, progress, &*tracer(&moments, job)?))
 }
 
 /// Returns the code that traces pixels, compiled for the job's number format and structure and for the scene's
-/// effects. The structure is chosen in the scene: see [`chosen`].
+/// effects. The structure is chosen in the moments: see [`chosen`].
 ///
 /// Inline in WebAssembly alone: the page's crate then compiles this code by its own profile. Elsewhere each crate that
 /// calls it would compile all of this code again.
 #[cfg_attr(target_family = "wasm", inline)]
-pub(crate) fn tracer<'s>(scene: &'s Scene<'_>, job: &Job) -> NewTracer<'s> {
+pub(crate) fn tracer<'s>(moments: &'s [Scene<'_>], job: &Job) -> NewTracer<'s> {
     match job.format {
-        Format::Fixed => with_format::<Fixed>(scene, job),
-        Format::F32 => with_format::<f32>(scene, job),
-        Format::F64 => with_format::<f64>(scene, job),
+        Format::Fixed => with_format::<Fixed>(moments, job),
+        Format::F32 => with_format::<f32>(moments, job),
+        Format::F64 => with_format::<f64>(moments, job),
     }
 }
 
@@ -129,26 +174,57 @@ pub(crate) const PAGE: bool = cfg!(target_family = "wasm");
 /// Whether no structure has code of its own. The library's own tests compile all of it again.
 const COMPACT: bool = PAGE || cfg!(test);
 
-fn with_format<'s, N: Number>(scene: &'s Scene<'_>, job: &Job) -> NewTracer<'s> {
+fn with_format<'s, N: Number>(moments: &'s [Scene<'_>], job: &Job) -> NewTracer<'s> {
     // Pictures are made through these; the others are there to be compared.
     if !COMPACT && !job.count {
         match job.structure {
-            Structure::DualSplit => return fast::<N, DualSplit>(scene, job),
-            Structure::Wide => return fast::<N, Wide>(scene, job),
+            Structure::DualSplit => return fast::<N, DualSplit>(moments, job),
+            Structure::Wide => return fast::<N, Wide>(moments, job),
             _ => {}
         }
     }
-    let opaque = Effects(OPAQUE).contains(scene.effects());
+    let opaque = all_within(moments, OPAQUE);
     if !PAGE && !job.count {
         return match opaque {
-            true => rows::<N, DynAccel, OPAQUE>(scene, job),
-            false => rows::<N, DynAccel, ALL>(scene, job),
+            true => rows::<N, DynAccel, OPAQUE>(moments, job),
+            false => rows::<N, DynAccel, ALL>(moments, job),
         };
     }
     if !PAGE && opaque {
-        return counted_rows::<N, OPAQUE>(scene, job);
+        return counted_rows::<N, OPAQUE>(moments, job);
     }
-    counted_rows::<N, ALL>(scene, job)
+    counted_rows::<N, ALL>(moments, job)
+}
+
+/// Renderers of the moments, which a shutter accepts.
+fn renderers<'s, N: Number, A: Accel, const EFFECTS: u32>(
+    moments: &'s [Scene<'s>],
+    job: &Job,
+) -> Result<Vec<Renderer<'s, 's, N, A, EFFECTS>>, RenderError> {
+    let renderers = moments
+        .iter()
+        .map(|scene| Renderer::with_settings(scene, job.settings));
+    let renderers = renderers.collect::<Result<Vec<_>, _>>()?;
+    Shutter::new(&renderers)?;
+    Ok(renderers)
+}
+
+/// Whether a set of effects has all that the moments require.
+fn all_within(moments: &[Scene<'_>], set: u32) -> bool {
+    moments
+        .iter()
+        .all(|scene| Effects(set).contains(scene.effects()))
+}
+
+/// The moments with a structure chosen: see [`chosen`].
+fn all_chosen<'a>(
+    moments: &[Scene<'a>],
+    structure: Structure,
+) -> Result<Vec<Scene<'a>>, RenderError> {
+    moments
+        .iter()
+        .map(|scene| chosen(scene, structure))
+        .collect()
 }
 
 /// The scene with a structure chosen for [`DynAccel`] to walk.
@@ -161,36 +237,36 @@ pub(crate) fn chosen<'a>(
 }
 
 /// Through a structure of its own, with no code for effects that the plainer scenes do without.
-fn fast<'s, N: Number, A: Accel + 's>(scene: &'s Scene<'_>, job: &Job) -> NewTracer<'s> {
-    let fits = |set| Effects(set).contains(scene.effects());
+fn fast<'s, N: Number, A: Accel + 's>(moments: &'s [Scene<'_>], job: &Job) -> NewTracer<'s> {
+    let fits = |set| all_within(moments, set);
     if fits(SHADOWED) {
-        rows::<N, A, SHADOWED>(scene, job)
+        rows::<N, A, SHADOWED>(moments, job)
     } else if fits(OPAQUE) {
-        rows::<N, A, OPAQUE>(scene, job)
+        rows::<N, A, OPAQUE>(moments, job)
     } else {
-        rows::<N, A, ALL>(scene, job)
+        rows::<N, A, ALL>(moments, job)
     }
 }
 
 fn counted_rows<'s, N: Number, const EFFECTS: u32>(
-    scene: &'s Scene<'_>,
+    moments: &'s [Scene<'_>],
     job: &Job,
 ) -> NewTracer<'s> {
-    let renderer = Renderer::<N, DynAccel, EFFECTS>::with_settings(scene, job.settings)?;
+    let renderers = renderers::<N, DynAccel, EFFECTS>(moments, job)?;
     let count = job.count;
     Ok(Box::new(move |first, pixels| {
-        let cost = counted_row(&renderer, first, pixels);
+        let cost = counted_row(&renderers, first, pixels);
         count.then_some(cost)
     }))
 }
 
 fn rows<'s, N: Number, A: Accel + 's, const EFFECTS: u32>(
-    scene: &'s Scene<'_>,
+    moments: &'s [Scene<'_>],
     job: &Job,
 ) -> NewTracer<'s> {
-    let renderer = Renderer::<N, A, EFFECTS>::with_settings(scene, job.settings)?;
+    let renderers = renderers::<N, A, EFFECTS>(moments, job)?;
     Ok(Box::new(move |first, pixels| {
-        render_row(&renderer, first, pixels, || NoCount, |_| ());
+        render_row(&renderers, first, pixels, || NoCount, |_| ());
         None
     }))
 }
@@ -226,7 +302,7 @@ fn spread(job: &Job, progress: &(dyn Fn() + Sync), tracer: &Tracer<'_>) -> Pictu
 
 /// A part of a row, and what it cost.
 fn counted_row<N: Number, A: Accel, const EFFECTS: u32>(
-    renderer: &Renderer<'_, '_, N, A, EFFECTS>,
+    renderers: &[Renderer<'_, '_, N, A, EFFECTS>],
     first: [u16; 2],
     pixels: &mut [[u16; 3]],
 ) -> Cost {
@@ -236,23 +312,24 @@ fn counted_row<N: Number, A: Accel, const EFFECTS: u32>(
         work.push((counters.boxes + counters.objects).min(u32::MAX.into()) as u32);
         total = total.plus(&counters);
     };
-    render_row(renderer, first, pixels, Observed::default, counted);
+    render_row(renderers, first, pixels, Observed::default, counted);
     (total, work)
 }
 
 /// A part of a row; every pixel is counted on its own.
 fn render_row<N: Number, A: Accel, C: Observer, const EFFECTS: u32>(
-    renderer: &Renderer<'_, '_, N, A, EFFECTS>,
+    renderers: &[Renderer<'_, '_, N, A, EFFECTS>],
     [x, y]: [u16; 2],
     pixels: &mut [[u16; 3]],
     counter: impl Fn() -> C,
     mut counted: impl FnMut(C),
 ) {
+    let shutter = Shutter::new(renderers).expect("what a shutter accepted before");
     let mut space = Workspace::<N, MAX_STACK_DEPTH, { Effects::MAX_WORK_DEPTH }>::new();
     let mut space = space.as_view();
     for (x, pixel) in (x..=u16::MAX).zip(pixels) {
         let mut count = counter();
-        *pixel = renderer.linear(x, y, &mut space, &mut count);
+        *pixel = shutter.linear(x, y, &mut space, &mut count);
         counted(count);
     }
 }

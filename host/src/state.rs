@@ -158,5 +158,22 @@ pub fn ticks(tracks: &Tracks<'_>, seconds: f64) -> i32 {
     (seconds * f64::from(tracks.ticks_per_second())).round() as i32
 }
 
+/// The moments while a shutter is open for some ticks from a time on: the middles of equal parts, in ticks. One out of
+/// range is the first or the last tick.
+///
+/// ```
+/// use gridel_host::state::exposed;
+///
+/// assert!(exposed(48_000, 800, 4).eq([48_100, 48_300, 48_500, 48_700]));
+/// ```
+pub fn exposed(start: i32, open: u32, moments: u16) -> impl Iterator<Item = i32> {
+    let parts = i64::from(moments);
+    (0..parts).map(move |part| {
+        let after = i64::from(open) * (2 * part + 1) / (2 * parts);
+        let time = i64::from(start) + after;
+        time.clamp(i32::MIN.into(), i32::MAX.into()) as i32
+    })
+}
+
 #[cfg(test)]
 mod tests;

@@ -30,6 +30,7 @@ mod lattice;
 mod layers;
 mod lights;
 mod live;
+mod motion_blur;
 mod origins;
 mod reference;
 mod render;

@@ -7,6 +7,7 @@
 //! | the radiance of a ray, with its secondary rays | `trace.rs` |
 //! | renderers without a choice of format, structure and effects | `defaults.rs` |
 //! | the samples of a pixel, the pixels of a rectangle | `samples.rs`, `rows.rs` |
+//! | the moments while a shutter is open | `shutter.rs` |
 //! | the state of rendering between two calls | `cursor.rs` |
 //! | pixels row by row, or from coarse to fine | `order.rs` |
 //! | displays of `embedded-graphics`, with that feature | `display.rs` |
@@ -25,6 +26,7 @@ mod renderer;
 mod rows;
 mod sample;
 mod samples;
+mod shutter;
 mod trace;
 
 pub use camera::{Camera, CameraError, Up};
@@ -32,4 +34,5 @@ pub use cursor::Cursor;
 pub use order::{Block, CoarseToFine, Rows};
 pub use pixel::{Pixel, Rgb565, Rgb888};
 pub use renderer::{RenderError, Renderer, Settings};
+pub use shutter::Shutter;
 pub use trace::{Workspace, WorkspaceView};

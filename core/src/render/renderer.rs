@@ -70,6 +70,14 @@ pub enum RenderError {
     },
     /// Not 1 to 4,096 samples.
     Samples(u16),
+    /// A shutter is open over no moment, over more than there are samples per pixel, or over moments with different
+    /// settings.
+    Moments {
+        /// How many moments.
+        found: usize,
+        /// Samples per pixel.
+        samples: u16,
+    },
     /// The depth is above 16, or above 32 with the feature `indirect`.
     Depth(u8),
     /// The blob does not hold the structure.
@@ -104,6 +112,10 @@ impl fmt::Display for RenderError {
                     "{samples} samples per pixel are not possible: ask for 1 to {MAX_SAMPLES}"
                 )
             }
+            RenderError::Moments { found, samples } => write!(
+                f,
+                "{found} moments are not possible: ask for 1 to {samples}, at most one per sample, with the same settings"
+            ),
             RenderError::Depth(depth) => {
                 write!(
                     f,

@@ -30,6 +30,11 @@ impl<N: Number> Samples<N> {
         }
     }
 
+    /// The number of the sample that is being taken.
+    pub(super) fn index(&self) -> u16 {
+        self.index
+    }
+
     /// Traces one ray; the pixel, linear, if that was its last. The work list holds rays of the
     /// pixel's current sample, and is empty when a sample begins.
     #[inline(always)]

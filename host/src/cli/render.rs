@@ -2,9 +2,11 @@
 
 mod frames;
 mod outputs;
+mod shutter;
 
 use super::arguments::TargetPoint;
 use super::arguments::{self, PictureOptions, SceneOptions, TraceOptions};
+use super::changes::Changes;
 use super::failure::Failure;
 use super::output::{Warned, json, print_about};
 use super::progress::Progress;
@@ -12,12 +14,14 @@ use super::source::Source;
 use clap::Args;
 use frames::{Output, Shot, TimeOptions, rejected};
 use gridel_core::{Counters, Scene, Settings, Structure};
-use gridel_host::picture::{Moment, RenderMetadata};
+use gridel_host::picture::{Exposure, Moment, RenderMetadata};
 use gridel_host::render::{Job, Picture};
 use gridel_host::resolution::Unresolved;
+use gridel_host::state::ticks;
 use gridel_host::table::{Align, Table, counted, grouped};
 use outputs::{AovFile, HeatMapFile, MOST_PIXELS, OutputOptions, Outputs};
 use serde::Serialize;
+use shutter::scenes;
 use std::ops::Range;
 use std::path::PathBuf;
 use std::time::{Duration, Instant};
@@ -76,6 +80,9 @@ struct Rendered {
     samples: u16,
     depth: u8,
     threads: usize,
+    /// While the shutter is open.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    moments: Option<u16>,
     seconds: f64,
     #[serde(skip_serializing_if = "Option::is_none")]
     stats: Option<Stats>,
@@ -141,13 +148,22 @@ impl<'a> Target<'a> {
 /// Renders a picture, or frames, and writes them.
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let target = Target::of(arguments)?;
+    let TimeOptions { time, shutter, .. } = &arguments.time;
+    if shutter.shutter.is_some() && time.is_none() && arguments.time.frames.is_none() {
+        return Err(Failure::usage(
+            "a shutter is open from a time on, and none is given",
+            "add `--time SECONDS`, such as `--time 0`",
+        ));
+    }
+    // Moments are made of the scene without its tracks.
+    let at = time.filter(|_| shutter.shutter.is_none());
     let source = Source::to_trace(
         &arguments.input,
         &arguments
             .target_point
             .with_target(&arguments.scene_options)
             .sized(arguments.picture.size)
-            .at(arguments.time.time),
+            .at(at),
         &arguments.with,
         Structure::Wide,
     )?;
@@ -181,16 +197,25 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
             return frames::run(shot, frames, &output);
         }
     };
+    let blurred = blurred(arguments, (&source, &scene), &job)?;
+    let moments = match &blurred {
+        Some(blurred) => scenes(&blurred.changes, &scene)?,
+        None => vec![scene],
+    };
+    let scene = moments[0];
     let progress = Progress::steps("rendering", job.rows.len() as u64);
     let begun = Instant::now();
-    let rendered = pool.install(|| outputs.render(&scene, &job, &|| progress.step()));
-    let time = begun.elapsed();
+    let rendered = pool.install(|| outputs.render(&moments, &job, &|| progress.step()));
+    let taken = begun.elapsed();
     drop(progress);
     let rendering = rendered.map_err(|error| rejected(&error))?;
 
     let shown = rendering.shown();
-    let stats = shown.and_then(|picture| stats(arguments, picture, time));
-    let metadata = RenderMetadata::of(&scene, &job).at(source.time().map(Moment::Time));
+    let stats = shown.and_then(|picture| stats(arguments, picture, taken));
+    let time = blurred.as_ref().map(|it| it.time).or(source.time());
+    let metadata = RenderMetadata::of(&scene, &job)
+        .at(time.map(Moment::Time))
+        .exposed(blurred.as_ref().map(|it| it.exposure));
     let written = pool.install(|| outputs.write((&scene, &job), &rendering, &metadata));
     let (heat_map, aovs) = written?;
     let rendered = Rendered {
@@ -203,7 +228,8 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         samples: job.settings.samples,
         depth: job.settings.depth,
         threads: pool.current_num_threads(),
-        seconds: time.as_secs_f64(),
+        moments: blurred.map(|it| it.exposure.moments),
+        seconds: taken.as_secs_f64(),
         stats,
         heat_map,
         aovs,
@@ -217,6 +243,38 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         false => rendered.text(),
     };
     print_about(&arguments.files.output, report)
+}
+
+/// A picture in which motion is blurred.
+struct Blurred {
+    /// When the shutter opens, in ticks.
+    time: i32,
+    exposure: Exposure,
+    /// What is otherwise at each moment.
+    changes: Vec<Changes>,
+}
+
+/// The moments of a picture, if motion is to be blurred.
+fn blurred(
+    arguments: &Arguments,
+    (source, scene): (&Source, &Scene<'_>),
+    job: &Job,
+) -> Result<Option<Blurred>, Failure> {
+    let TimeOptions { time, shutter, .. } = &arguments.time;
+    let (Some(seconds), Some(_)) = (time, shutter.shutter) else {
+        return Ok(None);
+    };
+    let tracks = source.tracks()?;
+    let Some(exposure) = shutter.exposure(&tracks, job.settings.samples)? else {
+        return Ok(None);
+    };
+    let time = ticks(&tracks, *seconds);
+    let changes = shutter::changes(source, (scene, &tracks), time, Some(exposure))?;
+    Ok(Some(Blurred {
+        time,
+        exposure,
+        changes,
+    }))
 }
 
 /// How the picture is rendered; an error for rows that it does not have, and for too many pixels at once.
@@ -300,13 +358,14 @@ impl Rendered {
             format!(", rows {first}..{end}")
         };
         let mut text = format!(
-            "{}: {} x {}{rows}, {}, {}, {} per pixel, {:.3} s with {}\n",
+            "{}: {} x {}{rows}, {}, {}, {} per pixel{}, {:.3} s with {}\n",
             self.picture,
             self.width,
             self.height,
             self.format,
             self.accel,
             counted(self.samples.into(), "sample"),
+            shutter::of_moments(self.moments),
             self.seconds,
             counted(self.threads, "thread")
         );

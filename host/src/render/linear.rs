@@ -1,14 +1,15 @@
 //! Pictures in linear radiance, which no display's range limits.
 
-use super::{ALL, Job, chosen};
+use super::{ALL, Job, all_chosen, renderers};
 use crate::observed::Observed;
 use gridel_core::accel::DynAccel;
 use gridel_core::format::limits::MAX_STACK_DEPTH;
 use gridel_core::format::record::View;
-use gridel_core::render::RenderError;
-use gridel_core::{Effects, Fixed, Format, Number, Renderer, Scene, Workspace};
+use gridel_core::render::{RenderError, Shutter};
+use gridel_core::{Effects, Fixed, Format, Number, Scene, Workspace};
 use rayon::prelude::*;
 use std::ops::Range;
+use std::slice::from_ref;
 
 /// Some rows of a picture in linear radiance.
 #[derive(Clone, Debug, PartialEq)]
@@ -56,11 +57,24 @@ pub fn render_linear(
     job: &Job,
     progress: &(dyn Fn() + Sync),
 ) -> Result<LinearPicture, RenderError> {
-    let scene = &chosen(scene, job.structure)?;
+    render_linear_moments(from_ref(scene), job, progress)
+}
+
+/// Renders some rows of a scene that moves in linear radiance, at several moments while a shutter is open: see
+/// [`render_moments`](super::render_moments). Calls `progress` after every row, from any thread.
+///
+/// # Errors
+/// If the blob lacks the structure, a setting is out of its range, or there are more moments than samples per pixel.
+pub fn render_linear_moments(
+    moments: &[Scene<'_>],
+    job: &Job,
+    progress: &(dyn Fn() + Sync),
+) -> Result<LinearPicture, RenderError> {
+    let moments = &all_chosen(moments, job.structure)?;
     let pixels = match job.format {
-        Format::Fixed => rows::<Fixed>(scene, job, progress),
-        Format::F32 => rows::<f32>(scene, job, progress),
-        Format::F64 => rows::<f64>(scene, job, progress),
+        Format::Fixed => rows::<Fixed>(moments, job, progress),
+        Format::F32 => rows::<f32>(moments, job, progress),
+        Format::F64 => rows::<f64>(moments, job, progress),
     }?;
     Ok(LinearPicture {
         width: job.settings.width,
@@ -70,13 +84,16 @@ pub fn render_linear(
 }
 
 fn rows<N: Number>(
-    scene: &Scene<'_>,
+    moments: &[Scene<'_>],
     job: &Job,
     progress: &(dyn Fn() + Sync),
 ) -> Result<Vec<[f32; 3]>, RenderError> {
-    let renderer = Renderer::<N, DynAccel, ALL>::with_settings(scene, job.settings)?;
+    let renderers = renderers::<N, DynAccel, ALL>(moments, job)?;
+    let shutter = Shutter::new(&renderers)?;
     let (width, samples) = (job.settings.width, f64::from(job.settings.samples));
-    let is_display_value = scene.view().encoding == View::DISPLAY_VALUES;
+    let is_display_value = moments
+        .iter()
+        .any(|scene| scene.view().encoding == View::DISPLAY_VALUES);
     let mut pixels = vec![[0.0; 3]; usize::from(width) * job.rows.len()];
     let rows = job.rows.clone().into_par_iter();
     rows.zip(pixels.par_chunks_mut(width.into()))
@@ -85,7 +102,7 @@ fn rows<N: Number>(
             let mut space = space.as_view();
             for (x, pixel) in (0..width).zip(row) {
                 let mut observed = Observed::default();
-                renderer.linear(x, y, &mut space, &mut observed);
+                shutter.linear(x, y, &mut space, &mut observed);
                 *pixel = observed.radiance.map(|sum| {
                     let mean = sum / samples;
                     let linear = if is_display_value {

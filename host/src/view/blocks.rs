@@ -4,6 +4,7 @@ use super::shot::{Shot, ViewError};
 use crate::render::{Job, chosen, tracer};
 use gridel_core::Scene;
 use gridel_core::render::Block;
+use std::slice::from_ref;
 
 /// The pixel of a block.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -71,7 +72,7 @@ pub(super) fn with_brush<R>(
         count: shot.heat_map,
         ..Job::whole(shot.format, shot.structure, shot.settings)
     };
-    let tracer = tracer(&scene, &job)?;
+    let tracer = tracer(from_ref(&scene), &job)?;
     Ok(paint(&|block| {
         let mut pixel = [[0; 3]];
         let cost = tracer([block.x, block.y], &mut pixel);

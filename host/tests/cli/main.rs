@@ -27,6 +27,7 @@ mod render;
 mod sample;
 #[cfg(feature = "shell")]
 mod shell;
+mod shutter;
 mod terminal;
 mod trace;
 mod view;

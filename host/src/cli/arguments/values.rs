@@ -153,6 +153,14 @@ pub fn seconds(text: &str) -> Result<f64, String> {
     value.ok_or_else(|| String::from("write a time in seconds, such as 1.5"))
 }
 
+/// Reads for how many seconds a shutter is open.
+pub fn open_seconds(text: &str) -> Result<f64, String> {
+    seconds(text)
+        .ok()
+        .filter(|it| *it > 0.0)
+        .ok_or_else(|| String::from("write a number of seconds above 0, such as 0.02"))
+}
+
 /// Reads a range of rows, such as `100..200`, whose end is not part of it.
 pub fn rows(text: &str) -> Result<Range<u16>, String> {
     let ends = text

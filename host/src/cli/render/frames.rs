@@ -1,5 +1,6 @@
 //! The pictures of a scene that moves: an animation, or numbered files.
 
+use super::shutter::{self, ShutterOptions, changes, scenes};
 use crate::cli::arguments;
 use crate::cli::failure::Failure;
 use crate::cli::output::{
@@ -12,8 +13,8 @@ use clap::Args;
 use gridel_core::render::RenderError;
 use gridel_core::{Scene, Tracks};
 use gridel_host::animation::{Animation, AnimationFormat, NumberedName};
-use gridel_host::picture::{Frame, Moment, PictureFormat, RenderMetadata, srgb};
-use gridel_host::render::{Job, Picture, render};
+use gridel_host::picture::{Exposure, Frame, Moment, PictureFormat, RenderMetadata, srgb};
+use gridel_host::render::{Job, Picture, render_moments};
 use gridel_host::resolution::Unresolved;
 use gridel_host::table::counted;
 use rayon::ThreadPool;
@@ -40,6 +41,9 @@ pub struct TimeOptions {
     #[arg(long, value_name = "N", requires = "frames",
         value_parser = clap::value_parser!(u16).range(1..=1000))]
     pub fps: Option<u16>,
+
+    #[command(flatten)]
+    pub shutter: ShutterOptions,
 }
 
 fn frames(text: &str) -> Result<Range<u32>, String> {
@@ -144,6 +148,9 @@ struct Rendered {
     samples: u16,
     depth: u8,
     threads: usize,
+    /// Of each frame, while the shutter is open.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    moments: Option<u16>,
     seconds: f64,
     /// Objects that the format does not resolve.
     #[serde(skip_serializing_if = "Vec::is_empty")]
@@ -168,6 +175,10 @@ pub fn run(shot: Shot<'_>, frames: Range<u32>, output: &Output) -> Result<(), Fa
     let Shot { job, .. } = shot;
     let path = shot.output;
     let per_second = shot.options.per_second();
+    let exposure = shot
+        .options
+        .shutter
+        .exposure(&tracks, job.settings.samples)?;
     let progress = Progress::steps("rendering", frames.len() as u64);
     let begun = Instant::now();
     match output {
@@ -182,7 +193,7 @@ pub fn run(shot: Shot<'_>, frames: Range<u32>, output: &Output) -> Result<(), Fa
             let mut failure = None;
             let written = write_file(path, |out| {
                 animation.write(out, &mut |number| {
-                    let frame = shot.frame(&tracks, frames.start + number, per_second);
+                    let frame = shot.frame((&tracks, exposure), frames.start + number, per_second);
                     let (picture, _) = frame.map_err(|error| {
                         failure = Some(error);
                         io::Error::other("a frame is missing")
@@ -198,7 +209,7 @@ pub fn run(shot: Shot<'_>, frames: Range<u32>, output: &Output) -> Result<(), Fa
         }
         Output::Numbered(name, format) => {
             for number in frames.clone() {
-                let (picture, metadata) = shot.frame(&tracks, number, per_second)?;
+                let (picture, metadata) = shot.frame((&tracks, exposure), number, per_second)?;
                 let path = PathBuf::from(name.of(number));
                 let content: Content<'_> = &|out| format.write(out, &picture, &metadata);
                 write_files(&[(&path, content)])?;
@@ -218,6 +229,7 @@ pub fn run(shot: Shot<'_>, frames: Range<u32>, output: &Output) -> Result<(), Fa
         samples: job.settings.samples,
         depth: job.settings.depth,
         threads: shot.pool.current_num_threads(),
+        moments: exposure.map(|it| it.moments),
         seconds: begun.elapsed().as_secs_f64(),
         unresolved: shot.unresolved,
     };
@@ -233,20 +245,24 @@ pub fn run(shot: Shot<'_>, frames: Range<u32>, output: &Output) -> Result<(), Fa
 impl Shot<'_> {
     fn frame(
         &self,
-        tracks: &Tracks<'_>,
+        (tracks, exposure): (&Tracks<'_>, Option<Exposure>),
         number: u32,
         per_second: u16,
     ) -> Result<(Picture, RenderMetadata), Failure> {
         let time = tracks.frame_time(number, per_second.into());
-        let changes = self.source.changes_at(self.scene, tracks, time)?;
-        let scene = changes.apply(self.scene)?;
-        let rendered = self.pool.install(|| render(&scene, self.job, &|| ()));
+        let changes = changes(self.source, (self.scene, tracks), time, exposure)?;
+        let moments = scenes(&changes, self.scene)?;
+        let rendered = self
+            .pool
+            .install(|| render_moments(&moments, self.job, &|| ()));
         let picture = rendered.map_err(|error| rejected(&error))?;
         let moment = Moment::Frame(Frame { number, per_second });
         // What all frames have in common: the view of the first, and the options.
         let start = self.source.changes_at(self.scene, tracks, 0)?;
         let start = start.apply(self.scene)?;
-        let metadata = RenderMetadata::of(&start, self.job).at(Some(moment));
+        let metadata = RenderMetadata::of(&start, self.job)
+            .at(Some(moment))
+            .exposed(exposure);
         Ok((picture, metadata))
     }
 }
@@ -255,7 +271,7 @@ impl Rendered {
     fn text(&self) -> String {
         let [first, end] = self.frames;
         format!(
-            "{}: frames {first}..{end} at {} per second, {} x {}, {}, {}, {} per pixel, {:.3} s with {}\n",
+            "{}: frames {first}..{end} at {} per second, {} x {}, {}, {}, {} per pixel{}, {:.3} s with {}\n",
             self.pictures,
             self.per_second,
             self.width,
@@ -263,6 +279,7 @@ impl Rendered {
             self.format,
             self.accel,
             counted(self.samples.into(), "sample"),
+            shutter::of_moments(self.moments),
             self.seconds,
             counted(self.threads, "thread")
         )

@@ -13,7 +13,7 @@ use gridel_host::openexr;
 use gridel_host::output::place;
 use gridel_host::picture::{PictureFormat, RenderMetadata};
 use gridel_host::render::{
-    Aov, Job, LinearPicture, Picture, Values, render, render_aovs, render_linear,
+    Aov, Job, LinearPicture, Picture, Values, render_aovs, render_linear_moments, render_moments,
 };
 use gridel_host::report::HeatMap;
 use serde::Serialize;
@@ -36,7 +36,7 @@ pub struct OutputOptions {
     pub output: PathBuf,
 
     /// Write properties of the surfaces too that the rays through the middles of pixels hit first:
-    /// depth, normal, albedo, object, primitive, instance, with commas between them. As channels of
+    /// depth, normal, albedo, object, primitive, uv, instance, with commas between them. As channels of
     /// an .exr, else to NumPy files named after the picture, such as out.depth.npy
     #[arg(long, value_name = "NAMES", value_delimiter = ',', value_parser = arguments::aov(),
         conflicts_with = "frames")]
@@ -189,16 +189,18 @@ impl<'a> Outputs<'a> {
         }
     }
 
-    /// Renders the picture.
+    /// Renders the picture, at one moment or at several while a shutter is open.
     pub fn render(
         &self,
-        scene: &Scene<'_>,
+        moments: &[Scene<'_>],
         job: &Job,
         progress: &(dyn Fn() + Sync),
     ) -> Result<Rendering, RenderError> {
         match self.stored {
-            Stored::Shown(_) => render(scene, job, progress).map(Rendering::Shown),
-            Stored::Linear(_) => render_linear(scene, job, progress).map(Rendering::Linear),
+            Stored::Shown(_) => render_moments(moments, job, progress).map(Rendering::Shown),
+            Stored::Linear(_) => {
+                render_linear_moments(moments, job, progress).map(Rendering::Linear)
+            }
         }
     }
 
