@@ -279,6 +279,10 @@ pub fn write_pixels(
             write_header(out, "'<f4'", &[height, width])?;
             floats(out, lengths)
         }
+        Values::Coordinates(pairs) => {
+            write_header(out, "'<f4'", &[height, width, 2])?;
+            floats(out, pairs.as_flattened())
+        }
         Values::Vectors(vectors) => {
             write_header(out, "'<f4'", &[height, width, 3])?;
             floats(out, vectors.as_flattened())

@@ -91,6 +91,13 @@ fn channels(layer: &Layer) -> Vec<AnyChannel<FlatSamples>> {
     match &layer.values {
         Values::Lengths(lengths) => vec![channel("Z", FlatSamples::F32(lengths.clone()))],
         Values::Numbers(numbers) => vec![channel(name, FlatSamples::U32(numbers.clone()))],
+        Values::Coordinates(pairs) => {
+            let of = |(axis, letter)| {
+                let values = pairs.iter().map(|pair| pair[axis]).collect();
+                channel(&format!("{name}.{letter}"), FlatSamples::F32(values))
+            };
+            [(0, "U"), (1, "V")].map(of).into()
+        }
         Values::Vectors(vectors) => {
             let letters = if name == Aov::Normal.name() {
                 ["X", "Y", "Z"]

@@ -22,17 +22,20 @@ pub enum Aov {
     Object,
     /// The primitive's number in scene-file order, `u32::MAX` where nothing is hit. Those of parts follow the scene's own.
     Primitive,
+    /// Texture coordinates, u to the right and v down; infinite where nothing is hit and on what has none.
+    Uv,
     /// The instance's number in scene-file order, `u32::MAX` for the scene's own objects and where nothing is hit.
     Instance,
 }
 
 impl Aov {
-    pub const ALL: [Self; 6] = [
+    pub const ALL: [Self; 7] = [
         Self::Depth,
         Self::Normal,
         Self::Albedo,
         Self::Object,
         Self::Primitive,
+        Self::Uv,
         Self::Instance,
     ];
 
@@ -44,6 +47,7 @@ impl Aov {
             Self::Albedo => "albedo",
             Self::Object => "object",
             Self::Primitive => "primitive",
+            Self::Uv => "uv",
             Self::Instance => "instance",
         }
     }
@@ -54,6 +58,8 @@ impl Aov {
 pub enum Values {
     /// Depth.
     Lengths(Vec<f32>),
+    /// Texture coordinates.
+    Coordinates(Vec<[f32; 2]>),
     /// Normals and colors.
     Vectors(Vec<[f32; 3]>),
     /// Numbers of objects and the like.
@@ -117,6 +123,11 @@ pub fn render_aovs(scene: &Scene<'_>, job: &Job, aovs: &[Aov]) -> Result<Vec<Val
             Aov::Albedo => Values::Vectors(albedo(scene, job)?),
             Aov::Object => all(|hit| hit.object),
             Aov::Primitive => all(|hit| hit.primitive),
+            Aov::Uv => {
+                let pair =
+                    |hit: &Option<PixelHit>| hit.and_then(|it| it.uv).unwrap_or([f32::INFINITY; 2]);
+                Values::Coordinates(hits.iter().map(pair).collect())
+            }
             Aov::Instance => all(|hit| hit.instance.unwrap_or(u32::MAX)),
         })
     });

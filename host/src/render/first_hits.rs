@@ -14,6 +14,8 @@ pub(crate) struct PixelHit {
     pub distance: f64,
     /// What the surface is shaded with, of length 1, on the side of the eye.
     pub normal: [f32; 3],
+    /// Texture coordinates, of what has them.
+    pub uv: Option<[f32; 2]>,
     pub object: u32,
     pub primitive: u32,
     /// The instance's number in scene-file order. Its place in the blob depends on the lattice.
@@ -49,6 +51,9 @@ fn rows<N: Number>(scene: &Scene<'_>, job: &Job) -> Result<Vec<Option<PixelHit>>
         Some(PixelHit {
             distance: N::far_to_f64(hit.t) * norm * unit,
             normal: hit.shading_normal(scene).map(|x| x.ratio_to_f64() as f32),
+            uv: hit
+                .mapped_coordinates(scene)
+                .map(|pair| pair.map(|it| it as f32)),
             object: hit.object,
             primitive: hit.primitive,
             instance: instance.map(|instance| instance.number),

@@ -4,7 +4,7 @@ use super::*;
 use crate::render::test_pictures::{MIDDLE, OTHERS, WIDTH, blob, job};
 use gridel_core::Format;
 
-fn all(scene: &Scene<'_>, job: &Job) -> [Values; 6] {
+fn all(scene: &Scene<'_>, job: &Job) -> [Values; 7] {
     let values = render_aovs(scene, job, &Aov::ALL).expect("AOVs");
     values.try_into().expect("as many as were asked for")
 }
@@ -61,7 +61,7 @@ fn values_are_those_of_the_scene() {
     let blob = blob("test.toml", WALL);
     let scene = blob.scene().expect("a scene");
     for format in Format::ALL {
-        let [depth, normal, albedo, object, primitive, instance] =
+        let [depth, normal, albedo, object, primitive, uv, instance] =
             all(&scene, &job(&scene, format, 4));
         let near = |found: f32, expected: f32| {
             let apart = (found - expected).abs();
@@ -92,6 +92,10 @@ fn values_are_those_of_the_scene() {
             [u32::MAX; 2]
         );
         assert!(numbers(&instance).iter().all(|&number| number == u32::MAX));
+        let Values::Coordinates(pairs) = uv else {
+            panic!("{uv:?}");
+        };
+        assert!(pairs.iter().all(|&pair| pair == [f32::INFINITY; 2]));
     }
 }
 
@@ -114,7 +118,7 @@ fn bits_depend_on_neither_structure_nor_rows() {
             ..whole
         };
         let rows = 3 * usize::from(WIDTH)..7 * usize::from(WIDTH);
-        let [depth, .., object, _, _] = all(&scene, &part);
+        let [depth, .., object, _, _, _] = all(&scene, &part);
         assert_eq!(lengths(&depth), &lengths(&expected[0])[rows.clone()]);
         assert_eq!(numbers(&object), &numbers(&expected[3])[rows]);
     }

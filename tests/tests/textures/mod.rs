@@ -1,5 +1,8 @@
 //! Colors of vertices and textures: every number format and structure shows what is computed here from the definition.
 
+mod alpha;
+
+use alpha::before_a_wall;
 use glam::{DQuat, DVec2, DVec3};
 use gridel_core::{Effects, Format, List, NoCount, Number, Scene, Settings, Structure};
 use gridel_host::blob::Blob;
@@ -270,6 +273,28 @@ fn coordinates_of_hits_are_those_between_the_corners() {
 }
 
 #[test]
+fn coordinates_of_pixels_are_an_output_of_their_own() {
+    let blob = blob_of(&textured(Wrap::Repeat, true));
+    let scene = blob.scene().expect("valid");
+    let corners = SQUARE.map(|[.., u, v]| [u, v]);
+    for format in Format::ALL {
+        let job = Job::whole(format, Structure::DualSplit, settings(&scene));
+        let values = render_aovs(&scene, &job, &[Aov::Uv]).expect("pixels");
+        let [Values::Coordinates(found)] = &values[..] else {
+            panic!("{values:?}");
+        };
+        for (pixel, place) in places() {
+            for (found, exact) in found[pixel].iter().zip(interpolated(place, corners)) {
+                let off = f64::from(*found) - exact;
+                assert!(off.abs() < 1e-4, "{format:?}, pixel {pixel}: {off}");
+            }
+        }
+        // Beside the square.
+        assert_eq!(found[0], [f32::INFINITY; 2]);
+    }
+}
+
+#[test]
 fn structures_show_the_same_colors_to_the_bit() {
     let mut scene = textured(Wrap::Mirror, true);
     scene.objects[0].attributes.colors = COLORS.to_vec();
@@ -380,97 +405,6 @@ fn coordinates_far_from_the_image_are_exact_or_rejected() {
     scene.objects[0].attributes.coordinates[0].x = 1024.0;
     let error = compile(&scene, &Options::default()).expect_err("too far");
     assert!(error.to_string().contains("texture coordinates"), "{error}");
-}
-
-/// A square of this alpha everywhere, under no light, before a wall that is as white as its ambient light.
-fn before_a_wall(pixel: [u8; 4], alpha: Alpha) -> scene::Scene {
-    let mut scene = textured(Wrap::Repeat, true);
-    let image = Image::new("one", 1, 1, vec![pixel]).expect("a pixel");
-    scene.materials[0].texture = Some(Texture::of(image.into()));
-    scene.materials[0].alpha = Some(alpha);
-    let wall = Shape::Disc(Disc {
-        center: DVec3::NEG_Z,
-        normal: DVec3::Z,
-        radius: 40.0,
-    });
-    let mut wall = scenes::of([wall]);
-    wall.objects[0].material = 1;
-    scene.objects.extend(wall.objects);
-    scene.materials.push(Material {
-        diffuse: Diffuse::Plain([0.5, 0.25, 1.0]),
-        ..Material::default()
-    });
-    scene
-}
-
-fn ambient(scene: &scene::Scene, format: Format) -> [f32; 3] {
-    let blob = blob_of(scene);
-    let scene = blob.scene().expect("valid");
-    let job = Job::whole(format, Structure::DualSplit, settings(&scene));
-    let picture = render_linear(&scene, &job, &|| ()).expect("a picture");
-    // Not on the edge between both triangles.
-    picture.pixels[35 * 90 + 50]
-}
-
-#[test]
-fn alpha_blends_with_what_is_behind() {
-    for format in Format::ALL {
-        for (alpha, factor) in [(255, 1.0), (128, 1.0), (128, 0.5), (0, 1.0), (255, 0.0)] {
-            let scene = before_a_wall([255, 255, 0, alpha], Alpha::Blend(factor));
-            let there = f64::from(alpha) / 255.0 * factor;
-            let expected = [[1.0, 0.5], [1.0, 0.25], [0.0, 1.0]]
-                .map(|[front, back]| front * there + back * (1.0 - there));
-            assert_near(ambient(&scene, format), expected, 0.003, format.name());
-        }
-    }
-}
-
-#[test]
-fn textures_are_cut_out_where_alpha_is_below_the_cutoff() {
-    for format in Format::ALL {
-        for (alpha, cutoff, is_there) in [
-            (127, 0.5, false),
-            (128, 0.5, true),
-            (255, 1.0, true),
-            (254, 1.0, false),
-            (1, 0.002, true),
-            (0, 0.002, false),
-        ] {
-            let scene = before_a_wall([255, 255, 0, alpha], Alpha::CutOut(cutoff));
-            let expected = if is_there {
-                [1.0, 1.0, 0.0]
-            } else {
-                [0.5, 0.25, 1.0]
-            };
-            let what = format!("{alpha} {cutoff} {}", format.name());
-            assert_near(ambient(&scene, format), expected, 0.001, &what);
-        }
-    }
-}
-
-#[test]
-fn light_shines_through_what_is_cut_out() {
-    for format in Format::ALL {
-        for (alpha, lit) in [
-            (Alpha::CutOut(0.5), 1.0),
-            (Alpha::Blend(1.0), 155.0 / 255.0),
-        ] {
-            let mut scene = before_a_wall([255, 255, 0, 100], alpha);
-            scene.ambient = [0.0; 3];
-            scene.lights = vec![Light::Directional {
-                direction: DVec3::new(1.0, 0.0, -1.0),
-                color: [1.0; 3],
-            }];
-            // The light comes through the square from the left, and falls on the wall beside it.
-            let blob = blob_of(&scene);
-            let view = blob.scene().expect("valid");
-            let job = Job::whole(format, Structure::DualSplit, settings(&view));
-            let picture = render_linear(&view, &job, &|| ()).expect("a picture");
-            let found = picture.pixels[35 * 90 + 86];
-            let expected = [0.5, 0.25, 1.0].map(|it| it * lit * 0.5_f64.sqrt());
-            assert_near(found, expected, 0.004, format.name());
-        }
-    }
 }
 
 /// The exact picture of textures: what double precision shows lies in the intervals, but for its own rounding.
