@@ -37,6 +37,9 @@ pub(crate) type VertexColorsOnly<T> = InSomeBuilds<T, { VERTEX_COLORS as usize }
 /// A value that only builds with the code for textures hold.
 pub(crate) type TextureOnly<T> = InSomeBuilds<T, { TEXTURE as usize }>;
 
+/// A value that only builds with the code for normal maps hold.
+pub(crate) type NormalMapOnly<T> = InSomeBuilds<T, { cfg!(feature = "normal-map") as usize }>;
+
 /// A value that only builds with the code for the forms of lights hold.
 pub(crate) type FalloffOnly<T> = InSomeBuilds<T, { cfg!(feature = "falloff") as usize }>;
 

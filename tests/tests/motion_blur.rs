@@ -151,7 +151,8 @@ fn moving_edge_is_a_ramp() {
                 );
                 sum += off;
             }
-            assert!(sum.abs() < 0.01, "{format:?}, {from} to {to}: {sum}");
+            // Places within a pixel are multiples of 1/256.
+            assert!(sum.abs() < 0.02, "{format:?}, {from} to {to}: {sum}");
         }
     }
 }

@@ -42,6 +42,9 @@ macro_rules! effects {
             /// Smooth normals: meshes are shaded by the normals of their vertices.
             SMOOTH = 6, "smooth", Smooth in smooth, casts 0,
                 required by "a mesh with normals that are not those of its faces";
+            /// Normal maps: meshes are shaded by normals of an image, which stand for bumps.
+            NORMAL_MAP = 19, "normal-map", NormalMap in normal_map, casts 0,
+                required by "a material with a normal map";
             /// Vertex colors: the diffuse color of a mesh is weighted by the colors of its vertices.
             VERTEX_COLORS = 7, "vertex-colors", VertexColors in vertex_colors, casts 0,
                 required by "a mesh with colors of its vertices";

@@ -256,6 +256,8 @@ macro_rules! sections {
             /// For each of the first forms of lights, 1 where rays meet a surface of the scene that shines so, else 0, as for
             /// others. Absent where no material is rough.
             ShownForms = 97, "shown-forms", [u8], "mark" of "light-forms";
+            /// For each of the first surface maps, its [`NormalMap`](crate::format::record::NormalMap); others have none.
+            NormalMaps = 98, "normal-maps", [record::NormalMap], "map" of "textures";
             $(
                 #[doc = concat!(
                     "[`", stringify!($record), "`](crate::geometry::", stringify!($module),

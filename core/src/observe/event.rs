@@ -134,6 +134,13 @@ pub enum Event {
         /// The normal, of length 1, on the side from which the ray came.
         normal: [f64; 3],
     },
+    /// The surface that was hit is shaded with the normal of a normal map.
+    NormalMapped {
+        /// The nearest texel, or the upper left one of the four that are mixed.
+        texel: [u32; 2],
+        /// The normal, of length 1, on the side from which the ray came.
+        normal: [f64; 3],
+    },
     /// The diffuse color of the surface that was hit is weighted by the colors of its vertices.
     VertexColor {
         /// The interpolated color: linear ratios.

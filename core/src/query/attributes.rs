@@ -8,6 +8,40 @@ use crate::query::hit::{Hit, find};
 use crate::scene::Scene;
 use crate::target::{TEXTURE, VERTEX_COLORS};
 
+/// How an image lies on a triangle: see [`Hit::tangent`].
+pub(crate) struct Tangent<N> {
+    pub(crate) direction: [N; 3],
+    pub(crate) is_mirrored: bool,
+    pub(crate) coordinates: [i32; 2],
+}
+
+/// The direction in which u grows over a triangle, of any length, and whether the image is seen mirrored from its front:
+/// places with 8 fraction bits, coordinates with [`COORDINATE_BITS`].
+#[inline(always)]
+fn along_u(corners: [[i32; 3]; 3], coordinates: [[i32; 2]; 3]) -> Option<([i64; 3], bool)> {
+    let [a, b, c] = corners;
+    let [at_a, at_b, at_c] = coordinates;
+    // At most 2^31 in magnitude, and edges of places 2^25.
+    let apart = |to: [i32; 2], k: usize| i64::from(to[k]).wrapping_sub(i64::from(at_a[k]));
+    let (u, v) = (
+        [apart(at_b, 0), apart(at_c, 0)],
+        [apart(at_b, 1), apart(at_c, 1)],
+    );
+    let edge = |to: [i32; 3], k: usize| i64::from(to[k]).wrapping_sub(i64::from(a[k]));
+    // Of 2^62 and 2^62, which may not fit.
+    let area = u[0]
+        .wrapping_mul(v[1])
+        .saturating_sub(u[1].wrapping_mul(v[0]));
+    let along = |k: usize| {
+        let sum = edge(b, k)
+            .wrapping_mul(v[1])
+            .wrapping_sub(edge(c, k).wrapping_mul(v[0]));
+        if area < 0 { sum.wrapping_neg() } else { sum }
+    };
+    let along = [along(0), along(1), along(2)];
+    (area != 0 && along != [0; 3]).then_some((along, area > 0))
+}
+
 impl<N: Number> Hit<N> {
     /// Returns the texture coordinates at the hit, u to the right and v down: a multiple of 2^-20 each, from -1024 to
     /// 1024. `scene` is that of the query. `None` unless the hit is of a mesh in a scene with texture coordinates.
@@ -38,6 +72,31 @@ impl<N: Number> Hit<N> {
         let (shapes, vertices, weights) = self.weights(scene)?;
         let corners = shapes.coordinates().corners(vertices)?;
         Some(weights.coordinates(corners))
+    }
+
+    /// The direction in which the u of texture coordinates grows, of length 1, with their values at the hit and whether the
+    /// image is seen mirrored from the triangle's front. `None` where there are none, or they are the same along a line.
+    #[inline(always)]
+    pub(crate) fn tangent(&self, scene: &Scene<'_>) -> Option<Tangent<N>> {
+        if !TEXTURE {
+            return None;
+        }
+        let (shapes, vertices, weights) = self.weights(scene)?;
+        let coordinates = shapes.coordinates().corners(vertices)?;
+        let position = |vertex| shapes.vertices.position(vertex);
+        let [a, b, c] = vertices;
+        let corners = [position(a)?, position(b)?, position(c)?];
+        let (along_u, is_mirrored) = along_u(corners, coordinates)?;
+        let mut direction = N::direction(along_u);
+        if self.instance().is_some() {
+            let (instance, _) = find(scene, self.instance()?)?;
+            direction = Map::<N>::new(instance).normal(direction).0;
+        }
+        Some(Tangent {
+            direction,
+            is_mirrored,
+            coordinates: weights.coordinates(coordinates),
+        })
     }
 
     /// The color of the vertices at the hit: linear ratios with 30 fraction bits. `None` where there is none.

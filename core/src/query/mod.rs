@@ -24,6 +24,7 @@ mod smooth;
 mod unbounded;
 
 pub use all_hits::{HitList, all_hits, count_hits};
+pub(crate) use attributes::Tangent;
 pub use contains::{Solid, containment_ray, contains};
 pub use hit::{Hit, PrimitiveHit};
 

@@ -101,29 +101,13 @@ fn check_materials(scene: &Scene<'_>) -> Result<(), BlobError> {
     required = required.with(check_smooth(scene)?);
     required = required.with(check_vertex_colors(scene)?);
     required = required.with(check_glow(scene)?);
-    let called = [
-        (
-            SectionKind::Lens,
-            Effects::DEPTH_OF_FIELD,
-            scene.lens().is_some(),
-        ),
-        (
-            SectionKind::Indirect,
-            Effects::INDIRECT,
-            scene.bounces() > 0,
-        ),
-        (
-            SectionKind::Environment,
-            Effects::ENVIRONMENT,
-            scene.environment().is_some(),
-        ),
-    ];
-    for (section, effect, is_required) in called {
-        let effect = effect.only_if(is_required);
-        let is_known = Effects(header.effects).contains(effect);
-        Location::Section(section).ensure(is_known, Reason::MissingEffect)?;
-        required = required.with(effect);
-    }
+    // One by one, so that nothing is left of those whose code is not there.
+    let lens = Effects::DEPTH_OF_FIELD.only_if(scene.lens().is_some());
+    required = required.with(check_called(scene, SectionKind::Lens, lens)?);
+    let bounces = Effects::INDIRECT.only_if(scene.bounces() > 0);
+    required = required.with(check_called(scene, SectionKind::Indirect, bounces)?);
+    let environment = Effects::ENVIRONMENT.only_if(scene.environment().is_some());
+    required = required.with(check_called(scene, SectionKind::Environment, environment)?);
     required = required.with(check_roughness(scene)?);
     let view = scene.view.effects();
     let called = Effects(header.effects).contains(view);
@@ -138,20 +122,30 @@ fn check_materials(scene: &Scene<'_>) -> Result<(), BlobError> {
     Location::Header.ensure(unneeded == Effects::NONE, Reason::UnneededEffects)
 }
 
+/// The effects that a section requires; an error where the header does not require them.
+#[inline(always)]
+fn check_called(
+    scene: &Scene<'_>,
+    section: SectionKind,
+    required: Effects,
+) -> Result<Effects, BlobError> {
+    let is_known = Effects(scene.space.header.effects).contains(required);
+    Location::Section(section).ensure(is_known, Reason::MissingEffect)?;
+    Ok(required)
+}
+
 /// What the normals of vertices require, of the scene and of its parts; an error where the header does not require it.
 fn check_smooth(scene: &Scene<'_>) -> Result<Effects, BlobError> {
     let own = !scene.space.shapes.normals().is_empty();
     let mut parts = scene.parts().iter();
     let mut in_parts = || parts.any(|part| part.effects().contains(Effects::SMOOTH));
     let required = Effects::SMOOTH.only_if(SMOOTH && (own || in_parts()));
-    let is_known = Effects(scene.space.header.effects).contains(required);
     let section = if own {
         SectionKind::Normals
     } else {
         SectionKind::Parts
     };
-    Location::Section(section).ensure(is_known, Reason::MissingEffect)?;
-    Ok(required)
+    check_called(scene, section, required)
 }
 
 /// What the light that materials send out requires; an error where it is out of its range, or the header does not
@@ -162,9 +156,7 @@ fn check_glow(scene: &Scene<'_>) -> Result<Effects, BlobError> {
         emission.check_ranges(At { section, index }.location())?;
     }
     let required = Effects::EMISSION.only_if(!scene.emissions().is_empty());
-    let is_known = Effects(scene.space.header.effects).contains(required);
-    Location::Section(section).ensure(is_known, Reason::MissingEffect)?;
-    Ok(required)
+    check_called(scene, section, required)
 }
 
 /// What rough materials require; an error where a roughness is out of its range, or the header does not require it.
@@ -182,9 +174,7 @@ fn check_roughness(scene: &Scene<'_>) -> Result<Effects, BlobError> {
         At { section, index }.within(Field::ShownForm, mark.into(), 0, 1)?;
     }
     let required = Effects::GLOSSY.only_if(!rough.alphas.is_empty());
-    let is_known = Effects(scene.space.header.effects).contains(required);
-    Location::Section(section).ensure(is_known, Reason::MissingEffect)?;
-    Ok(required)
+    check_called(scene, section, required)
 }
 
 /// What the colors of vertices require: see [`check_smooth`].
@@ -193,14 +183,12 @@ fn check_vertex_colors(scene: &Scene<'_>) -> Result<Effects, BlobError> {
     let mut parts = scene.parts().iter();
     let mut in_parts = || parts.any(|part| part.effects().contains(Effects::VERTEX_COLORS));
     let required = Effects::VERTEX_COLORS.only_if(VERTEX_COLORS && (own || in_parts()));
-    let is_known = Effects(scene.space.header.effects).contains(required);
     let section = if own {
         SectionKind::VertexColors
     } else {
         SectionKind::Parts
     };
-    Location::Section(section).ensure(is_known, Reason::MissingEffect)?;
-    Ok(required)
+    check_called(scene, section, required)
 }
 
 /// Proves the ranges of a material.

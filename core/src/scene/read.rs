@@ -108,7 +108,7 @@ pub(crate) fn scene<'a>(
     let shapes = Shapes::read(sections, header)?;
     let textures = match TEXTURE {
         true => Textures::read(sections)?,
-        false => Textures::default(),
+        false => Textures::none(),
     };
     let light_forms = match const { Effects::AVAILABLE.contains(Effects::FALLOFF) } {
         true => sections.records(SectionKind::LightForms)?,

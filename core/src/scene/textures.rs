@@ -4,9 +4,10 @@
 //! have 8 bits along each axis. Colors are stored as square roots and mixed as linear light.
 
 use crate::format::range::{At, Ranges};
-use crate::format::record::{Material, SurfaceMaps, Texture};
-use crate::format::{BlobError, Field, SectionKind, Sections};
+use crate::format::record::{Material, NormalMap, SurfaceMaps, Texture};
+use crate::format::{BlobError, Effects, Field, SectionKind, Sections};
 use crate::geometry::attributes::{COORDINATE_BITS, linear};
+use crate::target::NormalMapOnly;
 
 impl Material {
     /// The bits of [`maps`](Self::maps) that are a number.
@@ -18,14 +19,18 @@ impl Material {
     /// The bit of [`maps`](Self::maps) for a texture whose alpha is used.
     pub const MAPS_ALPHA: u16 = 1 << 13;
 
+    /// The bit of [`maps`](Self::maps) for a normal map.
+    pub const MAPS_NORMAL: u16 = 1 << 14;
+
     /// All bits of [`maps`](Self::maps) for effects.
-    pub(crate) const MAPS_FLAGS: u16 = Self::MAPS_TEXTURE | Self::MAPS_ALPHA;
+    pub(crate) const MAPS_FLAGS: u16 = Self::MAPS_TEXTURE | Self::MAPS_ALPHA | Self::MAPS_NORMAL;
 }
 
 /// The textures of a scene.
-#[derive(Clone, Copy, Debug, Default)]
+#[derive(Clone, Copy, Debug)]
 pub(crate) struct Textures<'a> {
     pub(crate) maps: &'a [SurfaceMaps],
+    normal_maps: NormalMapOnly<&'a [NormalMap]>,
     pub(crate) textures: &'a [Texture],
     texels: &'a [u8],
 }
@@ -33,15 +38,30 @@ pub(crate) struct Textures<'a> {
 /// A texture, looked up.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Texel {
-    /// Linear ratios with 30 fraction bits.
+    /// Ratios with 30 fraction bits: of linear light, or of a normal's length.
     pub(crate) color: [i32; 3],
     /// The nearest texel, or the upper left one of four.
     pub(crate) place: [u32; 2],
 }
 
 impl<'a> Textures<'a> {
+    /// No textures, in builds without their code.
+    pub(crate) fn none() -> Self {
+        Self {
+            maps: &[],
+            normal_maps: NormalMapOnly::new(|| &[][..]),
+            textures: &[],
+            texels: &[],
+        }
+    }
+
     pub(crate) fn read(sections: &Sections<'a>) -> Result<Self, BlobError> {
+        let normal_maps = match const { Effects::AVAILABLE.contains(Effects::NORMAL_MAP) } {
+            true => sections.records(SectionKind::NormalMaps)?,
+            false => &[],
+        };
         Ok(Self {
+            normal_maps: NormalMapOnly::new(|| normal_maps),
             maps: sections.records(SectionKind::SurfaceMaps)?,
             textures: sections.records(SectionKind::Textures)?,
             texels: sections.records(SectionKind::Texels)?,
@@ -55,6 +75,20 @@ impl<'a> Textures<'a> {
             let at = At { section, index };
             let most = self.textures.len() as i64;
             at.within(Field::TextureNumber, maps.color.into(), 0, most)?;
+        }
+        let section = SectionKind::NormalMaps;
+        let normal_maps = self.normal_maps.get().map_or(&[][..], |it| *it);
+        if normal_maps.len() > self.maps.len() {
+            return Err(BlobError::Count {
+                section,
+                found: normal_maps.len(),
+                expected: self.maps.len(),
+            });
+        }
+        for (index, map) in normal_maps.iter().enumerate() {
+            let at = At { section, index };
+            let most = self.textures.len() as i64;
+            at.within(Field::TextureNumber, map.texture.into(), 0, most)?;
         }
         let section = SectionKind::Textures;
         for (index, texture) in self.textures.iter().enumerate() {
@@ -71,6 +105,20 @@ impl<'a> Textures<'a> {
     pub(crate) fn maps_of(&self, material: &Material) -> Option<&'a SurfaceMaps> {
         let number = material.maps & Material::MAPS_NUMBER;
         self.maps.get(usize::from(number).wrapping_sub(1))
+    }
+
+    /// The normal map of a material, and its texture.
+    #[inline(always)]
+    pub(crate) fn normal_map_of(
+        &self,
+        material: &Material,
+    ) -> Option<(&'a NormalMap, &'a Texture)> {
+        let number = material.maps & Material::MAPS_NUMBER;
+        let map = self
+            .normal_maps
+            .get()?
+            .get(usize::from(number).wrapping_sub(1))?;
+        Some((map, self.texture(map.texture)?))
     }
 
     /// A texture, whose number counts from 1.
@@ -102,6 +150,33 @@ impl<'a> Textures<'a> {
         };
         Texel {
             color: squares.map(linear),
+            place,
+        }
+    }
+
+    /// The normal that a texture holds at coordinates with [`COORDINATE_BITS`] fraction bits: ratios from -1 to 1 with 30
+    /// fraction bits. Texels are mixed as they are, and the mean has any length up to the square root of 3.
+    #[inline(always)]
+    pub(crate) fn normal(&self, texture: &Texture, at: [i32; 2]) -> Texel {
+        let (sums, place) = match taps(texture, at) {
+            Taps::Nearest(index, place) => {
+                let [texel] = self.fetched(texture, [index]);
+                (texel.channels().map(|channel| channel << 16), place)
+            }
+            Taps::Mixed(indices, weights, place) => {
+                let mut sum = [0_u32; 3];
+                for (texel, weight) in self.fetched(texture, indices).into_iter().zip(weights) {
+                    for (sum, channel) in sum.iter_mut().zip(texel.channels()) {
+                        *sum = sum.wrapping_add(channel.wrapping_mul(weight));
+                    }
+                }
+                (sum, place)
+            }
+        };
+        // Twice as much and 1 less: half of 255 is 0.
+        let signed = |sum: u32| ratio(sum).wrapping_sub(1 << 29).wrapping_shl(1);
+        Texel {
+            color: sums.map(signed),
             place,
         }
     }

@@ -23,7 +23,7 @@ use crate::shade::surface::{Lighting, Secondary, Surface};
 pub(crate) struct Smooth;
 
 /// The effects of a material that send rays by the shading normal.
-const SENDING: u32 = Effects::MIRROR.0 | Effects::GLASS.0;
+pub(super) const SENDING: u32 = Effects::MIRROR.0 | Effects::GLASS.0;
 
 impl Effect for Smooth {
     type State<N: Number> = ();
@@ -71,14 +71,7 @@ impl Effect for Smooth {
         if !tracer.scene().effects().contains(both) {
             return;
         }
-        let cos = N::dot(surface.hit.normal, lighting.to_light);
-        let zero = N::Wide::default();
-        let behind = if surface.hit.front {
-            cos <= zero
-        } else {
-            cos >= zero
-        };
-        if behind {
+        if is_behind(surface.hit, lighting.to_light) {
             *is_reached = lift(tracer, surface, lighting);
             if X::Observer::ENABLED && !*is_reached {
                 tracer.count().event(Event::BehindTriangle);
@@ -96,25 +89,39 @@ impl Effect for Smooth {
         if !tracer.scene().effects().contains(Self::EFFECT) {
             return;
         }
-        let normal = if secondary.outward {
-            hit.normal
-        } else {
-            hit.normal.map(|x| -x)
-        };
-        let rise = N::from_wide(N::dot(secondary.direction, normal));
-        if rise <= N::ZERO {
-            // In the plane, and up by more than rounding: 1/4096 of the direction's length.
-            let up = N::ratio(1 << 18) - rise;
-            let direction = secondary.direction;
-            let axis = |k: usize| direction[k] + up * normal[k];
-            secondary.direction = [axis(0), axis(1), axis(2)];
-        }
+        keep_on_its_side(hit, secondary);
+    }
+}
+
+/// Whether a light is on the other side of a surface than the ray that met it.
+#[inline(always)]
+pub(super) fn is_behind<N: Number>(hit: &Hit<N>, to_light: [N; 3]) -> bool {
+    let cos = N::dot(hit.normal, to_light);
+    let zero = N::Wide::default();
+    if hit.front { cos <= zero } else { cos >= zero }
+}
+
+/// Turns a ray that would go to the wrong side of a surface into its plane.
+#[inline(always)]
+pub(super) fn keep_on_its_side<N: Number>(hit: &Hit<N>, secondary: &mut Secondary<N>) {
+    let normal = if secondary.outward {
+        hit.normal
+    } else {
+        hit.normal.map(|x| -x)
+    };
+    let rise = N::from_wide(N::dot(secondary.direction, normal));
+    if rise <= N::ZERO {
+        // In the plane, and up by more than rounding: 1/4096 of the direction's length.
+        let up = N::ratio(1 << 18) - rise;
+        let direction = secondary.direction;
+        let axis = |k: usize| direction[k] + up * normal[k];
+        secondary.direction = [axis(0), axis(1), axis(2)];
     }
 }
 
 /// The normal, turned until it is level with a ray of length 1 that meets it from behind.
 #[inline(always)]
-fn turned_to_ray<N: Number>(normal: [N; 3], direction: [N; 3]) -> [N; 3] {
+pub(super) fn turned_to_ray<N: Number>(normal: [N; 3], direction: [N; 3]) -> [N; 3] {
     let along = N::from_wide(N::dot(normal, direction));
     if along < N::ZERO {
         return normal;

@@ -284,7 +284,7 @@ fn alone(part: &Part, scene: &Scene) -> Result<Scene, CompileError> {
         });
     }
     let plain = |object: &Object| {
-        let texture = scene.materials[object.material].texture.as_ref();
+        let texture = scene.materials[object.material].placing();
         Object {
             // What is on coordinates already has no transform.
             material: usize::from(texture.is_some()),
@@ -294,7 +294,7 @@ fn alone(part: &Part, scene: &Scene) -> Result<Scene, CompileError> {
     };
     let mut materials = vec![Material::default()];
     let mut all = part.objects.iter();
-    if all.any(|it| scene.materials[it.material].texture.is_some()) {
+    if all.any(|it| scene.materials[it.material].placing().is_some()) {
         materials.push(Material {
             texture: Some(Texture::of(Arc::new(Image::blank()))),
             ..Material::default()

@@ -199,7 +199,7 @@ impl Primitives {
                 let snapped: Vec<_> = vertices.iter().map(|&v| lattice.snap(v)).collect();
                 // Their numbers among all distinct ones without normals, as soon as they are looked up.
                 let mut numbers = vec![None; vertices.len()];
-                let texture = scene.materials[object.material].texture.as_ref();
+                let texture = scene.materials[object.material].placing();
                 let attributes = object.attributes.placed_on(texture);
                 let all = Corners::of(&object.normals, &attributes, scene.display_values);
                 let all = all.ok_or_else(|| CompileError::TextureCoordinates {

@@ -72,61 +72,97 @@ fn srgb_of_linear(linear: f64) -> f64 {
 /// The textures of the materials in use.
 #[derive(Debug, Default)]
 pub struct Textures {
-    images: Vec<Arc<Image>>,
-    /// For each image, whether its alpha is used.
-    has_alpha: Vec<bool>,
+    images: Vec<UsedImage>,
     textures: Vec<(usize, Texture)>,
-    maps: Vec<record::SurfaceMaps>,
+    maps: Vec<(record::SurfaceMaps, record::NormalMap)>,
+}
+
+/// An image, and what it is used for.
+#[derive(Debug)]
+struct UsedImage {
+    image: Arc<Image>,
+    /// Whether it holds normals, and not colors.
+    has_normals: bool,
+    /// Whether its alpha is used.
+    has_alpha: bool,
 }
 
 impl Textures {
     /// What a material's record says of its maps.
     pub fn maps(&mut self, material: &Material) -> u16 {
-        let Some(texture) = &material.texture else {
-            return 0;
-        };
         let alpha = material.alpha.filter(|_| material.transmit == [0.0; 3]);
-        let known = self.images.iter().position(|it| *it == texture.image);
+        let color = material.texture.as_ref();
+        let normals = material.normal_map.as_ref();
+        if color.is_none() && normals.is_none() {
+            return 0;
+        }
+        // Too many are an error later.
+        let limit = |number: usize| (number + 1).min(record::Material::MAPS_NUMBER.into()) as u16;
+        let mut flags = 0;
+        let mut maps = record::SurfaceMaps {
+            color: 0,
+            cutoff: 0,
+            opacity: 0,
+        };
+        if let Some(texture) = color {
+            flags |= record::Material::MAPS_TEXTURE;
+            maps.color = limit(self.number(texture, false, alpha.is_some()));
+            let of_255 = |it: f64| (it.clamp(0.0, 1.0) * 255.0).round() as u8;
+            (maps.cutoff, maps.opacity) = match alpha {
+                None => (0, 0),
+                Some(Alpha::Blend(factor)) => (0, of_255(factor)),
+                // Alpha of 8 bits that is as large or larger.
+                Some(Alpha::CutOut(least)) => {
+                    ((least.clamp(0.0, 1.0) * 255.0).ceil().max(1.0) as u8, 255)
+                }
+            };
+            if alpha.is_some() {
+                flags |= record::Material::MAPS_ALPHA;
+            }
+        }
+        let mut normal_map = record::NormalMap::default();
+        if let Some(map) = normals {
+            flags |= record::Material::MAPS_NORMAL;
+            let of_65535 = |it: f64| (it.clamp(0.0, 1.0) * 65_535.0).round() as u16;
+            normal_map = record::NormalMap {
+                texture: limit(self.number(&map.texture, true, false)),
+                // What counts is the ratio of both.
+                across: of_65535(map.scale),
+                along: of_65535(1.0 / map.scale.max(1.0)),
+            };
+        }
+        let both = (maps, normal_map);
+        let known = self.maps.iter().position(|it| *it == both);
+        let number = known.unwrap_or_else(|| {
+            self.maps.push(both);
+            self.maps.len() - 1
+        });
+        limit(number) | flags
+    }
+
+    /// The number of a texture of colors or of normals, counted from 0.
+    fn number(&mut self, texture: &Texture, has_normals: bool, has_alpha: bool) -> usize {
+        let known = self
+            .images
+            .iter()
+            .position(|it| it.image == texture.image && it.has_normals == has_normals);
         let image = known.unwrap_or_else(|| {
-            self.images.push(Arc::clone(&texture.image));
-            self.has_alpha.push(false);
+            self.images.push(UsedImage {
+                image: Arc::clone(&texture.image),
+                has_normals,
+                has_alpha: false,
+            });
             self.images.len() - 1
         });
-        self.has_alpha[image] |= alpha.is_some();
+        self.images[image].has_alpha |= has_alpha;
         let same = |(number, other): &(usize, Texture)| {
             *number == image && other.wrap == texture.wrap && other.bilinear == texture.bilinear
         };
         let known = self.textures.iter().position(same);
-        let color = known.unwrap_or_else(|| {
+        known.unwrap_or_else(|| {
             self.textures.push((image, texture.clone()));
             self.textures.len() - 1
-        });
-        let of_255 = |it: f64| (it.clamp(0.0, 1.0) * 255.0).round() as u8;
-        let (cutoff, opacity) = match alpha {
-            None => (0, 0),
-            Some(Alpha::Blend(factor)) => (0, of_255(factor)),
-            // Alpha of 8 bits that is as large or larger.
-            Some(Alpha::CutOut(least)) => {
-                ((least.clamp(0.0, 1.0) * 255.0).ceil().max(1.0) as u8, 255)
-            }
-        };
-        // Too many are an error later.
-        let limit = |number: usize| (number + 1).min(record::Material::MAPS_NUMBER.into()) as u16;
-        let maps = record::SurfaceMaps {
-            color: limit(color),
-            cutoff,
-            opacity,
-        };
-        let known = self.maps.iter().position(|it| *it == maps);
-        let number = known.unwrap_or_else(|| {
-            self.maps.push(maps);
-            self.maps.len() - 1
-        });
-        let uses_alpha = match alpha {
-            Some(_) => record::Material::MAPS_ALPHA,
-            None => 0,
-        };
-        limit(number) | record::Material::MAPS_TEXTURE | uses_alpha
+        })
     }
 
     /// The sections, and how each image is stored.
@@ -148,8 +184,11 @@ impl Textures {
             let channel = it as f64 / 255.0;
             root(linear_of_srgb(channel), display_values)
         });
-        let images = self.images.iter().zip(&self.has_alpha);
-        let images = images.map(|(image, has_alpha)| Stored::of(image, *has_alpha, &roots));
+        let as_they_are: [u8; 256] = std::array::from_fn(|it| it as u8);
+        let images = self.images.iter().map(|it| {
+            let channels = if it.has_normals { &as_they_are } else { &roots };
+            Stored::of(it, channels)
+        });
         let mut images: Vec<Stored> = images.collect();
         let total = |images: &[Stored]| images.iter().map(Stored::bytes).sum::<u64>();
         while budget.is_some_and(|most| total(&images) > most) {
@@ -195,8 +234,13 @@ impl Textures {
             form: it.form.name(),
             bytes: it.bytes(),
         });
+        let (maps, mut normal_maps): (Vec<_>, Vec<_>) = self.maps.into_iter().unzip();
+        // Those behind the last have none.
+        let used = normal_maps.iter().rposition(|it| it.texture > 0);
+        normal_maps.truncate(used.map_or(0, |last| last + 1));
         let sections = vec![
-            section(SectionKind::SurfaceMaps, &self.maps),
+            section(SectionKind::SurfaceMaps, &maps),
+            section(SectionKind::NormalMaps, &normal_maps),
             section(SectionKind::Textures, &textures),
             section(SectionKind::Texels, &texels),
         ];
@@ -231,16 +275,19 @@ struct Stored {
     height: u32,
     pixels: Vec<Roots>,
     has_alpha: bool,
+    has_normals: bool,
     form: Form,
 }
 
 impl Stored {
-    fn of(image: &Image, has_alpha: bool, roots: &[u8; 256]) -> Self {
+    /// An image whose channels are stored so.
+    fn of(used: &UsedImage, channels: &[u8; 256]) -> Self {
+        let image = &used.image;
         let [width, height] = image.size();
         let pixels = image.pixels().iter();
-        let has_alpha = has_alpha && !image.is_opaque();
+        let has_alpha = used.has_alpha && !image.is_opaque();
         let pixels = pixels.map(|&[r, g, b, alpha]| {
-            let [r, g, b] = [r, g, b].map(|it| roots[usize::from(it)]);
+            let [r, g, b] = [r, g, b].map(|it| channels[usize::from(it)]);
             [r, g, b, if has_alpha { alpha } else { 255 }]
         });
         let mut stored = Self {
@@ -249,6 +296,7 @@ impl Stored {
             height,
             pixels: pixels.collect(),
             has_alpha,
+            has_normals: used.has_normals,
             form: match has_alpha {
                 true => Form::Rgba8888,
                 false => Form::Rgb888,
@@ -307,7 +355,7 @@ impl Stored {
         true
     }
 
-    /// Makes width and height half as large, rounded up: the mean of linear light.
+    /// Makes width and height half as large, rounded up: the mean of linear light, or of normals.
     fn halve(&mut self) {
         let (width, height) = (self.width.div_ceil(2), self.height.div_ceil(2));
         let mut pixels = Vec::with_capacity((width * height) as usize);
@@ -318,12 +366,25 @@ impl Stored {
                     let x = (2 * x + dx).min(self.width - 1);
                     let y = (2 * y + dy).min(self.height - 1);
                     let pixel = self.pixels[(y * self.width + x) as usize];
-                    for (sum, root) in sum.iter_mut().zip(pixel) {
-                        *sum += u32::from(root) * u32::from(root);
+                    for (sum, channel) in sum.iter_mut().zip(pixel) {
+                        let channel = u32::from(channel);
+                        *sum += if self.has_normals {
+                            channel
+                        } else {
+                            channel * channel
+                        };
                     }
                     alpha += u32::from(pixel[3]);
                 }
-                let [r, g, b] = sum.map(|it| libm::sqrt(f64::from(it) / 4.0).round() as u8);
+                let [r, g, b] = sum.map(|it| {
+                    let mean = f64::from(it) / 4.0;
+                    let channel = if self.has_normals {
+                        mean
+                    } else {
+                        libm::sqrt(mean)
+                    };
+                    channel.round() as u8
+                });
                 pixels.push([r, g, b, ((alpha + 2) / 4) as u8]);
             }
         }

@@ -51,6 +51,9 @@ pub struct Ray {
     pub absorbed: Option<[f64; 3]>,
     /// The smooth normal that the surface is shaded with.
     pub smooth: Option<[f64; 3]>,
+    /// The normal of a normal map that the surface is shaded with.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub normal_map: Option<Mapped>,
     /// The color of the vertices that weights the diffuse color: linear ratios.
     pub vertex_color: Option<[f64; 3]>,
     /// The texture that weights the diffuse color.
@@ -96,6 +99,15 @@ pub struct Textured {
     pub texel: [u32; 2],
     /// Linear ratios.
     pub color: [f64; 3],
+}
+
+/// A normal map at a hit.
+#[derive(Clone, Debug, Serialize)]
+pub struct Mapped {
+    /// The nearest texel, counted from the upper left one, or the upper left one of the four that are mixed.
+    pub texel: [u32; 2],
+    /// The normal, of length 1, on the side from which the ray came.
+    pub normal: [f64; 3],
 }
 
 /// A ray that was not cast.
@@ -237,6 +249,9 @@ impl Ray {
             }
             Event::Absorbed { weight } => self.absorbed = Some(weight),
             Event::Smooth { normal } => self.smooth = Some(normal),
+            Event::NormalMapped { texel, normal } => {
+                self.normal_map = Some(Mapped { texel, normal });
+            }
             Event::Alpha { alpha } => self.alpha = Some(alpha),
             Event::VertexColor { color } => self.vertex_color = Some(color),
             Event::Textured {

@@ -121,6 +121,7 @@ impl<'t> Reader<'t> {
             hit: None,
             absorbed: None,
             smooth: None,
+            normal_map: None,
             vertex_color: None,
             texture: None,
             alpha: None,

@@ -253,6 +253,14 @@ impl Shown<'_> {
                 vector(normal, significant)
             )?;
         }
+        if let Some(map) = &ray.normal_map {
+            let [x, y] = map.texel;
+            writeln!(
+                f,
+                "{indent}  shaded with the normal {} of the normal map, texel {x},{y}",
+                vector(map.normal, significant)
+            )?;
+        }
         if let Some(weight) = ray.vertex_color {
             writeln!(
                 f,

@@ -64,7 +64,7 @@ pub use options::{
 pub use placement::Placement;
 pub use size::MOST_INPUT;
 pub use source_span::SourceSpan;
-pub use texture::{Texture, Wrap};
+pub use texture::{NormalMap, Texture, Wrap};
 pub use track::{Interpolation, Key, TICKS_PER_SECOND, Track, TrackTarget};
 pub use without::{effect_named, leave_out, shown_without};
 

@@ -6,7 +6,7 @@ use super::light_form::LightForm;
 use super::normals::{Normals, NormalsChoice};
 use super::placement::Placement;
 use super::source_span::SourceSpan;
-use super::texture::Texture;
+use super::texture::{NormalMap, Texture};
 use super::track::Track;
 use crate::shape::{Shape, unit};
 use glam::DVec3;
@@ -145,6 +145,8 @@ pub struct Material {
     pub texture: Option<Texture>,
     /// How the alpha of the texture is used; glass ignores it.
     pub alpha: Option<Alpha>,
+    /// The normals that meshes with texture coordinates are shaded with. It lies as the texture does, if there is one.
+    pub normal_map: Option<NormalMap>,
 }
 
 /// How the brightness of pixels is mapped to the range of a display.
@@ -316,6 +318,12 @@ impl Material {
     /// The least roughness of what is rough.
     pub const LEAST_ROUGHNESS: f64 = 0.05;
 
+    /// Returns the image that lies on texture coordinates: the texture, or else the normal map, which lies as it does.
+    pub fn placing(&self) -> Option<&Texture> {
+        let normal_map = self.normal_map.as_ref().map(|it| &it.texture);
+        self.texture.as_ref().or(normal_map)
+    }
+
     /// Returns whether rays are mirrored or refracted by facets.
     pub fn is_rough(&self) -> bool {
         let sends = self.mirror != [0.0; 3] || self.transmit != [0.0; 3];
@@ -340,6 +348,7 @@ impl Default for Material {
             is_sampled: false,
             texture: None,
             alpha: None,
+            normal_map: None,
         }
     }
 }

@@ -27,6 +27,20 @@ pub struct Texture {
     pub transform: DAffine2,
 }
 
+/// An image whose colors are normals of a surface with bumps: red to the right along u, green up against v, blue out of
+/// it, of which 0 is -1, and 255 is 1.
+#[derive(Clone, Debug, PartialEq)]
+pub struct NormalMap {
+    pub texture: Texture,
+    /// A factor of the components along u and v, 0 to [`NormalMap::STEEPEST`]: how steep bumps are.
+    pub scale: f64,
+}
+
+impl NormalMap {
+    /// The largest scale.
+    pub const STEEPEST: f64 = 16.0;
+}
+
 /// How an image goes on beyond its edges.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum Wrap {

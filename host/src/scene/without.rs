@@ -66,6 +66,11 @@ const REMOVALS: [(Effects, &str, Removal); Effects::NAMED.len()] = [
         each_object(scene, |object| object.normals = Normals::default());
     }),
     (
+        Effects::NORMAL_MAP,
+        "bumps of normal maps are flat",
+        |scene| each_material(scene, |material| material.normal_map = None),
+    ),
+    (
         Effects::VERTEX_COLORS,
         "meshes have the colors of their materials alone",
         |scene| each_object(scene, |object| object.attributes.colors.clear()),
@@ -216,7 +221,7 @@ pub fn effect_named(name: &str) -> Option<Effects> {
 mod tests {
     use super::*;
     use crate::compile::{Options, compile};
-    use crate::scene::{Alpha, Image, Texture, read};
+    use crate::scene::{Alpha, Image, NormalMap, Texture, read};
 
     /// Calls for every effect.
     const ALL: &str = "
@@ -279,6 +284,10 @@ mod tests {
         let squares = materials.find(|it| it.name == "squares").unwrap();
         squares.texture = image.map(|it| Texture::of(it.into()));
         squares.alpha = Some(Alpha::Blend(0.5));
+        squares.normal_map = Some(NormalMap {
+            texture: Texture::of(Image::blank().into()),
+            scale: 1.0,
+        });
         scene
     }
 

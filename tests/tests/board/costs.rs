@@ -154,7 +154,7 @@ fn hits_and_lights_cost_what_is_recorded() {
 }
 
 /// The effects whose costs per hit are measured.
-const PER_HIT: [&str; 2] = ["vertex-colors", "texture"];
+const PER_HIT: [&str; 3] = ["vertex-colors", "texture", "normal-map"];
 
 /// Costs of a product with every shape and effect on a board, fast or small, and on one of each kind
 /// of core with instances: by which the memory report scales.

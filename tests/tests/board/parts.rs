@@ -7,8 +7,8 @@ use gridel_core::{Kind, Structure};
 use gridel_host::compile::Options;
 use gridel_host::scene::{
     Alpha, Camera, Diffuse, Environment, Image, Instance, Lens, Light, LightForm, LightShape,
-    Material, Normals, Object, Part, Placement, Scene, Shape, Sky, SourceSpan, Spot, Texture,
-    ToneMapping,
+    Material, NormalMap, Normals, Object, Part, Placement, Scene, Shape, Sky, SourceSpan, Spot,
+    Texture, ToneMapping,
 };
 use gridel_host::shape::{Cuboid, Sphere};
 use gridel_tests::shapes::examples;
@@ -22,7 +22,7 @@ const TRIANGLE: &str = Kind::Triangle.name();
 const INSTANCES: &str = "instances";
 
 /// A part's name, and how to require it.
-type Effects = [(&'static str, fn(&mut Scene)); 18];
+type Effects = [(&'static str, fn(&mut Scene)); 19];
 
 const EFFECTS: Effects = [
     ("shadow", |scene| scene.render.shadows = true),
@@ -47,6 +47,13 @@ const EFFECTS: Effects = [
     }),
     ("smooth", |scene| {
         scene.objects.iter_mut().for_each(make_smooth);
+    }),
+    ("normal-map", |scene| {
+        scene.objects.iter_mut().for_each(paper);
+        scene.materials[0].normal_map = Some(NormalMap {
+            texture: gradients(|_| 255),
+            scale: 0.5,
+        });
     }),
     ("vertex-colors", |scene| {
         scene.objects.iter_mut().for_each(paint);
@@ -139,10 +146,14 @@ pub fn lamps() -> [Compiled; 4] {
 /// Gives all meshes a texture with this alpha.
 fn hang(scene: &mut Scene, alpha: fn(u8) -> u8) {
     scene.objects.iter_mut().for_each(paper);
+    scene.materials[0].texture = Some(gradients(alpha));
+}
+
+/// A texture of gradients with this alpha.
+fn gradients(alpha: fn(u8) -> u8) -> Texture {
     let pixels = (0..64).map(|it| [4 * it, 255 - it, 3 * (it & 15), alpha(it)]);
     let image = Image::new("gradients", 8, 8, pixels.collect());
-    let image = image.expect("as many pixels");
-    scene.materials[0].texture = Some(Texture::of(image.into()));
+    Texture::of(image.expect("as many pixels").into())
 }
 
 /// The base, and a scene for every shape and effect beside it. Scenes for shapes have no effects,

@@ -195,6 +195,7 @@ fn memory_page_shows_recorded_cost_of_shapes_and_effects() {
         ("absorption", "glass"),
         ("checker", "base"),
         ("smooth", "base"),
+        ("normal-map", "base"),
         ("vertex-colors", "base"),
         ("texture", "base"),
         ("alpha", "texture"),
@@ -237,6 +238,7 @@ fn memory_page_shows_recorded_cost_per_hit() {
     for (name, scene) in [
         ("colors of vertices", "vertex-colors"),
         ("bilinear texture, a palette", "texture"),
+        ("bilinear normal map, a palette", "normal-map"),
         ("light that is a sphere", "sphere-light"),
         ("light that is a rectangle", "rectangle-light"),
         ("light that is a disc", "disc-light"),

@@ -18,7 +18,7 @@ pub use nodes::{
 };
 pub use points::{Sphere16, Sphere24, UnitBox, Vertex16, Vertex24};
 pub use shading::{Emission, Light, Material, View};
-pub use texture::{SurfaceMaps, Texture};
+pub use texture::{NormalMap, SurfaceMaps, Texture};
 
 /// The first bytes of every blob. The last two betray a file that was mangled as text.
 pub const MAGIC: [u8; 8] = *b"GRIDEL\x1a\n";

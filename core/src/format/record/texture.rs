@@ -17,7 +17,22 @@ records! {
         pub opacity: u8,
     }
 
-    /// An image, and how it is looked up. Colors are square roots of linear light: 255 is 1.
+    /// The image of the normals of a material, in the order of the [`SurfaceMaps`]. Its red, green and blue are the
+    /// components along u, against v, and along the normal: 0 is -1, and 255 is 1.
+    #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Pod, Zeroable)]
+    #[repr(C)]
+    #[bytes(6)]
+    pub struct NormalMap {
+        /// The texture, counted from 1; 0 for none.
+        pub texture: u16,
+        /// A factor of the components along u and v: 65535 is 1.
+        pub across: u16,
+        /// A factor of the component along the normal: 65535 is 1.
+        pub along: u16,
+    }
+
+    /// An image, and how it is looked up. Colors are square roots of linear light: 255 is 1. Those
+    /// of normal maps are not roots.
     #[derive(Clone, Copy, Debug, PartialEq, Eq, Pod, Zeroable)]
     #[repr(C)]
     #[bytes(12)]

@@ -22,6 +22,7 @@ fn look_up(texels: &[u8], texture: Texture, at: [f64; 2]) -> [f64; 3] {
         maps: &[],
         textures: &[texture],
         texels,
+        ..Textures::none()
     };
     textures.validate().expect("valid");
     let at = at.map(|it| (it * f64::from(ONE)).floor() as i32);
@@ -119,6 +120,7 @@ fn textures_beyond_their_texels_are_rejected() {
             maps: &[],
             textures: &[texture],
             texels: &texels,
+            ..Textures::none()
         };
         textures.validate().is_ok()
     };
@@ -187,6 +189,7 @@ fn textures_beyond_their_texels_are_rejected() {
         maps: &maps,
         textures: &[texture],
         texels: &TEXELS,
+        ..Textures::none()
     };
     assert!(textures.validate().is_err());
 }
@@ -226,6 +229,7 @@ fn alpha_is_that_of_palettes_and_wide_texels_alone() {
                 maps: &[],
                 textures: &[texture],
                 texels,
+                ..Textures::none()
             };
             textures.validate().expect("valid");
             let at = |u: f64, v: f64| {
@@ -241,5 +245,72 @@ fn alpha_is_that_of_palettes_and_wide_texels_alone() {
                 assert!(near(at(0.5, 0.5), 0.5), "{form}");
             }
         }
+    }
+}
+
+#[test]
+fn normals_are_channels_from_minus_1_to_1() {
+    // 0, 255 and what lies in between, which is mixed as it is.
+    let texels = [0, 255, 51, 255, 255, 153];
+    for (filter, u, expected) in [
+        (0, 0.25, [-1.0, 1.0, -0.6]),
+        (0, 0.75, [1.0, 1.0, 0.2]),
+        (1, 0.5, [0.0, 1.0, -0.2]),
+    ] {
+        let texture = Texture {
+            first: 0,
+            width: 2,
+            height: 1,
+            form: 2,
+            filter,
+            wrap: [0; 2],
+        };
+        let textures = Textures {
+            textures: &[texture],
+            texels: &texels,
+            ..Textures::none()
+        };
+        let at = [(u * f64::from(ONE)) as i32, ONE / 2];
+        let found = textures.normal(&texture, at).color;
+        for (found, expected) in found.into_iter().zip(expected) {
+            let found = f64::from(found) / f64::from(1 << 30);
+            assert!((found - expected).abs() < 1e-6, "{found} {expected}");
+        }
+    }
+}
+
+#[test]
+fn normal_maps_without_textures_or_maps_are_rejected() {
+    let texture = Texture {
+        first: 0,
+        width: 1,
+        height: 1,
+        form: 2,
+        filter: 0,
+        wrap: [0; 2],
+    };
+    let of = |texture: u16| NormalMap {
+        texture,
+        across: 1,
+        along: 1,
+    };
+    let plain = SurfaceMaps {
+        color: 0,
+        cutoff: 0,
+        opacity: 0,
+    };
+    for (normal_maps, is_valid) in [
+        (&[of(0)][..], true),
+        (&[of(1)], true),
+        (&[of(2)], false),
+        (&[of(1), of(1)], false),
+    ] {
+        let textures = Textures {
+            maps: &[plain],
+            normal_maps: NormalMapOnly::new(|| normal_maps),
+            textures: &[texture],
+            texels: &[0; 3],
+        };
+        assert_eq!(textures.validate().is_ok(), is_valid, "{normal_maps:?}");
     }
 }

@@ -3,13 +3,88 @@
 use super::buffers::fetch;
 use super::{Importer, material};
 use crate::scene::texture::texture_transform;
-use crate::scene::{Attributes, Image, Material, SceneError, Texture, Wrap};
+use crate::scene::{Attributes, Image, Material, NormalMap, SceneError, Texture, Wrap};
 use glam::{DAffine2, DVec2};
 use gltf::image::Source;
-use gltf::texture::{MagFilter, WrappingMode};
+use gltf::texture::{MagFilter, TextureTransform, WrappingMode};
 use gltf::{Primitive, Semantic};
+use serde_json::Value;
 use std::borrow::Cow;
 use std::sync::Arc;
+
+/// How an image lies on a mesh: its set of texture coordinates, and their transform.
+#[derive(Clone, Copy, PartialEq)]
+struct Placed {
+    set: u32,
+    transform: DAffine2,
+}
+
+impl Placed {
+    /// How the images of a material lie; `None` without one.
+    fn of(material: &gltf::Material<'_>) -> Option<Self> {
+        Self::of_color(material).or_else(|| Self::of_normals(material))
+    }
+
+    fn of_color(material: &gltf::Material<'_>) -> Option<Self> {
+        let info = material.pbr_metallic_roughness().base_color_texture();
+        let info = info.filter(|it| it.texture().source().is_some())?;
+        let transform = info.texture_transform();
+        let set = transform.as_ref().and_then(TextureTransform::tex_coord);
+        Some(Self {
+            set: set.unwrap_or(info.tex_coord()),
+            transform: transform.map_or(DAffine2::IDENTITY, |it| {
+                let [scale, offset] =
+                    [it.scale(), it.offset()].map(|it| DVec2::from(it.map(f64::from)));
+                texture_transform(scale, it.rotation().into(), offset)
+            }),
+        })
+    }
+
+    /// Of a normal map, whose transform the reader of glTF leaves as JSON.
+    fn of_normals(material: &gltf::Material<'_>) -> Option<Self> {
+        let info = material.normal_texture();
+        let info = info.filter(|it| it.texture().source().is_some())?;
+        let transform = info.extension_value("KHR_texture_transform");
+        let of = |key: &str| transform.and_then(|it| it.get(key));
+        let number = |value: &Value| value.as_f64();
+        let pair = |key: &str, default: DVec2| {
+            let pair = of(key).and_then(Value::as_array).filter(|it| it.len() == 2);
+            let pair = pair.and_then(|it| Some(DVec2::new(number(&it[0])?, number(&it[1])?)));
+            pair.unwrap_or(default)
+        };
+        // As the numbers of the color's are read.
+        let single = |pair: DVec2| pair.as_vec2().as_dvec2();
+        let rotation = of("rotation").and_then(number).unwrap_or(0.0) as f32;
+        let set = of("texCoord").and_then(Value::as_u64).map(|it| it as u32);
+        Some(Self {
+            set: set.unwrap_or(info.tex_coord()),
+            transform: match transform {
+                None => DAffine2::IDENTITY,
+                Some(_) => texture_transform(
+                    single(pair("scale", DVec2::ONE)),
+                    rotation.into(),
+                    single(pair("offset", DVec2::ZERO)),
+                ),
+            },
+        })
+    }
+}
+
+/// An image with the sampler of a texture.
+fn sampled(image: Arc<Image>, texture: &gltf::Texture<'_>, transform: DAffine2) -> Texture {
+    let sampler = texture.sampler();
+    let wrap = |mode: WrappingMode| match mode {
+        WrappingMode::Repeat => Wrap::Repeat,
+        WrappingMode::MirroredRepeat => Wrap::Mirror,
+        WrappingMode::ClampToEdge => Wrap::Clamp,
+    };
+    Texture {
+        wrap: [wrap(sampler.wrap_s()), wrap(sampler.wrap_t())],
+        bilinear: sampler.mag_filter() != Some(MagFilter::Nearest),
+        transform,
+        ..Texture::of(image)
+    }
+}
 
 impl Importer<'_> {
     /// The colors and texture coordinates of a primitive with so many vertices and these triangles.
@@ -38,12 +113,9 @@ impl Importer<'_> {
             self.warn_of(usize::from(clear > 0), "the alpha of COLOR_0 is ignored");
         }
         let material = part.material();
-        let texture = material.pbr_metallic_roughness().base_color_texture();
-        let Some(texture) = texture.filter(|it| it.texture().source().is_some()) else {
+        let Some(set) = Placed::of(&material).map(|it| it.set) else {
             return Ok(attributes);
         };
-        let transformed = texture.texture_transform().and_then(|it| it.tex_coord());
-        let set = transformed.unwrap_or(texture.tex_coord());
         let Some(accessor) = part.get(&Semantic::TexCoords(set)) else {
             self.warn(format!(
                 "{place} has a texture and no TEXCOORD_{set}; its plain color is used"
@@ -70,6 +142,7 @@ impl Importer<'_> {
         }
         let plain = material::read(&material, false);
         let texture = self.texture(&material, &plain)?;
+        let normal_map = self.normal_map(&material, &plain)?;
         let is_opaque = texture.as_ref().is_none_or(|it| it.image.is_opaque());
         let alpha = material::alpha(&material).filter(|_| !is_opaque);
         let made = match alpha {
@@ -79,6 +152,7 @@ impl Importer<'_> {
         let made = Material {
             texture,
             alpha,
+            normal_map,
             ..made
         };
         if alpha.is_some() && made.transmit != [0.0; 3] {
@@ -103,7 +177,6 @@ impl Importer<'_> {
         let name = &made.name;
         let others = [
             surface.metallic_roughness_texture().is_some(),
-            material.normal_texture().is_some(),
             material.occlusion_texture().is_some(),
             material.emissive_texture().is_some(),
             material
@@ -115,7 +188,6 @@ impl Importer<'_> {
         ];
         let names = [
             "metallic-roughness",
-            "normal",
             "occlusion",
             "emissive",
             "transmission",
@@ -146,22 +218,46 @@ impl Importer<'_> {
         let Some(image) = self.image(&source)? else {
             return Ok(None);
         };
-        let sampler = info.texture().sampler();
-        let wrap = |mode: WrappingMode| match mode {
-            WrappingMode::Repeat => Wrap::Repeat,
-            WrappingMode::MirroredRepeat => Wrap::Mirror,
-            WrappingMode::ClampToEdge => Wrap::Clamp,
+        let placed = Placed::of_color(material).map_or(DAffine2::IDENTITY, |it| it.transform);
+        Ok(Some(sampled(image, &info.texture(), placed)))
+    }
+
+    /// The normal map, if it lies as the texture of the base color does.
+    fn normal_map(
+        &mut self,
+        material: &gltf::Material<'_>,
+        made: &Material,
+    ) -> Result<Option<NormalMap>, SceneError> {
+        let name = &made.name;
+        let Some(info) = material.normal_texture() else {
+            return Ok(None);
         };
-        let transform = info.texture_transform().map(|it| {
-            let [scale, offset] =
-                [it.scale(), it.offset()].map(|it| DVec2::from(it.map(f64::from)));
-            texture_transform(scale, it.rotation().into(), offset)
-        });
-        Ok(Some(Texture {
-            wrap: [wrap(sampler.wrap_s()), wrap(sampler.wrap_t())],
-            bilinear: sampler.mag_filter() != Some(MagFilter::Nearest),
-            transform: transform.unwrap_or(DAffine2::IDENTITY),
-            ..Texture::of(image)
+        let (Some(placed), Some(source)) = (Placed::of_normals(material), info.texture().source())
+        else {
+            self.warn(format!(
+                "the normal map of material {name:?} names no image that Gridel reads; it is not drawn"
+            ));
+            return Ok(None);
+        };
+        if Placed::of_color(material).is_some_and(|it| it != placed) {
+            self.warn(format!(
+                "the normal map of material {name:?} does not lie as the texture of its color does; it is not drawn"
+            ));
+            return Ok(None);
+        }
+        let scale = f64::from(info.scale());
+        let taken = scale.clamp(0.0, NormalMap::STEEPEST);
+        if scale != taken {
+            self.warn(format!(
+                "the normal map of material {name:?} has the scale {scale}; it is drawn with {taken}"
+            ));
+        }
+        let Some(image) = self.image(&source)? else {
+            return Ok(None);
+        };
+        Ok(Some(NormalMap {
+            texture: sampled(image, &info.texture(), placed.transform),
+            scale: taken,
         }))
     }
 

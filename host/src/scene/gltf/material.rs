@@ -132,6 +132,7 @@ pub(super) fn read(material: &gltf::Material<'_>, alpha_is_used: bool) -> Materi
         name,
         texture: None,
         alpha: None,
+        normal_map: None,
     }
 }
 

@@ -5,11 +5,12 @@
 //! that lets `Tf` through. Otherwise `d` below 1 (or `Tr` above 0, of which `d` takes precedence)
 //! is a pane that does not bend light: glass of index 1. `Ka` is not needed, because ambient light
 //! takes the diffuse color. `Ke` is the radiance that the surface sends out.
-//! `Pr` is the roughness of what mirrors and of glass. `map_Kd` weights `Kd`, with its options `-o`, `-s` and `-clamp`. Everything else is ignored, with a warning.
+//! `Pr` is the roughness of what mirrors and of glass. `map_Kd` weights `Kd`, with its options `-o`, `-s` and `-clamp`.
+//! `norm` is a normal map, with the same options. Everything else is ignored, with a warning.
 
 use crate::scene::text::{Source, Warnings};
 use crate::scene::texture::Images;
-use crate::scene::{Color, Diffuse, Material, SceneError, Texture, Wrap};
+use crate::scene::{Color, Diffuse, Material, NormalMap, SceneError, Texture, Wrap};
 use glam::{DAffine2, DVec2};
 
 /// One material of a file.
@@ -28,6 +29,8 @@ struct Statements {
     emission: Color,
     roughness: f64,
     texture: Option<Texture>,
+    /// The texture of normals.
+    normals: Option<Texture>,
 }
 
 /// Reads the materials by name; a later one replaces an earlier one of its name.
@@ -88,13 +91,14 @@ pub(super) fn read(
             "Pr" => material.roughness = taken_roughness(reader.number()?),
             "Ka" | "sharpness" => {}
             "map_Kd" => material.texture = reader.texture(number, images, warnings)?,
+            "norm" => material.normals = reader.texture(number, images, warnings)?,
             _ if keyword.starts_with("map_")
-                || ["bump", "disp", "decal", "refl", "norm"].contains(&keyword) =>
+                || ["bump", "disp", "decal", "refl"].contains(&keyword) =>
             {
                 warnings.add(
                     source,
                     number,
-                    "textures other than map_Kd are not drawn; the plain colors are used",
+                    "textures other than map_Kd and norm are not drawn; the plain colors are used",
                 );
             }
             _ => {
@@ -166,9 +170,27 @@ impl Statements {
             ior: density.clamp(1.0, 4.0),
             emission: self.emission,
             roughness: self.roughness,
+            normal_map: self.normal_map(source, warnings),
             texture: self.texture.clone(),
             ..default
         }
+    }
+}
+
+impl Statements {
+    /// The normal map, if it lies as the texture does.
+    fn normal_map(&self, source: &Source, warnings: &mut Warnings) -> Option<NormalMap> {
+        let texture = self.normals.clone()?;
+        let color = self.texture.as_ref();
+        if color.is_some_and(|it| it.transform != texture.transform) {
+            let sentence = "norm has other options than map_Kd and is not drawn";
+            warnings.add(source, self.line, sentence);
+            return None;
+        }
+        Some(NormalMap {
+            texture,
+            scale: 1.0,
+        })
     }
 }
 

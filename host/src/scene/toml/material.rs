@@ -4,8 +4,8 @@ use super::shape::pair;
 use super::source::{Name, Source, nearest};
 use super::value::{Fields, Value};
 use crate::scene::texture::{Images, texture_transform};
-use crate::scene::{Alpha, Diffuse, Image, Material, SceneError, Texture, Wrap};
-use glam::{DVec2, DVec3};
+use crate::scene::{Alpha, Diffuse, Image, Material, NormalMap, SceneError, Texture, Wrap};
+use glam::{DAffine2, DVec2, DVec3};
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
@@ -20,6 +20,8 @@ const KEYS: &[&str] = &[
     "ior",
     "absorption",
     "texture",
+    "normal_map",
+    "normal_scale",
     "alpha",
     "cutoff",
     "emission",
@@ -118,6 +120,9 @@ fn material(table: Value<'_>, images: &mut Images<'_>) -> Result<Material, Scene
         (None, Some(table)) => checker(table)?,
         (None, None) => default.diffuse,
     };
+    let texture = fields.or("texture", None, |value| {
+        texture(value, images, DAffine2::IDENTITY).map(Some)
+    })?;
     Ok(Material {
         diffuse,
         highlight: fields.or("highlight", default.highlight, Value::reflectance)?,
@@ -129,7 +134,8 @@ fn material(table: Value<'_>, images: &mut Images<'_>) -> Result<Material, Scene
         transmit: fields.or("transmit", default.transmit, Value::reflectance)?,
         ior: fields.or("ior", default.ior, |value| value.number_in(1.0..=4.0))?,
         absorption: fields.or("absorption", default.absorption, Value::coefficients)?,
-        texture: fields.or("texture", None, |value| texture(value, images).map(Some))?,
+        normal_map: normal_map(&fields, texture.as_ref(), images)?,
+        texture,
         alpha: alpha(&fields)?,
         emission: fields.or("emission", default.emission, Value::radiance)?,
         lights: fields.or("lights", default.lights, Value::boolean)?,
@@ -190,11 +196,49 @@ fn alpha(fields: &Fields<'_>) -> Result<Option<Alpha>, SceneError> {
     }
 }
 
-/// A file's name, or a table with it and options.
-fn texture(value: Value<'_>, images: &mut Images<'_>) -> Result<Texture, SceneError> {
+/// The normal map, which lies as the texture does.
+fn normal_map(
+    fields: &Fields<'_>,
+    color: Option<&Texture>,
+    images: &mut Images<'_>,
+) -> Result<Option<NormalMap>, SceneError> {
+    let scale = fields.get("normal_scale");
+    let Some(value) = fields.get("normal_map") else {
+        return match scale {
+            None => Ok(None),
+            Some(scale) => Err(scale.error(
+                "`normal_scale` is that of a normal map, and there is none",
+                "add `normal_map`, or remove it",
+            )),
+        };
+    };
+    let as_color = color.map_or(DAffine2::IDENTITY, |it| it.transform);
+    let texture = texture(value, images, as_color)?;
+    if color.is_some() && texture.transform != as_color {
+        return Err(value.error(
+            "the normal map does not lie as the texture does",
+            "leave out its `scale`, `rotation` and `offset`, or write those of the texture",
+        ));
+    }
+    let scale = match scale {
+        Some(scale) => scale.number_in(0.0..=NormalMap::STEEPEST)?,
+        None => 1.0,
+    };
+    Ok(Some(NormalMap { texture, scale }))
+}
+
+/// A file's name, or a table with it and options. Without options that say otherwise it lies so on texture coordinates.
+fn texture(
+    value: Value<'_>,
+    images: &mut Images<'_>,
+    lies: DAffine2,
+) -> Result<Texture, SceneError> {
     let keys = ["file", "filter", "wrap", "scale", "offset", "rotation"];
     if !value.is_table() {
-        return Ok(Texture::of(image(value, images)?));
+        return Ok(Texture {
+            transform: lies,
+            ..Texture::of(image(value, images)?)
+        });
     }
     let fields = value.fields("texture", &[&keys])?;
     let wrap = |value: Value<'_>| {
@@ -210,13 +254,18 @@ fn texture(value: Value<'_>, images: &mut Images<'_>) -> Result<Texture, SceneEr
     })?;
     let rotation = fields.or("rotation", 0.0, Value::number)?;
     let offset = fields.or("offset", DVec2::ZERO, pair)?;
+    let keys = ["scale", "rotation", "offset"];
+    let is_placed = keys.iter().any(|key| fields.get(key).is_some());
     Ok(Texture {
         image: image(fields.require("file")?, images)?,
         wrap: [fields.or("wrap", Wrap::Repeat, wrap)?; 2],
         bilinear: fields.or("filter", true, |value| {
             Ok(value.word(&["linear", "nearest"])? == "linear")
         })?,
-        transform: texture_transform(scale, rotation.to_radians(), offset),
+        transform: match is_placed {
+            true => texture_transform(scale, rotation.to_radians(), offset),
+            false => lies,
+        },
     })
 }
 

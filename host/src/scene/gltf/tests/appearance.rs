@@ -255,6 +255,42 @@ fn base_color_textures_have_their_sampler_and_transform() {
 }
 
 #[test]
+fn normal_textures_lie_as_that_of_the_base_color_does() {
+    let mut document = textured();
+    document["materials"][0]["normalTexture"] = json!({"index": 0, "scale": 0.5});
+    let map = scene(&document).materials[0].normal_map.clone().unwrap();
+    assert_eq!((map.scale, map.texture.bilinear), (0.5, false));
+    assert_eq!(map.texture.wrap, [Wrap::Clamp, Wrap::Mirror]);
+    assert_eq!(warnings(&document), [] as [&str; 0]);
+
+    // Alone, with a transform of its own.
+    let transform = json!({"KHR_texture_transform": {"offset": [0.5, 0.25], "scale": [2, 3]}});
+    let surface = &mut document["materials"][0]["pbrMetallicRoughness"];
+    surface.as_object_mut().unwrap().remove("baseColorTexture");
+    document["materials"][0]["normalTexture"] =
+        json!({"index": 1, "scale": 20, "extensions": transform});
+    document["extensionsUsed"] = json!(["KHR_texture_transform", "KHR_lights_punctual"]);
+    let made = scene(&document);
+    let material = &made.materials[0];
+    assert_eq!(material.texture, None);
+    let placed = made.objects[0].attributes.placed_on(material.placing());
+    assert_eq!(placed.coordinates[2].to_array(), [2.5, 3.25]);
+    let [warning] = &warnings(&document)[..] else {
+        panic!("one warning");
+    };
+    assert!(warning.contains("has the scale 20"), "{warning}");
+
+    // The same transform as the color's, and another one.
+    let color = json!({"index": 0, "extensions": transform});
+    document["materials"][0]["pbrMetallicRoughness"]["baseColorTexture"] = color;
+    assert!(scene(&document).materials[0].normal_map.is_some());
+    document["materials"][0]["normalTexture"] = json!({"index": 1});
+    assert_eq!(scene(&document).materials[0].normal_map, None);
+    let all = warnings(&document);
+    assert!(all[0].contains("does not lie as the texture"), "{all:?}");
+}
+
+#[test]
 fn colors_of_vertices_are_linear() {
     let mut document = textured();
     document["meshes"][0]["primitives"][0]["attributes"]["COLOR_0"] = json!(3);

@@ -123,6 +123,26 @@ fn textures_are_read_with_their_options() {
 }
 
 #[test]
+fn normal_maps_lie_as_map_kd_does() {
+    let square = "f 1/1 2/2 3/3 4/4\n";
+    let alone = textured(square, "norm -s 2 2 two colors.png").unwrap();
+    let material = &alone.scene.materials[0];
+    let map = material.normal_map.as_ref().unwrap();
+    assert_eq!((map.scale, &material.texture), (1.0, &None));
+    let placed = alone.scene.objects[0]
+        .attributes
+        .placed_on(material.placing());
+    // v points up in the file, and down here.
+    assert_eq!(placed.coordinates[1].to_array(), [2.0, 1.0]);
+    assert_eq!(alone.warnings, [] as [&str; 0]);
+    let both = textured(square, "map_Kd two colors.png\nnorm two colors.png").unwrap();
+    assert!(both.scene.materials[0].normal_map.is_some());
+    let apart = textured(square, "map_Kd two colors.png\nnorm -s 2 2 two colors.png").unwrap();
+    assert_eq!(apart.scene.materials[0].normal_map, None);
+    assert!(apart.warnings[0].contains("other options than map_Kd"));
+}
+
+#[test]
 fn faces_without_texture_coordinates_have_none() {
     let faces = "f 1/1 2/2 3/3\nf 1 3 4\nf 1/1 2/2 3/9\nf -4/-4 -2/-2 -1/-1\n";
     let imported = textured(faces, "map_Kd two colors.png").unwrap();

@@ -106,6 +106,34 @@ fn textures_have_options() {
 }
 
 #[test]
+fn normal_maps_lie_as_the_texture_does() {
+    let map = |keys: &str| material(keys).normal_map.unwrap();
+    let plain = map("normal_map = 'two.png'");
+    assert_eq!((plain.scale, plain.texture.bilinear), (1.0, true));
+    let turned = "texture = { file = 'two.png', rotation = 30 }\nnormal_map = 'two.png'";
+    assert_eq!(
+        map(turned).texture.transform,
+        material(turned).texture.unwrap().transform
+    );
+    let own = map("normal_map = { file = 'two.png', scale = 2, filter = 'nearest' }\nnormal_scale = 0.5");
+    assert_eq!((own.scale, own.texture.bilinear), (0.5, false));
+    let found = own.texture.transform.transform_point2(DVec2::ONE);
+    assert_eq!(found, DVec2::splat(2.0));
+    for (keys, expected) in [
+        ("normal_scale = 1", "there is none"),
+        ("normal_map = 'two.png'\nnormal_scale = -1", "0 to 16"),
+        ("normal_map = 'none.png'", "none.png"),
+        (
+            "texture = 'two.png'\nnormal_map = { file = 'two.png', scale = 2 }",
+            "does not lie as the texture does",
+        ),
+    ] {
+        let error = rejected(keys);
+        assert!(error.contains(expected), "{error}");
+    }
+}
+
+#[test]
 fn textures_that_cannot_be_read_are_rejected_with_their_place() {
     for (keys, expected) in [
         ("texture = 'none.png'", "none.png"),
