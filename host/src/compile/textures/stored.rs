@@ -1,0 +1,258 @@
+//! Images in fewer and fewer bytes.
+
+use super::UsedImage;
+use gridel_core::format::record;
+use std::collections::{HashMap, HashSet};
+
+/// Most texels of a side.
+const MOST_SIDE: u32 = 4096;
+/// Most colors of a palette.
+const COLORS: usize = 256;
+
+/// A color as roots of linear light, or a normal, and alpha.
+type Roots = [u8; 4];
+
+/// The forms of texels, as [`record::Texture`] numbers them.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Form {
+    Palette = 0,
+    Rgb565 = 1,
+    Rgb888 = 2,
+    Rgba8888 = 3,
+}
+
+impl Form {
+    pub(super) fn name(self) -> &'static str {
+        match self {
+            Self::Palette => "palette",
+            Self::Rgb565 => "rgb565",
+            Self::Rgb888 => "rgb888",
+            Self::Rgba8888 => "rgba8888",
+        }
+    }
+}
+
+/// An image on its way into a blob.
+pub(super) struct Stored {
+    pub(super) name: String,
+    pub(super) width: u32,
+    pub(super) height: u32,
+    pixels: Vec<Roots>,
+    has_alpha: bool,
+    has_normals: bool,
+    pub(super) form: Form,
+}
+
+impl Stored {
+    /// An image whose channels are stored so.
+    pub(super) fn of(used: &UsedImage, channels: &[u8; 256]) -> Self {
+        let image = &used.image;
+        let [width, height] = image.size();
+        let pixels = image.pixels().iter();
+        let has_alpha = used.has_alpha && !image.is_opaque();
+        let pixels = pixels.map(|&[r, g, b, alpha]| {
+            let [r, g, b] = [r, g, b].map(|it| channels[usize::from(it)]);
+            [r, g, b, if has_alpha { alpha } else { 255 }]
+        });
+        let mut stored = Self {
+            name: image.name.clone(),
+            width,
+            height,
+            pixels: pixels.collect(),
+            has_alpha,
+            has_normals: used.has_normals,
+            form: match has_alpha {
+                true => Form::Rgba8888,
+                false => Form::Rgb888,
+            },
+        };
+        while stored.width > MOST_SIDE || stored.height > MOST_SIDE {
+            stored.halve();
+        }
+        let mut colors = HashSet::new();
+        let is_few = stored.pixels.iter().all(|it| {
+            colors.insert(*it);
+            colors.len() <= COLORS
+        });
+        let as_palette = Form::Palette;
+        if is_few && stored.bytes_as(as_palette) < stored.bytes() {
+            stored.form = as_palette;
+        }
+        stored
+    }
+
+    pub(super) fn bytes(&self) -> u64 {
+        self.bytes_as(self.form)
+    }
+
+    fn bytes_as(&self, form: Form) -> u64 {
+        let texture = record::Texture {
+            first: 0,
+            width: self.width as u16,
+            height: self.height as u16,
+            form: form as u8,
+            filter: 0,
+            wrap: [0; 2],
+        };
+        texture.bytes() as u64
+    }
+
+    /// Takes fewer bytes and loses as little as can be; false where it cannot.
+    pub(super) fn make_coarser(&mut self) -> bool {
+        match self.form {
+            Form::Rgb888 => self.form = Form::Rgb565,
+            Form::Rgb565 | Form::Rgba8888 if self.bytes_as(Form::Palette) < self.bytes() => {
+                self.form = Form::Palette;
+            }
+            _ if self.width * self.height == 1 => return false,
+            _ => {
+                self.halve();
+                let direct = match self.has_alpha {
+                    true => Form::Rgba8888,
+                    false => Form::Rgb565,
+                };
+                if self.bytes_as(direct) < self.bytes() {
+                    self.form = direct;
+                }
+            }
+        }
+        true
+    }
+
+    /// Makes width and height half as large, rounded up: the mean of linear light, or of normals.
+    fn halve(&mut self) {
+        let (width, height) = (self.width.div_ceil(2), self.height.div_ceil(2));
+        let mut pixels = Vec::with_capacity((width * height) as usize);
+        for y in 0..height {
+            for x in 0..width {
+                let (mut sum, mut alpha) = ([0_u32; 3], 0);
+                for (dx, dy) in [(0, 0), (1, 0), (0, 1), (1, 1)] {
+                    let x = (2 * x + dx).min(self.width - 1);
+                    let y = (2 * y + dy).min(self.height - 1);
+                    let pixel = self.pixels[(y * self.width + x) as usize];
+                    for (sum, channel) in sum.iter_mut().zip(pixel) {
+                        let channel = u32::from(channel);
+                        *sum += if self.has_normals {
+                            channel
+                        } else {
+                            channel * channel
+                        };
+                    }
+                    alpha += u32::from(pixel[3]);
+                }
+                let [r, g, b] = sum.map(|it| {
+                    let mean = f64::from(it) / 4.0;
+                    let channel = if self.has_normals {
+                        mean
+                    } else {
+                        libm::sqrt(mean)
+                    };
+                    channel.round() as u8
+                });
+                pixels.push([r, g, b, ((alpha + 2) / 4) as u8]);
+            }
+        }
+        (self.width, self.height, self.pixels) = (width, height, pixels);
+    }
+
+    /// Palette and texels.
+    pub(super) fn encoded(&self) -> Vec<u8> {
+        match self.form {
+            Form::Rgb888 => self
+                .pixels
+                .iter()
+                .flat_map(|it| [it[0], it[1], it[2]])
+                .collect(),
+            Form::Rgba8888 => self.pixels.as_flattened().to_vec(),
+            Form::Rgb565 => {
+                let pack = |&[r, g, b, _]: &Roots| {
+                    let bits = |root: u8, most: u32| (u32::from(root) * most + 127) / 255;
+                    let packed = bits(r, 31) << 11 | bits(g, 63) << 5 | bits(b, 31);
+                    (packed as u16).to_le_bytes()
+                };
+                self.pixels.iter().flat_map(pack).collect()
+            }
+            Form::Palette => {
+                let palette = palette(&self.pixels);
+                let mut bytes: Vec<u8> = Vec::with_capacity(self.bytes() as usize);
+                bytes.extend(palette.as_flattened());
+                bytes.resize(4 * COLORS, 0);
+                let mut nearest: HashMap<Roots, u8> = HashMap::new();
+                bytes.extend(self.pixels.iter().map(|pixel| {
+                    *nearest.entry(*pixel).or_insert_with(|| {
+                        let entries = (0..).zip(&palette);
+                        let best = entries.min_by_key(|(_, entry)| distance(pixel, entry));
+                        best.map_or(0, |(number, _): (usize, _)| number as u8)
+                    })
+                }));
+                bytes
+            }
+        }
+    }
+}
+
+fn distance(a: &Roots, b: &Roots) -> u32 {
+    let apart = |k: usize| u32::from(a[k].abs_diff(b[k])).pow(2);
+    // Green looks brightest, and blue darkest.
+    3 * apart(0) + 6 * apart(1) + apart(2) + 6 * apart(3)
+}
+
+/// At most [`COLORS`] colors for pixels: all of them, or the means of boxes by Heckbert's median cut (1982).
+fn palette(pixels: &[Roots]) -> Vec<Roots> {
+    let mut counts: HashMap<Roots, u64> = HashMap::new();
+    for pixel in pixels {
+        *counts.entry(*pixel).or_default() += 1;
+    }
+    let mut all: Vec<(Roots, u64)> = counts.into_iter().collect();
+    all.sort_unstable();
+    let mut boxes = vec![all];
+    while boxes.len() < COLORS {
+        let range = |colors: &[(Roots, u64)], k: usize| {
+            let channel = colors.iter().map(|(color, _)| color[k]);
+            let highest = channel.clone().max().unwrap_or(0);
+            highest - channel.min().unwrap_or(0)
+        };
+        // The longest side of all boxes is cut.
+        let sides = boxes.iter().enumerate().flat_map(|(number, colors)| {
+            [0, 1, 2, 3].map(|k: usize| (range(colors, k), std::cmp::Reverse(number), k))
+        });
+        let Some((1.., std::cmp::Reverse(number), axis)) = sides.max() else {
+            break;
+        };
+        let mut colors = std::mem::take(&mut boxes[number]);
+        colors.sort_unstable_by_key(|(color, _)| (color[axis], *color));
+        let half = colors.iter().map(|(_, count)| count).sum::<u64>() / 2;
+        let mut sum = 0;
+        let middle = colors.iter().position(|(_, count)| {
+            sum += count;
+            sum > half
+        });
+        let middle = middle.unwrap_or(1).clamp(1, colors.len() - 1);
+        boxes.push(colors.split_off(middle));
+        boxes[number] = colors;
+    }
+    let mean = |colors: &Vec<(Roots, u64)>| {
+        let count: u64 = colors.iter().map(|(_, count)| count).sum();
+        [0, 1, 2, 3].map(|k: usize| {
+            let sum: u64 = colors
+                .iter()
+                .map(|(color, count)| u64::from(color[k]) * count)
+                .sum();
+            ((sum + count / 2) / count.max(1)) as u8
+        })
+    };
+    boxes.iter().filter(|it| !it.is_empty()).map(mean).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn palette_of_few_colors_is_exact() {
+        let pixels: Vec<Roots> = (0..=255).map(|it| [it, 255 - it, 7, it / 2]).collect();
+        let mut found = palette(&pixels);
+        found.sort_unstable();
+        assert_eq!(found, pixels);
+    }
+}
