@@ -8,14 +8,14 @@ mod stored;
 
 use super::CompileError;
 use super::section::{Section, section};
-use crate::scene::{Alpha, Image, Material, Texture, Wrap, linear_of_srgb};
+use crate::scene::{Alpha, Material, Texture, Wrap, linear_of_srgb};
 use crate::table::{grouped, printable};
 use gridel_core::format::SectionKind;
 use gridel_core::format::record;
 use serde::Serialize;
 use std::fmt;
 use std::sync::Arc;
-use stored::Stored;
+use stored::{Stored, UsedImage};
 
 /// How a texture is stored.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -69,16 +69,6 @@ pub struct Textures {
     images: Vec<UsedImage>,
     textures: Vec<(usize, Texture)>,
     maps: Vec<(record::SurfaceMaps, record::NormalMap)>,
-}
-
-/// An image, and what it is used for.
-#[derive(Debug)]
-struct UsedImage {
-    image: Arc<Image>,
-    /// Whether it holds normals, and not colors.
-    has_normals: bool,
-    /// Whether its alpha is used.
-    has_alpha: bool,
 }
 
 impl Textures {
@@ -245,6 +235,8 @@ impl Textures {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::scene::Image;
+    use std::sync::Arc;
 
     fn image(width: u32, height: u32, color: impl Fn(u32, u32) -> [u8; 4]) -> Image {
         let pixels = (0..width * height).map(|it| color(it % width, it / width));

@@ -69,7 +69,12 @@ fn blobs() -> Vec<Vec<u8>> {
     };
     let image = scene::Image::new("white", 1, 1, vec![[255; 4]]);
     let image = image.expect("as many pixels");
-    scene.materials[0].texture = Some(scene::Texture::of(image.into()));
+    let texture = scene::Texture::of(image.into());
+    scene.materials[0].normal_map = Some(scene::NormalMap {
+        texture: texture.clone(),
+        scale: 1.0,
+    });
+    scene.materials[0].texture = Some(texture);
     let compiled = compile(&scene, &options).expect("compiles");
     blobs.push(compiled.blob.bytes().to_vec());
     let placed = |x: f64| scene::Instance {

@@ -1,8 +1,9 @@
 //! Images in fewer and fewer bytes.
 
-use super::UsedImage;
+use crate::scene::Image;
 use gridel_core::format::record;
 use std::collections::{HashMap, HashSet};
+use std::sync::Arc;
 
 /// Most texels of a side.
 const MOST_SIDE: u32 = 4096;
@@ -11,6 +12,16 @@ const COLORS: usize = 256;
 
 /// A color as roots of linear light, or a normal, and alpha.
 type Roots = [u8; 4];
+
+/// An image, and what it is used for.
+#[derive(Debug)]
+pub(super) struct UsedImage {
+    pub(super) image: Arc<Image>,
+    /// Whether it holds normals, and not colors.
+    pub(super) has_normals: bool,
+    /// Whether its alpha is used.
+    pub(super) has_alpha: bool,
+}
 
 /// The forms of texels, as [`record::Texture`] numbers them.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
