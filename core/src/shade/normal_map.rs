@@ -124,7 +124,7 @@ fn bumped<N: Number>(
     if length <= N::ZERO {
         return None;
     }
-    // From the normal to the right is a quarter of a turn clockwise from the way up.
+    // Up on an image that is not mirrored: the cross product of both.
     let product =
         |i: usize, j: usize| N::from_wide(front[i].wide(right[j]) - front[j].wide(right[i]));
     let up = [product(1, 2), product(2, 0), product(0, 1)];
