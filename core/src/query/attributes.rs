@@ -15,8 +15,8 @@ pub(crate) struct Tangent<N> {
     pub(crate) coordinates: [i32; 2],
 }
 
-/// The direction in which u grows over a triangle, of any length, and whether the image is seen mirrored from its front:
-/// places with 8 fraction bits, coordinates with [`COORDINATE_BITS`].
+/// The direction in which u grows over a triangle, below 2^52 in magnitude, and whether the image is seen mirrored from
+/// its front: places with 8 fraction bits, coordinates with [`COORDINATE_BITS`].
 #[inline(always)]
 fn along_u(corners: [[i32; 3]; 3], coordinates: [[i32; 2]; 3]) -> Option<([i64; 3], bool)> {
     let [a, b, c] = corners;
@@ -39,6 +39,12 @@ fn along_u(corners: [[i32; 3]; 3], coordinates: [[i32; 2]; 3]) -> Option<([i64; 
         if area < 0 { sum.wrapping_neg() } else { sum }
     };
     let along = [along(0), along(1), along(2)];
+    let all = along.iter().fold(0, |all, it| all | it.unsigned_abs());
+    let along = if all >> 51 == 0 {
+        along
+    } else {
+        along.map(|it| it >> 6)
+    };
     (area != 0 && along != [0; 3]).then_some((along, area > 0))
 }
 
@@ -74,8 +80,8 @@ impl<N: Number> Hit<N> {
         Some(weights.coordinates(corners))
     }
 
-    /// The direction in which the u of texture coordinates grows, of length 1, with their values at the hit and whether the
-    /// image is seen mirrored from the triangle's front. `None` where there are none, or they are the same along a line.
+    /// The direction in which the u of texture coordinates grows, of any length, with their values at the hit and whether
+    /// the image is seen mirrored from the triangle's front. `None` where there are none, or they are the same along a line.
     #[inline(always)]
     pub(crate) fn tangent(&self, scene: &Scene<'_>) -> Option<Tangent<N>> {
         if !TEXTURE {
@@ -141,5 +147,40 @@ impl<N: Number> Hit<N> {
             error: self.error,
         });
         Some((&part.space.shapes, there.point, there.normal))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The largest triangle, with coordinates as far apart as can be, upright, in a mirror, and turned.
+    #[test]
+    fn directions_of_u_have_room_in_every_format() {
+        const FAR: i32 = 1024 << COORDINATE_BITS;
+        const END: i32 = 1 << 24;
+        let corners = [[-END; 3], [END, -END, END], [END, END, -END]];
+        for (coordinates, mirrored) in [
+            ([[-FAR, FAR], [FAR, FAR], [FAR, -FAR]], false),
+            ([[FAR, FAR], [-FAR, FAR], [-FAR, -FAR]], true),
+            ([[FAR, FAR], [-FAR, -FAR], [FAR, -FAR]], true),
+        ] {
+            let (along, is_mirrored) = along_u(corners, coordinates).expect("an area");
+            assert!(
+                along.iter().all(|it| it.unsigned_abs() < 1 << 52),
+                "{along:?}"
+            );
+            assert_eq!(is_mirrored, mirrored, "{coordinates:?}");
+            // The edge along which v stays shows which way u grows.
+            let edge = |to: usize| [0, 1, 2].map(|k| f64::from(corners[to][k] - corners[0][k]));
+            let grows = |to: usize| {
+                let dot: f64 = (0..3).map(|k| edge(to)[k] * along[k] as f64).sum();
+                (dot > 0.0) == (coordinates[to][0] > coordinates[0][0])
+            };
+            if coordinates[1][1] == coordinates[0][1] {
+                assert!(grows(1), "{coordinates:?}");
+            }
+        }
+        assert_eq!(along_u(corners, [[0, 0], [1, 1], [2, 2]]), None);
     }
 }
