@@ -1,6 +1,7 @@
 //! Colors of vertices, texture coordinates, and textures.
 
 use super::buffers::fetch;
+use super::normal_transforms::NormalTransforms;
 use super::{Importer, material};
 use crate::scene::texture::texture_transform;
 use crate::scene::{Attributes, Image, Material, NormalMap, SceneError, Texture, Wrap};
@@ -8,7 +9,6 @@ use glam::{DAffine2, DVec2};
 use gltf::image::Source;
 use gltf::texture::{MagFilter, TextureTransform, WrappingMode};
 use gltf::{Primitive, Semantic};
-use serde_json::Value;
 use std::borrow::Cow;
 use std::sync::Arc;
 
@@ -21,8 +21,8 @@ struct Placed {
 
 impl Placed {
     /// How the images of a material lie; `None` without one.
-    fn of(material: &gltf::Material<'_>) -> Option<Self> {
-        Self::of_color(material).or_else(|| Self::of_normals(material))
+    fn of(material: &gltf::Material<'_>, transforms: &NormalTransforms) -> Option<Self> {
+        Self::of_color(material).or_else(|| Self::of_normals(material, transforms))
     }
 
     fn of_color(material: &gltf::Material<'_>) -> Option<Self> {
@@ -40,32 +40,15 @@ impl Placed {
         })
     }
 
-    /// Of a normal map, whose transform the reader of glTF leaves as JSON.
-    fn of_normals(material: &gltf::Material<'_>) -> Option<Self> {
+    fn of_normals(material: &gltf::Material<'_>, transforms: &NormalTransforms) -> Option<Self> {
         let info = material.normal_texture();
         let info = info.filter(|it| it.texture().source().is_some())?;
-        let transform = info.extension_value("KHR_texture_transform");
-        let of = |key: &str| transform.and_then(|it| it.get(key));
-        let number = |value: &Value| value.as_f64();
-        let pair = |key: &str, default: DVec2| {
-            let pair = of(key).and_then(Value::as_array).filter(|it| it.len() == 2);
-            let pair = pair.and_then(|it| Some(DVec2::new(number(&it[0])?, number(&it[1])?)));
-            pair.unwrap_or(default)
-        };
-        // As the numbers of the color's are read.
-        let single = |pair: DVec2| pair.as_vec2().as_dvec2();
-        let rotation = of("rotation").and_then(number).unwrap_or(0.0) as f32;
-        let set = of("texCoord").and_then(Value::as_u64).map(|it| it as u32);
+        let number = material.index();
+        let transform = number.and_then(|number| transforms.get(&number));
+        let set = transform.and_then(|it| it.set);
         Some(Self {
             set: set.unwrap_or(info.tex_coord()),
-            transform: match transform {
-                None => DAffine2::IDENTITY,
-                Some(_) => texture_transform(
-                    single(pair("scale", DVec2::ONE)),
-                    rotation.into(),
-                    single(pair("offset", DVec2::ZERO)),
-                ),
-            },
+            transform: transform.map_or(DAffine2::IDENTITY, |it| it.transform),
         })
     }
 }
@@ -113,7 +96,7 @@ impl Importer<'_> {
             self.warn_of(usize::from(clear > 0), "the alpha of COLOR_0 is ignored");
         }
         let material = part.material();
-        let Some(set) = Placed::of(&material).map(|it| it.set) else {
+        let Some(set) = Placed::of(&material, &self.normal_transforms).map(|it| it.set) else {
             return Ok(attributes);
         };
         let Some(accessor) = part.get(&Semantic::TexCoords(set)) else {
@@ -232,7 +215,7 @@ impl Importer<'_> {
         let Some(info) = material.normal_texture() else {
             return Ok(None);
         };
-        let (Some(placed), Some(source)) = (Placed::of_normals(material), info.texture().source())
+        let (Some(placed), Some(source)) = (Placed::of_normals(material, &self.normal_transforms), info.texture().source())
         else {
             self.warn(format!(
                 "the normal map of material {name:?} names no image that Gridel reads; it is not drawn"

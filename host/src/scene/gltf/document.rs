@@ -1,6 +1,7 @@
 //! The text of a glTF file as a document that is proved to hold together.
 
 use super::container::{self, Container};
+use super::normal_transforms::{self, NormalTransforms};
 use crate::scene::text::Warnings;
 use crate::scene::{SceneError, SourceSpan};
 use gltf::Document;
@@ -11,7 +12,7 @@ use std::path::Path;
 
 const AGAIN: &str = "export the file again, as glTF 2.0";
 
-/// Reads the document and the buffer that the file itself holds.
+/// Reads the document, the buffer that the file itself holds, and how its normal maps lie.
 ///
 /// # Errors
 /// If the container or the JSON is broken, the version is not 2, an extension that is required is
@@ -20,7 +21,7 @@ pub(super) fn read(
     path: &Path,
     bytes: &[u8],
     warnings: &mut Warnings,
-) -> Result<(Document, Option<Vec<u8>>), SceneError> {
+) -> Result<(Document, Option<Vec<u8>>, NormalTransforms), SceneError> {
     let container = container::split(path, bytes, warnings)?;
     let mut root = parse(path, &container)?;
     check_version(path, &root.asset.version)?;
@@ -31,7 +32,8 @@ pub(super) fn read(
     check_indices(path, &root)?;
     validate(path, &root)?;
     let document = Document::from_json_without_validation(root);
-    Ok((document, container.binary.map(<[u8]>::to_vec)))
+    let blob = container.binary.map(<[u8]>::to_vec);
+    Ok((document, blob, normal_transforms::read(container.text)))
 }
 
 fn parse(path: &Path, container: &Container<'_>) -> Result<Root, SceneError> {

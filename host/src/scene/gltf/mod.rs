@@ -15,6 +15,7 @@ mod document;
 mod instances;
 mod joints;
 mod material;
+mod normal_transforms;
 mod normals;
 mod place;
 mod shared;
@@ -29,6 +30,7 @@ use super::{
 use animation::Motion;
 use buffers::{Buffers, MOST};
 use glam::{DMat4, DVec3};
+use normal_transforms::NormalTransforms;
 use gltf::mesh::Mode;
 use gltf::scene::Transform;
 use gltf::{Document, Node, Primitive, Semantic};
@@ -78,7 +80,7 @@ fn read(input: Input<'_>) -> Result<Imported, SceneError> {
         ..
     } = input;
     let mut warnings = Warnings::default();
-    let (document, blob) = document::read(path, &bytes, &mut warnings)?;
+    let (document, blob, normal_transforms) = document::read(path, &bytes, &mut warnings)?;
     drop(bytes);
     let mut importer = Importer {
         path,
@@ -88,6 +90,7 @@ fn read(input: Input<'_>) -> Result<Imported, SceneError> {
         images: HashMap::new(),
         scene: Scene::default(),
         materials: HashMap::new(),
+        normal_transforms,
         view: View::with_camera(choice.camera.clone()),
         motion: Motion::default(),
         vertices: 0,
@@ -151,6 +154,7 @@ struct Importer<'a> {
     scene: Scene,
     /// Materials in use, by their number in the file; the default has none.
     materials: HashMap<Option<usize>, usize>,
+    normal_transforms: NormalTransforms,
     view: View,
     motion: Motion,
     vertices: usize,
