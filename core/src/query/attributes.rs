@@ -6,7 +6,7 @@ use crate::geometry::attributes::{COORDINATE_BITS, Weights};
 use crate::instances::map::{Map, PlacedSurface};
 use crate::query::hit::{Hit, find};
 use crate::scene::Scene;
-use crate::target::{TEXTURE, VERTEX_COLORS};
+use crate::target::{TEXTURE, VERTEX_COLORS, inline_on_boards};
 
 /// How an image lies on a triangle: see [`Hit::tangent`].
 pub(crate) struct Tangent<N> {
@@ -80,30 +80,32 @@ impl<N: Number> Hit<N> {
         Some(weights.coordinates(corners))
     }
 
-    /// The direction in which the u of texture coordinates grows, of any length, with their values at the hit and whether
-    /// the image is seen mirrored from the triangle's front. `None` where there are none, or they are the same along a line.
-    #[inline(always)]
-    pub(crate) fn tangent(&self, scene: &Scene<'_>) -> Option<Tangent<N>> {
-        if !TEXTURE {
-            return None;
+    inline_on_boards!(
+        /// The direction in which the u of texture coordinates grows, of any length, with their values at the hit and
+        /// whether the image is seen mirrored from the triangle's front. `None` where there are none, or they are the
+        /// same along a line.
+        pub(crate) fn tangent(&self, scene: &Scene<'_>) -> Option<Tangent<N>> {
+            if !TEXTURE {
+                return None;
+            }
+            let (shapes, vertices, weights) = self.weights(scene)?;
+            let coordinates = shapes.coordinates().corners(vertices)?;
+            let position = |vertex| shapes.vertices.position(vertex);
+            let [a, b, c] = vertices;
+            let corners = [position(a)?, position(b)?, position(c)?];
+            let (along_u, is_mirrored) = along_u(corners, coordinates)?;
+            let mut direction = N::direction(along_u);
+            if self.instance().is_some() {
+                let (instance, _) = find(scene, self.instance()?)?;
+                direction = Map::<N>::new(instance).normal(direction).0;
+            }
+            Some(Tangent {
+                direction,
+                is_mirrored,
+                coordinates: weights.coordinates(coordinates),
+            })
         }
-        let (shapes, vertices, weights) = self.weights(scene)?;
-        let coordinates = shapes.coordinates().corners(vertices)?;
-        let position = |vertex| shapes.vertices.position(vertex);
-        let [a, b, c] = vertices;
-        let corners = [position(a)?, position(b)?, position(c)?];
-        let (along_u, is_mirrored) = along_u(corners, coordinates)?;
-        let mut direction = N::direction(along_u);
-        if self.instance().is_some() {
-            let (instance, _) = find(scene, self.instance()?)?;
-            direction = Map::<N>::new(instance).normal(direction).0;
-        }
-        Some(Tangent {
-            direction,
-            is_mirrored,
-            coordinates: weights.coordinates(coordinates),
-        })
-    }
+    );
 
     /// The color of the vertices at the hit: linear ratios with 30 fraction bits. `None` where there is none.
     #[inline(always)]

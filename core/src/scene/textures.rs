@@ -7,7 +7,7 @@ use crate::format::range::{At, Ranges};
 use crate::format::record::{Material, NormalMap, SurfaceMaps, Texture};
 use crate::format::{BlobError, Effects, Field, SectionKind, Sections};
 use crate::geometry::attributes::{COORDINATE_BITS, linear};
-use crate::target::NormalMapOnly;
+use crate::target::{NormalMapOnly, inline_on_boards};
 
 impl Material {
     /// The bits of [`maps`](Self::maps) that are a number.
@@ -154,32 +154,33 @@ impl<'a> Textures<'a> {
         }
     }
 
-    /// The normal that a texture holds at coordinates with [`COORDINATE_BITS`] fraction bits: ratios from -1 to 1 with 30
-    /// fraction bits. Texels are mixed as they are, and the mean has any length up to the square root of 3.
-    #[inline(always)]
-    pub(crate) fn normal(&self, texture: &Texture, at: [i32; 2]) -> Texel {
-        let (sums, place) = match taps(texture, at) {
-            Taps::Nearest(index, place) => {
-                let [texel] = self.fetched(texture, [index]);
-                (texel.channels().map(|channel| channel << 16), place)
-            }
-            Taps::Mixed(indices, weights, place) => {
-                let mut sum = [0_u32; 3];
-                for (texel, weight) in self.fetched(texture, indices).into_iter().zip(weights) {
-                    for (sum, channel) in sum.iter_mut().zip(texel.channels()) {
-                        *sum = sum.wrapping_add(channel.wrapping_mul(weight));
-                    }
+    inline_on_boards!(
+        /// The normal that a texture holds at coordinates with [`COORDINATE_BITS`] fraction bits: ratios from -1 to 1 with 30
+        /// fraction bits. Texels are mixed as they are, and the mean has any length up to the square root of 3.
+        pub(crate) fn normal(&self, texture: &Texture, at: [i32; 2]) -> Texel {
+            let (sums, place) = match taps(texture, at) {
+                Taps::Nearest(index, place) => {
+                    let [texel] = self.fetched(texture, [index]);
+                    (texel.channels().map(|channel| channel << 16), place)
                 }
-                (sum, place)
+                Taps::Mixed(indices, weights, place) => {
+                    let mut sum = [0_u32; 3];
+                    for (texel, weight) in self.fetched(texture, indices).into_iter().zip(weights) {
+                        for (sum, channel) in sum.iter_mut().zip(texel.channels()) {
+                            *sum = sum.wrapping_add(channel.wrapping_mul(weight));
+                        }
+                    }
+                    (sum, place)
+                }
+            };
+            // Twice as much and 1 less: half of 255 is 0.
+            let signed = |sum: u32| ratio(sum).wrapping_sub(1 << 29).wrapping_shl(1);
+            Texel {
+                color: sums.map(signed),
+                place,
             }
-        };
-        // Twice as much and 1 less: half of 255 is 0.
-        let signed = |sum: u32| ratio(sum).wrapping_sub(1 << 29).wrapping_shl(1);
-        Texel {
-            color: sums.map(signed),
-            place,
         }
-    }
+    );
 
     /// The alpha of a texture at coordinates with [`COORDINATE_BITS`] fraction bits: a ratio with 30 fraction bits.
     #[inline(always)]
