@@ -27,7 +27,9 @@ impl<'r, 's, 'a, N: Number, A: Accel, const EFFECTS: u32> Shutter<'r, 's, 'a, N,
     /// # static BLOB: &[u8] =
     /// #     gridel_core::include_blob!(concat!(env!("CARGO_MANIFEST_DIR"), "/../fixtures/blobs/dual-split.gridel"));
     /// use gridel_core::render::Shutter;
-    /// use gridel_core::{NoCount, Renderer, Rgb888, Scene, Settings, Workspace};
+    /// use gridel_core::{DualSplit, Effects, NoCount, Renderer, Rgb888, Scene, Settings, Workspace};
+    ///
+    /// type Moment<'s, 'a> = Renderer<'s, 'a, f32, DualSplit, { Effects::ALL.0 }>;
     ///
     /// let scene = Scene::from_bytes(BLOB)?;
     /// // The camera moves to the right, in steps of 2^-13 unit.
@@ -36,7 +38,9 @@ impl<'r, 's, 'a, N: Number, A: Accel, const EFFECTS: u32> Shutter<'r, 's, 'a, N,
     /// ahead.eye[0] += 1 << 21;
     /// let scenes = [scene, scene.with_view(&moved)?, scene.with_view(&ahead)?];
     ///
-    /// let [first, second, third] = scenes.each_ref().map(Renderer::new);
+    /// let settings = Settings { samples: 6, ..Settings::of(&scene) };
+    /// let moments = scenes.each_ref().map(|scene| Moment::with_settings(scene, settings));
+    /// let [first, second, third] = moments;
     /// let renderers = [first?, second?, third?];
     /// let shutter = Shutter::new(&renderers)?;
     /// let mut space = Workspace::for_any_scene();
