@@ -316,12 +316,15 @@ fn parts_have_the_bumps_of_their_copies() {
 /// Light from behind does not come through, however the normals lean. With smooth normals some comes around the edge.
 #[test]
 fn light_behind_a_triangle_does_not_reach_its_front() {
-    for (smooth, to_light, until) in [
-        (false, [0.9, 0.3, -0.1], 1.1),
-        (true, [0.5, 0.2, -0.85], 0.5),
+    for (smooth, shadows, to_light, until) in [
+        (false, true, [0.9, 0.3, -0.1], 1.1),
+        (false, false, [0.9, 0.3, -0.1], 1.1),
+        (true, true, [0.5, 0.2, -0.85], 0.5),
+        (true, false, [0.9, 0.3, -0.1], 1.1),
     ] {
         let to_light = DVec3::from_array(to_light).normalize();
         let mut scene = square(layouts()[0], 16.0, true, to_light);
+        scene.render.shadows = shadows;
         if smooth {
             make_smooth(&mut scene);
         }
@@ -331,7 +334,8 @@ fn light_behind_a_triangle_does_not_reach_its_front() {
             let inside = places().filter(|(_, at)| at.abs().max_element() < until);
             for (pixel, at) in inside {
                 let lit = found[pixel];
-                assert!(lit == 0.0, "{format:?}, smooth {smooth}, {at}: {lit}");
+                let what = format!("{format:?}, smooth {smooth}, shadows {shadows}, {at}");
+                assert!(lit == 0.0, "{what}: {lit}");
             }
         }
     }

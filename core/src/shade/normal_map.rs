@@ -80,8 +80,10 @@ impl Effect for NormalMap {
         lighting: &mut Lighting<'_, N>,
         is_reached: &mut bool,
     ) {
-        // In scenes with smooth normals that is their matter.
-        if tracer.scene().effects().contains(Effects::SMOOTH) {
+        // Where smooth normals have an eye on shadows, that is their matter.
+        let by_smooth = Effects::SMOOTH.with(Effects::SHADOW);
+        if !surface.required.contains(Self::EFFECT) || tracer.scene().effects().contains(by_smooth)
+        {
             return;
         }
         if smooth::is_behind(surface.hit, lighting.to_light) {
