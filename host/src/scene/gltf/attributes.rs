@@ -7,7 +7,7 @@ use crate::scene::texture::texture_transform;
 use crate::scene::{Attributes, Image, Material, NormalMap, SceneError, Texture, Wrap};
 use glam::{DAffine2, DVec2};
 use gltf::image::Source;
-use gltf::texture::{MagFilter, TextureTransform, WrappingMode};
+use gltf::texture::{MagFilter, WrappingMode};
 use gltf::{Primitive, Semantic};
 use std::borrow::Cow;
 use std::sync::Arc;
@@ -29,13 +29,11 @@ impl Placed {
         let info = material.pbr_metallic_roughness().base_color_texture();
         let info = info.filter(|it| it.texture().source().is_some())?;
         let transform = info.texture_transform();
-        let set = transform.as_ref().and_then(TextureTransform::tex_coord);
+        let set = transform.as_ref().and_then(|it| it.tex_coord());
         Some(Self {
             set: set.unwrap_or(info.tex_coord()),
             transform: transform.map_or(DAffine2::IDENTITY, |it| {
-                let [scale, offset] =
-                    [it.scale(), it.offset()].map(|it| DVec2::from(it.map(f64::from)));
-                texture_transform(scale, it.rotation().into(), offset)
+                lies(it.scale(), it.rotation(), it.offset())
             }),
         })
     }
@@ -45,12 +43,20 @@ impl Placed {
         let info = info.filter(|it| it.texture().source().is_some())?;
         let number = material.index();
         let transform = number.and_then(|number| transforms.get(&number));
-        let set = transform.and_then(|it| it.set);
+        let set = transform.and_then(|it| it.tex_coord);
         Some(Self {
             set: set.unwrap_or(info.tex_coord()),
-            transform: transform.map_or(DAffine2::IDENTITY, |it| it.transform),
+            transform: transform.map_or(DAffine2::IDENTITY, |it| {
+                lies(it.scale.0, it.rotation.0, it.offset.0)
+            }),
         })
     }
+}
+
+/// The transform of `KHR_texture_transform`.
+fn lies(scale: [f32; 2], rotation: f32, offset: [f32; 2]) -> DAffine2 {
+    let [scale, offset] = [scale, offset].map(|it| DVec2::from(it.map(f64::from)));
+    texture_transform(scale, rotation.into(), offset)
 }
 
 /// An image with the sampler of a texture.

@@ -33,7 +33,8 @@ pub(super) fn read(
     validate(path, &root)?;
     let document = Document::from_json_without_validation(root);
     let blob = container.binary.map(<[u8]>::to_vec);
-    Ok((document, blob, normal_transforms::read(container.text)))
+    let transforms = normal_transforms::read(path, container.text)?;
+    Ok((document, blob, transforms))
 }
 
 fn parse(path: &Path, container: &Container<'_>) -> Result<Root, SceneError> {

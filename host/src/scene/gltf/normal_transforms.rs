@@ -1,55 +1,46 @@
 //! How normal maps lie on texture coordinates: their `KHR_texture_transform`, which the reader of glTF leaves out.
 
-use crate::scene::texture::texture_transform;
-use glam::{DAffine2, DVec2};
+use crate::scene::SceneError;
 use gltf::json::Value;
+use gltf::json::deserialize::{from_slice, from_value};
+use gltf::json::extensions::texture::TextureTransform;
 use std::collections::HashMap;
-
-/// A transform of texture coordinates, and their set, if it names another one.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct NormalTransform {
-    pub set: Option<u32>,
-    pub transform: DAffine2,
-}
+use std::path::Path;
 
 /// The transforms of normal maps, by the numbers of their materials.
-pub(super) type NormalTransforms = HashMap<usize, NormalTransform>;
+pub(super) type NormalTransforms = HashMap<usize, TextureTransform>;
 
 const EXTENSION: &str = "KHR_texture_transform";
 
 /// Reads the transforms of the JSON text of a file, which is valid.
-pub(super) fn read(text: &[u8]) -> NormalTransforms {
+///
+/// # Errors
+/// If a transform is not one of the extension.
+pub(super) fn read(path: &Path, text: &[u8]) -> Result<NormalTransforms, SceneError> {
     let has = |word: &str| {
         text.windows(word.len())
             .any(|part| part == word.as_bytes())
     };
-    // Seldom, so what follows is seldom read twice.
+    // Few files have both, so that few are read twice.
     if !has(EXTENSION) || !has("normalTexture") {
-        return NormalTransforms::default();
+        return Ok(NormalTransforms::default());
     }
-    let document: Value = gltf::json::deserialize::from_slice(text).unwrap_or_default();
-    let materials = document["materials"].as_array().into_iter().flatten();
-    let found = materials.enumerate().filter_map(|(number, material)| {
-        let extension = &material["normalTexture"]["extensions"][EXTENSION];
-        extension.is_object().then(|| (number, of(extension)))
-    });
-    found.collect()
-}
-
-fn of(extension: &Value) -> NormalTransform {
-    // In single precision, as the numbers of other textures are read.
-    let number = |value: &Value| value.as_f64().map(|it| f64::from(it as f32));
-    let pair = |key: &str, default: DVec2| {
-        let pair = &extension[key];
-        match (number(&pair[0]), number(&pair[1])) {
-            (Some(x), Some(y)) => DVec2::new(x, y),
-            _ => default,
-        }
+    let wrong = |what: String, error| {
+        let cause = format!("{what} is broken: {error}");
+        SceneError::new(path, cause, "export the file again")
     };
-    let rotation = number(&extension["rotation"]).unwrap_or(0.0);
-    let scale = pair("scale", DVec2::ONE);
-    NormalTransform {
-        set: extension["texCoord"].as_u64().map(|it| it as u32),
-        transform: texture_transform(scale, rotation, pair("offset", DVec2::ZERO)),
+    let document: Value =
+        from_slice(text).map_err(|error| wrong(String::from("the JSON"), error))?;
+    let mut transforms = NormalTransforms::default();
+    let materials = document["materials"].as_array();
+    for (number, material) in materials.into_iter().flatten().enumerate() {
+        // `Null` where something on the way is not there, or is no object.
+        let extension = &material["normalTexture"]["extensions"][EXTENSION];
+        if !extension.is_null() {
+            let what = || format!("the transform of the normal map of material {number}");
+            let transform = from_value(extension.clone()).map_err(|error| wrong(what(), error))?;
+            transforms.insert(number, transform);
+        }
     }
+    Ok(transforms)
 }

@@ -280,6 +280,20 @@ fn normal_textures_lie_as_that_of_the_base_color_does() {
     };
     assert!(warning.contains("has the scale 20"), "{warning}");
 
+    // What is not a transform is an error, as with the color's.
+    let mut broken = document.clone();
+    broken["materials"][0]["normalTexture"]["extensions"]["KHR_texture_transform"]["scale"] =
+        json!("large");
+    let error = cause(&broken);
+    assert!(
+        error.contains("the transform of the normal map of material 0 is broken"),
+        "{error}"
+    );
+
+    // As the reader of glTF takes an empty list for no extensions.
+    broken["materials"][0]["normalTexture"]["extensions"] = json!([]);
+    assert!(scene(&broken).materials[0].normal_map.is_some());
+
     // The same transform as the color's, and another one.
     let color = json!({"index": 0, "extensions": transform});
     document["materials"][0]["pbrMetallicRoughness"]["baseColorTexture"] = color;
