@@ -5,6 +5,10 @@ use gridel_core::{Angle, Camera, Scene, Up};
 /// Frames of a turn.
 pub const FRAMES: u32 = 64;
 
+/// Frames that are moments of one picture while a shutter is open, and the samples per pixel that they share.
+pub const MOMENTS: usize = 4;
+pub const SAMPLES: u16 = 8;
+
 /// The camera of a frame: as far from the middle of the scene's box as the blob's own on the axis where that is
 /// farthest. `None` if it is at the middle.
 pub fn camera(scene: &Scene<'_>, frame: u32) -> Option<Camera> {

@@ -3,13 +3,13 @@
 use crate::arm;
 use crate::figures::Figures;
 use crate::firmware::{self, Build};
-use crate::orbit::{FRAMES, camera};
+use crate::orbit::{FRAMES, MOMENTS, SAMPLES, camera};
 use crate::plan::Plan;
 use crate::scenes::{self, Compiled};
 use gridel_core::format::limits::MAX_STACK_DEPTH;
 use gridel_core::{
-    DualSplit, Fixed, Format, Motion, NoCount, Number, Poses, Position, Scene, Stack, Structure,
-    Tracks, closest_hit,
+    DualSplit, Fixed, Format, Motion, NoCount, Number, Poses, Position, Scene, Settings, Stack,
+    Structure, Tracks, closest_hit,
 };
 use gridel_host::measure::board::Board;
 use std::collections::BTreeMap;
@@ -34,6 +34,17 @@ pub fn plan(plan: &mut Plan) {
         plan.test_on("a_camera_orbits::torus", board, format)
             .in_full()
             .run(move || a_camera_orbits(board, format, &scenes::torus_mesh_in_few_pixels()));
+    }
+    for (board, format) in [
+        ("mps2-an386", Format::F32),
+        ("mps2-an385", Format::Fixed),
+        ("sifive_e", Format::Fixed),
+        ("mps2-an500", Format::F64),
+    ] {
+        let board = firmware::board(board);
+        plan.test_on("motion_is_blurred", board, format)
+            .in_full()
+            .run(move || motion_is_blurred(board, format, &scenes::torus_mesh_in_few_pixels()));
     }
     for (board, format) in [
         ("mps2-an386", Format::F32),
@@ -144,6 +155,35 @@ fn an_instance_costs_little(board: &'static Board, format: Format, most: f64) {
     let ratio = placed as f64 / flat as f64;
     println!("{placed} instructions with an instance, {flat} without: {ratio:.3}");
     assert!(ratio <= most, "{ratio}");
+}
+
+/// A picture of several moments has the host's bytes.
+fn motion_is_blurred(board: &'static Board, format: Format, compiled: &Compiled) {
+    let build = Build::new(board, format, Structure::DualSplit, compiled);
+    let program = build.program("blur");
+    let report = program.run();
+    let scene = compiled.blob.scene().expect("the compiler's own blob");
+    let views = (0..MOMENTS as u32).map(|moment| {
+        let camera = camera(&scene, moment).expect("a camera");
+        camera.view(&scene)
+    });
+    let views: Vec<_> = views.collect();
+    let moments = views.iter().map(|view| scene.with_view(view));
+    let moments: Vec<_> = moments.map(|seen| seen.expect("a view")).collect();
+    let settings = Settings {
+        samples: SAMPLES,
+        ..Settings::of(&scene)
+    };
+    let host = scenes::picture_of(&moments, Structure::DualSplit, format, settings);
+    assert!(
+        program.file("blur.rgb") == host,
+        "{build}: the picture differs from the host's"
+    );
+    let still = scenes::picture_of(&moments[..1], Structure::DualSplit, format, settings);
+    assert!(host != still, "{build}: nothing moves");
+    let mut figures = Figures::new();
+    figures.add(&format!("blur {build}"), &report);
+    figures.check();
 }
 
 fn a_camera_orbits(board: &'static Board, format: Format, compiled: &Compiled) {

@@ -5,7 +5,7 @@ use gridel_core::render::Pixel;
 use gridel_core::{Format, Rgb888, Settings, Structure};
 use gridel_host::blob::Blob;
 use gridel_host::compile::{self, Options};
-use gridel_host::render::{Job, render};
+use gridel_host::render::{Job, render_moments};
 use gridel_host::sample;
 use gridel_host::scene::{
     self, Attributes, Camera, Instance, Light, Material, Normals, Object, Part, Placement, Scene,
@@ -17,6 +17,7 @@ use gridel_tests::scenes::from_its_corner;
 use std::env;
 use std::f64::consts::{PI, TAU};
 use std::path::{Path, PathBuf};
+use std::slice::from_ref;
 
 /// A blob, with the name of its scene.
 pub struct Compiled {
@@ -332,8 +333,18 @@ impl Compiled {
 
 /// A scene's picture as the host renders it: three bytes a pixel.
 pub fn picture(scene: &gridel_core::Scene<'_>, structure: Structure, format: Format) -> Vec<u8> {
-    let job = Job::whole(format, structure, Settings::of(scene));
-    let picture = render(scene, &job, &|| ()).expect("the blob holds the structure");
+    picture_of(from_ref(scene), structure, format, Settings::of(scene))
+}
+
+/// The picture of a scene at several moments while a shutter is open.
+pub fn picture_of(
+    moments: &[gridel_core::Scene<'_>],
+    structure: Structure,
+    format: Format,
+    settings: Settings,
+) -> Vec<u8> {
+    let job = Job::whole(format, structure, settings);
+    let picture = render_moments(moments, &job, &|| ()).expect("the blob holds the structure");
     let encoded = picture.pixels.iter();
     let encoded = encoded.map(|&linear| Rgb888::encode(linear, None).0);
     encoded.flatten().collect()
