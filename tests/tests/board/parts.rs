@@ -190,6 +190,9 @@ pub fn every_shape() -> Compiled {
 pub fn combinations() -> impl Iterator<Item = (Vec<&'static str>, Vec<&'static str>)> {
     const EVERY: &str = "shadow highlight mirror glass absorption checker";
     const EVERY_SMOOTH: &str = "shadow highlight mirror glass absorption checker smooth";
+    const EVERY_LAMP: &str = "shadow highlight mirror glass absorption checker smooth vertex-colors texture alpha \
+        falloff area-light tone-mapping emission";
+    const EVERY_SHAPE: &str = "triangle sphere box disc cone torus plane";
     let programs = [
         ("triangle", "shadow"),
         ("triangle", "shadow highlight"),
@@ -222,6 +225,9 @@ pub fn combinations() -> impl Iterator<Item = (Vec<&'static str>, Vec<&'static s
         ("triangle sphere box disc cone", "shadow"),
         ("triangle sphere box disc cone", "shadow highlight"),
         ("triangle sphere box disc cone", EVERY),
+        // They bound the programs of many scenes that are not on this list.
+        (EVERY_SHAPE, EVERY_SMOOTH),
+        (EVERY_SHAPE, EVERY_LAMP),
         // The glass chessboard and the Cornell box.
         (
             "sphere box disc cone",

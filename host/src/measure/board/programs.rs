@@ -88,7 +88,7 @@ impl Programs {
         self.at(program_key)?.get(&key(parts))
     }
 
-    /// Adds a program, in program_key of what was known of it.
+    /// Adds a program, in place of what was known of it.
     pub fn insert(
         &mut self,
         program_key: ProgramKey<'_>,
@@ -101,6 +101,13 @@ impl Programs {
         match profile {
             Profile::Fast => program.fast = Some(footprint),
             Profile::Small => program.small = Some(footprint),
+        }
+    }
+
+    /// Keeps the programs whose parts a function accepts.
+    pub fn retain(&mut self, keep: impl Fn(&[&str]) -> bool) {
+        for built in self.0.values_mut() {
+            built.retain(|key, _| keep(&key.split(' ').collect::<Vec<_>>()));
         }
     }
 
