@@ -52,6 +52,10 @@ pub(crate) type DepthOfFieldOnly<T> =
 
 /// A value that only builds with the code for indirect light hold.
 pub(crate) type IndirectOnly<T> = InSomeBuilds<T, { cfg!(feature = "indirect") as usize }>;
+
+/// A value that only builds with the code for nested dielectrics hold.
+pub(crate) type NestedOnly<T> = InSomeBuilds<T, { cfg!(feature = "nested") as usize }>;
+
 /// A value that only builds with the code for rough materials hold.
 pub(crate) type GlossyOnly<T> = InSomeBuilds<T, { cfg!(feature = "glossy") as usize }>;
 

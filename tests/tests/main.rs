@@ -31,6 +31,7 @@ mod layers;
 mod lights;
 mod live;
 mod motion_blur;
+mod nested;
 mod normal_maps;
 mod origins;
 mod reference;

@@ -21,7 +21,7 @@
 #define GRIDEL_NONE 4294967295
 
 // Words of a `gridel_scene`.
-#define GRIDEL_SCENE_WORDS 84
+#define GRIDEL_SCENE_WORDS 86
 
 // Bytes of a stack that is deep enough for every scene.
 #define GRIDEL_STACK_BYTES_MAX 1928

@@ -7,7 +7,7 @@ use core::ffi::c_void;
 pub const GRIDEL_NONE: u32 = 0xffff_ffff;
 
 /// Words of a `gridel_scene`.
-pub const GRIDEL_SCENE_WORDS: usize = 84;
+pub const GRIDEL_SCENE_WORDS: usize = 86;
 
 /// Bytes of a stack that is deep enough for every scene.
 pub const GRIDEL_STACK_BYTES_MAX: usize = 1928;

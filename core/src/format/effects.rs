@@ -24,6 +24,9 @@ macro_rules! effects {
             /// Highlights of the lights.
             HIGHLIGHT = 1, "highlight", Highlight in highlight, casts 0,
                 required by "a material whose highlight is not 0";
+            /// Nested dielectrics: where glass overlaps, the medium with the highest priority is there.
+            NESTED = 10, "nested", Nested in nested, casts 0,
+                required by "a material with a priority";
             /// Rough mirrors and rough glass: rays leave by random facets of the surface.
             GLOSSY = 18, "glossy", Glossy in glossy, casts 0,
                 required by "a material with a roughness above 0";

@@ -54,6 +54,9 @@ pub const INSTANCE_EXPONENT: [i64; 2] = [-4, 18];
 /// The least α of rough materials, with 30 fraction bits: that of a roughness of 0.05.
 pub const LEAST_ROUGHNESS: i32 = 2_684_354;
 
+/// Most materials with a priority.
+pub const MAX_MEDIA: usize = 8;
+
 /// The narrowest and the widest [angle](crate::Angle) that a camera of a track sees.
 pub const FIELD_OF_VIEW: [i32; 2] = [2, i32::MAX];
 
@@ -71,6 +74,9 @@ pub(crate) const UNBOUNDED: bool = cfg!(feature = "unbounded");
 
 /// Whether this build holds the code for indirect light.
 pub(crate) const INDIRECT: bool = cfg!(feature = "indirect");
+
+/// Whether this build holds the code for nested dielectrics.
+pub(crate) const NESTED: bool = cfg!(feature = "nested");
 
 /// Whether this build holds the code for smooth normals.
 pub(crate) const SMOOTH: bool = cfg!(feature = "smooth");

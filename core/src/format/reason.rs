@@ -191,6 +191,8 @@ texts! {
         InvertedBox => "its lowest corner lies above its highest one",
         ZeroNormal => "its normal has length 0",
         MissingMaps => "it requires maps and has none",
+        OpaqueMedium => "its material is not glass",
+        RepeatedMedium => "its material has a place before it",
         ZeroAxis => "its axis has length 0",
         ZeroRadii => "both of its radii are 0",
         OutsideScene => "its box lies outside of the scene's box",

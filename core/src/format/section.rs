@@ -258,6 +258,9 @@ macro_rules! sections {
             ShownForms = 97, "shown-forms", [u8], "mark" of "light-forms";
             /// For each of the first surface maps, its [`NormalMap`](crate::format::record::NormalMap); others have none.
             NormalMaps = 98, "normal-maps", [record::NormalMap], "map" of "textures";
+            /// The numbers of the materials with a priority, from the highest on: at most 8, each one of glass. Absent where
+            /// there are none.
+            Media = 99, "media", [u32], "medium" of "";
             $(
                 #[doc = concat!(
                     "[`", stringify!($record), "`](crate::geometry::", stringify!($module),

@@ -155,6 +155,12 @@ pub enum Event {
         /// The texture's color: linear ratios.
         color: [f64; 3],
     },
+    /// The surface that was hit is that of a medium with a priority. Where both media are the same, a medium with a higher
+    /// priority is around it, and the ray goes straight on.
+    Boundary {
+        /// The materials of the media on the near side and on the far side; `None` for the surroundings.
+        media: [Option<u32>; 2],
+    },
     /// The surface that was hit is there in part; the rest of the ray goes straight on.
     Alpha {
         /// How much of it is there, 0 to 1.

@@ -27,6 +27,7 @@ mod rows;
 mod sample;
 mod samples;
 mod shutter;
+mod start;
 mod trace;
 
 pub use camera::{Camera, CameraError, Up};

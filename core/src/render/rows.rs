@@ -4,8 +4,9 @@ use crate::accel::{Accel, Number};
 use crate::observe::count::Observer;
 use crate::observe::event::Event;
 use crate::ray::Ray;
-use crate::render::samples::Samples;
-use crate::render::trace::{Loop, limited};
+use crate::render::samples::{Samples, limited};
+use crate::render::start::Start;
+use crate::render::trace::Loop;
 use crate::render::{Pixel, Renderer, WorkspaceView};
 use crate::shade::Color;
 use crate::shade::sampler::Sampler;
@@ -69,9 +70,14 @@ impl<N: Number, A: Accel, const EFFECTS: u32> Renderer<'_, '_, N, A, EFFECTS> {
             ..self.tracing()
         };
         let mut radiance = Color::BLACK;
-        let camera = || Ok(*ray);
         let sampler = Sampler::new([0; 2], 0);
-        while !tracing.step::<N, A, C, EFFECTS>(sampler, camera, &mut radiance, space, count) {}
+        while !tracing.step::<N, A, C, EFFECTS>(
+            sampler,
+            Start::Own(ray),
+            &mut radiance,
+            space,
+            count,
+        ) {}
         let seen = limited(radiance, tracing.develops::<EFFECTS>());
         if C::ENABLED {
             count.event(Event::SampleFinished {

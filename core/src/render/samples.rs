@@ -5,11 +5,10 @@ use crate::observe::count::Observer;
 use crate::observe::event::Event;
 use crate::render::pixel::Linear;
 use crate::render::sample::place;
-use crate::render::trace::{limited, room_for_samples};
+use crate::render::start::Start;
 use crate::render::{Renderer, WorkspaceView};
 use crate::shade::Color;
 use crate::shade::sampler::Sampler;
-use core::hint::black_box;
 
 /// A pixel that is being rendered: the number of its sample, and what was seen so far.
 #[derive(Clone, Copy, Debug)]
@@ -46,15 +45,11 @@ impl<N: Number> Samples<N> {
         count: &mut C,
     ) -> Option<Linear> {
         let samples = renderer.settings().samples;
-        let camera = || {
-            let [x, y] = place([x, y], self.index, samples);
-            // Moved out of the loops around this, its fields would go to the stack and come back.
-            black_box(renderer).ray_through(x, y)
-        };
+        let start = Start::Camera(renderer, [x, y], self.index);
         let radiance = &mut self.radiance;
         let tracing = renderer.tracing();
         let sampler = Sampler::new([x, y], self.index);
-        if !tracing.step::<N, A, C, EFFECTS>(sampler, camera, radiance, space, count) {
+        if !tracing.step::<N, A, C, EFFECTS>(sampler, start, radiance, space, count) {
             return None;
         }
         let develops = tracing.develops::<EFFECTS>();
@@ -89,4 +84,23 @@ impl<N: Number> Samples<N> {
         let shown = tracing.developed::<N, A, C, EFFECTS>(mean, space, count);
         Some(renderer.to_linear(shown))
     }
+}
+
+/// A sample's radiance, limited to what is added up: to display white, unless effects act on what is brighter.
+#[inline(always)]
+pub(super) fn limited<N: Number>(radiance: Color<N>, develops: bool) -> Color<N> {
+    if develops {
+        radiance.limited(BRIGHTEST << 20)
+    } else {
+        radiance.displayable()
+    }
+}
+
+/// The most of a sample's radiance that counts where effects act on the mean, 1 being display white.
+const BRIGHTEST: i32 = 16;
+
+/// The most samples whose sum is in the range of `fixed`, and by how many bits those of more samples are shifted.
+#[inline(always)]
+pub(super) const fn room_for_samples(develops: bool) -> (u16, u32) {
+    if develops { (64, 6) } else { (1024, 2) }
 }

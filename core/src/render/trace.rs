@@ -18,14 +18,16 @@ use crate::format::record::Light;
 use crate::observe::count::Observer;
 use crate::observe::event::{Event, RayKind, Source};
 use crate::query::{Hit, any_hit, closest_hit};
-use crate::ray::{Ray, RayError};
+use crate::ray::Ray;
+use crate::render::start::Start;
 use crate::scene::Scene;
 use crate::shade::effect::{EffectList, Tracer};
 use crate::shade::sampler::Sampler;
 use crate::shade::surface::{
-    Aim, Bounce, Filter, Lighting, Secondary, Surface, depart, secondary_ray,
+    Aim, Arrival, Bounce, Filter, Lighting, Secondary, Surface, depart, secondary_ray,
 };
 use crate::shade::{All, Color};
+use crate::target::inline_on_boards;
 use core::marker::PhantomData;
 use heapless::{Vec, VecView};
 
@@ -103,63 +105,69 @@ pub(super) struct Loop<'s, 'a> {
 }
 
 impl Loop<'_, '_> {
-    /// Traces one ray of a sample and the shadow rays of its hit: the last ray that waits, or else the one from the
-    /// camera. Returns whether no ray waits any more.
-    #[inline(always)]
-    pub(super) fn step<N: Number, A: Accel, C: Observer, const EFFECTS: u32>(
-        &self,
-        sampler: Sampler,
-        camera: impl FnOnce() -> Result<Ray<N>, RayError>,
-        radiance: &mut Color<N>,
-        space: &mut WorkspaceView<'_, N>,
-        count: &mut C,
-    ) -> bool {
-        let causes_rays = const { EFFECTS & All::CASTING != 0 };
-        let waiting = if causes_rays { space.work.pop() } else { None };
-        let mut tracing = Tracing::<N, A, C, EFFECTS> {
-            scene: self.scene,
-            most: self.depth,
-            depth: 0,
-            kind: RayKind::Primary,
-            sampler,
-            state: State::<N>::default(),
-            space,
-            count,
-            structure: PhantomData,
-        };
-        let (ray, weight, kind) = match waiting {
-            Some(next) => {
-                let (origin, direction) = (next.origin, next.direction.map(N::widen));
-                let ray = secondary_ray(self.scene, origin, direction, None);
-                (tracing.depth, tracing.kind) = (next.depth, next.kind);
-                tracing.state = next.state;
-                (ray, next.weight, next.kind)
+    inline_on_boards!(
+        /// Traces one ray of a sample and the shadow rays of its hit: the last ray that waits, or else the first. Returns
+        /// whether no ray waits any more.
+        pub(super) fn step<N: Number, A: Accel, C: Observer, const EFFECTS: u32>(
+            &self,
+            sampler: Sampler,
+            start: Start<'_, '_, '_, N, A, EFFECTS>,
+            radiance: &mut Color<N>,
+            space: &mut WorkspaceView<'_, N>,
+            count: &mut C,
+        ) -> bool {
+            let causes_rays = const { EFFECTS & All::CASTING != 0 };
+            let waiting = if causes_rays { space.work.pop() } else { None };
+            let mut tracing = Tracing::<N, A, C, EFFECTS> {
+                scene: self.scene,
+                most: self.depth,
+                depth: 0,
+                kind: RayKind::Primary,
+                sampler,
+                state: State::<N>::default(),
+                space,
+                count,
+                structure: PhantomData,
+            };
+            let (ray, weight, kind) = match waiting {
+                Some(next) => {
+                    let (origin, direction) = (next.origin, next.direction.map(N::widen));
+                    let ray = secondary_ray(self.scene, origin, direction, None);
+                    (tracing.depth, tracing.kind) = (next.depth, next.kind);
+                    tracing.state = next.state;
+                    (ray, next.weight, next.kind)
+                }
+                None => (start.ray(), Color::WHITE, RayKind::Primary),
+            };
+            // A sample without a direction adds no light.
+            if C::ENABLED {
+                tracing.count.event(Event::RayStarted {
+                    kind,
+                    depth: tracing.depth,
+                    weight: weight.ratios_to_f64(),
+                });
             }
-            None => (camera().ok(), Color::WHITE, RayKind::Primary),
-        };
-        // A sample without a direction adds no light.
-        if C::ENABLED {
-            tracing.count.event(Event::RayStarted {
-                kind,
-                depth: tracing.depth,
-                weight: weight.ratios_to_f64(),
-            });
-        }
-        if let Some(mut ray) = ray {
-            if self.from_camera && kind == RayKind::Primary {
-                let mut state = tracing.state;
-                All::camera::<EFFECTS, N, _>(&mut tracing, &mut state, sampler.sample(), &mut ray);
-                tracing.state = state;
+            if let Some(mut ray) = ray {
+                if self.from_camera && kind == RayKind::Primary {
+                    let mut state = tracing.state;
+                    All::camera::<EFFECTS, N, _>(
+                        &mut tracing,
+                        &mut state,
+                        sampler.sample(),
+                        &mut ray,
+                    );
+                    tracing.state = state;
+                }
+                tracing.count.ray(kind, &ray);
+                tracing.add(&ray, weight, radiance);
             }
-            tracing.count.ray(kind, &ray);
-            tracing.add(&ray, weight, radiance);
+            let done = !causes_rays || tracing.space.work.is_empty();
+            if done {
+                All::pixel::<EFFECTS, N, _>(&mut tracing, &mut State::<N>::default(), radiance);
+            }
+            done
         }
-        let done = !causes_rays || tracing.space.work.is_empty();
-        if done {
-            All::pixel::<EFFECTS, N, _>(&mut tracing, &mut State::<N>::default(), radiance);
-        }
-        done
-    }
+    );
 }
 
 impl Loop<'_, '_> {
@@ -196,25 +204,6 @@ impl Loop<'_, '_> {
     }
 }
 
-/// A sample's radiance, limited to what is added up: to display white, unless effects act on what is brighter.
-#[inline(always)]
-pub(super) fn limited<N: Number>(radiance: Color<N>, develops: bool) -> Color<N> {
-    if develops {
-        radiance.limited(BRIGHTEST << 20)
-    } else {
-        radiance.displayable()
-    }
-}
-
-/// The most of a sample's radiance that counts where effects act on the mean, 1 being display white.
-const BRIGHTEST: i32 = 16;
-
-/// The most samples whose sum is in the range of `fixed`, and by how many bits those of more samples are shifted.
-#[inline(always)]
-pub(super) const fn room_for_samples(develops: bool) -> (u16, u32) {
-    if develops { (64, 6) } else { (1024, 2) }
-}
-
 /// One ray that is followed.
 struct Tracing<'t, 'w, 's, N: Number, A, C, const EFFECTS: u32> {
     scene: &'s Scene<'s>,
@@ -234,7 +223,7 @@ struct Tracing<'t, 'w, 's, N: Number, A, C, const EFFECTS: u32> {
 impl<N: Number, A: Accel, C: Observer, const EFFECTS: u32> Tracing<'_, '_, '_, N, A, C, EFFECTS> {
     /// Adds what one ray brings, and puts the rays that it causes on the work list.
     #[inline(always)]
-    fn add(&mut self, ray: &Ray<N>, mut weight: Color<N>, radiance: &mut Color<N>) {
+    fn add(&mut self, ray: &Ray<N>, weight: Color<N>, radiance: &mut Color<N>) {
         let (scene, mut state) = (self.scene, self.state);
         let hit = self.closest_hit(ray);
         let surface = hit.and_then(|hit| Some((hit, scene.material(hit.object)?)));
@@ -245,7 +234,13 @@ impl<N: Number, A: Accel, C: Observer, const EFFECTS: u32> Tracing<'_, '_, '_, N
             return;
         };
         let required = All::required_by_material(material);
-        All::arrive::<EFFECTS, N, _>(self, &mut state, ray, &hit, material, &mut weight);
+        let mut arrival = Arrival {
+            hit: &hit,
+            material,
+            medium: None,
+            weight,
+        };
+        All::arrive::<EFFECTS, N, _>(self, &mut state, ray, &mut arrival);
         let shading_normal = hit.facing_normal();
         let direction = if const { EFFECTS & All::DIRECTED == 0 } {
             ray.slope
@@ -259,8 +254,9 @@ impl<N: Number, A: Accel, C: Observer, const EFFECTS: u32> Tracing<'_, '_, '_, N
             shading_normal,
             direction,
             diffuse: Color::ratios(material.diffuse),
-            weight,
+            weight: arrival.weight,
             passing: Color::BLACK,
+            interface: None,
         };
         All::surface::<EFFECTS, N, _>(self, &mut state, ray, &mut surface);
         self.state = state;
@@ -270,6 +266,8 @@ impl<N: Number, A: Accel, C: Observer, const EFFECTS: u32> Tracing<'_, '_, '_, N
         let mut number = 0_u32;
         for light in scene.lights {
             let lit = self.lit(number, light, &surface);
+            // Light on its way may change it.
+            self.state = state;
             local = local.plus(lit);
             if C::ENABLED {
                 self.count.event(Event::Lit {
@@ -286,6 +284,15 @@ impl<N: Number, A: Accel, C: Observer, const EFFECTS: u32> Tracing<'_, '_, '_, N
                 self.count.event(Event::TooDeep);
             }
             return;
+        }
+        if surface.passing != Color::BLACK {
+            let secondary = Secondary {
+                kind: RayKind::Refracted,
+                direction,
+                outward: !hit.front,
+                weight: surface.passing,
+            };
+            self.send(&hit, secondary);
         }
         let mut bounce = Bounce {
             normal: surface.shading_normal,
@@ -435,9 +442,10 @@ impl<'s, N: Number, A: Accel, C: Observer, const EFFECTS: u32> Tracer<'s, N>
     }
 
     #[inline(always)]
-    fn filter(&mut self, ray: &Ray<N>, filter: &mut Filter<'_, N>) {
+    fn filter(&mut self, ray: &Ray<N>, filter: &mut Filter<'s, '_, N>) {
         let mut state = self.state;
         All::filter::<EFFECTS, N, _>(self, &mut state, ray, filter);
+        self.state = state;
     }
 
     #[inline(always)]
@@ -460,7 +468,7 @@ impl<'s, N: Number, A: Accel, C: Observer, const EFFECTS: u32> Tracer<'s, N>
                 weight,
                 depth: self.depth.saturating_add(1),
                 kind,
-                state: self.state,
+                state,
             });
             if C::ENABLED {
                 self.count.event(Event::Sent {

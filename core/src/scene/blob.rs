@@ -4,6 +4,7 @@ use crate::accel::{Space, StructureViews};
 use crate::format::environment::Environment;
 use crate::format::lens::Lens;
 use crate::format::light_form::LightForm;
+use crate::format::limits::MAX_MEDIA;
 use crate::format::record::{Emission, Header, Light, Material, Texture, UnitBox, View};
 use crate::format::{Effects, Indices, Kind, Structure};
 use crate::geometry::{Geometry, PrimitiveId};
@@ -13,7 +14,7 @@ use crate::scene::textures::Textures;
 use crate::simd::SimdLevel;
 use crate::target::{
     DepthOfFieldOnly, EmissionOnly, EnvironmentOnly, FalloffOnly, GlossyOnly, IndirectOnly,
-    InstancesOnly, TextureOnly, WideOnly, inline_on_hosts_hint_on_boards,
+    InstancesOnly, NestedOnly, TextureOnly, WideOnly, inline_on_hosts_hint_on_boards,
 };
 
 /// A checked view of a blob: a few hundred bytes that borrow from it.
@@ -33,6 +34,7 @@ pub struct Scene<'a> {
     pub(in crate::scene) emissions: EmissionOnly<&'a [Emission]>,
     pub(in crate::scene) lens: DepthOfFieldOnly<&'a [Lens]>,
     pub(in crate::scene) bounces: IndirectOnly<u8>,
+    pub(in crate::scene) media: NestedOnly<&'a [u32]>,
     pub(in crate::scene) object_first: Indices<'a>,
     pub(in crate::scene) object_material: Indices<'a>,
     pub(in crate::scene) order: Indices<'a>,
@@ -127,6 +129,26 @@ impl<'a> Scene<'a> {
     #[inline(always)]
     pub fn bounces(&self) -> u8 {
         self.bounces.get().copied().unwrap_or(0)
+    }
+
+    /// The numbers of the materials with a priority, from the highest on; none where glass does not overlap.
+    #[inline(always)]
+    pub fn media(&self) -> &'a [u32] {
+        self.media.get().copied().unwrap_or_default()
+    }
+
+    /// The place of an object's material in the order of media; `None` for one without a priority.
+    #[inline(always)]
+    pub(crate) fn place_among_media(&self, object: u32) -> Option<u8> {
+        let media = self.media();
+        let number = self.material_number(object);
+        let is_glass = |place: &u8| {
+            let material = self.materials.get(number as usize);
+            // A program may have put another one in its place.
+            material.is_some_and(|it| it.transmit != [0; 3]) && *place < MAX_MEDIA as u8
+        };
+        let place = media.iter().position(|&medium| medium == number);
+        place.map(|place| place as u8).filter(is_glass)
     }
 
     /// For each of the first materials, the α of its facets' distribution, with 30 fraction bits, 0 for a smooth one; none

@@ -1,7 +1,7 @@
 //! The proofs that [`Scene::from_bytes`] makes, in the order in which each relies on those before.
 
 use crate::accel::StructureViews;
-use crate::format::limits::{FARTHEST, LEAST_ROUGHNESS, SMOOTH};
+use crate::format::limits::{FARTHEST, LEAST_ROUGHNESS, MAX_MEDIA, SMOOTH};
 use crate::format::range::{At, Ranges, exactly};
 use crate::format::record::{Header, Light, Material};
 use crate::format::{
@@ -109,6 +109,7 @@ fn check_materials(scene: &Scene<'_>) -> Result<(), BlobError> {
     let environment = Effects::ENVIRONMENT.only_if(scene.environment().is_some());
     required = required.with(check_called(scene, SectionKind::Environment, environment)?);
     required = required.with(check_roughness(scene)?);
+    required = required.with(check_media(scene)?);
     let view = scene.view.effects();
     let called = Effects(header.effects).contains(view);
     Location::Section(SectionKind::View).ensure(called, Reason::MissingEffect)?;
@@ -174,6 +175,31 @@ fn check_roughness(scene: &Scene<'_>) -> Result<Effects, BlobError> {
         At { section, index }.within(Field::ShownForm, mark.into(), 0, 1)?;
     }
     let required = Effects::GLOSSY.only_if(!rough.alphas.is_empty());
+    check_called(scene, section, required)
+}
+
+/// What nested dielectrics require; an error where one is no glass, comes twice, or the header does not require it.
+fn check_media(scene: &Scene<'_>) -> Result<Effects, BlobError> {
+    let section = SectionKind::Media;
+    let media = scene.media();
+    if media.len() > MAX_MEDIA {
+        return Err(BlobError::Count {
+            section,
+            found: media.len(),
+            expected: MAX_MEDIA,
+        });
+    }
+    for (index, &number) in media.iter().enumerate() {
+        let at = At { section, index };
+        let most = scene.materials.len() as i64 - 1;
+        at.within(Field::Material, number.into(), 0, most)?;
+        let material = scene.materials.get(number as usize);
+        let is_glass = material.is_some_and(|material| material.transmit != [0; 3]);
+        at.ensure(is_glass, Reason::OpaqueMedium)?;
+        let is_new = !media.iter().take(index).any(|&other| other == number);
+        at.ensure(is_new, Reason::RepeatedMedium)?;
+    }
+    let required = Effects::NESTED.only_if(!media.is_empty());
     check_called(scene, section, required)
 }
 

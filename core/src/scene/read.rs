@@ -5,7 +5,7 @@ use crate::accel::space::Space;
 use crate::accel::stack::Entry;
 use crate::format::instance::Part;
 use crate::format::lens::Lens;
-use crate::format::limits::{DISPLAY_VALUES, FARTHEST, INDIRECT, INSTANCES, MAX_BOUNCES};
+use crate::format::limits::{DISPLAY_VALUES, FARTHEST, INDIRECT, INSTANCES, MAX_BOUNCES, NESTED};
 use crate::format::range::{At, Ranges, exactly};
 use crate::format::record::{ALIGNMENT, ENDIANNESS, Header, MAGIC, VERSION, View};
 use crate::format::{
@@ -21,7 +21,7 @@ use crate::scene::textures::Textures;
 use crate::simd::SimdLevel;
 use crate::target::{
     AllStructuresOnly, DepthOfFieldOnly, ENVIRONMENT, EmissionOnly, EnvironmentOnly, FalloffOnly,
-    GlossyOnly, IndirectOnly, InstancesOnly, TEXTURE, TextureOnly, WideOnly,
+    GlossyOnly, IndirectOnly, InstancesOnly, NestedOnly, TEXTURE, TextureOnly, WideOnly,
 };
 use core::mem::size_of;
 
@@ -126,6 +126,10 @@ pub(crate) fn scene<'a>(
         true => the_bounces(sections)?,
         false => 0,
     };
+    let media = match NESTED {
+        true => sections.records(SectionKind::Media)?,
+        false => &[],
+    };
     let environment = match ENVIRONMENT {
         true => EnvironmentMap::read(sections)?,
         false => EnvironmentMap::default(),
@@ -155,6 +159,7 @@ pub(crate) fn scene<'a>(
         emissions: EmissionOnly::new(|| emissions),
         lens: DepthOfFieldOnly::new(|| lens),
         bounces: IndirectOnly::new(|| bounces),
+        media: NestedOnly::new(|| media),
         object_first: Indices::read(sections, SectionKind::ObjectFirst)?,
         object_material: Indices::read(sections, SectionKind::ObjectMaterial)?,
         order: Indices::read(sections, SectionKind::Order)?,

@@ -10,7 +10,7 @@ use crate::ray::Ray;
 use crate::shade::Color;
 use crate::shade::effect::{Effect, Tracer};
 use crate::shade::glass::Glass;
-use crate::shade::surface::Filter;
+use crate::shade::surface::{Arrival, Filter};
 
 pub(crate) struct Absorption;
 
@@ -30,15 +30,16 @@ impl Effect for Absorption {
         tracer: &mut X,
         (): &mut (),
         ray: &Ray<N>,
-        hit: &Hit<N>,
-        material: &Material,
-        weight: &mut Color<N>,
+        arrival: &mut Arrival<'s, '_, N>,
     ) {
-        if Glass::is_required_by_material(material) && !hit.front {
-            *weight = weight.times(left(ray, hit, material));
+        let Arrival { hit, material, .. } = *arrival;
+        let is_behind = Glass::is_required_by_material(material) && !hit.front;
+        let medium = arrival.medium.or(is_behind.then_some(material));
+        if let Some(medium) = medium {
+            arrival.weight = arrival.weight.times(left(ray, hit, medium));
             if X::Observer::ENABLED {
                 tracer.count().event(Event::Absorbed {
-                    weight: weight.ratios_to_f64(),
+                    weight: arrival.weight.ratios_to_f64(),
                 });
             }
         }
@@ -49,10 +50,13 @@ impl Effect for Absorption {
         _: &mut X,
         (): &mut (),
         ray: &Ray<N>,
-        filter: &mut Filter<'_, N>,
+        filter: &mut Filter<'s, '_, N>,
     ) {
-        if filter.passes && !filter.hit.front {
-            filter.left = filter.left.times(left(ray, filter.hit, filter.material));
+        let behind = (!filter.hit.front).then_some(filter.material);
+        if filter.passes
+            && let Some(medium) = filter.medium.or(behind)
+        {
+            filter.left = filter.left.times(left(ray, filter.hit, medium));
         }
     }
 }

@@ -7,14 +7,13 @@ use crate::accel::Number;
 use crate::format::Effects;
 use crate::format::record::Material;
 use crate::observe::count::Observer;
-use crate::observe::event::{Event, RayKind};
+use crate::observe::event::Event;
 use crate::query::Hit;
 use crate::ray::Ray;
 use crate::scene::Scene;
 use crate::scene::textures::ratio;
-use crate::shade::Color;
 use crate::shade::effect::{Effect, Tracer};
-use crate::shade::surface::{Bounce, Filter, Secondary, Surface};
+use crate::shade::surface::{Filter, Surface};
 
 pub(crate) struct Alpha;
 
@@ -54,7 +53,7 @@ impl Effect for Alpha {
         tracer: &mut X,
         (): &mut (),
         _: &Ray<N>,
-        filter: &mut Filter<'_, N>,
+        filter: &mut Filter<'s, '_, N>,
     ) {
         if !Self::is_required_by_material(filter.material) {
             return;
@@ -63,24 +62,6 @@ impl Effect for Alpha {
         if alpha < N::ONE {
             filter.passes = true;
             filter.left = filter.left.scaled(N::ONE - alpha);
-        }
-    }
-
-    #[inline(always)]
-    fn bounce<'s, N: Number, X: Tracer<'s, N>>(
-        tracer: &mut X,
-        (): &mut (),
-        surface: &Surface<'_, N>,
-        _: &mut Bounce<N>,
-    ) {
-        if surface.required.contains(Self::EFFECT) && surface.passing != Color::BLACK {
-            let secondary = Secondary {
-                kind: RayKind::Refracted,
-                direction: surface.direction,
-                outward: !surface.hit.front,
-                weight: surface.passing,
-            };
-            tracer.send(surface.hit, secondary);
         }
     }
 }

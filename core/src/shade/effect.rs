@@ -13,7 +13,7 @@ use crate::query::Hit;
 use crate::ray::Ray;
 use crate::scene::Scene;
 use crate::shade::Color;
-use crate::shade::surface::{Aim, Bounce, Filter, Lighting, Secondary, Surface};
+use crate::shade::surface::{Aim, Arrival, Bounce, Filter, Lighting, Secondary, Surface};
 use core::fmt::Debug;
 
 /// The ray loop, as effects see it.
@@ -43,7 +43,7 @@ pub(crate) trait Tracer<'s, N: Number> {
     fn closest_hit(&mut self, ray: &Ray<N>) -> Option<Hit<N>>;
 
     /// Lets the effects in use pass light through a surface.
-    fn filter(&mut self, ray: &Ray<N>, filter: &mut Filter<'_, N>);
+    fn filter(&mut self, ray: &Ray<N>, filter: &mut Filter<'s, '_, N>);
 
     /// Puts a ray that leaves a surface on the work list, unless it would bring too little.
     fn send(&mut self, hit: &Hit<N>, secondary: Secondary<N>);
@@ -215,7 +215,7 @@ places! {
     fn camera(sample: u16, ray: &mut Ray<N>);
 
     /// A ray has come to a hit: the ratio of the light from there that arrives at the eye may change.
-    fn arrive(ray: &Ray<N>, hit: &Hit<N>, material: &Material, weight: &mut Color<N>);
+    fn arrive(ray: &Ray<N>, arrival: &mut Arrival<'s, '_, N>);
 
     /// A ray hits a surface: the diffuse color and the shading normal may change.
     fn surface(ray: &Ray<N>, surface: &mut Surface<'_, N>);
@@ -242,7 +242,7 @@ places! {
     fn light(surface: &Surface<'_, N>, lighting: &Lighting<'_, N>, arriving: &mut Color<N>);
 
     /// A surface is in the way of light to another one: it may let a part through.
-    fn filter(ray: &Ray<N>, filter: &mut Filter<'_, N>);
+    fn filter(ray: &Ray<N>, filter: &mut Filter<'s, '_, N>);
 
     /// A ray hits nothing: its radiance, first the background, may change.
     fn miss(ray: &Ray<N>, radiance: &mut Color<N>);

@@ -11,7 +11,7 @@ use crate::observe::event::{Event, RayKind};
 use crate::ray::Ray;
 use crate::shade::Color;
 use crate::shade::effect::{Effect, Tracer};
-use crate::shade::surface::{Bounce, Filter, Secondary, Surface};
+use crate::shade::surface::{Bounce, Filter, Interface, Secondary, Surface};
 
 pub(crate) struct Glass;
 
@@ -32,7 +32,7 @@ impl Effect for Glass {
         _: &mut X,
         (): &mut (),
         _: &Ray<N>,
-        filter: &mut Filter<'_, N>,
+        filter: &mut Filter<'s, '_, N>,
     ) {
         let material = filter.material;
         if !Self::is_required_by_material(material) {
@@ -41,7 +41,8 @@ impl Effect for Glass {
         filter.passes = true;
         let cos = N::from_wide(N::dot(filter.hit.normal, filter.to_light));
         let cos = cos.abs().min(N::ONE);
-        let passed = straight_through(N::ratio(material.inverse_ior), cos);
+        let interface = filter.interface.unwrap_or_else(|| Interface::of(filter.hit, material));
+        let passed = straight_through(interface.k, cos);
         let transmit = Color::ratios(material.transmit);
         filter.left = filter.left.times(transmit).scaled(passed);
     }
@@ -61,8 +62,7 @@ impl Effect for Glass {
             reflected,
             refracted,
         } = split(
-            N::ratio(material.inverse_ior),
-            hit.front,
+            surface.interface(),
             surface.direction,
             bounce.normal,
             bounce.cos_in,
@@ -105,10 +105,9 @@ fn fresnel<N: Number>(k: N, cos_in: N, cos_out: N) -> N {
 }
 
 /// Splits a ray of direction `d` (of length 1) at a surface. `normal` points to where the ray came
-/// from, `cos_in` is the cosine between them; `entering` says that the ray goes into the glass.
+/// from, `cos_in` is the cosine between them.
 pub(super) fn split<N: Number>(
-    k: N,
-    entering: bool,
+    Interface { k, to_denser }: Interface<N>,
     d: [N; 3],
     normal: [N; 3],
     cos_in: N,
@@ -121,7 +120,7 @@ pub(super) fn split<N: Number>(
     }
     let sin2_in = (N::ONE - cos_in * cos_in).max(N::ZERO);
     let (cos_out, scale, lift);
-    if entering {
+    if to_denser {
         cos_out = (N::ONE - k * k * sin2_in).sqrt();
         (scale, lift) = (k, k * cos_in - cos_out);
     } else {

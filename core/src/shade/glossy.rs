@@ -128,8 +128,7 @@ fn mirrored<N: Number>(
     if material.transmit != [0; 3] {
         let cos = -N::from_wide(N::dot(direction, halfway));
         let cos = cos.max(N::ZERO).min(N::ONE);
-        let k = N::ratio(material.inverse_ior);
-        let split = split(k, surface.hit.front, direction, halfway, cos);
+        let split = split(surface.interface(), direction, halfway, cos);
         let transmit = Color::ratios(material.transmit);
         color = color.plus_up_to_one(transmit.scaled(split.reflected));
     }

@@ -83,6 +83,8 @@ fn through<'s, N: Number, X: Tracer<'s, N>>(
             material,
             to_light,
             left,
+            medium: None,
+            interface: None,
             passes: false,
         };
         tracer.filter(&ray, &mut filter);

@@ -27,6 +27,47 @@ pub(crate) struct Surface<'h, N: Number> {
     pub(crate) weight: Color<N>,
     /// The ratio of the light from behind that passes the surface straight on.
     pub(crate) passing: Color<N>,
+    /// What meets there; `None` for the material and the surroundings.
+    pub(crate) interface: Option<Interface<N>>,
+}
+
+/// A ray that has come to a hit.
+pub(crate) struct Arrival<'s, 'h, N: Number> {
+    pub(crate) hit: &'h Hit<N>,
+    pub(crate) material: &'h Material,
+    /// What the ray came through, if an effect knows it.
+    pub(crate) medium: Option<&'s Material>,
+    /// The ratio of the light from there that arrives at the eye.
+    pub(crate) weight: Color<N>,
+}
+
+/// Two media that meet at a surface.
+#[derive(Clone, Copy)]
+pub(crate) struct Interface<N> {
+    /// The lower index of refraction over the higher one, 0.25 to 1.
+    pub(crate) k: N,
+    /// Whether the ray goes to the one with the higher index.
+    pub(crate) to_denser: bool,
+}
+
+impl<N: Number> Surface<'_, N> {
+    /// What meets there.
+    #[inline(always)]
+    pub(crate) fn interface(&self) -> Interface<N> {
+        let of_material = || Interface::of(self.hit, self.material);
+        self.interface.unwrap_or_else(of_material)
+    }
+}
+
+impl<N: Number> Interface<N> {
+    /// Between the surroundings and glass.
+    #[inline(always)]
+    pub(crate) fn of(hit: &Hit<N>, material: &Material) -> Self {
+        Self {
+            k: N::ratio(material.inverse_ior),
+            to_denser: hit.front,
+        }
+    }
 }
 
 /// A light, seen from a surface.
@@ -75,13 +116,17 @@ pub(crate) struct Aim<N: Number> {
 }
 
 /// A surface in the way of light to another one.
-pub(crate) struct Filter<'h, N: Number> {
+pub(crate) struct Filter<'s, 'h, N: Number> {
     pub(crate) hit: &'h Hit<N>,
     pub(crate) material: &'h Material,
     /// The direction of the light, with length 1.
     pub(crate) to_light: [N; 3],
     /// The ratio of the light that is left.
     pub(crate) left: Color<N>,
+    /// What the light came through, if an effect knows it.
+    pub(crate) medium: Option<&'s Material>,
+    /// What meets there; `None` for the material and the surroundings.
+    pub(crate) interface: Option<Interface<N>>,
     /// Whether anything passes: no surface lets light through unless an effect says so.
     pub(crate) passes: bool,
 }

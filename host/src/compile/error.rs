@@ -3,6 +3,7 @@
 use crate::scene::{SceneError, SourceSpan};
 use glam::DVec3;
 use gridel_core::BlobError;
+use gridel_core::format::limits::MAX_MEDIA;
 use gridel_core::render::CameraError;
 
 /// Why a scene cannot be compiled.
@@ -68,6 +69,9 @@ pub enum CompileError {
     )]
     #[diagnostic(help("make the cells smaller, or give the plane one color"))]
     CheckerSize { material: String, most: f64 },
+    #[error("{count} materials have a priority, more than the {MAX_MEDIA} that a blob can hold")]
+    #[diagnostic(help("remove `priority` from glass that touches no other glass"))]
+    Media { count: usize },
     #[error(
         "light {number}: its {what} of {length:.3e} scene units is more than {most:.3e}, which the scene's lattice holds"
     )]

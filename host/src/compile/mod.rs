@@ -25,6 +25,7 @@ mod lattice;
 mod layout;
 mod lens;
 mod light_forms;
+mod media;
 mod names;
 mod octree;
 mod options;

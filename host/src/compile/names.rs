@@ -112,7 +112,11 @@ impl Names {
 
     /// The name of an object's material.
     pub fn material_of(&self, object: u32) -> Option<&str> {
-        let material = *self.object_material.get(object as usize)?;
+        self.material(*self.object_material.get(object as usize)?)
+    }
+
+    /// The name of a material.
+    pub fn material(&self, material: u32) -> Option<&str> {
         given(&self.materials, material)
     }
 

@@ -11,6 +11,7 @@ use super::framing::{BACKGROUND, framing_of};
 use super::joints;
 use super::lens;
 use super::light_forms::{form_record, lift};
+use super::media::media;
 use super::section::Section;
 use super::textures::{TextureFigures, Textures};
 use super::tracks;
@@ -47,6 +48,8 @@ pub struct ShadingData {
     pub environment: Option<EnvironmentData>,
     /// The α of each material that an object has, up to the last rough one; empty where none is rough.
     pub roughnesses: Vec<i32>,
+    /// The materials with a priority, from the highest on.
+    pub media: Vec<u32>,
     /// For each form of a light, whether an object shows it; empty where none is rough.
     pub shown_forms: Vec<u8>,
     /// Materials that an object has.
@@ -167,6 +170,7 @@ impl ShadingData {
                 format!("material {}", printable(&material.name)),
             ));
         }
+        let media = media(scene, &numbers, &mut required_by)?;
         let mut light_forms = Vec::new();
         let mut shown_forms = Vec::new();
         let mut lights = lights
@@ -275,6 +279,7 @@ impl ShadingData {
             bounces: bounces.into_iter().map(u32::from).collect(),
             environment,
             roughnesses,
+            media,
             shown_forms,
             materials,
             object_material,

@@ -122,6 +122,7 @@ pub fn parts(context: &BuildContext<'_>, layouts: Vec<Layout>) -> Parts {
     );
     sections.push(section(SectionKind::Materials, &shading_data.materials));
     sections.push(section(SectionKind::Roughnesses, &shading_data.roughnesses));
+    sections.push(section(SectionKind::Media, &shading_data.media));
     sections.push(section(SectionKind::ShownForms, &shading_data.shown_forms));
     if objects != total && objects > 1 {
         sections.push(indices(SectionKind::ObjectFirst, &object_first, 2));

@@ -58,6 +58,10 @@ pub struct Ray {
     pub vertex_color: Option<[f64; 3]>,
     /// The texture that weights the diffuse color.
     pub texture: Option<Textured>,
+    /// The media with a priority on the near side and on the far side, by the numbers of their materials; `None` for the
+    /// surroundings.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub media: Option<[Option<u32>; 2]>,
     /// How much of the surface is there, where the alpha of a texture says so.
     pub alpha: Option<f64>,
     pub lights: Vec<Lighting>,
@@ -252,6 +256,7 @@ impl Ray {
             Event::NormalMapped { texel, normal } => {
                 self.normal_map = Some(Mapped { texel, normal });
             }
+            Event::Boundary { media } => self.media = Some(media),
             Event::Alpha { alpha } => self.alpha = Some(alpha),
             Event::VertexColor { color } => self.vertex_color = Some(color),
             Event::Textured {

@@ -124,6 +124,7 @@ impl<'t> Reader<'t> {
             normal_map: None,
             vertex_color: None,
             texture: None,
+            media: None,
             alpha: None,
             lights: Vec::new(),
             from_lens: None,

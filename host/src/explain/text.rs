@@ -105,6 +105,16 @@ impl Shown<'_> {
         }
     }
 
+    fn medium(&self, material: Option<u32>) -> String {
+        let Some(number) = material else {
+            return String::from("the surroundings");
+        };
+        match self.names.material(number) {
+            Some(name) => format!("{} (material {number})", printable(name)),
+            None => format!("material {number}"),
+        }
+    }
+
     fn light(&self, number: u32) -> String {
         match self.names.light(number) {
             Some(name) => format!("{} (light {number})", printable(name)),
@@ -276,6 +286,13 @@ impl Shown<'_> {
                 "{indent}  the texture at {u} {v}, texel {x},{y}, weights the diffuse color by {}",
                 color(texture.color)
             )?;
+        }
+        if let Some([from, to]) = ray.media {
+            let near = self.medium(from);
+            match from == to {
+                true => writeln!(f, "{indent}  within {near}: the ray goes straight on")?,
+                false => writeln!(f, "{indent}  between {near} and {}", self.medium(to))?,
+            }
         }
         if let Some(alpha) = ray.alpha {
             let alpha = significant(alpha);

@@ -132,6 +132,9 @@ pub struct Material {
     pub transmit: Color,
     /// Index of refraction relative to the surroundings, 1 to 4; used when `transmit` is not black.
     pub ior: f64,
+    /// Which glass fills a place that several take: the one with the highest priority, 1 to 100. Glass without one is
+    /// independent of others.
+    pub priority: Option<u8>,
     /// Absorption inside glass: the coefficient of Beer's law per scene unit of path length.
     pub absorption: Color,
     /// Radiance that leaves the front of the surface; black for none.
@@ -342,6 +345,7 @@ impl Default for Material {
             roughness: 0.0,
             transmit: [0.0; 3],
             ior: 1.5,
+            priority: None,
             absorption: [0.0; 3],
             emission: [0.0; 3],
             lights: true,

@@ -46,6 +46,11 @@ const REMOVALS: [(Effects, &str, Removal); Effects::NAMED.len()] = [
         },
     ),
     (
+        Effects::NESTED,
+        "glass within glass is refracted at every face, as if each were alone",
+        |scene| each_material(scene, |material| material.priority = None),
+    ),
+    (
         Effects::ABSORPTION,
         "glass is as clear in its depth as at its surface",
         |scene| each_material(scene, |material| material.absorption = [0.0; 3]),

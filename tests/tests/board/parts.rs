@@ -22,7 +22,7 @@ const TRIANGLE: &str = Kind::Triangle.name();
 const INSTANCES: &str = "instances";
 
 /// A part's name, and how to require it.
-type Effects = [(&'static str, fn(&mut Scene)); 19];
+type Effects = [(&'static str, fn(&mut Scene)); 20];
 
 const EFFECTS: Effects = [
     ("shadow", |scene| scene.render.shadows = true),
@@ -33,6 +33,10 @@ const EFFECTS: Effects = [
         scene.materials[0].roughness = 0.3;
     }),
     ("glass", |scene| scene.materials[0].transmit = [0.9; 3]),
+    ("nested", |scene| {
+        scene.materials[0].transmit = [0.9; 3];
+        scene.materials[0].priority = Some(1);
+    }),
     ("absorption", |scene| {
         scene.materials[0].transmit = [0.9; 3];
         scene.materials[0].absorption = [0.2; 3];
@@ -190,7 +194,7 @@ pub fn every_shape() -> Compiled {
 pub fn combinations() -> impl Iterator<Item = (Vec<&'static str>, Vec<&'static str>)> {
     const EVERY: &str = "shadow highlight mirror glass absorption checker";
     const EVERY_SMOOTH: &str = "shadow highlight mirror glass absorption checker smooth";
-    const EVERY_LAMP: &str = "shadow highlight mirror glass absorption checker smooth vertex-colors texture alpha \
+    const EVERY_LAMP: &str = "shadow highlight mirror glass absorption checker smooth vertex-colors texture \
         falloff area-light tone-mapping emission";
     const EVERY_SHAPE: &str = "triangle sphere box disc cone torus plane";
     let programs = [

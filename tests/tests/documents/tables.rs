@@ -75,6 +75,8 @@ fn blobs() -> Vec<Vec<u8>> {
         scale: 1.0,
     });
     scene.materials[0].texture = Some(texture);
+    scene.materials[0].transmit = [0.5; 3];
+    scene.materials[0].priority = Some(1);
     let compiled = compile(&scene, &options).expect("compiles");
     blobs.push(compiled.blob.bytes().to_vec());
     let placed = |x: f64| scene::Instance {

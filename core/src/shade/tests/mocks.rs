@@ -2,13 +2,11 @@
 
 use crate::accel::Number;
 use crate::format::Effects;
-use crate::format::record::Material;
 use crate::observe::event::RayKind;
-use crate::query::Hit;
 use crate::ray::{Pencil, Ray};
 use crate::shade::Color;
 use crate::shade::effect::{Effect, Tracer};
-use crate::shade::surface::{Bounce, Filter, Lighting, Secondary, Surface};
+use crate::shade::surface::{Arrival, Bounce, Filter, Lighting, Secondary, Surface};
 
 /// Moves the eye past the scene.
 pub(crate) struct Shift;
@@ -47,11 +45,9 @@ impl Effect for Fog {
         _: &mut X,
         (): &mut (),
         _: &Ray<N>,
-        _: &Hit<N>,
-        _: &Material,
-        weight: &mut Color<N>,
+        arrival: &mut Arrival<'s, '_, N>,
     ) {
-        *weight = weight.scaled(N::ONE.half());
+        arrival.weight = arrival.weight.scaled(N::ONE.half());
     }
 }
 
@@ -125,7 +121,7 @@ impl Effect for Veil {
         _: &mut X,
         (): &mut (),
         _: &Ray<N>,
-        filter: &mut Filter<'_, N>,
+        filter: &mut Filter<'s, '_, N>,
     ) {
         filter.passes = true;
     }

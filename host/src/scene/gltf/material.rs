@@ -120,6 +120,7 @@ pub(super) fn read(material: &gltf::Material<'_>, alpha_is_used: bool) -> Materi
             Some(_) => taken_ior(material.ior().unwrap_or(1.5)),
             None => 1.0,
         },
+        priority: None,
         absorption: volume.map_or([0.0; 3], |volume| {
             absorption(volume.attenuation_color(), volume.attenuation_distance())
         }),

@@ -18,6 +18,7 @@ const KEYS: &[&str] = &[
     "roughness",
     "transmit",
     "ior",
+    "priority",
     "absorption",
     "texture",
     "normal_map",
@@ -133,6 +134,7 @@ fn material(table: Value<'_>, images: &mut Images<'_>) -> Result<Material, Scene
         roughness: roughness(&fields)?,
         transmit: fields.or("transmit", default.transmit, Value::reflectance)?,
         ior: fields.or("ior", default.ior, |value| value.number_in(1.0..=4.0))?,
+        priority: priority(&fields)?,
         absorption: fields.or("absorption", default.absorption, Value::coefficients)?,
         normal_map: normal_map(&fields, texture.as_ref(), images)?,
         texture,
@@ -141,6 +143,20 @@ fn material(table: Value<'_>, images: &mut Images<'_>) -> Result<Material, Scene
         lights: fields.or("lights", default.lights, Value::boolean)?,
         ..default
     })
+}
+
+/// Which glass fills a place that several take.
+fn priority(fields: &Fields<'_>) -> Result<Option<u8>, SceneError> {
+    let Some(value) = fields.get("priority") else {
+        return Ok(None);
+    };
+    if fields.get("transmit").is_none() {
+        return Err(value.error(
+            "`priority` is that of glass, and there is none",
+            "add `transmit`, or remove it",
+        ));
+    }
+    Ok(Some(value.integer_in(1..=100)? as u8))
 }
 
 /// How rough a mirror or glass is.

@@ -21,7 +21,7 @@ use header::{headers, names, prevalidated, section_tables};
 use hierarchies::{deep_hierarchy, hierarchies, wide_hierarchies};
 use instances::{instances, joints};
 use records::{
-    environments, lens_and_bounces, light_forms, primitives, rough, shading_data, textures,
+    environments, lens_and_bounces, light_forms, media, primitives, rough, shading_data, textures,
 };
 use tables::{candidates, cells};
 use tracks::{tracks, turned_camera};
@@ -156,6 +156,7 @@ fn every_field_and_reason_is_named_by_the_error_of_a_forged_blob() {
         lens_and_bounces(),
         environments(),
         rough(),
+        media(),
         primitives(),
         hierarchies(),
         deep_hierarchy(),

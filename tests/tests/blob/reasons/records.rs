@@ -259,6 +259,31 @@ pub(super) fn rough() -> Errors {
     errors
 }
 
+/// Nested dielectrics.
+pub(super) fn media() -> Errors {
+    let text = "[material.default]\ntransmit = 1\npriority = 1\n[material.other]\ntransmit = 1\npriority = 2\n\
+                [[object]]\nkind = 'sphere'\ncenter = [0, 0, 0]\nradius = 1\n\
+                [[object]]\nkind = 'sphere'\ncenter = [0, 1, 0]\nradius = 1\nmaterial = 'other'";
+    let imported =
+        gridel_host::scene::read("media.toml".as_ref(), text.into(), &Default::default());
+    let mut errors = alone(&imported.expect("a scene").scene, Structure::List, 24);
+    errors.field("medium 1", Field::Material, |it| {
+        it.change(SectionKind::Media, 1, |it: &mut u32| *it = 2)
+    });
+    errors.reason("medium 1", Reason::RepeatedMedium, |it| {
+        it.change(SectionKind::Media, 1, |it: &mut u32| *it = 1)
+    });
+    errors.reason("medium 0", Reason::OpaqueMedium, |it| {
+        it.change(SectionKind::Materials, 1, |it: &mut Material| {
+            it.transmit = [0; 3]
+        });
+    });
+    errors.reason("section media", Reason::MissingEffect, |it| {
+        it.header().effects &= !Effects::NESTED.0
+    });
+    errors
+}
+
 /// Textures, and what leads to them.
 pub(super) fn textures() -> Errors {
     let mut errors = everything();

@@ -1,0 +1,31 @@
+//! The order of glass that overlaps.
+
+use super::CompileError;
+use crate::scene::Scene;
+use crate::table::printable;
+use gridel_core::Effects;
+use gridel_core::format::limits::MAX_MEDIA;
+use std::cmp::Reverse;
+
+/// The numbers of the materials with a priority, from the highest on, of which `numbers` are those that objects have. Of
+/// equal ones the first of the scene file comes first.
+pub fn media(
+    scene: &Scene,
+    numbers: &[Option<u32>],
+    required_by: &mut Vec<(Effects, String)>,
+) -> Result<Vec<u32>, CompileError> {
+    let mut media = Vec::new();
+    for (material, number) in scene.materials.iter().zip(numbers) {
+        let priority = material.priority.filter(|_| material.transmit != [0.0; 3]);
+        if let (Some(priority), Some(number)) = (priority, number) {
+            media.push((Reverse(priority), *number));
+            let name = printable(&material.name);
+            required_by.push((Effects::NESTED, format!("the priority of material {name}")));
+        }
+    }
+    if media.len() > MAX_MEDIA {
+        return Err(CompileError::Media { count: media.len() });
+    }
+    media.sort_by_key(|&(priority, _)| priority);
+    Ok(media.into_iter().map(|(_, number)| number).collect())
+}
