@@ -50,7 +50,7 @@ pub(super) struct Pending<N: Number> {
 ///
 /// `STACK` must be at least the blob's [stack depth](Scene::stack_depth), `WORK` at least
 /// [`work_depth`](crate::format::limits::work_depth) of the ray depth. It takes 12 bytes per entry of the stack and, in `f32` and
-/// `fixed`, 40 bytes a place for a ray.
+/// `fixed`, 40 bytes a place for a ray, and 44 in builds with the effect `nested`.
 #[derive(Debug)]
 pub struct Workspace<N: Number, const STACK: usize, const WORK: usize> {
     stack: Stack<STACK>,

@@ -9,7 +9,8 @@
 //! Rays from the camera, and those of the caller's own, begin outside of all media; a face that one meets from within says
 //! that it was inside. Glass without a priority is as it is elsewhere: relative to what surrounds it.
 //!
-//! A ray that waits carries four bytes more: how often it is inside of each medium.
+//! A ray that waits carries four bytes more: how often it is inside of each medium. Functions are out of line, because copies
+//! of them take more code than the calls.
 
 use crate::accel::Number;
 use crate::format::Effects;
@@ -23,7 +24,6 @@ use crate::scene::Scene;
 use crate::shade::Color;
 use crate::shade::effect::{Effect, Tracer};
 use crate::shade::surface::{Arrival, Filter, Interface, Secondary, Surface};
-use crate::target::inline_on_boards;
 
 pub(crate) struct Nested;
 
@@ -103,29 +103,27 @@ impl Effect for Nested {
     }
 }
 
-inline_on_boards!(
-    /// The material of the medium that a ray came through to a face.
-    fn passed<'s>(
-        scene: &'s Scene<'s>,
-        inside: Inside,
-        object: u32,
-        enters: bool,
-    ) -> Option<&'s Material> {
-        let place = match Boundary::at(scene, inside, object, enters) {
-            Some(boundary) => boundary.from,
-            None => inside.highest(),
-        };
-        medium(scene, place)
-    }
-);
+/// The material of the medium that a ray came through to a face.
+#[inline(never)]
+fn passed<'s>(
+    scene: &'s Scene<'s>,
+    inside: Inside,
+    object: u32,
+    enters: bool,
+) -> Option<&'s Material> {
+    let place = match Boundary::at(scene, inside, object, enters) {
+        Some(boundary) => boundary.from,
+        None => inside.highest(),
+    };
+    medium(scene, place)
+}
 
-inline_on_boards!(
-    /// What a ray is inside of behind a face that it crosses.
-    fn beyond(scene: &Scene<'_>, inside: Inside, object: u32, enters: bool) -> Inside {
-        let boundary = Boundary::at(scene, inside, object, enters);
-        boundary.map_or(inside, |boundary| boundary.beyond)
-    }
-);
+/// What a ray is inside of behind a face that it crosses.
+#[inline(never)]
+fn beyond(scene: &Scene<'_>, inside: Inside, object: u32, enters: bool) -> Inside {
+    let boundary = Boundary::at(scene, inside, object, enters);
+    boundary.map_or(inside, |boundary| boundary.beyond)
+}
 
 /// A face that a ray meets.
 enum Face<N> {
@@ -136,38 +134,32 @@ enum Face<N> {
     Hidden,
 }
 
-inline_on_boards!(
-    fn met<N: Number>(scene: &Scene<'_>, inside: Inside, object: u32, enters: bool) -> Face<N> {
-        match Boundary::at(scene, inside, object, enters) {
-            None => Face::Other,
-            Some(boundary) if boundary.is_there() => Face::There(boundary.interface(scene)),
-            Some(_) => Face::Hidden,
-        }
+#[inline(never)]
+fn met<N: Number>(scene: &Scene<'_>, inside: Inside, object: u32, enters: bool) -> Face<N> {
+    match Boundary::at(scene, inside, object, enters) {
+        None => Face::Other,
+        Some(boundary) if boundary.is_there() => Face::There(boundary.interface(scene)),
+        Some(_) => Face::Hidden,
     }
-);
+}
 
-inline_on_boards!(
-    /// Takes light through a surface.
-    fn pass<'s, N: Number>(
-        scene: &'s Scene<'s>,
-        inside: &mut Inside,
-        filter: &mut Filter<'s, '_, N>,
-    ) {
-        let (object, enters) = (filter.hit.object, filter.hit.front);
-        let Some(boundary) = Boundary::at(scene, *inside, object, enters) else {
-            filter.medium = medium(scene, inside.highest());
-            return;
-        };
-        filter.medium = medium(scene, boundary.from);
-        if boundary.is_there() {
-            filter.interface = Some(boundary.interface(scene));
-        } else {
-            filter.material = &NOTHING;
-            filter.passes = true;
-        }
-        *inside = boundary.beyond;
+/// Takes light through a surface.
+#[inline(never)]
+fn pass<'s, N: Number>(scene: &'s Scene<'s>, inside: &mut Inside, filter: &mut Filter<'s, '_, N>) {
+    let (object, enters) = (filter.hit.object, filter.hit.front);
+    let Some(boundary) = Boundary::at(scene, *inside, object, enters) else {
+        filter.medium = medium(scene, inside.highest());
+        return;
+    };
+    filter.medium = medium(scene, boundary.from);
+    if boundary.is_there() {
+        filter.interface = Some(boundary.interface(scene));
+    } else {
+        filter.material = &NOTHING;
+        filter.passes = true;
     }
-);
+    *inside = boundary.beyond;
+}
 
 /// What a surface is that lies within a medium of a higher priority.
 static NOTHING: Material = Material {

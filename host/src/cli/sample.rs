@@ -109,6 +109,7 @@ static SAMPLES: &[Sample] = &[
     ),
     fixture!("room", "a closed room with indirect light"),
     fixture!("sky", "rough mirrors under a sky, through a lens"),
+    fixture!("tumbler", "a drink with ice in a glass"),
     fixture!("stress-triangle", "hard cases of triangles"),
     fixture!("stress-sphere", "hard cases of spheres"),
     fixture!("stress-box", "hard cases of boxes"),

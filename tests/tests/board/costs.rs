@@ -166,7 +166,7 @@ fn everything_on_a_board(board: &'static Board, format: Format) {
         let placed = parts::combination(&["box", "instances"], &["shadow"]);
         let fast = || Build::new(board, format, Structure::DualSplit, &placed);
         for build in [fast(), fast().small()] {
-            let features = ["everything", "instances"];
+            let (build, features) = (build.beyond_flash(), ["everything", "instances"]);
             let elf = build.program_with("bare", &features).elf();
             linked.add(&build, &features, &placed, &elf);
         }
@@ -195,6 +195,7 @@ fn add_everything(
 ) {
     let fast = || Build::new(board, format, structure, scene);
     for build in [fast(), fast().small()] {
+        let build = build.beyond_flash();
         let elf = build.program_with("bare", &["everything"]).elf();
         linked.add(&build, &["everything"], scene, &elf);
     }

@@ -107,6 +107,8 @@ pub struct Build<'b> {
     scene: &'b Compiled,
     overflow_checks: bool,
     small: bool,
+    /// The board whose memory it is linked for.
+    memory: &'b str,
 }
 
 impl fmt::Display for Build<'_> {
@@ -133,6 +135,7 @@ impl<'b> Build<'b> {
             scene,
             overflow_checks: false,
             small: false,
+            memory: board.name,
         }
     }
 
@@ -150,6 +153,15 @@ impl<'b> Build<'b> {
             small: true,
             ..self
         }
+    }
+
+    /// The program to be measured and not run: it may need more flash than the smallest Cortex-M3 has.
+    pub fn beyond_flash(self) -> Self {
+        let memory = match self.memory {
+            "stm32vldiscovery" => "mps2-an385",
+            own => own,
+        };
+        Self { memory, ..self }
     }
 
     /// The board, and what it computes in and through.
@@ -243,7 +255,7 @@ impl<'b> Build<'b> {
             .env("CARGO_PROFILE_RELEASE_DEBUG", "false")
             .env("RUSTFLAGS", flags.trim_start())
             .env("CARGO_TARGET_DIR", target_folder)
-            .env("GRIDEL_BOARD", self.board.name)
+            .env("GRIDEL_BOARD", self.memory)
             .env("GRIDEL_BLOB", &blob)
             .env("GRIDEL_MODULE", &folder);
         let output = cargo.output().expect("cargo runs");

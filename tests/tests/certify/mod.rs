@@ -18,7 +18,7 @@ use rayon::prelude::*;
 use std::convert::Infallible;
 
 /// Fixtures with effects that are not certified.
-const REJECTED: [&str; 3] = ["room", "sky", "studio"];
+const REJECTED: [&str; 4] = ["room", "sky", "studio", "tumbler"];
 
 fn fixtures() -> impl Iterator<Item = (String, gridel_host::scene::Scene)> {
     let all = scenes::fixtures().into_iter();

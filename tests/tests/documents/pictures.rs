@@ -62,7 +62,7 @@ fn picture_of_the_board_is_the_one_that_fixed_renders() {
 /// Whoever follows the links sees what the effects look like.
 #[test]
 fn pictures_of_effects_are_those_of_their_files() {
-    for (name, enlarged) in [("studio", 2), ("room", 2), ("sky", 2)] {
+    for (name, enlarged) in [("studio", 2), ("room", 2), ("sky", 2), ("tumbler", 2)] {
         let file = scenes::fixture_folder().join(format!("{name}.toml"));
         let blob = compile(&scenes::read(&file), &Options::default());
         let blob = blob.expect("compiles").blob;
