@@ -28,7 +28,7 @@ mod sample;
 mod samples;
 mod shutter;
 mod start;
-mod trace;
+pub(crate) mod trace;
 
 pub use camera::{Camera, CameraError, Up};
 pub use cursor::Cursor;

@@ -14,6 +14,7 @@
 
 use crate::accel::stack::{Stack, StackView};
 use crate::accel::{Accel, Number};
+use crate::format::Effects;
 use crate::format::record::Light;
 use crate::observe::count::Observer;
 use crate::observe::event::{Event, RayKind, Source};
@@ -43,6 +44,15 @@ pub(super) struct Pending<N: Number> {
     depth: u8,
     kind: RayKind,
     state: State<N>,
+}
+
+/// Bytes of a ray that waits, in a build whose effects are these.
+pub fn bytes_per_ray<N: Number>(effects: Effects) -> usize {
+    let numbers = size_of::<([N; 3], [N; 3], Color<N>)>();
+    let bytes = size_of::<(u8, RayKind)>().wrapping_add(All::state_bytes::<N>(effects));
+    numbers
+        .wrapping_add(bytes)
+        .next_multiple_of(align_of::<N>())
 }
 
 /// Everything that rendering writes to beside the pixels: the caller owns it, and it is used again

@@ -119,6 +119,9 @@ macro_rules! places {
             /// The effects that act on the mean of samples that are brighter than display white.
             const DEVELOPING: u32;
 
+            /// Bytes of the states of some effects in a ray that waits.
+            fn state_bytes<N: Number>(effects: Effects) -> usize;
+
             /// The effects that a material requires.
             fn required_by_material(material: &Material) -> Effects;
 
@@ -144,6 +147,10 @@ macro_rules! places {
             const DIRECTED: u32 = 0;
             const FILTERING: u32 = 0;
             const DEVELOPING: u32 = 0;
+
+            fn state_bytes<N: Number>(_: Effects) -> usize {
+                0
+            }
 
             #[inline(always)]
             fn required_by_material(_: &Material) -> Effects {
@@ -176,6 +183,12 @@ macro_rules! places {
             const DIRECTED: u32 = First::EFFECT.only_if(First::NEEDS_DIRECTION).0 | Rest::DIRECTED;
             const FILTERING: u32 = First::EFFECT.only_if(First::FILTERS).0 | Rest::FILTERING;
             const DEVELOPING: u32 = First::EFFECT.only_if(First::DEVELOPS).0 | Rest::DEVELOPING;
+
+            fn state_bytes<N: Number>(effects: Effects) -> usize {
+                let is_there = effects.contains(First::EFFECT);
+                let first = if is_there { size_of::<First::State<N>>() } else { 0 };
+                first.wrapping_add(Rest::state_bytes::<N>(effects))
+            }
 
             #[inline(always)]
             fn required_by_material(material: &Material) -> Effects {

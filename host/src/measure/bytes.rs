@@ -3,7 +3,8 @@
 use gridel_core::accel::Entry;
 use gridel_core::format::SectionKind;
 use gridel_core::format::record::{Header, SectionEntry};
-use gridel_core::{Fixed, Format, Number, Scene, Workspace};
+use gridel_core::shared::bytes_per_ray;
+use gridel_core::{Fixed, Format, Number, Scene};
 use serde::Serialize;
 
 /// The content of a blob by bytes; the parts add up to the blob.
@@ -101,7 +102,7 @@ pub struct WorkingMemory {
     pub word_bits: usize,
     /// For rays of one's own: a [`Stack`](gridel_core::Stack) as deep as the blob needs.
     pub stack: usize,
-    /// For pictures: a [`Workspace`] for the blob's stack and the scene's ray depth, the stack
+    /// For pictures: a [`Workspace`](gridel_core::Workspace) for the blob's stack and the scene's ray depth, the stack
     /// included.
     pub workspace: usize,
 }
@@ -141,12 +142,15 @@ pub fn board_memory(scene: &Scene<'_>, format: Format, depth: u8) -> WorkingMemo
 impl WorkingMemory {
     /// Where a machine word has `word` bytes.
     fn new(scene: &Scene<'_>, format: Format, depth: u8, word: usize) -> Self {
-        let places = scene.effects().work_depth(depth);
+        let effects = scene.effects();
+        let places = effects.work_depth(depth);
         let entries = scene.stack_depth();
         let (stack, workspace) = match format {
-            Format::Fixed => bytes::<Fixed>(word, entries, places),
-            Format::F32 => bytes::<f32>(word, entries, places),
-            Format::F64 => bytes::<f64>(word, entries, places),
+            Format::Fixed => {
+                bytes::<Fixed>(word, entries, [places, bytes_per_ray::<Fixed>(effects)])
+            }
+            Format::F32 => bytes::<f32>(word, entries, [places, bytes_per_ray::<f32>(effects)]),
+            Format::F64 => bytes::<f64>(word, entries, [places, bytes_per_ray::<f64>(effects)]),
         };
         Self {
             format: format.name(),
@@ -158,12 +162,12 @@ impl WorkingMemory {
 }
 
 /// Sizes of a stack and of a workspace where a machine word has `word` bytes: both are arrays with
-/// a length, a word, behind each.
-fn bytes<N: Number>(word: usize, depth: usize, places: usize) -> (usize, usize) {
+/// a length, a word, behind each. Of rays that wait: how many, and the bytes of each.
+fn bytes<N: Number>(word: usize, depth: usize, rays: [usize; 2]) -> (usize, usize) {
     let array = |count: usize, record: usize, alignment: usize| {
         (count * record + word).next_multiple_of(alignment.max(word))
     };
-    let place = size_of::<Workspace<N, 0, 2>>() - size_of::<Workspace<N, 0, 1>>();
+    let [places, place] = rays;
     let stack = array(depth, size_of::<Entry>(), align_of::<Entry>());
     let work = array(places, place, align_of::<N>());
     let workspace = (stack + work).next_multiple_of(align_of::<N>().max(word));
@@ -173,27 +177,28 @@ fn bytes<N: Number>(word: usize, depth: usize, places: usize) -> (usize, usize) 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use gridel_core::Stack;
+    use gridel_core::{Effects, Stack, Workspace};
 
     /// For the machine of the test the compiler knows the sizes.
     #[test]
     fn sizes_are_the_compilers() {
         let word = size_of::<usize>();
         fn workspaces<N: Number>(word: usize) {
+            let ray = bytes_per_ray::<N>(Effects::ALL);
             assert_eq!(
-                bytes::<N>(word, 0, 0),
+                bytes::<N>(word, 0, [0, ray]),
                 (size_of::<Stack<0>>(), size_of::<Workspace<N, 0, 0>>())
             );
             assert_eq!(
-                bytes::<N>(word, 7, 6),
+                bytes::<N>(word, 7, [6, ray]),
                 (size_of::<Stack<7>>(), size_of::<Workspace<N, 7, 6>>())
             );
             assert_eq!(
-                bytes::<N>(word, 12, 1),
+                bytes::<N>(word, 12, [1, ray]),
                 (size_of::<Stack<12>>(), size_of::<Workspace<N, 12, 1>>())
             );
             assert_eq!(
-                bytes::<N>(word, 48, 17),
+                bytes::<N>(word, 48, [17, ray]),
                 (size_of::<Stack<48>>(), size_of::<Workspace<N, 48, 17>>())
             );
         }
@@ -205,8 +210,21 @@ mod tests {
     /// The figures that the core's documentation states.
     #[test]
     fn boards_need_12_bytes_an_entry_and_40_a_ray() {
-        assert_eq!(bytes::<f32>(4, 10, 6), (124, 124 + 244));
-        assert_eq!(bytes::<Fixed>(4, 10, 6), (124, 124 + 244));
-        assert_eq!(bytes::<f64>(4, 10, 6), (124, 128 + 488));
+        let [none, nested] = [Effects::NONE, Effects::NESTED];
+        assert_eq!(
+            bytes::<f32>(4, 10, [6, bytes_per_ray::<f32>(none)]),
+            (124, 124 + 244)
+        );
+        assert_eq!(
+            bytes::<Fixed>(4, 10, [6, bytes_per_ray::<Fixed>(none)]),
+            (124, 124 + 244)
+        );
+        assert_eq!(
+            bytes::<f64>(4, 10, [6, bytes_per_ray::<f64>(none)]),
+            (124, 128 + 488)
+        );
+        assert_eq!(bytes_per_ray::<f32>(nested), 44);
+        assert_eq!(bytes_per_ray::<Fixed>(nested), 44);
+        assert_eq!(bytes_per_ray::<f64>(nested), 80);
     }
 }
