@@ -85,6 +85,10 @@ fn text(slabs: &[Slab]) -> String {
 
 /// The slabs before a wall that glows with 1, in the dark, seen from a height under an angle.
 fn seen(slabs: &[Slab], from: f64, degrees: f64) -> Blob {
+    before_the_wall(&text(slabs), from, degrees)
+}
+
+fn before_the_wall(glass: &str, from: f64, degrees: f64) -> Blob {
     let aside = degrees.to_radians().tan();
     let (eye, target) = (
         [aside * from, 0.0, from],
@@ -94,8 +98,7 @@ fn seen(slabs: &[Slab], from: f64, degrees: f64) -> Blob {
         "[camera]\neye = {eye:?}\ntarget = {target:?}\nup = [0, 1, 0]\nfov = 0.01\n\
          [render]\nwidth = 4\nheight = 4\ndepth = 24\ncutoff = 1e-6\n\
          [material.wall]\ndiffuse = 0\nemission = 1\nlights = false\n\
-         [[object]]\nkind = 'box'\nmin = [-95, -95, -21]\nmax = [95, 95, -20]\nmaterial = 'wall'\n{}",
-        text(slabs)
+         [[object]]\nkind = 'box'\nmin = [-95, -95, -21]\nmax = [95, 95, -20]\nmaterial = 'wall'\n{glass}"
     ))
 }
 
@@ -233,6 +236,26 @@ fn a_camera_within_begins_in_the_medium_that_it_leaves() {
     );
 }
 
+/// Other glass within a medium takes up its own share, and the medium what is left of the way.
+#[test]
+fn glass_without_a_priority_absorbs_as_itself() {
+    let [glass, water] = [0.5, 0.1].map(|absorption| Medium {
+        ior: 1.0,
+        absorption,
+        ..WATER
+    });
+    let plain = Medium {
+        name: "plain",
+        ..glass
+    };
+    let slabs = [slab(water, [0.0, 5.0]), slab(plain, [1.0, 3.0])];
+    let text = text(&slabs).replacen("absorption = 0.5\npriority = 1", "absorption = 0.5", 1);
+    let exact = f64::exp(-0.1 * 3.0 - 0.5 * 2.0);
+    check("within", &before_the_wall(&text, 8.0, 0.0), exact);
+    let lit = blob(&(under_a_light(0.0) + &text));
+    check("shadow", &lit, exact);
+}
+
 #[test]
 fn glass_without_a_priority_stays_as_it_is() {
     let plain = |slabs: &[Slab]| text(slabs).replace("priority = 2\n", "");
@@ -258,18 +281,23 @@ fn glass_without_a_priority_stays_as_it_is() {
     );
 }
 
+/// A white floor under a light, without glass.
+fn under_a_light(degrees: f64) -> String {
+    let [sin, cos] = [degrees.to_radians().sin(), degrees.to_radians().cos()];
+    format!(
+        "ambient = 0\n[camera]\neye = [0, -40, 1]\ntarget = [0, 0, -20]\nup = [0, 0, 1]\nfov = 0.01\n\
+         [render]\nwidth = 4\nheight = 4\n\
+         [[light]]\nkind = 'directional'\ndirection = [{}, 0, {}]\ncolor = 1\n\
+         [material.floor]\ndiffuse = 1\n\
+         [[object]]\nkind = 'box'\nmin = [-95, -95, -21]\nmax = [95, 95, -20]\nmaterial = 'floor'\n",
+        -sin, -cos
+    )
+}
+
 #[test]
 fn shadows_pass_overlapping_glass_as_fitting_glass() {
     for degrees in [0.0_f64, 50.0] {
         let [sin, cos] = [degrees.to_radians().sin(), degrees.to_radians().cos()];
-        let rest = format!(
-            "ambient = 0\n[camera]\neye = [0, -40, 1]\ntarget = [0, 0, -20]\nup = [0, 0, 1]\nfov = 0.01\n\
-             [render]\nwidth = 4\nheight = 4\n\
-             [[light]]\nkind = 'directional'\ndirection = [{}, 0, {}]\ncolor = 1\n\
-             [material.floor]\ndiffuse = 1\n\
-             [[object]]\nkind = 'box'\nmin = [-95, -95, -21]\nmax = [95, 95, -20]\nmaterial = 'floor'\n",
-            -sin, -cos
-        );
         // Straight on, so every face is met under the same angle.
         let passed = |a: f64, b: f64| {
             let k = (a / b).min(b / a);
@@ -283,7 +311,7 @@ fn shadows_pass_overlapping_glass_as_fitting_glass() {
             * (left(WATER, 2.0) * left(GLASS, 1.0));
         check(
             &format!("at {degrees} degrees"),
-            &blob(&(rest + &text(&slabs))),
+            &blob(&(under_a_light(degrees) + &text(&slabs))),
             exact,
         );
     }

@@ -296,13 +296,13 @@ impl<'s, 'a, N: Number, A: Accel, const EFFECTS: u32> Renderer<'s, 'a, N, A, EFF
     #[inline]
     pub fn primary_ray(&self, x: u16, y: u16) -> Result<Ray<N>, RayError> {
         let middle = |pixel: u16| i32::from(pixel) * SUBPIXELS + SUBPIXELS / 2;
-        self.ray_through(middle(x), middle(y))
+        self.rays.ray(&self.rays.row(middle(y)), middle(x))
     }
 
-    /// The ray from the eye through a point given in subpixels from the upper left corner.
+    /// What makes the rays of pixels.
     #[inline(always)]
-    pub(super) fn ray_through(&self, x: i32, y: i32) -> Result<Ray<N>, RayError> {
-        self.rays.ray(&self.rays.row(y), x)
+    pub(super) fn rays(&self) -> &PixelRays<N> {
+        &self.rays
     }
 
     /// A pixel's value in the steps of a picture.

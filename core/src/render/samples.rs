@@ -45,7 +45,7 @@ impl<N: Number> Samples<N> {
         count: &mut C,
     ) -> Option<Linear> {
         let samples = renderer.settings().samples;
-        let start = Start::Camera(renderer, [x, y], self.index);
+        let start = Start::Camera(renderer.rays(), [x, y], [self.index, samples]);
         let radiance = &mut self.radiance;
         let tracing = renderer.tracing();
         let sampler = Sampler::new([x, y], self.index);

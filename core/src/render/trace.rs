@@ -121,7 +121,7 @@ impl Loop<'_, '_> {
         pub(super) fn step<N: Number, A: Accel, C: Observer, const EFFECTS: u32>(
             &self,
             sampler: Sampler,
-            start: Start<'_, '_, '_, N, A, EFFECTS>,
+            start: Start<'_, N>,
             radiance: &mut Color<N>,
             space: &mut WorkspaceView<'_, N>,
             count: &mut C,

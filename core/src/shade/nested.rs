@@ -113,9 +113,20 @@ fn passed<'s>(
 ) -> Option<&'s Material> {
     let place = match Boundary::at(scene, inside, object, enters) {
         Some(boundary) => boundary.from,
-        None => inside.highest(),
+        None => around(scene, inside, object, enters),
     };
     medium(scene, place)
+}
+
+/// The medium before a face of what is no medium: within other glass it is that glass.
+#[inline(always)]
+fn around(scene: &Scene<'_>, inside: Inside, object: u32, enters: bool) -> Option<u8> {
+    let material = scene.material(object);
+    let is_glass = material.is_some_and(|material| material.transmit != [0; 3]);
+    if is_glass && !enters {
+        return None;
+    }
+    inside.highest()
 }
 
 /// What a ray is inside of behind a face that it crosses.
@@ -148,7 +159,7 @@ fn met<N: Number>(scene: &Scene<'_>, inside: Inside, object: u32, enters: bool) 
 fn pass<'s, N: Number>(scene: &'s Scene<'s>, inside: &mut Inside, filter: &mut Filter<'s, '_, N>) {
     let (object, enters) = (filter.hit.object, filter.hit.front);
     let Some(boundary) = Boundary::at(scene, *inside, object, enters) else {
-        filter.medium = medium(scene, inside.highest());
+        filter.medium = medium(scene, around(scene, *inside, object, enters));
         return;
     };
     filter.medium = medium(scene, boundary.from);
