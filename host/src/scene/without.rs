@@ -263,6 +263,7 @@ mod tests {
         mirror = [0.2, 0.2, 0.2]
         roughness = 0.4
         transmit = [0.4, 0.4, 0.4]
+        priority = 1
         absorption = [0.1, 0.2, 0.3]
         [material.squares]
         checker = { even = [1, 1, 1], odd = [0, 0, 0], size = 0.5 }

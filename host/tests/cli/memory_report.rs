@@ -105,6 +105,8 @@ radiance = 5
 [material.rough]
 mirror = 0.5
 roughness = 0.5
+transmit = 0.2
+priority = 1
 emission = 0.1
 lights = false
 
