@@ -248,7 +248,7 @@ fn glass_without_a_priority_absorbs_as_itself() {
         name: "plain",
         ..glass
     };
-    let slabs = [slab(water, [0.0, 5.0]), slab(plain, [1.0, 3.0])];
+    let slabs = [slab(water, [2.0, 7.0]), slab(plain, [3.0, 5.0])];
     let text = text(&slabs).replacen("absorption = 0.5\npriority = 1", "absorption = 0.5", 1);
     let exact = f64::exp(-0.1 * 3.0 - 0.5 * 2.0);
     check("within", &before_the_wall(&text, 8.0, 0.0), exact);
