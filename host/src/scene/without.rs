@@ -313,7 +313,7 @@ mod tests {
             assert!(!left.contains(effect), "{name}: {left}");
             assert_eq!(leave_out(&mut scene, effect), None, "{name}");
             let depends = match effect {
-                Effects::GLASS => Effects::ABSORPTION,
+                Effects::GLASS => Effects::ABSORPTION.with(Effects::NESTED),
                 Effects::FALLOFF => Effects::AREA_LIGHT,
                 Effects::TEXTURE => Effects::ALPHA,
                 _ => Effects::NONE,
