@@ -41,7 +41,9 @@ impl Effect for Glass {
         filter.passes = true;
         let cos = N::from_wide(N::dot(filter.hit.normal, filter.to_light));
         let cos = cos.abs().min(N::ONE);
-        let interface = filter.interface.unwrap_or_else(|| Interface::of(filter.hit, material));
+        let interface = filter
+            .interface
+            .unwrap_or_else(|| Interface::of(filter.hit, material));
         let passed = straight_through(interface.k, cos);
         let transmit = Color::ratios(material.transmit);
         filter.left = filter.left.times(transmit).scaled(passed);

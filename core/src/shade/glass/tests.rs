@@ -38,7 +38,15 @@ fn judge<N: Number>(inverse_ior: i32, entering: bool, sin: f64) -> Result<(), Te
     let Split {
         reflected: found,
         refracted,
-    } = split(Interface { k, to_denser: entering }, [x, N::ZERO, -z], normal, z);
+    } = split(
+        Interface {
+            k,
+            to_denser: entering,
+        },
+        [x, N::ZERO, -z],
+        normal,
+        z,
+    );
     let found = found.ratio_to_f64();
     let way = refracted.map(N::ratio_to_f64);
     prop_assert!((0.0..=1.0).contains(&found), "{found}");
@@ -143,7 +151,15 @@ fn normal_incidence_and_matched_indices() {
             let k = N::ratio((1 << 30) / 100 * step);
             let exact = ((1.0 - k.ratio_to_f64()) / (1.0 + k.ratio_to_f64())).powi(2);
             for entering in [true, false] {
-                let split = split(Interface { k, to_denser: entering }, [N::ZERO, N::ZERO, -N::ONE], normal, N::ONE);
+                let split = split(
+                    Interface {
+                        k,
+                        to_denser: entering,
+                    },
+                    [N::ZERO, N::ZERO, -N::ONE],
+                    normal,
+                    N::ONE,
+                );
                 let found = split.reflected.ratio_to_f64();
                 assert!((found - exact).abs() <= 8.0 * u::<N>(), "{found} {exact}");
             }
@@ -152,7 +168,15 @@ fn normal_incidence_and_matched_indices() {
             let cos = N::ratio_from_f64(cos);
             let d = [N::ratio_from_f64(0.8), N::ZERO, -cos];
             for entering in [true, false] {
-                let split = split(Interface { k: N::ONE, to_denser: entering }, d, normal, cos);
+                let split = split(
+                    Interface {
+                        k: N::ONE,
+                        to_denser: entering,
+                    },
+                    d,
+                    normal,
+                    cos,
+                );
                 assert_eq!(split.reflected, N::ZERO);
                 assert_eq!(split.refracted, d);
             }
