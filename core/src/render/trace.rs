@@ -295,7 +295,7 @@ impl<N: Number, A: Accel, C: Observer, const EFFECTS: u32> Tracing<'_, '_, '_, N
             }
             return;
         }
-        if surface.passing != Color::BLACK {
+        if const { EFFECTS & All::PASSING != 0 } && surface.passing != Color::BLACK {
             let secondary = Secondary {
                 kind: RayKind::Refracted,
                 direction,

@@ -22,6 +22,7 @@ impl Effect for Alpha {
 
     const EFFECT: Effects = Effects::ALPHA;
     const FILTERS: bool = true;
+    const PASSES: bool = true;
 
     #[inline(always)]
     fn is_required_by_material(material: &Material) -> bool {

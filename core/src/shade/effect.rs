@@ -76,6 +76,9 @@ macro_rules! places {
             /// True if it acts on light that comes through surfaces.
             const FILTERS: bool = false;
 
+            /// True if because of it rays may pass a surface straight on.
+            const PASSES: bool = false;
+
             /// True if it acts on the mean of samples that are brighter than display white, or needs that mean to be right.
             const DEVELOPS: bool = false;
 
@@ -116,6 +119,8 @@ macro_rules! places {
             const DIRECTED: u32;
             /// The effects that act on light that comes through surfaces.
             const FILTERING: u32;
+            /// The effects because of which rays may pass a surface straight on.
+            const PASSING: u32;
             /// The effects that act on the mean of samples that are brighter than display white.
             const DEVELOPING: u32;
 
@@ -146,6 +151,7 @@ macro_rules! places {
             const CASTING: u32 = 0;
             const DIRECTED: u32 = 0;
             const FILTERING: u32 = 0;
+            const PASSING: u32 = 0;
             const DEVELOPING: u32 = 0;
 
             fn state_bytes<N: Number>(_: Effects) -> usize {
@@ -182,6 +188,7 @@ macro_rules! places {
             const CASTING: u32 = First::EFFECT.only_if(First::CASTS).0 | Rest::CASTING;
             const DIRECTED: u32 = First::EFFECT.only_if(First::NEEDS_DIRECTION).0 | Rest::DIRECTED;
             const FILTERING: u32 = First::EFFECT.only_if(First::FILTERS).0 | Rest::FILTERING;
+            const PASSING: u32 = First::EFFECT.only_if(First::PASSES).0 | Rest::PASSING;
             const DEVELOPING: u32 = First::EFFECT.only_if(First::DEVELOPS).0 | Rest::DEVELOPING;
 
             fn state_bytes<N: Number>(effects: Effects) -> usize {

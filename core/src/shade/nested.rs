@@ -32,6 +32,7 @@ impl Effect for Nested {
 
     const EFFECT: Effects = Effects::NESTED;
     const FILTERS: bool = true;
+    const PASSES: bool = true;
 
     #[inline(always)]
     fn arrive<'s, N: Number, X: Tracer<'s, N>>(
@@ -204,14 +205,6 @@ impl Inside {
         u32::from_le_bytes(bytes)
     }
 
-    #[inline(always)]
-    fn with(mut self, counts: u32) -> Self {
-        for (own, byte) in self.0.iter_mut().zip(counts.to_le_bytes()) {
-            *own = byte;
-        }
-        self
-    }
-
     /// The medium that fills the place: the one with the highest priority of those that the ray is inside of.
     #[inline(always)]
     fn highest(self) -> Option<u8> {
@@ -220,29 +213,24 @@ impl Inside {
     }
 
     /// Once more inside of a medium, or as often as it can be.
-    #[inline(always)]
     fn entered(self, place: u8) -> Self {
-        let (counts, shift) = (self.counts(), 4 * u32::from(place));
-        let is_most = counts.wrapping_shr(shift) & 15 == 15;
-        let one = if is_most {
-            0
-        } else {
-            1_u32.wrapping_shl(shift)
-        };
-        self.with(counts.wrapping_add(one))
+        self.with(place, |count| if count < 15 { count.wrapping_add(1) } else { 15 })
     }
 
     /// Once less inside of a medium; a ray that is not has begun in it.
-    #[inline(always)]
     fn left(self, place: u8) -> Self {
+        self.with(place, |count| count.saturating_sub(1))
+    }
+
+    #[inline(always)]
+    fn with(mut self, place: u8, change: impl Fn(u32) -> u32) -> Self {
         let (counts, shift) = (self.counts(), 4 * u32::from(place));
-        let is_least = counts.wrapping_shr(shift) & 15 == 0;
-        let one = if is_least {
-            0
-        } else {
-            1_u32.wrapping_shl(shift)
-        };
-        self.with(counts.wrapping_sub(one))
+        let count = counts.wrapping_shr(shift) & 15;
+        let flipped = (count ^ change(count)).wrapping_shl(shift);
+        for (own, byte) in self.0.iter_mut().zip((counts ^ flipped).to_le_bytes()) {
+            *own = byte;
+        }
+        self
     }
 }
 
