@@ -1,6 +1,6 @@
 //! The scene in flash, and the memory, number format and structure to trace it with.
 
-use gridel_core::{BlobError, Renderer, Scene, Workspace};
+use gridel_core::{BlobError, Renderer, Rgb888, Scene, Workspace};
 
 include!(concat!(env!("OUT_DIR"), "/limits.rs"));
 
@@ -87,5 +87,21 @@ impl PartViews {
 
 /// A workspace that is exactly large enough.
 pub type Space = Workspace<Number, STACK_DEPTH, WORK_DEPTH>;
+/// The memory of programs that render rows of a picture into files of the host.
+pub struct PictureMemory {
+    pub space: Space,
+    pub row: [Rgb888; WIDTH],
+}
+
+impl PictureMemory {
+    #[expect(clippy::new_without_default, reason = "it is made at compile time")]
+    pub const fn new() -> Self {
+        Self {
+            space: Space::new(),
+            row: [Rgb888([0; 3]); WIDTH],
+        }
+    }
+}
+
 /// The renderer for the scene.
 pub type SceneRenderer<'s> = Renderer<'s, 's, Number, Accel, EFFECTS>;

@@ -3,34 +3,20 @@
 #![no_main]
 
 use gridel_core::render::Shutter;
-use gridel_core::{NoCount, Rgb888, Scene, Settings};
+use gridel_core::{NoCount, Scene, Settings};
 use gridel_firmware::board::File;
 use gridel_firmware::measure::{Cost, Meter};
 use gridel_firmware::orbit::{MOMENTS, SAMPLES, camera};
 use gridel_firmware::program;
 use gridel_firmware::report::{cost, fail, line};
-use gridel_firmware::scene::{BLOB, SceneRenderer, Space, WIDTH, load};
+use gridel_firmware::scene::{BLOB, PictureMemory, SceneRenderer, load};
 
 /// Pixels that are measured together.
 const PART: usize = 4;
 
-struct Memory {
-    space: Space,
-    row: [Rgb888; WIDTH],
-}
+program!(run, PictureMemory);
 
-impl Memory {
-    const fn new() -> Self {
-        Self {
-            space: Space::new(),
-            row: [Rgb888([0; 3]); WIDTH],
-        }
-    }
-}
-
-program!(run, Memory);
-
-fn run(memory: &'static mut Memory) {
+fn run(memory: &'static mut PictureMemory) {
     let meter = Meter::new();
     let Ok(scene) = load(BLOB) else {
         fail("the blob is rejected")
@@ -65,7 +51,7 @@ fn run(memory: &'static mut Memory) {
     let Some(file) = File::create(c"blur.rgb") else {
         fail("blur.rgb cannot be created")
     };
-    let Memory { space, row } = memory;
+    let PictureMemory { space, row } = memory;
     let mut space = space.as_view();
     let mut picture = Cost::NONE;
     for y in 0..settings.height {

@@ -3,40 +3,26 @@
 #![no_std]
 #![no_main]
 
-use gridel_core::{NoCount, Rgb888, Settings};
+use gridel_core::{NoCount, Settings};
 use gridel_firmware::board::File;
 use gridel_firmware::measure::{Cost, Meter};
 use gridel_firmware::orbit::{FRAMES, camera};
 use gridel_firmware::program;
 use gridel_firmware::report::{cost, fail, line};
-use gridel_firmware::scene::{BLOB, SceneRenderer, Space, WIDTH, load};
+use gridel_firmware::scene::{BLOB, PictureMemory, SceneRenderer, Space, load};
 
 /// Pixels that are measured together.
 const PART: usize = 16;
 
-struct Memory {
-    space: Space,
-    row: [Rgb888; WIDTH],
-}
+program!(run, PictureMemory);
 
-impl Memory {
-    const fn new() -> Self {
-        Self {
-            space: Space::new(),
-            row: [Rgb888([0; 3]); WIDTH],
-        }
-    }
-}
-
-program!(run, Memory);
-
-fn run(memory: &'static mut Memory) {
+fn run(memory: &'static mut PictureMemory) {
     let meter = Meter::new();
     let Ok(scene) = load(BLOB) else {
         fail("the blob is rejected")
     };
     let settings = Settings::of(&scene);
-    let Memory { space, row } = memory;
+    let PictureMemory { space, row } = memory;
     let mut space = space.as_view();
     let Some(file) = File::create(c"orbit.rgb") else {
         fail("orbit.rgb cannot be created")
