@@ -22,33 +22,19 @@ struct Medium {
     priority: u8,
 }
 
-const GLASS: Medium = Medium {
-    name: "glass",
-    ior: 1.5,
-    absorption: 0.1,
-    priority: 2,
-};
+const fn medium(name: &'static str, ior: f64, absorption: f64, priority: u8) -> Medium {
+    Medium {
+        name,
+        ior,
+        absorption,
+        priority,
+    }
+}
 
-const WATER: Medium = Medium {
-    name: "water",
-    ior: 1.33,
-    absorption: 0.3,
-    priority: 1,
-};
-
-const BUBBLE: Medium = Medium {
-    name: "bubble",
-    ior: 1.0,
-    absorption: 0.0,
-    priority: 9,
-};
-
-const DIAMOND: Medium = Medium {
-    name: "diamond",
-    ior: 2.4,
-    absorption: 0.05,
-    priority: 5,
-};
+const GLASS: Medium = medium("glass", 1.5, 0.1, 2);
+const WATER: Medium = medium("water", 1.33, 0.3, 1);
+const BUBBLE: Medium = medium("bubble", 1.0, 0.0, 9);
+const DIAMOND: Medium = medium("diamond", 2.4, 0.05, 5);
 
 fn slab(medium: Medium, z: [f64; 2]) -> Slab {
     Slab { z, medium }
