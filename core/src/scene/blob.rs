@@ -140,15 +140,12 @@ impl<'a> Scene<'a> {
     /// The place of an object's material in the order of media; `None` for one without a priority.
     #[inline(always)]
     pub(crate) fn place_among_media(&self, object: u32) -> Option<u8> {
-        let media = self.media();
         let number = self.material_number(object);
-        let is_glass = |place: &u8| {
-            let material = self.materials.get(number as usize);
-            // A program may have put another one in its place.
-            material.is_some_and(|it| it.transmit != [0; 3]) && *place < MAX_MEDIA as u8
-        };
-        let place = media.iter().position(|&medium| medium == number);
-        place.map(|place| place as u8).filter(is_glass)
+        let mut media = self.media().iter().take(MAX_MEDIA);
+        let place = media.position(|&medium| medium == number)?;
+        // A program may have put a material that is not glass in its place.
+        let material = self.materials.get(number as usize)?;
+        (material.transmit != [0; 3]).then_some(place as u8)
     }
 
     /// For each of the first materials, the α of its facets' distribution, with 30 fraction bits, 0 for a smooth one; none

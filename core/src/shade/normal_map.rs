@@ -80,7 +80,7 @@ impl Effect for NormalMap {
         lighting: &mut Lighting<'_, N>,
         is_reached: &mut bool,
     ) {
-        // Where smooth normals have an eye on shadows, that is their matter.
+        // In scenes with smooth normals and shadows, that effect does this.
         let by_smooth = Effects::SMOOTH.with(Effects::SHADOW);
         if !surface.required.contains(Self::EFFECT) || tracer.scene().effects().contains(by_smooth)
         {
