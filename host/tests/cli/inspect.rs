@@ -125,7 +125,19 @@ fn a_scene_file_is_inspected_as_the_blob_it_would_be() {
 #[test]
 fn working_memory_is_what_the_compiler_says() {
     let folder = Folder::with_quick();
-    let inspection = folder.json(&["inspect", "quick.gridel"]);
+    let quick = String::from_utf8(fixture("quick")).unwrap();
+    // This build has room for the state of nested dielectrics in every ray that waits.
+    let nested = quick.replace("transmit", "priority = 1\ntransmit");
+    folder.write("nested.toml", nested.as_bytes());
+    let accels = ["--accel", "bvh", "--accel", "flagged"];
+    folder.done(
+        &[
+            &["build", "nested.toml", "-o", "nested.gridel"],
+            &accels[..],
+        ]
+        .concat(),
+    );
+    let inspection = folder.json(&["inspect", "nested.gridel"]);
     // The figures below are for this stack, and for the scene's ray depth of 6.
     assert_eq!(inspection["limits"]["stack_depth"], 5);
     let needs = inspection["working_memory"].as_array().unwrap();
@@ -141,18 +153,18 @@ fn working_memory_is_what_the_compiler_says() {
             .find(|n| n["word_bits"] == here && n["format"] == format);
         let found = found.unwrap();
         assert_eq!(found["stack"], size_of::<Stack<5>>());
-        // This build holds all effects, and has a state of each for the seven rays that wait.
-        let workspace = workspace as u64;
-        let found = found["workspace"].as_u64().unwrap();
-        assert!(
-            (workspace - 7 * 8..=workspace).contains(&found),
-            "{format}: {found}"
+        assert_eq!(found["workspace"], workspace);
+    }
+    for (scene, ray) in [("quick.gridel", 40), ("nested.gridel", 44)] {
+        let inspection = folder.json(&["inspect", scene]);
+        let mut needs = inspection["working_memory"].as_array().unwrap().iter();
+        let board = needs.find(|n| n["word_bits"] == 32 && n["format"] == "f32");
+        assert_eq!(
+            board.unwrap()["workspace"],
+            12 * 5 + 4 + ray * 7 + 4,
+            "{scene}"
         );
     }
-    let board = needs
-        .iter()
-        .find(|n| n["word_bits"] == 32 && n["format"] == "f32");
-    assert_eq!(board.unwrap()["workspace"], 12 * 5 + 4 + 40 * 7 + 4);
 }
 
 #[test]
