@@ -176,7 +176,7 @@ fn the_call_stack_of_a_memory_report_is_enough_for_small_code() {
             let most = everything(board, format, accel).map(|build| build.call_stack);
             let most = most[0].max(most[1]);
             assert!(
-                100 * reported > 90 * most && 100 * reported < 112 * most,
+                10 * reported > 9 * most && 10 * reported < 11 * most,
                 "{board} {accel}: {reported} of {most}"
             );
             let text = folder.done(&inspect);

@@ -5,7 +5,6 @@ use crate::figures::Figures;
 use crate::firmware::{Build, WASM, board};
 use crate::plan::Plan;
 use crate::programs::{Linked, footprint};
-use crate::scenes::{self, Compiled};
 use crate::{boards, measured_in_full, parts};
 use gridel_core::{Effects, Format, Prevalidated, Settings, Structure};
 use gridel_host::measure::board::Board;
@@ -146,6 +145,7 @@ fn hits_and_lights_cost_what_is_recorded() {
             };
             let each = (spent(scene) - without).div_ceil(hits);
             println!("{}: {each} instructions per hit, {hits} hits", scene.name);
+
             let report = [("hit-instructions".into(), each)].into();
             figures.add(&build(scene).to_string(), &report);
         }
@@ -159,11 +159,10 @@ const PER_HIT: [&str; 3] = ["vertex-colors", "texture", "normal-map"];
 /// Costs of a product with every shape and effect on a board, fast or small, and on one of each kind
 /// of core with instances: by which the memory report scales.
 fn everything_on_a_board(board: &'static Board, format: Format) {
-    let scene = scenes::quick();
     let mut linked = Linked::new();
-    add_everything(&mut linked, board, format, Structure::DualSplit, &scene);
+    add_everything(&mut linked, board, format, Structure::DualSplit);
     if board.similar(format) == (board, format) {
-        let placed = parts::combination(&["box", "instances"], &["shadow"]);
+        let placed = parts::everything(Structure::DualSplit, true);
         let fast = || Build::new(board, format, Structure::DualSplit, &placed);
         for build in [fast(), fast().small()] {
             let (build, features) = (build.beyond_flash(), ["everything", "instances"]);
@@ -176,11 +175,10 @@ fn everything_on_a_board(board: &'static Board, format: Format) {
 
 /// The same through the other structures that boards prevalidate.
 fn everything_through_other_structures(board: &'static Board, format: Format) {
-    let scene = scenes::quick();
     let mut linked = Linked::new();
     let others = Prevalidated::STRUCTURES.into_iter();
     for structure in others.filter(|&other| other != Structure::DualSplit) {
-        add_everything(&mut linked, board, format, structure, &scene);
+        add_everything(&mut linked, board, format, structure);
     }
     linked.check();
 }
@@ -191,13 +189,13 @@ fn add_everything(
     board: &'static Board,
     format: Format,
     structure: Structure,
-    scene: &Compiled,
 ) {
-    let fast = || Build::new(board, format, structure, scene);
+    let scene = parts::everything(structure, false);
+    let fast = || Build::new(board, format, structure, &scene);
     for build in [fast(), fast().small()] {
         let build = build.beyond_flash();
         let elf = build.program_with("bare", &["everything"]).elf();
-        linked.add(&build, &["everything"], scene, &elf);
+        linked.add(&build, &["everything"], &scene, &elf);
     }
 }
 

@@ -3,7 +3,7 @@
 
 use crate::scenes::{Compiled, compile_with, small};
 use glam::{DQuat, DVec2, DVec3};
-use gridel_core::{Kind, Structure};
+use gridel_core::{Effects, Kind, Structure};
 use gridel_host::compile::Options;
 use gridel_host::scene::{
     Alpha, Camera, Diffuse, Environment, Image, Instance, Lens, Light, LightForm, LightShape,
@@ -22,9 +22,9 @@ const TRIANGLE: &str = Kind::Triangle.name();
 const INSTANCES: &str = "instances";
 
 /// A part's name, and how to require it.
-type Effects = [(&'static str, fn(&mut Scene)); 20];
+type Requirements = [(&'static str, fn(&mut Scene)); 20];
 
-const EFFECTS: Effects = [
+const EFFECTS: Requirements = [
     ("shadow", |scene| scene.render.shadows = true),
     ("highlight", |scene| scene.materials[0].highlight = [0.5; 3]),
     ("mirror", |scene| scene.materials[0].mirror = [0.5; 3]),
@@ -187,6 +187,47 @@ pub fn every_shape() -> Compiled {
         .map(|(_, shape)| object(shape))
         .collect();
     compile("every-shape", scene)
+}
+
+/// Every shape and every effect, through a structure; all but planes placed by an instance if that is asked for.
+pub fn everything(structure: Structure, instances: bool) -> Compiled {
+    let mut scene = base();
+    scene
+        .objects
+        .extend(beside_triangles().map(|(_, shape)| object(shape)));
+    for (_, call_for) in EFFECTS {
+        call_for(&mut scene);
+    }
+    // Glass has no alpha, so the triangles are no glass.
+    let screen = Material {
+        name: String::from("screen"),
+        transmit: [0.0; 3],
+        priority: None,
+        ..scene.materials[0].clone()
+    };
+    scene.materials.push(screen);
+    scene.objects[0].material = 1;
+    if instances {
+        let objects = scene.objects.into_iter();
+        let (planes, others) = objects.partition(|it| matches!(it.shape, Shape::Plane(_)));
+        scene.objects = others;
+        place_a_part(&mut scene);
+        scene.objects = planes;
+    }
+    let options = Options {
+        structures: vec![structure],
+        lattice_bits: 24,
+        ..small()
+    };
+    let compiled = compile_with("everything", scene, [32, 32], options);
+    let scene = compiled.blob.scene().expect("the compiler's own blob");
+    assert_eq!(scene.effects(), Effects::ALL);
+    assert!(
+        Kind::ALL
+            .iter()
+            .all(|kind| compiled.features().contains(&kind.name()))
+    );
+    compiled
 }
 
 /// Shapes and effects that scenes often require together. Each takes eight builds, two on every kind

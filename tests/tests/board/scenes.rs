@@ -25,7 +25,7 @@ pub struct Compiled {
     pub blob: Blob,
 }
 
-/// Every effect.
+/// Shadows, highlights, mirrors, glass that absorbs, and checkers.
 pub fn quick() -> Compiled {
     fixture("quick", [48, 36])
 }
