@@ -214,7 +214,13 @@ impl Inside {
 
     /// Once more inside of a medium, or as often as it can be.
     fn entered(self, place: u8) -> Self {
-        self.with(place, |count| if count < 15 { count.wrapping_add(1) } else { 15 })
+        self.with(place, |count| {
+            if count < 15 {
+                count.wrapping_add(1)
+            } else {
+                15
+            }
+        })
     }
 
     /// Once less inside of a medium; a ray that is not has begun in it.
