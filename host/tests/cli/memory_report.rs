@@ -191,7 +191,8 @@ fn the_call_stack_of_a_memory_report_is_enough_for_small_code() {
         }
     }
     // What was accepted for the fast build alone.
-    let report = folder.json(&["inspect", "quick.toml", "--target", "stm32vldiscovery"]);
+    let target = ["--target", "stm32vldiscovery", "--flash", "1M"];
+    let report = folder.json(&[&["inspect", "quick.toml"], &target[..]].concat());
     let all = sum(&report, "ram", "");
     let call_stack = |build: &str| {
         report["memory_report"][build]["call_stack"]
@@ -201,7 +202,8 @@ fn the_call_stack_of_a_memory_report_is_enough_for_small_code() {
     let more = call_stack("small") - call_stack("fast");
     let build = |ram: u64| {
         let ram = ram.to_string();
-        folder.run(&["build", "quick.toml", "-o", "new.gridel", "--ram", &ram])
+        let build = ["build", "quick.toml", "-o", "new.gridel", "--ram", &ram];
+        folder.run(&[&build, &target[..]].concat())
     };
     assert_eq!(build(all).code, Some(0));
     let rejected = build(all - more);
