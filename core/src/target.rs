@@ -9,6 +9,9 @@ pub(crate) const VERTEX_COLORS: bool = cfg!(feature = "vertex-colors");
 /// Whether the code for textures is in this build.
 pub(crate) const TEXTURE: bool = cfg!(feature = "texture");
 
+/// Whether the code for texture levels is in this build.
+pub(crate) const TEXTURE_LEVELS: bool = cfg!(feature = "texture-levels");
+
 /// Whether the code for an environment is in this build.
 pub(crate) const ENVIRONMENT: bool = cfg!(feature = "environment");
 
@@ -36,6 +39,9 @@ pub(crate) type VertexColorsOnly<T> = InSomeBuilds<T, { VERTEX_COLORS as usize }
 
 /// A value that only builds with the code for textures hold.
 pub(crate) type TextureOnly<T> = InSomeBuilds<T, { TEXTURE as usize }>;
+
+/// A value that only builds with the code for texture levels hold.
+pub(crate) type TextureLevelsOnly<T> = InSomeBuilds<T, { TEXTURE_LEVELS as usize }>;
 
 /// A value that only builds with the code for normal maps hold.
 pub(crate) type NormalMapOnly<T> = InSomeBuilds<T, { cfg!(feature = "normal-map") as usize }>;

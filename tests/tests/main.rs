@@ -42,6 +42,7 @@ mod shapes;
 mod spd;
 mod structures;
 mod tables;
+mod texture_levels;
 mod textures;
 mod tracks;
 mod transforms;

@@ -45,6 +45,9 @@ macro_rules! effects {
             /// Smooth normals: meshes are shaded by the normals of their vertices.
             SMOOTH = 6, "smooth", Smooth in smooth, casts 0,
                 required by "a mesh with normals that are not those of its faces";
+            /// Texture levels: what is far away shows smaller copies of a texture.
+            TEXTURE_LEVELS = 20, "texture-levels", TextureLevels in texture_levels, casts 0,
+                required by "a material with a texture or a normal map that has levels";
             /// Normal maps: meshes are shaded by normals of an image, which stand for bumps.
             NORMAL_MAP = 19, "normal-map", NormalMap in normal_map, casts 0,
                 required by "a material with a normal map";

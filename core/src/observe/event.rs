@@ -150,7 +150,10 @@ pub enum Event {
     Textured {
         /// Where the texture is looked up, u to the right and v down.
         coordinates: [f64; 2],
-        /// The nearest texel, counted from the upper left one, or the upper left one of the four that are mixed.
+        /// How often the image is halved to what is looked up; a fraction lies between two of its levels.
+        level: f64,
+        /// The nearest texel of the finer level, counted from the upper left one, or the upper left one of the four that
+        /// are mixed.
         texel: [u32; 2],
         /// The texture's color: linear ratios.
         color: [f64; 3],

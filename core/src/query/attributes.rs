@@ -1,18 +1,39 @@
 //! Colors and texture coordinates of hits.
 
 use crate::accel::Number;
+use crate::format::instance::MATRIX_BITS;
 use crate::geometry::Shapes;
 use crate::geometry::attributes::{COORDINATE_BITS, Weights};
 use crate::instances::map::{Map, PlacedSurface};
+use crate::number::log2::{log2, log2_of_length, log2_of_power};
 use crate::query::hit::{Hit, find};
 use crate::scene::Scene;
-use crate::target::{TEXTURE, VERTEX_COLORS, inline_on_boards};
+use crate::target::{TEXTURE, TEXTURE_LEVELS, VERTEX_COLORS, inline_on_boards};
 
 /// How an image lies on a triangle: see [`Hit::tangent`].
 pub(crate) struct Tangent<N> {
     pub(crate) direction: [N; 3],
     pub(crate) is_mirrored: bool,
     pub(crate) coordinates: [i32; 2],
+}
+
+/// Twice the area of a triangle in texture coordinates, positive if the image is seen from its front as it is, with twice
+/// [`COORDINATE_BITS`] fraction bits: a number of 2^62 less another may not fit, and is limited.
+#[inline(always)]
+fn mapped_area([a, b, c]: [[i32; 2]; 3]) -> i64 {
+    // At most 2^31 in magnitude.
+    let apart = |to: [i32; 2], k: usize| i64::from(to[k]).wrapping_sub(i64::from(a[k]));
+    let product = |i: usize, j: usize| apart(b, i).wrapping_mul(apart(c, j));
+    product(0, 1).saturating_sub(product(1, 0))
+}
+
+/// Twice the area of a triangle, as a vector along its normal: places with 8 fraction bits, and so a square of them.
+fn area([a, b, c]: [[i32; 3]; 3]) -> [i64; 3] {
+    // Edges of places are below 2^25.
+    let edge = |to: [i32; 3], k: usize| i64::from(to[k]).wrapping_sub(i64::from(a[k]));
+    let product = |i: usize, j: usize| edge(b, i).wrapping_mul(edge(c, j));
+    let axis = |i: usize, j: usize| product(i, j).wrapping_sub(product(j, i));
+    [axis(1, 2), axis(2, 0), axis(0, 1)]
 }
 
 /// The direction in which u grows over a triangle, below 2^52 in magnitude, and whether the image is seen mirrored from
@@ -22,16 +43,10 @@ fn along_u(corners: [[i32; 3]; 3], coordinates: [[i32; 2]; 3]) -> Option<([i64; 
     let [a, b, c] = corners;
     let [at_a, at_b, at_c] = coordinates;
     // At most 2^31 in magnitude, and edges of places 2^25.
-    let apart = |to: [i32; 2], k: usize| i64::from(to[k]).wrapping_sub(i64::from(at_a[k]));
-    let (u, v) = (
-        [apart(at_b, 0), apart(at_c, 0)],
-        [apart(at_b, 1), apart(at_c, 1)],
-    );
+    let apart = |to: [i32; 2]| i64::from(to[1]).wrapping_sub(i64::from(at_a[1]));
+    let v = [apart(at_b), apart(at_c)];
     let edge = |to: [i32; 3], k: usize| i64::from(to[k]).wrapping_sub(i64::from(a[k]));
-    // Of 2^62 and 2^62, which may not fit.
-    let area = u[0]
-        .wrapping_mul(v[1])
-        .saturating_sub(u[1].wrapping_mul(v[0]));
+    let area = mapped_area(coordinates);
     let along = |k: usize| {
         let sum = edge(b, k)
             .wrapping_mul(v[1])
@@ -106,6 +121,44 @@ impl<N: Number> Hit<N> {
             })
         }
     );
+
+    /// How far texture coordinates are apart per unit of length around the hit: the binary logarithm of the root of the
+    /// ratio of their areas, with 8 fraction bits. `None` where there are none, or where they lie on a line.
+    ///
+    /// Out of line: it is long, and only textures with levels need it.
+    #[inline(never)]
+    pub(crate) fn log2_density(&self, scene: &Scene<'_>) -> Option<i32> {
+        if !TEXTURE_LEVELS {
+            return None;
+        }
+        let placed = match self.instance() {
+            Some(index) => Some(find(scene, index)?),
+            None => None,
+        };
+        let space = &placed.map_or(scene, |(_, part)| part).space;
+        let shapes = &space.shapes;
+        let vertices = shapes.triangles.corners(self.triangle_slot()?)?;
+        let [a, b, c] = vertices;
+        let position = |vertex| shapes.vertices.position(vertex);
+        let corners = [position(a)?, position(b)?, position(c)?];
+        let mapped = mapped_area(shapes.coordinates().corners(vertices)?).unsigned_abs();
+        if mapped == 0 {
+            return None;
+        }
+        // Twice the fraction bits of each, and 8 of places.
+        let bits = COORDINATE_BITS.wrapping_sub(8).cast_signed();
+        let areas = log2(mapped).wrapping_sub(log2_of_length(area(corners)));
+        let density = (areas >> 1).wrapping_sub(log2_of_power(bits));
+        // The part's units per unit of the scene.
+        let stretch = placed.map_or(0, |(instance, _)| {
+            let row = log2_of_length(instance.matrix[0].map(i64::from));
+            let bits = MATRIX_BITS.cast_signed();
+            row.wrapping_add(log2_of_power(
+                i32::from(instance.exponent).wrapping_sub(bits),
+            ))
+        });
+        Some(density.wrapping_add(stretch))
+    }
 
     /// The color of the vertices at the hit: linear ratios with 30 fraction bits. `None` where there is none.
     #[inline(always)]

@@ -27,6 +27,7 @@ mod rows;
 mod sample;
 mod samples;
 mod shutter;
+mod spread;
 mod start;
 pub(crate) mod trace;
 

@@ -10,6 +10,7 @@ use crate::render::pixel::{Linear, from_display};
 use crate::render::pixel_rays;
 use crate::render::pixel_rays::PixelRays;
 use crate::render::sample::SUBPIXELS;
+use crate::render::spread::{Spread, spread};
 use crate::render::trace::{Loop, WorkspaceView};
 use crate::scene::Scene;
 use crate::shade::Color;
@@ -162,6 +163,7 @@ pub struct Renderer<'s, 'a, N: Number, A: Accel, const EFFECTS: u32> {
     scene: &'s Scene<'a>,
     settings: Settings,
     rays: PixelRays<N>,
+    spread: Spread,
     structure: PhantomData<A>,
 }
 
@@ -219,6 +221,7 @@ impl<'s, 'a, N: Number, A: Accel, const EFFECTS: u32> Renderer<'s, 'a, N, A, EFF
             scene,
             settings,
             rays,
+            spread: spread(scene.view(), height, samples),
             structure: PhantomData,
         })
     }
@@ -321,6 +324,7 @@ impl<'s, 'a, N: Number, A: Accel, const EFFECTS: u32> Renderer<'s, 'a, N, A, EFF
             scene: self.scene,
             depth: self.settings.depth,
             from_camera: true,
+            spread: self.spread,
         }
     }
 }

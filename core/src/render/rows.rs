@@ -5,6 +5,7 @@ use crate::observe::count::Observer;
 use crate::observe::event::Event;
 use crate::ray::Ray;
 use crate::render::samples::{Samples, limited};
+use crate::render::spread::no_spread;
 use crate::render::start::Start;
 use crate::render::trace::Loop;
 use crate::render::{Pixel, Renderer, WorkspaceView};
@@ -67,6 +68,7 @@ impl<N: Number, A: Accel, const EFFECTS: u32> Renderer<'_, '_, N, A, EFFECTS> {
         space.work.clear();
         let tracing = Loop {
             from_camera: false,
+            spread: no_spread(),
             ..self.tracing()
         };
         let mut radiance = Color::BLACK;

@@ -20,8 +20,10 @@ use crate::observe::count::Observer;
 use crate::observe::event::{Event, RayKind, Source};
 use crate::query::{Hit, any_hit, closest_hit};
 use crate::ray::Ray;
+use crate::render::spread::Spread;
 use crate::render::start::Start;
 use crate::scene::Scene;
+use crate::scene::textures::Footprint;
 use crate::shade::effect::{EffectList, Tracer};
 use crate::shade::sampler::Sampler;
 use crate::shade::surface::{
@@ -60,7 +62,7 @@ pub fn bytes_per_ray<N: Number>(effects: Effects) -> usize {
 ///
 /// `STACK` must be at least the blob's [stack depth](Scene::stack_depth), `WORK` at least
 /// [`work_depth`](crate::format::limits::work_depth) of the ray depth. It takes 12 bytes per entry of the stack and, in `f32` and
-/// `fixed`, 40 bytes a place for a ray, and 44 in builds with the effect `nested`.
+/// `fixed`, 40 bytes a place for a ray, up to 48 in builds with the effects `nested`, `texture-levels` and `indirect`.
 #[derive(Debug)]
 pub struct Workspace<N: Number, const STACK: usize, const WORK: usize> {
     stack: Stack<STACK>,
@@ -112,6 +114,8 @@ pub(super) struct Loop<'s, 'a> {
     pub(super) depth: u8,
     /// Whether rays come from the camera, so that effects of its lens act on them; not so those of the caller's own.
     pub(super) from_camera: bool,
+    /// See [`Tracer::spread`].
+    pub(super) spread: Spread,
 }
 
 impl Loop<'_, '_> {
@@ -134,6 +138,7 @@ impl Loop<'_, '_> {
                 depth: 0,
                 kind: RayKind::Primary,
                 sampler,
+                spread: self.spread,
                 state: State::<N>::default(),
                 space,
                 count,
@@ -203,6 +208,7 @@ impl Loop<'_, '_> {
                 depth: 0,
                 kind: RayKind::Primary,
                 sampler: Sampler::new([0; 2], 0),
+                spread: self.spread,
                 state: State::<N>::default(),
                 space,
                 count,
@@ -224,6 +230,7 @@ struct Tracing<'t, 'w, 's, N: Number, A, C, const EFFECTS: u32> {
     kind: RayKind,
     /// Whose points effects draw.
     sampler: Sampler,
+    spread: Spread,
     state: State<N>,
     space: &'t mut WorkspaceView<'w, N>,
     count: &'t mut C,
@@ -267,6 +274,7 @@ impl<N: Number, A: Accel, C: Observer, const EFFECTS: u32> Tracing<'_, '_, '_, N
             weight: arrival.weight,
             passing: Color::BLACK,
             interface: None,
+            footprint: Footprint::point(),
         };
         All::surface::<EFFECTS, N, _>(self, &mut state, ray, &mut surface);
         self.state = state;
@@ -439,6 +447,11 @@ impl<'s, N: Number, A: Accel, C: Observer, const EFFECTS: u32> Tracer<'s, N>
         // A hit sends at most one ray of a kind, or two that are glossy or diffuse and draw the same points.
         let bounce = u16::from(self.depth) << 8 | self.kind as u16;
         self.sampler.point(bounce, dimension)
+    }
+
+    #[inline(always)]
+    fn spread(&self) -> Option<i32> {
+        self.spread.get().copied().flatten()
     }
 
     #[inline(always)]

@@ -10,7 +10,7 @@ use crate::format::{Effects, Indices, Kind, Structure};
 use crate::geometry::{Geometry, PrimitiveId};
 use crate::instances::placed::Placed;
 use crate::scene::environment::EnvironmentMap;
-use crate::scene::textures::Textures;
+use crate::scene::textures::{Footprint, Textures};
 use crate::simd::SimdLevel;
 use crate::target::{
     DepthOfFieldOnly, EmissionOnly, EnvironmentOnly, FalloffOnly, GlossyOnly, IndirectOnly,
@@ -322,14 +322,18 @@ impl<'a> Scene<'a> {
     }
 
     /// The color of a material's texture at coordinates with 20 fraction bits: linear ratios with 30 fraction bits.
-    /// `None` of a material without a texture.
+    /// `None` of a material without a texture. Of one with levels it is that of the whole image.
     pub fn texture_color(&self, material: &Material, coordinates: [i32; 2]) -> Option<[i32; 3]> {
         if !self.effects.contains(Effects::TEXTURE) || material.maps & Material::MAPS_TEXTURE == 0 {
             return None;
         }
         let textures = self.textures.get()?;
         let texture = textures.texture(textures.maps_of(material)?.color)?;
-        Some(textures.lookup(texture, coordinates).color)
+        Some(
+            textures
+                .lookup(texture, coordinates, Footprint::point())
+                .color,
+        )
     }
 
     /// The environment.

@@ -230,7 +230,6 @@ pub(super) fn check_material(
     let number = material.maps & Material::MAPS_NUMBER;
     at.within(Field::Maps, number.into(), 0, maps as i64)?;
     let flags = material.maps & !Material::MAPS_NUMBER;
-    at.ensure(flags & !Material::MAPS_FLAGS == 0, Reason::SpareNotZero)?;
     at.ensure(flags == 0 || number > 0, Reason::MissingMaps)
 }
 

@@ -3,11 +3,17 @@
 //! Everything is integer arithmetic, so a texel and its weight are the same in every number format. Bilinear weights
 //! have 8 bits along each axis. Colors are stored as square roots and mixed as linear light.
 
+mod levels;
+
 use crate::format::range::{At, Ranges};
 use crate::format::record::{Material, NormalMap, SurfaceMaps, Texture};
 use crate::format::{BlobError, Effects, Field, SectionKind, Sections};
 use crate::geometry::attributes::{COORDINATE_BITS, linear};
-use crate::target::{NormalMapOnly, inline_on_boards};
+use crate::number::log2::LOG2_BITS;
+use crate::target::{NormalMapOnly, TEXTURE_LEVELS, inline_on_boards};
+use levels::Level;
+
+pub(crate) use levels::Footprint;
 
 impl Material {
     /// The bits of [`maps`](Self::maps) that are a number.
@@ -22,8 +28,8 @@ impl Material {
     /// The bit of [`maps`](Self::maps) for a normal map.
     pub const MAPS_NORMAL: u16 = 1 << 14;
 
-    /// All bits of [`maps`](Self::maps) for effects.
-    pub(crate) const MAPS_FLAGS: u16 = Self::MAPS_TEXTURE | Self::MAPS_ALPHA | Self::MAPS_NORMAL;
+    /// The bit of [`maps`](Self::maps) for a texture or a normal map that has levels.
+    pub const MAPS_LEVELS: u16 = 1 << 15;
 }
 
 /// The textures of a scene.
@@ -129,27 +135,13 @@ impl<'a> Textures<'a> {
 
     /// The color of a texture at coordinates with [`COORDINATE_BITS`] fraction bits.
     ///
-    /// Cost: 4 texels of a bilinear texture, 1 of another.
+    /// Cost: 4 texels of a bilinear texture, 1 of another; twice as many between two levels.
     #[inline(always)]
-    pub(crate) fn lookup(&self, texture: &Texture, at: [i32; 2]) -> Texel {
-        let (squares, place) = match taps(texture, at) {
-            Taps::Nearest(index, place) => {
-                let [texel] = self.fetched(texture, [index]);
-                (texel.channels().map(|root| square(root) << 16), place)
-            }
-            Taps::Mixed(indices, weights, place) => {
-                let mut sum = [0_u32; 3];
-                for (texel, weight) in self.fetched(texture, indices).into_iter().zip(weights) {
-                    for (sum, root) in sum.iter_mut().zip(texel.channels()) {
-                        // In all at most 255^2 2^16, which has 32 bits.
-                        *sum = sum.wrapping_add(square(root).wrapping_mul(weight));
-                    }
-                }
-                (sum, place)
-            }
-        };
+    pub(crate) fn lookup(&self, texture: &Texture, at: [i32; 2], footprint: Footprint) -> Texel {
+        let squares = |texel: Packed| texel.channels().map(square);
+        let (sums, place) = self.mixed(texture, at, footprint, squares);
         Texel {
-            color: squares.map(linear),
+            color: sums.map(linear),
             place,
         }
     }
@@ -157,22 +149,13 @@ impl<'a> Textures<'a> {
     inline_on_boards!(
         /// The normal that a texture holds at coordinates with [`COORDINATE_BITS`] fraction bits: ratios from -1 to 1 with 30
         /// fraction bits. Texels are mixed as they are, and the mean has any length up to the square root of 3.
-        pub(crate) fn normal(&self, texture: &Texture, at: [i32; 2]) -> Texel {
-            let (sums, place) = match taps(texture, at) {
-                Taps::Nearest(index, place) => {
-                    let [texel] = self.fetched(texture, [index]);
-                    (texel.channels().map(|channel| channel << 16), place)
-                }
-                Taps::Mixed(indices, weights, place) => {
-                    let mut sum = [0_u32; 3];
-                    for (texel, weight) in self.fetched(texture, indices).into_iter().zip(weights) {
-                        for (sum, channel) in sum.iter_mut().zip(texel.channels()) {
-                            *sum = sum.wrapping_add(channel.wrapping_mul(weight));
-                        }
-                    }
-                    (sum, place)
-                }
-            };
+        pub(crate) fn normal(
+            &self,
+            texture: &Texture,
+            at: [i32; 2],
+            footprint: Footprint,
+        ) -> Texel {
+            let (sums, place) = self.mixed(texture, at, footprint, Packed::channels);
             // Twice as much and 1 less: half of 255 is 0.
             let signed = |sum: u32| ratio(sum).wrapping_sub(1 << 29).wrapping_shl(1);
             Texel {
@@ -184,19 +167,62 @@ impl<'a> Textures<'a> {
 
     /// The alpha of a texture at coordinates with [`COORDINATE_BITS`] fraction bits: a ratio with 30 fraction bits.
     #[inline(always)]
-    pub(crate) fn alpha(&self, texture: &Texture, at: [i32; 2]) -> i32 {
-        ratio(match taps(texture, at) {
-            Taps::Nearest(index, _) => {
+    pub(crate) fn alpha(&self, texture: &Texture, at: [i32; 2], footprint: Footprint) -> i32 {
+        let ([sum], _) = self.mixed(texture, at, footprint, |texel| [texel.alpha()]);
+        ratio(sum)
+    }
+
+    /// Means of what texels hold at coordinates, with 16 fraction bits, and the place of the first texel.
+    #[inline(always)]
+    fn mixed<const COUNT: usize>(
+        &self,
+        texture: &Texture,
+        at: [i32; 2],
+        footprint: Footprint,
+        held: impl Fn(Packed) -> [u32; COUNT],
+    ) -> ([u32; COUNT], [u32; 2]) {
+        if !TEXTURE_LEVELS {
+            return self.mixed_in(texture, &Level::whole(texture), at, held);
+        }
+        let (mut sums, mut place) = ([0_u32; COUNT], None);
+        for (level, weight) in footprint.levels(texture) {
+            let (parts, first) = self.mixed_in(texture, &level, at, &held);
+            if weight == 1 << LOG2_BITS {
+                return (parts, first);
+            }
+            for (sum, part) in sums.iter_mut().zip(parts) {
+                *sum = sum.wrapping_add((part >> LOG2_BITS).wrapping_mul(weight));
+            }
+            place = place.or(Some(first));
+        }
+        (sums, place.unwrap_or_default())
+    }
+
+    /// The same in one level.
+    #[inline(always)]
+    fn mixed_in<const COUNT: usize>(
+        &self,
+        texture: &Texture,
+        level: &Level,
+        at: [i32; 2],
+        held: impl Fn(Packed) -> [u32; COUNT],
+    ) -> ([u32; COUNT], [u32; 2]) {
+        match taps(texture, level, at) {
+            Taps::Nearest(index, place) => {
                 let [texel] = self.fetched(texture, [index]);
-                texel.alpha() << 16
+                (held(texel).map(|it| it << 16), place)
             }
-            Taps::Mixed(indices, weights, _) => {
-                let texels = self.fetched(texture, indices).into_iter().zip(weights);
-                texels.fold(0, |sum, (texel, weight)| {
-                    sum.wrapping_add(texel.alpha().wrapping_mul(weight))
-                })
+            Taps::Mixed(indices, weights, place) => {
+                let mut sums = [0_u32; COUNT];
+                for (texel, weight) in self.fetched(texture, indices).into_iter().zip(weights) {
+                    for (sum, it) in sums.iter_mut().zip(held(texel)) {
+                        // In all at most 255^2 2^16, which has 32 bits.
+                        *sum = sum.wrapping_add(it.wrapping_mul(weight));
+                    }
+                }
+                (sums, place)
             }
-        })
+        }
     }
 
     /// Texels of a texture; loading proves that they are there.
@@ -212,12 +238,8 @@ impl<'a> Textures<'a> {
             .unwrap_or_default();
         match texture.form {
             0 => {
-                let (palette, texels) = bytes
-                    .as_chunks()
-                    .0
-                    .split_at_checked(256)
-                    .unwrap_or_default();
-                let texels = texels.as_flattened();
+                let (palette, texels) = bytes.split_at_checked(1024).unwrap_or_default();
+                let palette = palette.as_chunks().0;
                 each(indices, |index| {
                     let entry = texels.get(index as usize).copied().unwrap_or_default();
                     Packed::rgba(element(palette, entry.into()))
@@ -302,19 +324,21 @@ enum Taps {
 }
 
 #[inline(always)]
-fn taps(texture: &Texture, [u, v]: [i32; 2]) -> Taps {
-    let [width, height] = [texture.width, texture.height].map(u32::from);
+fn taps(texture: &Texture, level: &Level, [u, v]: [i32; 2]) -> Taps {
+    let [width, height] = level.size;
     let u = wrapped(u, texture.wrap[0]);
     let v = wrapped(v, texture.wrap[1]);
-    if texture.filter == 0 {
+    if texture.filter & Texture::BILINEAR == 0 {
         // At most 2^20 - 1 times 4096.
         let x = u.wrapping_mul(width) >> COORDINATE_BITS;
         let y = v.wrapping_mul(height) >> COORDINATE_BITS;
-        return Taps::Nearest(y.wrapping_mul(width).wrapping_add(x), [x, y]);
+        let row = level.first.wrapping_add(y.wrapping_mul(width));
+        return Taps::Nearest(row.wrapping_add(x), [x, y]);
     }
     let ([left, right], across) = neighbors(u, width, texture.wrap[0] == 0);
     let ([upper, lower], down) = neighbors(v, height, texture.wrap[1] == 0);
-    let (above, below) = (upper.wrapping_mul(width), lower.wrapping_mul(width));
+    let row = |y: u32| level.first.wrapping_add(y.wrapping_mul(width));
+    let (above, below) = (row(upper), row(lower));
     let both = across.wrapping_mul(down);
     // Their sum is 1.
     let weights = [

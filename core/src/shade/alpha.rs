@@ -11,7 +11,7 @@ use crate::observe::event::Event;
 use crate::query::Hit;
 use crate::ray::Ray;
 use crate::scene::Scene;
-use crate::scene::textures::ratio;
+use crate::scene::textures::{Footprint, ratio};
 use crate::shade::effect::{Effect, Tracer};
 use crate::shade::surface::{Filter, Surface};
 
@@ -39,7 +39,12 @@ impl Effect for Alpha {
         if !surface.required.contains(Self::EFFECT) {
             return;
         }
-        let alpha = alpha(tracer.scene(), surface.material, surface.hit);
+        let alpha = alpha(
+            tracer.scene(),
+            surface.material,
+            surface.hit,
+            surface.footprint,
+        );
         surface.passing = surface.weight.scaled(N::ONE - alpha);
         surface.weight = surface.weight.scaled(alpha);
         if X::Observer::ENABLED {
@@ -59,7 +64,12 @@ impl Effect for Alpha {
         if !Self::is_required_by_material(filter.material) {
             return;
         }
-        let alpha = alpha(tracer.scene(), filter.material, filter.hit);
+        let alpha = alpha(
+            tracer.scene(),
+            filter.material,
+            filter.hit,
+            Footprint::point(),
+        );
         if alpha < N::ONE {
             filter.passes = true;
             filter.left = filter.left.scaled(N::ONE - alpha);
@@ -69,13 +79,18 @@ impl Effect for Alpha {
 
 /// How much of a surface is there: 1 where it has no texture coordinates.
 #[inline(always)]
-fn alpha<N: Number>(scene: &Scene<'_>, material: &Material, hit: &Hit<N>) -> N {
+fn alpha<N: Number>(
+    scene: &Scene<'_>,
+    material: &Material,
+    hit: &Hit<N>,
+    footprint: Footprint,
+) -> N {
     let found = || {
         let textures = scene.textures.get()?;
         let maps = textures.maps_of(material)?;
         let texture = textures.texture(maps.color)?;
         let coordinates = hit.coordinates(scene)?;
-        Some((maps, textures.alpha(texture, coordinates)))
+        Some((maps, textures.alpha(texture, coordinates, footprint)))
     };
     let Some((maps, alpha)) = found() else {
         return N::ONE;

@@ -38,6 +38,10 @@ pub(crate) trait Tracer<'s, N: Number> {
     /// [`Sampler::point`](crate::shade::sampler::Sampler::point), which says what a dimension is.
     fn point(&self, dimension: u16) -> [u32; 2];
 
+    /// The binary logarithm of the distance between the rays of neighboring samples, per distance from the eye, with
+    /// [`LOG2_BITS`](crate::number::log2::LOG2_BITS) fraction bits; `None` of rays of the caller's own.
+    fn spread(&self) -> Option<i32>;
+
     fn any_hit(&mut self, ray: &Ray<N>) -> bool;
 
     fn closest_hit(&mut self, ray: &Ray<N>) -> Option<Hit<N>>;

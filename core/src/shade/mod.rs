@@ -7,7 +7,7 @@
 //! |---|---|---|
 //! | `camera` | a ray leaves the camera | depth of field |
 //! | `arrive` | a ray has come to a hit | absorption |
-//! | `surface` | a ray hits a surface | checker, smooth, normal map, vertex colors, texture, alpha, indirect |
+//! | `surface` | a ray hits a surface | checker, smooth, texture levels, normal map, vertex colors, texture, alpha, indirect |
 //! | `emit` | a surface sends out light of its own | emission |
 //! | `aim` | a surface looks for a light | area light, environment |
 //! | `face` | a surface faces a light | smooth, normal map, falloff |

@@ -47,7 +47,7 @@ impl Effect for NormalMap {
         let (Some((map, texture)), Some(tangent)) = (map, surface.hit.tangent(scene)) else {
             return;
         };
-        let texel = textures.normal(texture, tangent.coordinates);
+        let texel = textures.normal(texture, tangent.coordinates, surface.footprint);
         let [x, y, z] = texel.color.map(N::ratio);
         let factor = |of_65535: u16| {
             // 65535 is 1 exactly.

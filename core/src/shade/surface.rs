@@ -8,6 +8,7 @@ use crate::observe::event::RayKind;
 use crate::query::Hit;
 use crate::ray::Ray;
 use crate::scene::Scene;
+use crate::scene::textures::Footprint;
 use crate::shade::Color;
 use crate::shade::facets::Facets;
 
@@ -29,6 +30,8 @@ pub(crate) struct Surface<'h, N: Number> {
     pub(crate) passing: Color<N>,
     /// What meets there; `None` for the material and the surroundings.
     pub(crate) interface: Option<Interface<N>>,
+    /// How much of the texture coordinates the sample sees; a point, unless an effect knows better.
+    pub(crate) footprint: Footprint,
 }
 
 /// A ray that has come to a hit.

@@ -7,6 +7,7 @@ use crate::accel::Number;
 use crate::format::Effects;
 use crate::format::record::Material;
 use crate::geometry::attributes::COORDINATE_BITS;
+use crate::number::log2::LOG2_BITS;
 use crate::observe::count::Observer;
 use crate::observe::event::Event;
 use crate::ray::Ray;
@@ -45,12 +46,13 @@ impl Effect for Texture {
         let (Some(texture), Some(coordinates)) = (texture, surface.hit.coordinates(scene)) else {
             return;
         };
-        let texel = textures.lookup(texture, coordinates);
+        let texel = textures.lookup(texture, coordinates, surface.footprint);
         let color = Color::ratios(texel.color);
         surface.diffuse = surface.diffuse.times(color);
         if X::Observer::ENABLED {
             tracer.count().event(Event::Textured {
                 coordinates: coordinates.map(|it| f64::from(it) / f64::from(1 << COORDINATE_BITS)),
+                level: f64::from(surface.footprint.level(texture)) / f64::from(1 << LOG2_BITS),
                 texel: texel.place,
                 color: color.ratios_to_f64(),
             });

@@ -2,7 +2,7 @@
 //!
 //! Without a budget an image of at most 256 colors becomes a palette, and any other RGB888. With one, the image that
 //! takes the most bytes is made coarser until all fit: RGB565 (not where alpha is used), then a palette of 256 colors, then half the size, again and
-//! again. Images wider or higher than 4096 are halved in any case.
+//! again. Images wider or higher than 4096 are halved in any case. Levels are smaller copies of what is left, and count.
 
 mod stored;
 
@@ -26,6 +26,8 @@ pub struct TextureFigures {
     pub height: u32,
     /// `palette`, `rgb565`, `rgb888` or `rgba8888`.
     pub form: &'static str,
+    /// Whether smaller copies of the image follow it.
+    pub levels: bool,
     pub bytes: u64,
 }
 
@@ -36,10 +38,15 @@ impl fmt::Display for TextureFigures {
             width,
             height,
             form,
+            levels,
             bytes,
         } = self;
         let (name, bytes) = (printable(name), grouped(*bytes));
-        write!(f, "{name}, {width} x {height}, {form}, {bytes} bytes")
+        let levels = if *levels { ", with levels" } else { "" };
+        write!(
+            f,
+            "{name}, {width} x {height}, {form}{levels}, {bytes} bytes"
+        )
     }
 }
 
@@ -61,6 +68,12 @@ fn srgb_of_linear(linear: f64) -> f64 {
     } else {
         1.055 * libm::pow(linear, 1.0 / 2.4) - 0.055
     }
+}
+
+/// How a texture is looked up, as its record says it.
+fn filter(texture: &Texture) -> u8 {
+    let bit = |bit, is_set| if is_set { bit } else { 0 };
+    bit(record::Texture::BILINEAR, texture.bilinear) | bit(record::Texture::LEVELS, texture.levels)
 }
 
 /// The textures of the materials in use.
@@ -88,6 +101,10 @@ impl Textures {
             cutoff: 0,
             opacity: 0,
         };
+        let textures = color.into_iter().chain(normals.map(|it| &it.texture));
+        if textures.into_iter().any(|it| it.levels) {
+            flags |= record::Material::MAPS_LEVELS;
+        }
         if let Some(texture) = color {
             flags |= record::Material::MAPS_TEXTURE;
             maps.color = limit(self.number(texture, false, alpha.is_some()));
@@ -135,12 +152,15 @@ impl Textures {
                 image: Arc::clone(&texture.image),
                 has_normals,
                 has_alpha: false,
+                has_levels: false,
             });
             self.images.len() - 1
         });
         self.images[image].has_alpha |= has_alpha;
+        self.images[image].has_levels |= texture.levels;
+        let looked_up = |it: &Texture| (it.wrap, it.bilinear, it.levels);
         let same = |(number, other): &(usize, Texture)| {
-            *number == image && other.wrap == texture.wrap && other.bilinear == texture.bilinear
+            *number == image && looked_up(other) == looked_up(texture)
         };
         let known = self.textures.iter().position(same);
         known.unwrap_or_else(|| {
@@ -199,10 +219,10 @@ impl Textures {
             let image = &images[*number];
             record::Texture {
                 first: firsts[*number],
-                width: image.width as u16,
-                height: image.height as u16,
+                width: image.raster.width as u16,
+                height: image.raster.height as u16,
                 form: image.form as u8,
-                filter: u8::from(texture.bilinear),
+                filter: filter(texture),
                 wrap: texture.wrap.map(|it| match it {
                     Wrap::Repeat => 0,
                     Wrap::Mirror => 1,
@@ -213,9 +233,10 @@ impl Textures {
         let textures: Vec<_> = textures.collect();
         let figures = images.iter().map(|it| TextureFigures {
             name: it.name.clone(),
-            width: it.width,
-            height: it.height,
+            width: it.raster.width,
+            height: it.raster.height,
             form: it.form.name(),
+            levels: it.has_levels,
             bytes: it.bytes(),
         });
         let (maps, mut normal_maps): (Vec<_>, Vec<_>) = self.maps.into_iter().unzip();

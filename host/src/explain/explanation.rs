@@ -99,7 +99,10 @@ pub struct Ray {
 pub struct Textured {
     /// Where the texture is looked up, u to the right and v down.
     pub coordinates: [f64; 2],
-    /// The nearest texel, counted from the upper left one, or the upper left one of the four that are mixed.
+    /// How often the image is halved to what is looked up; a fraction lies between two of its levels.
+    pub level: f64,
+    /// The nearest texel of the finer level, counted from the upper left one, or the upper left one of the four that are
+    /// mixed.
     pub texel: [u32; 2],
     /// Linear ratios.
     pub color: [f64; 3],
@@ -261,11 +264,13 @@ impl Ray {
             Event::VertexColor { color } => self.vertex_color = Some(color),
             Event::Textured {
                 coordinates,
+                level,
                 texel,
                 color,
             } => {
                 self.texture = Some(Textured {
                     coordinates,
+                    level,
                     texel,
                     color,
                 });

@@ -281,9 +281,13 @@ impl Shown<'_> {
         if let Some(texture) = &ray.texture {
             let [u, v] = texture.coordinates.map(significant);
             let [x, y] = texture.texel;
+            let level = match texture.level {
+                0.0 => String::new(),
+                level => format!(" of level {}", significant(level)),
+            };
             writeln!(
                 f,
-                "{indent}  the texture at {u} {v}, texel {x},{y}, weights the diffuse color by {}",
+                "{indent}  the texture at {u} {v}, texel {x},{y}{level}, weights the diffuse color by {}",
                 color(texture.color)
             )?;
         }

@@ -23,6 +23,8 @@ pub struct Texture {
     pub wrap: [Wrap; 2],
     /// Whether four texels are mixed; otherwise the nearest one counts.
     pub bilinear: bool,
+    /// Whether smaller copies of the image are shown where it is far away.
+    pub levels: bool,
     /// Takes the coordinates of meshes to those of the image.
     pub transform: DAffine2,
 }
@@ -54,12 +56,13 @@ pub enum Wrap {
 }
 
 impl Texture {
-    /// A bilinear texture that repeats.
+    /// A bilinear texture that repeats, without levels.
     pub fn of(image: Arc<Image>) -> Self {
         Self {
             image,
             wrap: [Wrap::Repeat; 2],
             bilinear: true,
+            levels: false,
             transform: DAffine2::IDENTITY,
         }
     }

@@ -71,6 +71,17 @@ const REMOVALS: [(Effects, &str, Removal); Effects::NAMED.len()] = [
         each_object(scene, |object| object.normals = Normals::default());
     }),
     (
+        Effects::TEXTURE_LEVELS,
+        "textures that are far away show single texels of their images",
+        |scene| {
+            each_material(scene, |material| {
+                let maps = material.normal_map.as_mut().map(|it| &mut it.texture);
+                let textures = material.texture.iter_mut().chain(maps);
+                textures.for_each(|it| it.levels = false);
+            });
+        },
+    ),
+    (
         Effects::NORMAL_MAP,
         "bumps of normal maps are flat",
         |scene| each_material(scene, |material| material.normal_map = None),
@@ -288,10 +299,14 @@ mod tests {
         // Glass has no alpha.
         let mut materials = scene.materials.iter_mut();
         let squares = materials.find(|it| it.name == "squares").unwrap();
-        squares.texture = image.map(|it| Texture::of(it.into()));
+        let leveled = |image: Image| Texture {
+            levels: true,
+            ..Texture::of(image.into())
+        };
+        squares.texture = image.map(leveled);
         squares.alpha = Some(Alpha::Blend(0.5));
         squares.normal_map = Some(NormalMap {
-            texture: Texture::of(Image::blank().into()),
+            texture: leveled(Image::blank()),
             scale: 1.0,
         });
         scene

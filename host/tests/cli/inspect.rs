@@ -122,13 +122,27 @@ fn a_scene_file_is_inspected_as_the_blob_it_would_be() {
     );
 }
 
+/// A triangle with a texture that has levels.
+const LEVELS: &str = "
+[material.screen]
+texture = { file = 'screen.png', levels = true }
+[[object]]
+kind = 'triangle'
+vertices = [[0, 0, 0], [1, 0, 0], [0, 1, 0]]
+coordinates = [[0, 0], [1, 0], [0, 1]]
+material = 'screen'
+";
+
 #[test]
 fn working_memory_is_what_the_compiler_says() {
     let folder = Folder::with_quick();
     let quick = String::from_utf8(fixture("quick")).unwrap();
-    // This build has room for the state of nested dielectrics in every ray that waits.
     let nested = quick.replace("transmit", "priority = 1\ntransmit");
     folder.write("nested.toml", nested.as_bytes());
+    // This build has room for the states of all effects in every ray that waits.
+    folder.write("screen.png", include_bytes!("../../../fixtures/screen.png"));
+    let every = nested.replace("[render]\n", "[render]\nbounces = 1\n") + LEVELS;
+    folder.write("every.toml", every.as_bytes());
     let accels = ["--accel", "bvh", "--accel", "flagged"];
     folder.done(
         &[
@@ -137,22 +151,23 @@ fn working_memory_is_what_the_compiler_says() {
         ]
         .concat(),
     );
-    let inspection = folder.json(&["inspect", "nested.gridel"]);
+    folder.done(&[&["build", "every.toml", "-o", "every.gridel"], &accels[..]].concat());
+    let inspection = folder.json(&["inspect", "every.gridel"]);
     // The figures below are for this stack, and for the scene's ray depth of 6.
-    assert_eq!(inspection["limits"]["stack_depth"], 5);
+    assert_eq!(inspection["limits"]["stack_depth"], 6);
     let needs = inspection["working_memory"].as_array().unwrap();
     let here = usize::BITS;
     let expected = [
-        ("fixed", size_of::<Workspace<Fixed, 5, 7>>()),
-        ("f32", size_of::<Workspace<f32, 5, 7>>()),
-        ("f64", size_of::<Workspace<f64, 5, 7>>()),
+        ("fixed", size_of::<Workspace<Fixed, 6, 13>>()),
+        ("f32", size_of::<Workspace<f32, 6, 13>>()),
+        ("f64", size_of::<Workspace<f64, 6, 13>>()),
     ];
     for (format, workspace) in expected {
         let found = needs
             .iter()
             .find(|n| n["word_bits"] == here && n["format"] == format);
         let found = found.unwrap();
-        assert_eq!(found["stack"], size_of::<Stack<5>>());
+        assert_eq!(found["stack"], size_of::<Stack<6>>());
         assert_eq!(found["workspace"], workspace);
     }
     for (scene, ray) in [("quick.gridel", 40), ("nested.gridel", 44)] {

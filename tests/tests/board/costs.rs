@@ -145,7 +145,6 @@ fn hits_and_lights_cost_what_is_recorded() {
             };
             let each = (spent(scene) - without).div_ceil(hits);
             println!("{}: {each} instructions per hit, {hits} hits", scene.name);
-
             let report = [("hit-instructions".into(), each)].into();
             figures.add(&build(scene).to_string(), &report);
         }
@@ -154,7 +153,7 @@ fn hits_and_lights_cost_what_is_recorded() {
 }
 
 /// The effects whose costs per hit are measured.
-const PER_HIT: [&str; 3] = ["vertex-colors", "texture", "normal-map"];
+const PER_HIT: [&str; 4] = ["vertex-colors", "texture", "texture-levels", "normal-map"];
 
 /// Costs of a product with every shape and effect on a board, fast or small, and on one of each kind
 /// of core with instances: by which the memory report scales.

@@ -2,7 +2,7 @@
 //! small scene with and without it.
 
 use crate::scenes::{Compiled, compile_with, small};
-use glam::{DQuat, DVec2, DVec3};
+use glam::{DAffine2, DQuat, DVec2, DVec3};
 use gridel_core::{Effects, Kind, Structure};
 use gridel_host::compile::Options;
 use gridel_host::scene::{
@@ -22,7 +22,7 @@ const TRIANGLE: &str = Kind::Triangle.name();
 const INSTANCES: &str = "instances";
 
 /// A part's name, and how to require it.
-type Requirements = [(&'static str, fn(&mut Scene)); 20];
+type Requirements = [(&'static str, fn(&mut Scene)); 21];
 
 const EFFECTS: Requirements = [
     ("shadow", |scene| scene.render.shadows = true),
@@ -66,6 +66,23 @@ const EFFECTS: Requirements = [
     ("alpha", |scene| {
         hang(scene, |it| 4 * it);
         scene.materials[0].alpha = Some(Alpha::CutOut(0.5));
+    }),
+    ("texture-levels", |scene| {
+        if scene.materials[0].texture.is_none() {
+            hang(scene, |_| 255);
+        }
+        let Material {
+            texture,
+            normal_map,
+            ..
+        } = &mut scene.materials[0];
+        // So small that pixels see several texels.
+        for it in texture
+            .iter_mut()
+            .chain(normal_map.as_mut().map(|it| &mut it.texture))
+        {
+            (it.levels, it.transform) = (true, DAffine2::from_scale(DVec2::splat(8.0)));
+        }
     }),
     ("falloff", |scene| {
         let spot = Spot {

@@ -158,6 +158,7 @@ fn program(part: &str) -> Vec<Footprint> {
         "base" => vec!["triangle"],
         "absorption" => vec!["triangle", "glass", "absorption"],
         "alpha" => vec!["triangle", "texture", "alpha"],
+        "texture-levels" => vec!["triangle", "texture-levels", "texture"],
         "glossy" => vec!["triangle", "glossy", "mirror"],
         "nested" => vec!["triangle", "nested", "glass"],
         "area-light" => vec!["triangle", "falloff", "area-light"],
@@ -200,6 +201,7 @@ fn memory_page_shows_recorded_cost_of_shapes_and_effects() {
         ("normal-map", "base"),
         ("vertex-colors", "base"),
         ("texture", "base"),
+        ("texture-levels", "texture"),
         ("alpha", "texture"),
         ("falloff", "base"),
         ("area-light", "falloff"),
@@ -240,6 +242,7 @@ fn memory_page_shows_recorded_cost_per_hit() {
     for (name, scene) in [
         ("colors of vertices", "vertex-colors"),
         ("bilinear texture, a palette", "texture"),
+        ("the same between two levels", "texture-levels"),
         ("bilinear normal map, a palette", "normal-map"),
         ("light that is a sphere", "sphere-light"),
         ("light that is a rectangle", "rectangle-light"),

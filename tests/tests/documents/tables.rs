@@ -69,7 +69,10 @@ fn blobs() -> Vec<Vec<u8>> {
     };
     let image = scene::Image::new("white", 1, 1, vec![[255; 4]]);
     let image = image.expect("as many pixels");
-    let texture = scene::Texture::of(image.into());
+    let texture = scene::Texture {
+        levels: true,
+        ..scene::Texture::of(image.into())
+    };
     scene.materials[0].normal_map = Some(scene::NormalMap {
         texture: texture.clone(),
         scale: 1.0,

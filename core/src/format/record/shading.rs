@@ -135,8 +135,8 @@ records! {
         #[valid(Shininess: 1..=1024)]
         pub shininess: u16,
         /// Its maps: the lower 12 bits are the number of its [`SurfaceMaps`](crate::format::record::SurfaceMaps), and
-        /// bit 12 is set where these have a texture, bit 13 where its alpha is used, and bit 14 where there is a normal
-        /// map. 0 for none.
+        /// bit 12 is set where these have a texture, bit 13 where its alpha is used, bit 14 where there is a normal
+        /// map, and bit 15 where one of both has levels. 0 for none.
         pub maps: u16,
     }
 }

@@ -1,6 +1,7 @@
 //! Textures, and the maps of materials.
 
 use crate::format::layout::records;
+use crate::target::TEXTURE_LEVELS;
 use bytemuck::{Pod, Zeroable};
 
 records! {
@@ -49,8 +50,9 @@ records! {
         /// RGB565, the lower byte first; 2 as red, green, blue; 3 as red, green, blue, alpha.
         #[valid(TextureForm: 0..=3)]
         pub form: u8,
-        /// 0 for the nearest texel, 1 for the bilinear mean of four.
-        #[valid(TextureFilter: 0..=1)]
+        /// 0 for the nearest texel, 1 for the bilinear mean of four. 2 more if smaller copies follow the texels, each of
+        /// half the width and height, rounded up, down to a single texel: its levels.
+        #[valid(TextureFilter: 0..=3)]
         pub filter: u8,
         /// Beyond the image, along u and v: 0 it repeats, 1 it repeats in a mirror, 2 its edge goes on.
         #[valid(TextureWrap: 0..=2)]
@@ -74,9 +76,35 @@ impl Texture {
         }
     }
 
-    /// Bytes of palette and texels: at most 2^26 and 1024.
+    /// The bit of [`filter`](Self::filter) for the bilinear mean.
+    pub const BILINEAR: u8 = 1;
+
+    /// The bit of [`filter`](Self::filter) for levels.
+    pub const LEVELS: u8 = 2;
+
+    /// Whether levels follow the texels, and are read in this build.
+    pub const fn has_levels(&self) -> bool {
+        TEXTURE_LEVELS && self.filter & Self::LEVELS != 0
+    }
+
+    /// Width and height of the level behind one of this size.
+    pub const fn next_level([width, height]: [u32; 2]) -> [u32; 2] {
+        [width.div_ceil(2), height.div_ceil(2)]
+    }
+
+    /// Texels, those of levels too: less than 2^25.
+    pub const fn texels(&self) -> usize {
+        let mut size = [self.width as u32, self.height as u32];
+        let mut texels = size[0] * size[1];
+        while self.has_levels() && (size[0] > 1 || size[1] > 1) {
+            size = Self::next_level(size);
+            texels += size[0] * size[1];
+        }
+        texels as usize
+    }
+
+    /// Bytes of palette and texels: less than 2^27 and 1024.
     pub const fn bytes(&self) -> usize {
-        let texels = self.width as usize * self.height as usize;
-        self.palette_bytes() + texels * self.texel_bytes()
+        self.palette_bytes() + self.texels() * self.texel_bytes()
     }
 }

@@ -26,7 +26,7 @@ fn look_up(texels: &[u8], texture: Texture, at: [f64; 2]) -> [f64; 3] {
     };
     textures.validate().expect("valid");
     let at = at.map(|it| (it * f64::from(ONE)).floor() as i32);
-    let found = textures.lookup(&texture, at).color;
+    let found = textures.lookup(&texture, at, Footprint::point()).color;
     found.map(|it| f64::from(it) / f64::from(1 << 30))
 }
 
@@ -169,11 +169,17 @@ fn textures_beyond_their_texels_are_rejected() {
     assert!(!check(Texture { form: 4, ..texture }, 99));
     assert!(!check(
         Texture {
-            filter: 2,
+            filter: 4,
             ..texture
         },
         99
     ));
+    // A level of one texel.
+    let leveled = Texture {
+        filter: 2,
+        ..texture
+    };
+    assert!(check(leveled, 15) && !check(leveled, 14));
     assert!(!check(
         Texture {
             wrap: [0, 3],
@@ -212,6 +218,31 @@ fn largest_texture_is_looked_up_at_its_last_texel() {
     assert_eq!(look_up(&texels, texture, [1.0, 1.0]), WHITE);
 }
 
+/// However many texels there are, the last one is there in every form.
+#[test]
+fn last_texels_of_all_sizes_are_found() {
+    for width in 1..=9_u16 {
+        for form in 0..=3 {
+            let texture = Texture {
+                width,
+                height: 1,
+                ..image(form, 0, 2)
+            };
+            let mut texels = vec![0; texture.bytes()];
+            let last = texels.len() - texture.texel_bytes();
+            texels[last..].fill(255);
+            if form == 0 {
+                texels[1020..1024].fill(255);
+            }
+            assert_eq!(
+                look_up(&texels, texture, [1.0, 0.0]),
+                WHITE,
+                "{width} of form {form}"
+            );
+        }
+    }
+}
+
 #[test]
 fn alpha_is_that_of_palettes_and_wide_texels_alone() {
     let colors: Vec<u8> = [0, 85, 170, 255]
@@ -234,7 +265,7 @@ fn alpha_is_that_of_palettes_and_wide_texels_alone() {
             textures.validate().expect("valid");
             let at = |u: f64, v: f64| {
                 let at = [u, v].map(|it| (it * f64::from(ONE)) as i32);
-                f64::from(textures.alpha(&texture, at)) / f64::from(1 << 30)
+                f64::from(textures.alpha(&texture, at, Footprint::point())) / f64::from(1 << 30)
             };
             let has_alpha = matches!(form, 0 | 3);
             let expected = |alpha: f64| if has_alpha { alpha } else { 1.0 };
@@ -271,7 +302,7 @@ fn normals_are_channels_from_minus_1_to_1() {
             ..Textures::none()
         };
         let at = [(u * f64::from(ONE)) as i32, ONE / 2];
-        let found = textures.normal(&texture, at).color;
+        let found = textures.normal(&texture, at, Footprint::point()).color;
         for (found, expected) in found.into_iter().zip(expected) {
             let found = f64::from(found) / f64::from(1 << 30);
             assert!((found - expected).abs() < 1e-6, "{found} {expected}");
@@ -312,5 +343,92 @@ fn normal_maps_without_textures_or_maps_are_rejected() {
             texels: &[0; 3],
         };
         assert_eq!(textures.validate().is_ok(), is_valid, "{normal_maps:?}");
+    }
+}
+
+/// Five by two texels, then three by one, two by one, and one: the red of a texel is its number.
+const PYRAMID: Texture = Texture {
+    first: 0,
+    width: 5,
+    height: 2,
+    form: 2,
+    filter: Texture::LEVELS,
+    wrap: [0; 2],
+};
+
+/// The number of texels that a footprint of this binary logarithm sees at a place, as they are weighted.
+fn number_seen(texture: Texture, texels: &[u8], at: [f64; 2], side: f64) -> f64 {
+    let textures = Textures {
+        textures: &[texture],
+        texels,
+        ..Textures::none()
+    };
+    textures.validate().expect("valid");
+    let at = at.map(|it| (it * f64::from(ONE)) as i32);
+    let footprint = Footprint::of_log2((side * 256.0) as i32);
+    let ([sum], _) = textures.mixed(&texture, at, footprint, |texel| [texel.channels()[0]]);
+    f64::from(sum) / 65_536.0
+}
+
+#[test]
+fn footprints_see_the_texels_of_the_two_levels_next_to_them() {
+    assert_eq!(PYRAMID.texels(), 10 + 3 + 2 + 1);
+    let direct: Vec<u8> = (0..16).flat_map(|it| [it, 0, 0]).collect();
+    let mut palette: Vec<u8> = (0..16).flat_map(|it| [it, 0, 0, 255]).collect();
+    palette.resize(1024, 0);
+    palette.extend(0..16);
+    // The root of the number of texels in a square of texture coordinates.
+    let whole = -(10_f64.log2() / 2.0);
+    let indexed = Texture { form: 0, ..PYRAMID };
+    for (texture, texels) in [(PYRAMID, &direct), (indexed, &palette)] {
+        let seen = |at, level: f64| number_seen(texture, texels, at, whole + level);
+        assert_eq!(seen([0.9, 0.9], -3.0), 9.0);
+        assert_eq!(seen([0.9, 0.9], -0.01), 9.0);
+        for (level, expected) in [
+            (0.0, 9.0),
+            (1.0, 12.0),
+            (2.0, 14.0),
+            (3.0, 15.0),
+            (9.0, 15.0),
+        ] {
+            let found = seen([0.9, 0.9], level);
+            assert!((found - expected).abs() < 0.06, "{level}: {found}");
+        }
+        let between = seen([0.1, 0.1], 1.25);
+        assert!(
+            (between - (0.75 * 10.0 + 0.25 * 13.0)).abs() < 0.06,
+            "{between}"
+        );
+        assert_eq!(Footprint::point().level(&texture), 0);
+    }
+    // Bilinear in each level: halfway between texels 10 and 11, and between 13 and 14.
+    let bilinear = Texture {
+        filter: Texture::LEVELS | Texture::BILINEAR,
+        ..PYRAMID
+    };
+    let found = number_seen(bilinear, &direct, [1.0 / 3.0, 0.5], whole + 1.0);
+    assert!((found - 10.5).abs() < 0.06, "{found}");
+    // Without levels the image alone counts.
+    let plain = Texture {
+        filter: 0,
+        ..PYRAMID
+    };
+    assert_eq!(number_seen(plain, &direct, [0.9, 0.9], 0.0), 9.0);
+}
+
+#[test]
+fn largest_images_have_all_their_levels() {
+    for (width, height, levels) in [(4096, 4096, 12), (4096, 1, 12), (1, 4095, 12), (1, 1, 0)] {
+        let texture = Texture {
+            width,
+            height,
+            ..PYRAMID
+        };
+        let largest = Footprint::of_log2(i32::MAX).level(&texture);
+        assert_eq!(largest, levels << 8, "{width} x {height}");
+        let [(last, weight), _] = Footprint::of_log2(i32::MAX).levels(&texture);
+        assert_eq!((last.size, weight), ([1, 1], 256));
+        assert_eq!(last.first as usize + 1, texture.texels());
+        assert!(texture.bytes() < 1 << 27);
     }
 }

@@ -1,7 +1,8 @@
-//! Images in fewer and fewer bytes.
+//! Images in fewer and fewer bytes, with their levels.
 
 use crate::scene::Image;
 use gridel_core::format::record;
+use std::borrow::Cow;
 use std::collections::{HashMap, HashSet};
 use std::sync::Arc;
 
@@ -21,6 +22,8 @@ pub(super) struct UsedImage {
     pub(super) has_normals: bool,
     /// Whether its alpha is used.
     pub(super) has_alpha: bool,
+    /// Whether smaller copies follow it.
+    pub(super) has_levels: bool,
 }
 
 /// The forms of texels, as [`record::Texture`] numbers them.
@@ -43,15 +46,60 @@ impl Form {
     }
 }
 
-/// An image on its way into a blob.
-pub(super) struct Stored {
-    pub(super) name: String,
+/// Pixels, row by row.
+#[derive(Clone)]
+pub(super) struct Raster {
     pub(super) width: u32,
     pub(super) height: u32,
     pixels: Vec<Roots>,
+}
+
+/// An image on its way into a blob.
+pub(super) struct Stored {
+    pub(super) name: String,
+    pub(super) raster: Raster,
     has_alpha: bool,
     has_normals: bool,
+    pub(super) has_levels: bool,
     pub(super) form: Form,
+}
+
+impl Raster {
+    /// With half the width and height, rounded up: the mean of linear light, or of normals.
+    fn halved(&self, has_normals: bool) -> Self {
+        let [width, height] = record::Texture::next_level([self.width, self.height]);
+        let mut pixels = Vec::with_capacity((width * height) as usize);
+        for y in 0..height {
+            for x in 0..width {
+                let (mut sum, mut alpha) = ([0_u32; 3], 0);
+                for (dx, dy) in [(0, 0), (1, 0), (0, 1), (1, 1)] {
+                    let x = (2 * x + dx).min(self.width - 1);
+                    let y = (2 * y + dy).min(self.height - 1);
+                    let pixel = self.pixels[(y * self.width + x) as usize];
+                    for (sum, channel) in sum.iter_mut().zip(pixel) {
+                        let channel = u32::from(channel);
+                        *sum += if has_normals {
+                            channel
+                        } else {
+                            channel * channel
+                        };
+                    }
+                    alpha += u32::from(pixel[3]);
+                }
+                let [r, g, b] = sum.map(|it| {
+                    let mean = f64::from(it) / 4.0;
+                    let channel = if has_normals { mean } else { libm::sqrt(mean) };
+                    channel.round() as u8
+                });
+                pixels.push([r, g, b, ((alpha + 2) / 4) as u8]);
+            }
+        }
+        Self {
+            width,
+            height,
+            pixels,
+        }
+    }
 }
 
 impl Stored {
@@ -65,23 +113,27 @@ impl Stored {
             let [r, g, b] = [r, g, b].map(|it| channels[usize::from(it)]);
             [r, g, b, if has_alpha { alpha } else { 255 }]
         });
-        let mut stored = Self {
-            name: image.name.clone(),
+        let raster = Raster {
             width,
             height,
             pixels: pixels.collect(),
+        };
+        let mut stored = Self {
+            name: image.name.clone(),
+            raster,
             has_alpha,
             has_normals: used.has_normals,
+            has_levels: used.has_levels,
             form: match has_alpha {
                 true => Form::Rgba8888,
                 false => Form::Rgb888,
             },
         };
-        while stored.width > MOST_SIDE || stored.height > MOST_SIDE {
+        while stored.raster.width > MOST_SIDE || stored.raster.height > MOST_SIDE {
             stored.halve();
         }
         let mut colors = HashSet::new();
-        let is_few = stored.pixels.iter().all(|it| {
+        let is_few = stored.pixels().iter().all(|it| {
             colors.insert(*it);
             colors.len() <= COLORS
         });
@@ -99,10 +151,13 @@ impl Stored {
     fn bytes_as(&self, form: Form) -> u64 {
         let texture = record::Texture {
             first: 0,
-            width: self.width as u16,
-            height: self.height as u16,
+            width: self.raster.width as u16,
+            height: self.raster.height as u16,
             form: form as u8,
-            filter: 0,
+            filter: match self.has_levels {
+                true => record::Texture::LEVELS,
+                false => 0,
+            },
             wrap: [0; 2],
         };
         texture.bytes() as u64
@@ -115,7 +170,7 @@ impl Stored {
             Form::Rgb565 | Form::Rgba8888 if self.bytes_as(Form::Palette) < self.bytes() => {
                 self.form = Form::Palette;
             }
-            _ if self.width * self.height == 1 => return false,
+            _ if self.raster.pixels.len() == 1 => return false,
             _ => {
                 self.halve();
                 let direct = match self.has_alpha {
@@ -130,66 +185,45 @@ impl Stored {
         true
     }
 
-    /// Makes width and height half as large, rounded up: the mean of linear light, or of normals.
     fn halve(&mut self) {
-        let (width, height) = (self.width.div_ceil(2), self.height.div_ceil(2));
-        let mut pixels = Vec::with_capacity((width * height) as usize);
-        for y in 0..height {
-            for x in 0..width {
-                let (mut sum, mut alpha) = ([0_u32; 3], 0);
-                for (dx, dy) in [(0, 0), (1, 0), (0, 1), (1, 1)] {
-                    let x = (2 * x + dx).min(self.width - 1);
-                    let y = (2 * y + dy).min(self.height - 1);
-                    let pixel = self.pixels[(y * self.width + x) as usize];
-                    for (sum, channel) in sum.iter_mut().zip(pixel) {
-                        let channel = u32::from(channel);
-                        *sum += if self.has_normals {
-                            channel
-                        } else {
-                            channel * channel
-                        };
-                    }
-                    alpha += u32::from(pixel[3]);
-                }
-                let [r, g, b] = sum.map(|it| {
-                    let mean = f64::from(it) / 4.0;
-                    let channel = if self.has_normals {
-                        mean
-                    } else {
-                        libm::sqrt(mean)
-                    };
-                    channel.round() as u8
-                });
-                pixels.push([r, g, b, ((alpha + 2) / 4) as u8]);
-            }
+        self.raster = self.raster.halved(self.has_normals);
+    }
+
+    /// The pixels of the image, and those of its levels.
+    fn pixels(&self) -> Cow<'_, [Roots]> {
+        if !self.has_levels {
+            return Cow::Borrowed(&self.raster.pixels);
         }
-        (self.width, self.height, self.pixels) = (width, height, pixels);
+        let mut all = self.raster.pixels.clone();
+        let mut level = self.raster.clone();
+        while level.pixels.len() > 1 {
+            level = level.halved(self.has_normals);
+            all.extend(&level.pixels);
+        }
+        Cow::Owned(all)
     }
 
     /// Palette and texels.
     pub(super) fn encoded(&self) -> Vec<u8> {
+        let pixels = self.pixels();
         match self.form {
-            Form::Rgb888 => self
-                .pixels
-                .iter()
-                .flat_map(|it| [it[0], it[1], it[2]])
-                .collect(),
-            Form::Rgba8888 => self.pixels.as_flattened().to_vec(),
+            Form::Rgb888 => pixels.iter().flat_map(|it| [it[0], it[1], it[2]]).collect(),
+            Form::Rgba8888 => pixels.as_flattened().to_vec(),
             Form::Rgb565 => {
                 let pack = |&[r, g, b, _]: &Roots| {
                     let bits = |root: u8, most: u32| (u32::from(root) * most + 127) / 255;
                     let packed = bits(r, 31) << 11 | bits(g, 63) << 5 | bits(b, 31);
                     (packed as u16).to_le_bytes()
                 };
-                self.pixels.iter().flat_map(pack).collect()
+                pixels.iter().flat_map(pack).collect()
             }
             Form::Palette => {
-                let palette = palette(&self.pixels);
+                let palette = palette(&pixels);
                 let mut bytes: Vec<u8> = Vec::with_capacity(self.bytes() as usize);
                 bytes.extend(palette.as_flattened());
                 bytes.resize(4 * COLORS, 0);
                 let mut nearest: HashMap<Roots, u8> = HashMap::new();
-                bytes.extend(self.pixels.iter().map(|pixel| {
+                bytes.extend(pixels.iter().map(|pixel| {
                     *nearest.entry(*pixel).or_insert_with(|| {
                         let entries = (0..).zip(&palette);
                         let best = entries.min_by_key(|(_, entry)| distance(pixel, entry));

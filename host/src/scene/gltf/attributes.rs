@@ -7,7 +7,7 @@ use crate::scene::texture::texture_transform;
 use crate::scene::{Attributes, Image, Material, NormalMap, SceneError, Texture, Wrap};
 use glam::{DAffine2, DVec2};
 use gltf::image::Source;
-use gltf::texture::{MagFilter, WrappingMode};
+use gltf::texture::{MagFilter, MinFilter, WrappingMode};
 use gltf::{Primitive, Semantic};
 use std::borrow::Cow;
 use std::sync::Arc;
@@ -70,6 +70,9 @@ fn sampled(image: Arc<Image>, texture: &gltf::Texture<'_>, transform: DAffine2) 
     Texture {
         wrap: [wrap(sampler.wrap_s()), wrap(sampler.wrap_t())],
         bilinear: sampler.mag_filter() != Some(MagFilter::Nearest),
+        levels: sampler
+            .min_filter()
+            .is_some_and(|it| !matches!(it, MinFilter::Nearest | MinFilter::Linear)),
         transform,
         ..Texture::of(image)
     }

@@ -249,7 +249,9 @@ fn texture(
     images: &mut Images<'_>,
     lies: DAffine2,
 ) -> Result<Texture, SceneError> {
-    let keys = ["file", "filter", "wrap", "scale", "offset", "rotation"];
+    let keys = [
+        "file", "filter", "levels", "wrap", "scale", "offset", "rotation",
+    ];
     if !value.is_table() {
         return Ok(Texture {
             transform: lies,
@@ -278,6 +280,7 @@ fn texture(
         bilinear: fields.or("filter", true, |value| {
             Ok(value.word(&["linear", "nearest"])? == "linear")
         })?,
+        levels: fields.or("levels", false, Value::boolean)?,
         transform: match is_placed {
             true => texture_transform(scale, rotation.to_radians(), offset),
             false => lies,

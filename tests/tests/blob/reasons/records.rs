@@ -66,11 +66,6 @@ pub(super) fn shading_data() -> Errors {
             it.change(SectionKind::Materials, 1, forge)
         });
     }
-    errors.reason("material 0", Reason::SpareNotZero, |it| {
-        it.change(SectionKind::Materials, 0, |it: &mut Material| {
-            it.maps = 1 << 15
-        })
-    });
     errors.reason("material 0", Reason::MissingEffect, |it| {
         it.header().effects &= !Effects::MIRROR.0
     });
@@ -305,7 +300,7 @@ pub(super) fn textures() -> Errors {
         (Field::TextureWidth, &|it| it.width = 4097),
         (Field::TextureHeight, &|it| it.height = 0),
         (Field::TextureForm, &|it| it.form = 4),
-        (Field::TextureFilter, &|it| it.filter = 2),
+        (Field::TextureFilter, &|it| it.filter = 4),
         (Field::TextureWrap, &|it| it.wrap[1] = 3),
         (Field::FirstTexel, &|it| it.first = 1),
         (Field::FirstTexel, &|it| it.height += 1),

@@ -1,0 +1,95 @@
+//! Texture levels: what is far away shows smaller copies of a texture, whose texels are as large as what a sample sees of it.
+//!
+//! A sample is seen as a cone: one around the ray of a pinhole camera, as wide as the distance to the samples beside it.
+//! Where it meets a surface after a path of any number of rays, the area that it covers is compared with that of texels,
+//! and textures and normal maps are mixed from the two levels next to that. This is the method of T. Akenine-Möller and
+//! others, "Texture Level of Detail Strategies for Real-Time Ray Tracing" (*Ray Tracing Gems*, 2019), but for the area:
+//! they take its longer axis, which blurs too much where several samples share a pixel. With more samples per pixel cones
+//! are narrower, so pictures become sharper and converge to what they are without levels.
+//!
+//! Curved mirrors and lenses change no cone, nor do rough and matt surfaces, which draw the directions of rays at random.
+//! Shadow rays, and rays of the caller's own, see whole images. All of it is integer arithmetic on logarithms, and a ray
+//! that waits holds two bytes more.
+
+use crate::accel::Number;
+use crate::format::Effects;
+use crate::format::record::Material;
+use crate::number::log2::{log2, log2_of_power, log2_of_sum};
+use crate::ray::Ray;
+use crate::scene::textures::Footprint;
+use crate::shade::effect::{Effect, Tracer};
+use crate::shade::surface::Surface;
+
+pub(crate) struct TextureLevels;
+
+impl Effect for TextureLevels {
+    type State<N: Number> = PathLength;
+
+    const EFFECT: Effects = Effects::TEXTURE_LEVELS;
+
+    #[inline(always)]
+    fn is_required_by_material(material: &Material) -> bool {
+        material.maps & Material::MAPS_LEVELS != 0
+    }
+
+    #[inline(always)]
+    fn surface<'s, N: Number, X: Tracer<'s, N>>(
+        tracer: &mut X,
+        path: &mut PathLength,
+        ray: &Ray<N>,
+        surface: &mut Surface<'_, N>,
+    ) {
+        let scene = tracer.scene();
+        if !scene.effects().contains(Self::EFFECT) {
+            return;
+        }
+        // The length of the slopes, from 1 to the square root of 3.
+        let norm = log2_of_ratio(N::recip_norm2(ray.slope)).wrapping_neg() >> 1;
+        let steps = N::far_to_q13(surface.hit.t).unsigned_abs();
+        *path = path.and(log2(steps).wrapping_add(norm));
+        let Some(spread) = tracer
+            .spread()
+            .filter(|_| surface.required.contains(Self::EFFECT))
+        else {
+            return;
+        };
+        let Some(density) = surface.hit.log2_density(scene) else {
+            return;
+        };
+        let cosine = N::from_wide(N::dot(ray.slope, surface.hit.normal)).abs();
+        let width = path.log2_units().wrapping_add(spread);
+        let stretched = norm.wrapping_sub(log2_of_ratio(cosine)) >> 1;
+        surface.footprint = Footprint::of_log2(width.wrapping_add(stretched).wrapping_add(density));
+    }
+}
+
+/// The binary logarithm of a ratio.
+#[inline(always)]
+fn log2_of_ratio<N: Number>(ratio: N) -> i32 {
+    log2(u64::from(ratio.to_q30().unsigned_abs())).wrapping_sub(log2_of_power(30))
+}
+
+/// How long the rays are that led to a hit, all together: 0, or the binary logarithm of 2^-13 units, and 1 more. Bytes, so
+/// that they fill gaps beside other states.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct PathLength([u8; 2]);
+
+impl PathLength {
+    /// Longer by a length with this logarithm.
+    #[inline(always)]
+    fn and(self, log2_steps: i32) -> Self {
+        let longer = match u16::from_le_bytes(self.0).checked_sub(1) {
+            Some(length) => log2_of_sum(length.into(), log2_steps),
+            None => log2_steps,
+        };
+        // Less than 2^65 steps, so far below what there is room for.
+        Self((longer.max(0) as u16).wrapping_add(1).to_le_bytes())
+    }
+
+    #[inline(always)]
+    fn log2_units(self) -> i32 {
+        i32::from(u16::from_le_bytes(self.0))
+            .wrapping_sub(1)
+            .wrapping_sub(log2_of_power(13))
+    }
+}
