@@ -298,7 +298,14 @@ fn formats_see_the_same_levels() {
 /// The mean of all normals of a map that leans to both sides is upright: from afar its surface looks flat.
 #[test]
 fn normal_maps_are_flat_from_afar() {
-    let leaning = |number: u32| [if number % 2 == 0 { 38 } else { 218 }, 128, 200, 255];
+    let leaning = |number: u32| {
+        [
+            if number.is_multiple_of(2) { 38 } else { 218 },
+            128,
+            200,
+            255,
+        ]
+    };
     let image = Image::new("ridges", 32, 32, (0..1024).map(leaning).collect());
     let texture = Texture {
         levels: true,
