@@ -30,7 +30,7 @@
 #define GRIDEL_WORKSPACE_BYTES_MAX 5120
 
 // Bytes of a workspace that is large enough for every scene, in `f64`.
-#define GRIDEL_WORKSPACE_BYTES_MAX_F64 7168
+#define GRIDEL_WORKSPACE_BYTES_MAX_F64 7680
 
 // What a function returns: 0, or why it did nothing. `gridel_text` gives the sentence.
 enum gridel_status

@@ -16,7 +16,7 @@ pub const GRIDEL_STACK_BYTES_MAX: usize = 1928;
 pub const GRIDEL_WORKSPACE_BYTES_MAX: usize = 5120;
 
 /// Bytes of a workspace that is large enough for every scene, in `f64`.
-pub const GRIDEL_WORKSPACE_BYTES_MAX_F64: usize = 7168;
+pub const GRIDEL_WORKSPACE_BYTES_MAX_F64: usize = 7680;
 
 /// A scene: memory of the caller's that `gridel_load` fills in. It refers to the blob, which stays where it is. It may be
 /// moved and copied.
