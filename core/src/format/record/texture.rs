@@ -95,16 +95,17 @@ impl Texture {
     /// Texels, those of levels too: less than 2^25.
     pub const fn texels(&self) -> usize {
         let mut size = [self.width as u32, self.height as u32];
-        let mut texels = size[0] * size[1];
+        let mut texels = size[0].wrapping_mul(size[1]);
         while self.has_levels() && (size[0] > 1 || size[1] > 1) {
             size = Self::next_level(size);
-            texels += size[0] * size[1];
+            texels = texels.wrapping_add(size[0].wrapping_mul(size[1]));
         }
         texels as usize
     }
 
     /// Bytes of palette and texels: less than 2^27 and 1024.
     pub const fn bytes(&self) -> usize {
-        self.palette_bytes() + self.texels() * self.texel_bytes()
+        let texels = self.texels().wrapping_mul(self.texel_bytes());
+        self.palette_bytes().wrapping_add(texels)
     }
 }

@@ -133,7 +133,7 @@ impl Stored {
             stored.halve();
         }
         let mut colors = HashSet::new();
-        let is_few = stored.pixels().iter().all(|it| {
+        let is_few = stored.raster.pixels.iter().all(|it| {
             colors.insert(*it);
             colors.len() <= COLORS
         });
@@ -218,7 +218,7 @@ impl Stored {
                 pixels.iter().flat_map(pack).collect()
             }
             Form::Palette => {
-                let palette = palette(&pixels);
+                let palette = palette(&self.raster.pixels, &pixels);
                 let mut bytes: Vec<u8> = Vec::with_capacity(self.bytes() as usize);
                 bytes.extend(palette.as_flattened());
                 bytes.resize(4 * COLORS, 0);
@@ -242,8 +242,24 @@ fn distance(a: &Roots, b: &Roots) -> u32 {
     3 * apart(0) + 6 * apart(1) + apart(2) + 6 * apart(3)
 }
 
-/// At most [`COLORS`] colors for pixels: all of them, or the means of boxes by Heckbert's median cut (1982).
-fn palette(pixels: &[Roots]) -> Vec<Roots> {
+/// At most [`COLORS`] colors for the pixels of an image, and for these with those of its levels. If those of the image fit,
+/// all of them are among the colors, and others where there is room.
+fn palette(image: &[Roots], all: &[Roots]) -> Vec<Roots> {
+    let own: HashSet<Roots> = image.iter().copied().collect();
+    if own.len() > COLORS {
+        return median_cut(all, COLORS);
+    }
+    let mut colors = median_cut(image, COLORS);
+    let others = all.iter().filter(|it| !own.contains(*it)).copied();
+    let others: Vec<Roots> = others.collect();
+    if colors.len() < COLORS && !others.is_empty() {
+        colors.extend(median_cut(&others, COLORS - colors.len()));
+    }
+    colors
+}
+
+/// At most so many colors for pixels: all of theirs, or the means of boxes by Heckbert's median cut (1982).
+fn median_cut(pixels: &[Roots], most: usize) -> Vec<Roots> {
     let mut counts: HashMap<Roots, u64> = HashMap::new();
     for pixel in pixels {
         *counts.entry(*pixel).or_default() += 1;
@@ -251,7 +267,7 @@ fn palette(pixels: &[Roots]) -> Vec<Roots> {
     let mut all: Vec<(Roots, u64)> = counts.into_iter().collect();
     all.sort_unstable();
     let mut boxes = vec![all];
-    while boxes.len() < COLORS {
+    while boxes.len() < most {
         let range = |colors: &[(Roots, u64)], k: usize| {
             let channel = colors.iter().map(|(color, _)| color[k]);
             let highest = channel.clone().max().unwrap_or(0);
@@ -296,8 +312,18 @@ mod tests {
     #[test]
     fn palette_of_few_colors_is_exact() {
         let pixels: Vec<Roots> = (0..=255).map(|it| [it, 255 - it, 7, it / 2]).collect();
-        let mut found = palette(&pixels);
-        found.sort_unstable();
-        assert_eq!(found, pixels);
+        let sorted = |mut colors: Vec<Roots>| {
+            colors.sort_unstable();
+            colors
+        };
+        assert_eq!(sorted(palette(&pixels, &pixels)), pixels);
+        // There is no room for another.
+        let more = [&pixels[..], &[[9, 9, 9, 9]; 4]].concat();
+        assert_eq!(sorted(palette(&pixels, &more)), pixels);
+        // For one of two there is.
+        let (few, others) = (&pixels[1..], [[0, 0, 0, 255], [2, 0, 0, 255]]);
+        let found = palette(few, &[few, &others].concat());
+        assert!(few.iter().all(|it| found.contains(it)) && found.contains(&[1, 0, 0, 255]));
+        assert_eq!(found.len(), COLORS);
     }
 }
