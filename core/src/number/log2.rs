@@ -15,7 +15,7 @@ pub(crate) fn log2(number: u64) -> i32 {
     let number = number.max(1);
     let zeros = number.leading_zeros();
     // The digits behind the first one: x of 1 + x, with 16 fraction bits.
-    let x = ((number << zeros) >> 47) as u32 & 0xffff;
+    let x = (number.wrapping_shl(zeros) >> 47) as u32 & 0xffff;
     // log2(1 + x) is nearly x + 0.346 x (1 - x).
     let bow = (x.wrapping_mul(0x1_0000_u32.wrapping_sub(x)) >> 16).wrapping_mul(22_700) >> 16;
     let fraction = x.wrapping_add(bow).wrapping_add(128) >> (16 - LOG2_BITS);
@@ -27,7 +27,7 @@ pub(crate) fn log2_of_length(vector: [i64; 3]) -> i32 {
     let [x, y, z] = vector.map(i64::unsigned_abs);
     // Components below 2^31, whose squares have room.
     let excess = 33_u32.saturating_sub((x | y | z).leading_zeros());
-    let square = |it: u64| (it >> excess).wrapping_mul(it >> excess);
+    let square = |it: u64| it.wrapping_shr(excess).wrapping_mul(it.wrapping_shr(excess));
     let sum = square(x).wrapping_add(square(y)).wrapping_add(square(z));
     (log2(sum) >> 1).wrapping_add(log2_of_power(excess.cast_signed()))
 }
@@ -43,8 +43,8 @@ pub(crate) fn log2_of_sum(a: i32, b: i32) -> i32 {
     // 2^-x is nearly 1 - x / 2 - 0.172 x (1 - x), for x from 0 to 1: with 16 fraction bits.
     let x = (apart & 255) << 8;
     let bow = (x.wrapping_mul(0x1_0000_u32.wrapping_sub(x)) >> 16).wrapping_mul(11_300) >> 16;
-    let power = 0x1_0000_u32.wrapping_sub(x >> 1).wrapping_sub(bow) >> whole;
-    let sum = 0x1_0000_u32.wrapping_add(power);
+    let power = 0x1_0000_u32.wrapping_sub(x >> 1).wrapping_sub(bow);
+    let sum = 0x1_0000_u32.wrapping_add(power.wrapping_shr(whole));
     larger
         .wrapping_add(log2(sum.into()))
         .wrapping_sub(log2_of_power(16))
