@@ -27,7 +27,10 @@ pub(crate) fn log2_of_length(vector: [i64; 3]) -> i32 {
     let [x, y, z] = vector.map(i64::unsigned_abs);
     // Components below 2^31, whose squares have room.
     let excess = 33_u32.saturating_sub((x | y | z).leading_zeros());
-    let square = |it: u64| it.wrapping_shr(excess).wrapping_mul(it.wrapping_shr(excess));
+    let square = |it: u64| {
+        it.wrapping_shr(excess)
+            .wrapping_mul(it.wrapping_shr(excess))
+    };
     let sum = square(x).wrapping_add(square(y)).wrapping_add(square(z));
     (log2(sum) >> 1).wrapping_add(log2_of_power(excess.cast_signed()))
 }
