@@ -10,4 +10,4 @@ pub use crate::accel::hierarchy::bvh::walk as walk_bvh;
 pub use crate::accel::hierarchy::direction::{DIRECTION_COUNTS, DIRECTIONS};
 pub use crate::accel::hierarchy::reach::Reach;
 pub use crate::accel::hierarchy::slabs::Volume;
-pub use crate::render::trace::bytes_per_ray;
+pub use crate::render::workspace::bytes_per_ray;

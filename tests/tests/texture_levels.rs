@@ -122,10 +122,10 @@ fn looked_up<N: Number>(scene: &Scene<'_>, settings: Settings) -> Vec<(DVec2, f6
 }
 
 /// The level at a place of the floor, seen from an eye, by the definition.
-fn expected(at: DVec2, eye: DVec3, settings: Settings) -> f64 {
+fn expected(at: DVec2, eye: DVec3, fov: f64, settings: Settings) -> f64 {
     let way = DVec3::new(at.x, 0.0, at.y) - eye;
     let samples = f64::from(settings.samples).sqrt();
-    let spread = 2.0 * (FOV / 2.0).to_radians().tan() / f64::from(settings.height) / samples;
+    let spread = 2.0 * (fov / 2.0).to_radians().tan() / f64::from(settings.height) / samples;
     let cosine = way.y.abs() / way.length();
     let texels = PER_UNIT * DVec2::from(TEXELS.map(f64::from));
     let density = (texels.x * texels.y).sqrt();
@@ -153,7 +153,7 @@ fn check(what: &str, scene: &scene::Scene, eye: DVec3, samples: u16) {
         ] {
             let mut seen = [f64::INFINITY, f64::NEG_INFINITY];
             for (at, level) in &looked {
-                let expected = expected(at / PER_UNIT, eye, settings);
+                let expected = expected(at / PER_UNIT, eye, FOV, settings);
                 assert!(
                     (level - expected).abs() < 0.06,
                     "{what}, {format:?}, {height}: {level} for {expected} at {at}"
@@ -171,6 +171,47 @@ fn check(what: &str, scene: &scene::Scene, eye: DVec3, samples: u16) {
 fn levels_are_those_of_the_footprints_of_samples() {
     for samples in [1, 4, 64] {
         check("the floor", &scene(true), EYE, samples);
+    }
+}
+
+/// From 10 to 100,000 times the floor's size away, through lenses as long.
+#[test]
+fn levels_seen_from_afar_are_those_of_the_distance() {
+    for distance in [8e2, 8e4, 8e6] {
+        let mut scene = scene(true);
+        let way = DVec3::new(0.0, 0.3, 1.0).normalize() * distance;
+        let fov = f64::to_degrees(2.0 * (4.0 / distance).atan());
+        scene.camera = Some(Camera {
+            eye: way,
+            fov_degrees: fov,
+            ..scene.camera.expect("a camera")
+        });
+        let blob = blob_of(&scene);
+        let scene = blob.scene().expect("valid");
+        let settings = Settings {
+            width: 24,
+            height: 24,
+            samples: 1,
+            depth: 0,
+            ..Settings::of(&scene)
+        };
+        let check = |format: Format, looked: Vec<(DVec2, f64)>| {
+            assert!(looked.len() > 100, "{}", looked.len());
+            for (at, level) in looked {
+                assert!((1.0..5.5).contains(&level), "{level}");
+                let expected = expected(at / PER_UNIT, way, fov, settings);
+                assert!(
+                    (level - expected).abs() < 0.06,
+                    "{format:?}, {distance}: {level} for {expected}"
+                );
+            }
+        };
+        check(Format::Fixed, looked_up::<Fixed>(&scene, settings));
+        check(Format::F64, looked_up::<f64>(&scene, settings));
+        // Directions of `f32` are too coarse for longer lenses.
+        if distance < 1e5 {
+            check(Format::F32, looked_up::<f32>(&scene, settings));
+        }
     }
 }
 
@@ -206,7 +247,7 @@ fn levels_behind_a_mirror_are_those_of_the_whole_path() {
     let mirrored = DVec3::new(EYE.x, EYE.y, -6.0 - EYE.z);
     let mut count = [0; 2];
     for (at, level) in looked_up::<f32>(&scene, settings) {
-        let near = |eye| (level - expected(at / PER_UNIT, eye, settings)).abs() < 0.06;
+        let near = |eye| (level - expected(at / PER_UNIT, eye, FOV, settings)).abs() < 0.06;
         // Before the mirror both are seen.
         let place = at.y / PER_UNIT.y;
         assert!(

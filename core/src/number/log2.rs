@@ -1,4 +1,4 @@
-//! Binary logarithms of integers, with 8 fraction bits, for what is only compared in size. Each is off by less than 0.02.
+//! Binary logarithms of integers, with 8 fraction bits. Each is off by less than 0.02, and takes a few instructions.
 
 /// Fraction bits of a logarithm.
 pub(crate) const LOG2_BITS: u32 = 8;

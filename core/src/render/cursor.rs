@@ -7,7 +7,7 @@ use crate::render::order::{Block, CoarseToFine, Rows};
 use crate::render::pixel::Pixel;
 use crate::render::renderer::Renderer;
 use crate::render::samples::Samples;
-use crate::render::trace::WorkspaceView;
+use crate::render::workspace::WorkspaceView;
 
 /// A rectangle of a picture that is rendered a few rays at a time, for firmware with deadlines.
 ///

@@ -4,7 +4,7 @@ use crate::accel::{DynAccel, Number};
 use crate::format::Effects;
 use crate::format::limits::MAX_STACK_DEPTH;
 use crate::render::renderer::{RenderError, Renderer, Settings};
-use crate::render::trace::Workspace;
+use crate::render::workspace::Workspace;
 use crate::scene::Scene;
 
 impl<'s, 'a> Renderer<'s, 'a, f32, DynAccel, { Effects::AVAILABLE.0 }> {

@@ -8,7 +8,7 @@ use crate::accel::{Accel, Number};
 use crate::observe::count::Observer;
 use crate::render::pixel::{Pixel, luminance, quantize};
 use crate::render::renderer::Renderer;
-use crate::render::trace::WorkspaceView;
+use crate::render::workspace::WorkspaceView;
 use embedded_graphics_core::geometry::{Point, Size};
 use embedded_graphics_core::pixelcolor::{
     Bgr555, Bgr565, Bgr666, Bgr888, BinaryColor, Gray2, Gray4, Gray8, Rgb555, Rgb565, Rgb666,

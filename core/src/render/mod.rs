@@ -5,6 +5,8 @@
 //! | a camera that the program places | `camera.rs` |
 //! | the point of a sample in its pixel, and the direction of its ray | `sample.rs`, `pixel_rays.rs` |
 //! | the radiance of a ray, with its secondary rays | `trace.rs` |
+//! | the rays that wait, and their memory | `workspace.rs` |
+//! | how far samples are apart | `spread.rs` |
 //! | renderers without a choice of format, structure and effects | `defaults.rs` |
 //! | the samples of a pixel, the pixels of a rectangle | `samples.rs`, `rows.rs` |
 //! | the moments while a shutter is open | `shutter.rs` |
@@ -29,7 +31,8 @@ mod samples;
 mod shutter;
 mod spread;
 mod start;
-pub(crate) mod trace;
+mod trace;
+pub(crate) mod workspace;
 
 pub use camera::{Camera, CameraError, Up};
 pub use cursor::Cursor;
@@ -37,4 +40,4 @@ pub use order::{Block, CoarseToFine, Rows};
 pub use pixel::{Pixel, Rgb565, Rgb888};
 pub use renderer::{RenderError, Renderer, Settings};
 pub use shutter::Shutter;
-pub use trace::{Workspace, WorkspaceView};
+pub use workspace::{Workspace, WorkspaceView};

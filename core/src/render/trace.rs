@@ -12,9 +12,7 @@
 //! The loop is compiled for a set of effects; others cost neither code nor time. It names no effect, and calls the
 //! list of effects at the places that `shade` lists.
 
-use crate::accel::stack::{Stack, StackView};
 use crate::accel::{Accel, Number};
-use crate::format::Effects;
 use crate::format::record::Light;
 use crate::observe::count::Observer;
 use crate::observe::event::{Event, RayKind, Source};
@@ -22,6 +20,7 @@ use crate::query::{Hit, any_hit, closest_hit};
 use crate::ray::Ray;
 use crate::render::spread::Spread;
 use crate::render::start::Start;
+use crate::render::workspace::{Pending, State, WorkspaceView};
 use crate::scene::Scene;
 use crate::scene::textures::Footprint;
 use crate::shade::effect::{EffectList, Tracer};
@@ -32,81 +31,6 @@ use crate::shade::surface::{
 use crate::shade::{All, Color};
 use crate::target::inline_on_boards;
 use core::marker::PhantomData;
-use heapless::{Vec, VecView};
-
-/// The state that effects add to a ray.
-type State<N> = <All as EffectList>::State<N>;
-
-/// A ray that waits for its turn.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Pending<N: Number> {
-    origin: [N; 3],
-    direction: [N; 3],
-    weight: Color<N>,
-    depth: u8,
-    kind: RayKind,
-    state: State<N>,
-}
-
-/// Bytes of a ray that waits, in a build whose effects are these.
-pub fn bytes_per_ray<N: Number>(effects: Effects) -> usize {
-    let numbers = size_of::<([N; 3], [N; 3], Color<N>)>();
-    let bytes = size_of::<(u8, RayKind)>().wrapping_add(All::state_bytes::<N>(effects));
-    numbers
-        .wrapping_add(bytes)
-        .next_multiple_of(align_of::<N>())
-}
-
-/// Everything that rendering writes to beside the pixels: the caller owns it, and it is used again
-/// for every pixel.
-///
-/// `STACK` must be at least the blob's [stack depth](Scene::stack_depth), `WORK` at least
-/// [`work_depth`](crate::format::limits::work_depth) of the ray depth. It takes 12 bytes per entry of the stack and, in `f32` and
-/// `fixed`, 40 bytes a place for a ray, up to 48 in builds with the effects `nested`, `texture-levels` and `indirect`.
-#[derive(Debug)]
-pub struct Workspace<N: Number, const STACK: usize, const WORK: usize> {
-    stack: Stack<STACK>,
-    work: Vec<Pending<N>, WORK>,
-}
-
-impl<N: Number, const STACK: usize, const WORK: usize> Workspace<N, STACK, WORK> {
-    /// An empty workspace.
-    ///
-    /// ```
-    /// use gridel_core::{Fixed, Workspace};
-    ///
-    /// // A traversal stack of 24 entries, and room for 5 rays that wait.
-    /// static mut SPACE: Workspace<Fixed, 24, 5> = Workspace::new();
-    /// assert!(size_of::<Workspace<Fixed, 24, 5>>() < 600);
-    /// ```
-    pub const fn new() -> Self {
-        Self {
-            stack: Stack::new(),
-            work: Vec::new(),
-        }
-    }
-
-    /// The workspace as renderers take it.
-    pub fn as_view(&mut self) -> WorkspaceView<'_, N> {
-        WorkspaceView {
-            stack: self.stack.as_view(),
-            work: &mut self.work,
-        }
-    }
-}
-
-impl<N: Number, const STACK: usize, const WORK: usize> Default for Workspace<N, STACK, WORK> {
-    fn default() -> Self {
-        Self::new()
-    }
-}
-
-/// A [`Workspace`] whose sizes are not part of its type.
-#[derive(Debug)]
-pub struct WorkspaceView<'w, N: Number> {
-    pub(super) stack: &'w mut StackView,
-    pub(super) work: &'w mut VecView<Pending<N>>,
-}
 
 /// The parts of the scene and the renderer that the ray loop uses.
 pub(super) struct Loop<'s, 'a> {

@@ -46,7 +46,7 @@ impl Effect for TextureLevels {
         // The length of the slopes, from 1 to the square root of 3.
         let norm = log2_of_ratio(N::recip_norm2(ray.slope)).wrapping_neg() >> 1;
         let steps = N::far_to_q13(surface.hit.t).unsigned_abs();
-        *path = path.and(log2(steps).wrapping_add(norm));
+        *path = path.longer_by(log2(steps).wrapping_add(norm));
         let Some(spread) = tracer
             .spread()
             .filter(|_| surface.required.contains(Self::EFFECT))
@@ -69,15 +69,15 @@ fn log2_of_ratio<N: Number>(ratio: N) -> i32 {
     log2(u64::from(ratio.to_q30().unsigned_abs())).wrapping_sub(log2_of_power(30))
 }
 
-/// How long the rays are that led to a hit, all together: 0, or the binary logarithm of 2^-13 units, and 1 more. Bytes, so
-/// that they fill gaps beside other states.
+/// How long the rays are that led to a hit, all together: the binary logarithm of that length in 2^-13 units, plus 1; 0
+/// where no ray has been followed yet. Bytes, so that they fill gaps beside other states.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct PathLength([u8; 2]);
 
 impl PathLength {
-    /// Longer by a length with this logarithm.
+    /// The sum with a length of which the logarithm is given.
     #[inline(always)]
-    fn and(self, log2_steps: i32) -> Self {
+    fn longer_by(self, log2_steps: i32) -> Self {
         let longer = match u16::from_le_bytes(self.0).checked_sub(1) {
             Some(length) => log2_of_sum(length.into(), log2_steps),
             None => log2_steps,
