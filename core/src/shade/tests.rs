@@ -25,6 +25,7 @@ macro_rules! with_mocks {
 }
 
 with_mocks! {
+    Print = 21,
     Shift = 22,
     Fog = 23,
     Tint = 24,
@@ -117,6 +118,26 @@ fn surface_mock_tints_diffuse_light() {
         let tinted = red == 0 && green > 0 && blue == 0;
         assert!(tinted || with == background && with == without, "{with:?}");
     }
+}
+
+#[test]
+fn surface_mock_changes_the_normal_that_lights_are_computed_with() {
+    let (without_lights, _) = picture::<f32, { TRUE | Print::BITS | Matt::BITS }>(0);
+    let (found, _) = picture::<f32, { TRUE | Print::BITS }>(0);
+    assert_eq!(found, without_lights);
+}
+
+#[test]
+fn surface_mock_paints_by_texture_coordinates() {
+    let background = background();
+    let (pixels, _) = picture::<f32, { TRUE | Print::BITS | Matt::BITS }>(0);
+    let mut count = [0; 2];
+    for pixel in pixels.into_iter().filter(|&pixel| pixel != background) {
+        let [red, green, blue] = pixel;
+        assert_eq!([red, blue], [0, 0]);
+        count[usize::from(green > 0)] += 1;
+    }
+    assert!(count[0] > 5 && count[1] > 5, "{count:?}");
 }
 
 #[test]

@@ -224,3 +224,25 @@ impl Effect for Trail {
         *radiance = Color::radiance([*surfaces * (1 << 20) / Self::PARTS; 3]);
     }
 }
+
+/// Paints surfaces green where their second texture coordinate is above 0, and black elsewhere, and takes the normal for
+/// shading away.
+pub(crate) struct Print;
+
+impl Effect for Print {
+    type State<N: Number> = ();
+
+    const EFFECT: Effects = Effects(Self::BITS);
+
+    fn surface<'s, N: Number, X: Tracer<'s, N>>(
+        _: &mut X,
+        (): &mut (),
+        _: &Ray<N>,
+        surface: &mut Surface<'_, N>,
+    ) {
+        let [_, v] = surface.hit.texture_coordinates();
+        let green = if v > N::ZERO { N::ONE } else { N::ZERO };
+        surface.diffuse = Color([N::ZERO, green, N::ZERO]);
+        surface.shading_normal = [N::ZERO; 3];
+    }
+}
