@@ -34,7 +34,7 @@ pub fn bytes_per_ray<N: Number>(effects: Effects) -> usize {
 /// Everything that rendering writes to beside the pixels: the caller owns it, and it is used again
 /// for every pixel.
 ///
-/// `STACK` must be at least the blob's [stack depth](Scene::stack_depth), `WORK` at least
+/// `STACK` must be at least the blob's [stack depth](crate::Scene::stack_depth), `WORK` at least
 /// [`work_depth`](crate::format::limits::work_depth) of the ray depth. It takes 12 bytes per entry of the stack and, in `f32` and
 /// `fixed`, 40 bytes a place for a ray, up to 48 in builds with the effects `nested`, `texture-levels` and `indirect`.
 #[derive(Debug)]
