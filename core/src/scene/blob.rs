@@ -5,7 +5,9 @@ use crate::format::environment::Environment;
 use crate::format::lens::Lens;
 use crate::format::light_form::LightForm;
 use crate::format::limits::MAX_MEDIA;
-use crate::format::record::{Emission, Header, Light, Material, Texture, UnitBox, View};
+use crate::format::record::{
+    Emission, Header, Light, Material, SurfaceMaps, Texture, UnitBox, View,
+};
 use crate::format::{Effects, Indices, Kind, Structure};
 use crate::geometry::{Geometry, PrimitiveId};
 use crate::instances::placed::Placed;
@@ -114,7 +116,7 @@ impl<'a> Scene<'a> {
 
     /// The light that an object sends out.
     #[inline(always)]
-    pub(crate) fn emission(&self, object: u32) -> Option<&'a Emission> {
+    pub fn emission(&self, object: u32) -> Option<&'a Emission> {
         let number = self.material_number(object);
         self.emissions().get(number as usize)
     }
@@ -139,7 +141,7 @@ impl<'a> Scene<'a> {
 
     /// The place of an object's material in the order of media; `None` for one without a priority.
     #[inline(always)]
-    pub(crate) fn place_among_media(&self, object: u32) -> Option<u8> {
+    pub fn place_among_media(&self, object: u32) -> Option<u8> {
         let number = self.material_number(object);
         let mut media = self.media().iter().take(MAX_MEDIA);
         let place = media.position(|&medium| medium == number)?;
@@ -156,7 +158,7 @@ impl<'a> Scene<'a> {
 
     /// The α of an object's facets; `None` for a smooth one.
     #[inline(always)]
-    pub(crate) fn roughness(&self, object: u32) -> Option<i32> {
+    pub fn roughness(&self, object: u32) -> Option<i32> {
         let rough = self.rough.get()?;
         let number = self.material_number(object);
         let alpha = rough.alphas.get(number as usize).copied();
@@ -165,14 +167,14 @@ impl<'a> Scene<'a> {
 
     /// Whether rays meet a surface that shines as a light does. It is known where materials are rough.
     #[inline(always)]
-    pub(crate) fn is_shown(&self, light: &Light) -> bool {
+    pub fn is_shown(&self, light: &Light) -> bool {
         let mark = || self.rough.get()?.shown_forms.get(light.form()? as usize);
         mark() == Some(&1)
     }
 
     /// The form of a light.
     #[inline(always)]
-    pub(crate) fn light_form(&self, light: &Light) -> Option<&'a LightForm> {
+    pub fn light_form(&self, light: &Light) -> Option<&'a LightForm> {
         self.light_forms().get(light.form()? as usize)
     }
 
@@ -336,6 +338,21 @@ impl<'a> Scene<'a> {
         )
     }
 
+    /// The alpha of a material's texture at coordinates with 20 fraction bits: a ratio with 30 fraction bits. `None` of a
+    /// material that does not use it. Of a texture with levels it is that of the whole image.
+    pub fn texture_alpha(&self, material: &Material, coordinates: [i32; 2]) -> Option<i32> {
+        let maps = self.surface_maps(material)?;
+        let textures = self.textures.get()?;
+        let texture = textures.texture(maps.color)?;
+        (material.maps & Material::MAPS_ALPHA != 0)
+            .then(|| textures.alpha(texture, coordinates, Footprint::point()))
+    }
+
+    /// The texture of a material and how its alpha is used; `None` of a material without one.
+    pub fn surface_maps(&self, material: &Material) -> Option<&'a SurfaceMaps> {
+        self.textures.get()?.maps_of(material)
+    }
+
     /// The environment.
     pub fn environment(&self) -> Option<&'a Environment> {
         self.environment.get()?.record
@@ -346,6 +363,21 @@ impl<'a> Scene<'a> {
     pub fn environment_radiance(&self, place: [i32; 2]) -> Option<[i32; 3]> {
         let map = self.environment.get()?;
         Some(map.mixed(map.record?, place))
+    }
+
+    /// A random place of the octahedral map, drawn in proportion to the light of its texels with a point of the unit square
+    /// that has 32 fraction bits; `None` without an environment.
+    pub fn environment_place(&self, point: [u32; 2]) -> Option<[i32; 2]> {
+        let map = self.environment.get()?;
+        Some(map.draw(map.record?, point))
+    }
+
+    /// What the map brings as a light from a place that was drawn, over the density with which it is drawn and π, with
+    /// 20 fraction bits, given half the sum of the magnitudes of its direction's components, with 30. `None` without an
+    /// environment.
+    pub fn environment_light(&self, place: [i32; 2], half_sum: i32) -> Option<[i32; 3]> {
+        let map = self.environment.get()?;
+        Some(map.sampled(map.record?, place, half_sum))
     }
 
     /// A primitive as it lies on the lattice, given by its kind and its slot among those of that kind.

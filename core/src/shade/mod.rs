@@ -26,7 +26,7 @@ pub(crate) mod effect;
 pub(crate) mod facets;
 pub(crate) mod light;
 mod material;
-pub(crate) mod sampler;
+pub mod sampler;
 pub(crate) mod surface;
 
 use crate::format::effects::{Effects, effects};

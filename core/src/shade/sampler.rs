@@ -34,7 +34,7 @@
 
 /// The points of one sample of a pixel.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) struct Sampler {
+pub struct Sampler {
     pixel: [u16; 2],
     sample: u16,
 }
@@ -42,7 +42,7 @@ pub(crate) struct Sampler {
 impl Sampler {
     /// Of a sample, counted from 0, of a pixel of the picture.
     #[inline(always)]
-    pub(crate) fn new(pixel: [u16; 2], sample: u16) -> Self {
+    pub fn new(pixel: [u16; 2], sample: u16) -> Self {
         Self { pixel, sample }
     }
 
@@ -57,7 +57,7 @@ impl Sampler {
     /// `bounce` tells rays of a sample apart; `dimension` tells apart what is drawn for one ray: two effects, or two
     /// lights, with the same number would draw the same point. It has at most 16 bits.
     #[inline(never)]
-    pub(crate) fn point(self, bounce: u16, dimension: u16) -> [u32; 2] {
+    pub fn point(self, bounce: u16, dimension: u16) -> [u32; 2] {
         let [x, y] = self.pixel;
         let place = mixed(u32::from(x) | u32::from(y) << 16);
         let seed = mixed(place ^ (u32::from(bounce) | u32::from(dimension) << 16));

@@ -3,15 +3,10 @@
 //! With `q` a point as seen from the base, `w` the axis, `h = w.w` and `a = q.w`, the mantle is where
 //! `h (h q.q - a^2) = (r0 h + (r1 - r0) a)^2`, of which only the nappe counts where the right side's root is positive.
 
-use super::crossing::{Crossing, Grazes, Ray, compare, exact, flat_normal};
+use super::crossing::{APEX, BASE, Crossing, Grazes, MANTLE, Ray, compare, exact, flat_normal};
 use super::number::*;
 use super::world::Form;
 use std::cmp::Ordering;
-
-/// Numbers of the parts.
-pub const MANTLE: u8 = 0;
-pub const BASE: u8 = 1;
-pub const APEX: u8 = 2;
 
 /// One end of an interval on the line; `None` reaches without end.
 type End<N> = Option<Crossing<N>>;

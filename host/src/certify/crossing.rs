@@ -3,6 +3,11 @@
 use super::number::*;
 use std::cmp::Ordering;
 
+/// Numbers of the parts of a cone.
+pub const MANTLE: u8 = 0;
+pub const BASE: u8 = 1;
+pub const APEX: u8 = 2;
+
 /// A ray. Lengths are in lattice steps; t counts directions, of any length.
 #[derive(Clone, Copy, Debug)]
 pub struct Ray<N> {
@@ -20,9 +25,9 @@ pub enum Start {
         /// The first primitive of its form: of those, each is left alike.
         twin: u32,
         part: u8,
-        /// The plane of a flat surface.
-        plane: u32,
-        /// Planes of other surfaces that it lies in exactly.
+        /// The surface that the start lies in, if primitives may share it.
+        surface: u32,
+        /// Planes that it lies in exactly, too.
         also: [u32; 2],
         /// Whether it goes to the other side than that of the normal.
         inward: bool,

@@ -60,7 +60,18 @@ fn up(radius: f64) -> f64 {
 
 /// At least the magnitude.
 fn magnitude(big: &Big) -> f64 {
+    if *big == zero() {
+        return 0.0;
+    }
     up(big.to_f64().value().abs())
+}
+
+/// A bound of a product: 0 if a factor is, and above it if it is too small for a float.
+fn product(a: f64, b: f64) -> f64 {
+    if a == 0.0 || b == 0.0 {
+        return 0.0;
+    }
+    up(a * b)
 }
 
 fn zero() -> Big {
@@ -145,14 +156,10 @@ impl Mul for Ball {
     fn mul(self, other: Self) -> Self {
         on_balls(|balls| {
             let ((a, r), (b, s)) = (balls.get(self), balls.get(other));
-            let product = balls.context().mul(a.repr(), b.repr());
-            let product = product.expect("finite numbers").value_with_exact();
-            let radius = if r == 0.0 && s == 0.0 {
-                0.0
-            } else {
-                up(magnitude(a) * s) + up(magnitude(b) * r) + up(r * s)
-            };
-            balls.rounded(product, radius)
+            let exact = balls.context().mul(a.repr(), b.repr());
+            let exact = exact.expect("finite numbers").value_with_exact();
+            let radius = product(magnitude(a), s) + product(magnitude(b), r) + product(r, s);
+            balls.rounded(exact, radius)
         })
     }
 }
@@ -205,7 +212,8 @@ impl Enclosure for Ball {
             let ((a, r), (b, s)) = (balls.get(self), balls.get(divisor));
             let quotient = balls.context().div(a.repr(), b.repr());
             let quotient = quotient.expect("finite numbers").value_with_exact();
-            let radius = if r == 0.0 && s == 0.0 {
+            // 0 over anything is 0.
+            let radius = if r == 0.0 && (s == 0.0 || *a == zero()) {
                 0.0
             } else {
                 // |a / b - (a + r') / (b + s')| <= (r + |a / b| s) / (|b| - s)

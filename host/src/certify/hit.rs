@@ -1,7 +1,9 @@
 //! Hits, and surfaces as they are shaded.
 
 use super::crossing::Start;
+use super::media::{Inside, Interface};
 use super::number::*;
+use super::path::Path;
 use gridel_core::format::record::Material;
 
 /// A hit: where, and the surface there.
@@ -19,8 +21,9 @@ pub struct Hit<N> {
     /// The first primitive of the same form, from which a ray starts as well.
     pub twin: u32,
     pub part: u8,
-    pub plane: u32,
-    /// Planes of other surfaces that the point lies in exactly, at an edge.
+    /// See [`Solid::surfaces`](super::world::Solid::surfaces).
+    pub surface: u32,
+    /// Planes that the point lies in exactly, too, at an edge.
     pub also: [u32; 2],
 }
 
@@ -40,7 +43,7 @@ impl<N: Enclosure> Hit<N> {
             instance: self.instance,
             twin: self.twin,
             part: self.part,
-            plane: self.plane,
+            surface: self.surface,
             also: self.also,
             inward: !outward,
         }
@@ -49,20 +52,19 @@ impl<N: Enclosure> Hit<N> {
 
 /// A surface as it is shaded.
 pub struct Seen<'h, N> {
+    /// The ray that met it.
+    pub path: &'h Path<N>,
     pub hit: &'h Hit<N>,
     pub material: &'h Material,
     pub normal: Three<N>,
+    /// That of the ray, of length 1.
     pub direction: Three<N>,
     pub diffuse: Three<N>,
-    pub depth: u8,
-}
-
-/// A radiance with 20 fraction bits.
-pub fn radiance_of<N: Enclosure>(q20: i32) -> N {
-    N::scaled(q20.into(), 20)
-}
-
-/// A ratio with 30 fraction bits.
-pub fn ratio_of<N: Enclosure>(q30: i32) -> N {
-    N::scaled(q30.into(), 30)
+    /// The ratio of the light from here that arrives at the eye.
+    pub weight: Three<N>,
+    pub interface: Interface<N>,
+    /// What a ray on the far side is inside of.
+    pub beyond: Inside,
+    /// Diffuse reflections that led here.
+    pub reflections: u8,
 }

@@ -1,23 +1,34 @@
 //! Lights: what of them arrives at a surface.
 
-use super::crossing::{Ray, Start, compare, exact};
-use super::hit::{Seen, radiance_of};
+use super::aim;
+use super::crossing::{Ray, Start, compare};
+use super::facets;
+use super::hit::Seen;
+use super::media::{self, Boundary, Interface};
 use super::number::*;
+use super::paint;
+use super::path::Path;
 use super::reason::Reason;
 use super::search::{Candidate, Stop, Tracer};
 use super::shade;
 use super::world::NONE;
 use gridel_core::Effects;
-use gridel_core::format::record::Light;
+use gridel_core::format::record::{Light, Material};
 use std::cmp::Ordering;
 
 impl Tracer<'_, '_> {
-    /// The radiance that a light adds.
-    pub fn lit<N: Enclosure>(&self, light: &Light, seen: &Seen<'_, N>) -> Result<Three<N>, Stop> {
+    /// The radiance that a light of the scene, given with its number, adds.
+    pub fn lit<N: Enclosure>(
+        &self,
+        (number, light): (u32, &Light),
+        seen: &Seen<'_, N>,
+    ) -> Result<Three<N>, Stop> {
         let black = [N::zero(); 3];
-        let (hit, depth) = (seen.hit, seen.depth);
-        let (way, is_far) = way_to(light, hit.point);
-        let Some(to_light) = unit(way) else {
+        let (hit, depth) = (seen.hit, seen.path.depth);
+        let Some(aim) = self.aim((number, light), hit.point, seen.path)? else {
+            return Ok(black);
+        };
+        let Some(to_light) = unit(aim.way) else {
             // The light lies in the surface.
             self.note(Reason::Terminator, depth, hit.primitive, hit.point);
             return Err(Stop);
@@ -27,15 +38,27 @@ impl Tracer<'_, '_> {
         if faces == Some(false) {
             return Ok(black);
         }
+        let arriving = match self.world.scene.light_form(light) {
+            Some(form) => aim::arriving(form, &aim, to_light).ok_or(Stop)?,
+            None => aim.color,
+        };
+        if is_nothing(arriving) {
+            return Ok(black);
+        }
         // The way may start elsewhere, and lights reached or not.
-        let mut ways = vec![Some((hit.point, way, hit.start(hit.front)))];
+        let mut ways = vec![Some((hit.point, aim.way, hit.start(hit.front)))];
         if self.has(Effects::SMOOTH.with(Effects::SHADOW)) {
             let geometric = dot(hit.facing(), to_light);
             let lifted = |ways: &mut Vec<_>| -> Result<(), Stop> {
                 let (reached, step) = shade::lift(self.world, hit).ok_or(Stop)?;
                 let from = plus(hit.point, step);
                 if reached != Some(false) {
-                    ways.push(Some((from, way_to(light, from).0, Start::Free)));
+                    // Of what is no point, the way stays as it is.
+                    let way = match light.directional {
+                        0 => minus(aim.way, step),
+                        _ => aim.way,
+                    };
+                    ways.push(Some((from, way, Start::Free)));
                 }
                 if reached != Some(true) {
                     ways.push(None);
@@ -62,7 +85,16 @@ impl Tracer<'_, '_> {
         if seen.material.highlight != [0; 3] {
             reflected = shade::highlight(seen, to_light, reflected).ok_or(Stop)?;
         }
-        let arriving = light.color.map(radiance_of);
+        let scene = self.world.scene;
+        if let Some(alpha) = scene.roughness(hit.object)
+            && facets::reflects(scene, alpha, light)
+        {
+            let mirrored = facets::mirrored(alpha, seen, to_light, cos).ok_or(Stop)?;
+            reflected = plus(reflected, mirrored);
+        }
+        if is_nothing(reflected) {
+            return Ok(black);
+        }
         let mut result: Option<Three<N>> = None;
         if faces.is_none() {
             self.note(Reason::Terminator, depth, hit.primitive, hit.point);
@@ -77,7 +109,7 @@ impl Tracer<'_, '_> {
                         direction,
                         start,
                     };
-                    let left = self.through(&ray, is_far, to_light, depth)?;
+                    let left = self.through(&ray, aim.is_far, to_light, seen.path)?;
                     times(times(arriving, left), reflected)
                 }
                 Some(_) => times(arriving, reflected),
@@ -93,8 +125,9 @@ impl Tracer<'_, '_> {
         ray: &Ray<N>,
         is_far: bool,
         to_light: Three<N>,
-        depth: u8,
+        path: &Path<N>,
     ) -> Result<Three<N>, Stop> {
+        let depth = path.depth;
         let (black, white) = ([N::zero(); 3], [N::one(); 3]);
         let scene = self.world.scene;
         let mut surfaces: Vec<Candidate<N>> = Vec::new();
@@ -117,7 +150,8 @@ impl Tracer<'_, '_> {
             let space = self.world.space(candidate.instance);
             let solid = &space.solids[candidate.solid as usize];
             let material = scene.material(solid.object);
-            if material.is_some_and(|it| it.transmit != [0; 3]) {
+            let is_nested = scene.place_among_media(solid.object).is_some();
+            if material.is_some_and(passes) || is_nested {
                 surfaces.push(candidate);
             } else if candidate.crossing.sure {
                 is_dark = true;
@@ -140,17 +174,39 @@ impl Tracer<'_, '_> {
         if surfaces.len() > shade::SURFACES {
             return Ok(black);
         }
-        self.reject_coincident(&surfaces, ray, depth)?;
+        let mut surfaces = self.one_each(&surfaces, ray, depth)?;
+        if !scene.media().is_empty() {
+            self.sort(&mut surfaces, ray, depth)?;
+        }
+        let mut inside = path.inside;
         for (index, candidate) in surfaces.iter().enumerate() {
             let hit = self.hit(candidate, ray, depth)?;
             let Some(material) = scene.material(hit.object) else {
                 return Ok(black);
             };
-            let mut part = shade::filtered(&hit, material, to_light).ok_or(Stop)?;
-            if !hit.front && material.absorption != [0; 3] {
-                let length = norm2(ray.direction).sqrt() * self.since(&surfaces, index)?;
-                part = times(part, shade::absorbed(material, length));
+            let boundary = Boundary::at(scene, inside, hit.object, hit.front);
+            let mut part = white;
+            if boundary.is_none_or(|it| it.is_there()) {
+                part = if material.transmit == [0; 3] {
+                    let alpha = paint::alpha(self.world, &hit, material).ok_or(Stop)?;
+                    let passing = N::one() - alpha.part;
+                    if alpha.is_open {
+                        self.note(Reason::Texture, depth, hit.primitive, hit.point);
+                    }
+                    [passing.at_least(N::zero()); 3]
+                } else {
+                    let of_material = Interface::of(hit.front, material);
+                    let interface = boundary.and_then(|it| it.interface(scene));
+                    let interface = interface.unwrap_or(of_material);
+                    shade::filtered(&hit, material, interface.k, to_light).ok_or(Stop)?
+                };
             }
+            let medium = media::passed(scene, boundary.as_ref(), inside, hit.object, hit.front);
+            if let Some(medium) = medium.filter(|it| it.absorption != [0; 3]) {
+                let length = norm2(ray.direction).sqrt() * self.since(&surfaces, index)?;
+                part = times(part, shade::absorbed(medium, length));
+            }
+            inside = boundary.map_or(inside, |it| it.beyond);
             let passed = times(left, part);
             left = if candidate.crossing.sure {
                 passed
@@ -174,26 +230,53 @@ impl Tracer<'_, '_> {
         Ok(if is_open { hull(black, left) } else { left })
     }
 
-    /// Ends the evaluation where glass touches glass in one plane: light passes one of the surfaces then, not both.
-    fn reject_coincident<N: Enclosure>(
+    /// Sorts surfaces by their places along a ray.
+    fn sort<N: Enclosure>(
+        &self,
+        surfaces: &mut [Candidate<N>],
+        ray: &Ray<N>,
+        depth: u8,
+    ) -> Result<(), Stop> {
+        let mut is_open = surfaces.iter().any(|it| !it.crossing.sure);
+        surfaces.sort_by(|a, b| {
+            let order = compare(&a.crossing, &b.crossing);
+            let is_same = a.instance == b.instance && a.solid == b.solid;
+            is_open |= !is_same && order.is_none_or(Ordering::is_eq);
+            order.unwrap_or(Ordering::Equal)
+        });
+        if is_open {
+            self.note(Reason::Shadow, depth, NONE, ray.origin);
+            return Err(Stop);
+        }
+        Ok(())
+    }
+
+    /// Leaves out surfaces where others of a lower number are, too: light passes one of them.
+    fn one_each<N: Enclosure>(
         &self,
         all: &[Candidate<N>],
         ray: &Ray<N>,
         depth: u8,
-    ) -> Result<(), Stop> {
+    ) -> Result<Vec<Candidate<N>>, Stop> {
         let solid = |it: &Candidate<N>| &self.world.space(it.instance).solids[it.solid as usize];
-        let plane = |it: &Candidate<N>| solid(it).planes[usize::from(it.crossing.part)];
-        for (index, a) in all.iter().enumerate() {
-            for b in &all[..index] {
-                let twins = solid(a).twin == solid(b).twin && a.solid != b.solid;
-                let same_plane = plane(a) != NONE && plane(a) == plane(b);
-                if a.instance == b.instance && (twins || same_plane) {
+        let number = |it: &Candidate<N>| (solid(it).primitive, it.solid);
+        let mut left = Vec::with_capacity(all.len());
+        for a in all {
+            let mut others = all.iter().filter(|b| {
+                a.instance == b.instance
+                    && number(b) < number(a)
+                    && solid(a).meets_at_one_t(solid(b), [&a.crossing, &b.crossing])
+            });
+            match others.next() {
+                None => left.push(*a),
+                Some(first) if first.crossing.sure => {}
+                Some(_) => {
                     self.note(Reason::Shadow, depth, solid(a).primitive, ray.origin);
                     return Err(Stop);
                 }
             }
         }
-        Ok(())
+        Ok(left)
     }
 
     /// The t from the surface before one of several to that one.
@@ -220,12 +303,12 @@ impl Tracer<'_, '_> {
     }
 }
 
-/// The way to a light, and whether it is infinitely far.
-fn way_to<N: Enclosure>(light: &Light, point: Three<N>) -> (Three<N>, bool) {
-    if light.directional == 1 {
-        (exact(light.vector), true)
-    } else {
-        // 13 fraction bits of a unit are 5 of a step.
-        (minus(light.vector.map(|x| N::scaled(x, 5)), point), false)
-    }
+/// Whether a color is black for certain.
+fn is_nothing<N: Enclosure>(color: Three<N>) -> bool {
+    color.iter().all(|channel| channel.bounds() == [0.0; 2])
+}
+
+/// Whether light may pass a material.
+fn passes(material: &Material) -> bool {
+    material.transmit != [0; 3] || material.maps & Material::MAPS_ALPHA != 0
 }

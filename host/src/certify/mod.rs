@@ -12,30 +12,38 @@
 //! |---|---|
 //! | `number.rs` | what a number that encloses another one can do |
 //! | `interval.rs`, `deep.rs` | intervals of double precision; balls of 128 and 256 bits |
-//! | `world.rs` | a blob's integers |
-//! | `tree.rs` | a hierarchy of boxes around them |
+//! | `world.rs`, `tree.rs` | a blob's integers, and a hierarchy of boxes around them |
 //! | `crossing.rs`, `shapes.rs`, `cone.rs`, `torus.rs` | where rays cross primitives |
-//! | `hit.rs`, `search.rs` | hits, and every crossing that may be the nearest |
-//! | `trace.rs`, `light.rs`, `shade.rs` | the rays of a sample, and the rules of effects |
-//! | `reason.rs` | why a pixel is open |
-//! | `picture.rs` | pixels, with more bits where that is needed |
-//! | `report.rs`, `page.rs` | what was found |
+//! | `path.rs`, `camera.rs` | a ray on its way from the eye, and how it begins |
+//! | `search.rs`, `hit.rs` | every crossing that may be the nearest, and the surface there |
+//! | `trace.rs`, `light.rs`, `aim.rs` | the rays of a sample, and what arrives from lights |
+//! | `shade.rs`, `paint.rs`, `media.rs`, `facets.rs`, `sky.rs`, `random.rs` | the rules of effects |
+//! | `tone.rs`, `picture.rs` | from samples to pixels, with more bits where that is needed |
+//! | `reason.rs`, `report.rs`, `page.rs` | why a pixel is open, and what was found |
 
+mod aim;
+mod camera;
 mod cone;
 mod crossing;
 mod deep;
+mod facets;
 mod hit;
 mod interval;
 mod light;
+mod media;
 mod number;
 mod page;
 mod paint;
+mod path;
 mod picture;
+mod random;
 mod reason;
 mod report;
 mod search;
 mod shade;
 mod shapes;
+mod sky;
+mod tone;
 mod torus;
 mod trace;
 mod tree;

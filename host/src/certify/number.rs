@@ -179,3 +179,13 @@ pub fn unit<N: Enclosure>(v: Three<N>) -> Option<Three<N>> {
     }
     Some(unit)
 }
+
+/// A radiance with 20 fraction bits.
+pub fn radiance_of<N: Enclosure>(q20: i32) -> N {
+    N::scaled(q20.into(), 20)
+}
+
+/// A ratio with 30 fraction bits.
+pub fn ratio_of<N: Enclosure>(q30: i32) -> N {
+    N::scaled(q30.into(), 30)
+}

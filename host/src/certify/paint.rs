@@ -3,7 +3,7 @@
 //! A color of vertices is interpolated in real arithmetic. A texture is defined at multiples of 2^-20 of the image, at or
 //! below the coordinates, by integers: where several of them are possible, all are looked up.
 
-use super::hit::{Hit, ratio_of};
+use super::hit::Hit;
 use super::number::*;
 use super::shade;
 use super::world::{Form, Paint, World};
@@ -57,6 +57,61 @@ pub fn weight<N: Enclosure>(
     Some(found)
 }
 
+/// How much of a surface is there.
+pub struct Alpha<N> {
+    pub part: N,
+    pub is_open: bool,
+}
+
+/// The alpha of a surface at a hit; `None` where the point is known too badly.
+pub fn alpha<N: Enclosure>(
+    world: &World<'_>,
+    hit: &Hit<N>,
+    material: &Material,
+) -> Option<Alpha<N>> {
+    let whole = Alpha {
+        part: N::one(),
+        is_open: false,
+    };
+    let is_used = material.maps & Material::MAPS_ALPHA != 0 && material.transmit == [0; 3];
+    let solid = &world.space(hit.instance).solids[hit.solid as usize];
+    let (
+        true,
+        Some(coordinates),
+        Form::Triangle {
+            corners, normal, ..
+        },
+    ) = (is_used, solid.paint.coordinates, solid.form)
+    else {
+        return Some(whole);
+    };
+    let Some(maps) = world.scene.surface_maps(material) else {
+        return Some(whole);
+    };
+    // With 30 fraction bits, as alphas of textures have: 255 is 1.
+    let ratio = |byte: u8| (i64::from(byte) << 30) / 255;
+    let (_, weights) = shade::weights(world, hit, corners, normal)?;
+    let mut range: Option<[i64; 2]> = None;
+    let is_known = at_places(weights, coordinates, |place| {
+        let alpha = world.scene.texture_alpha(material, place);
+        let mut alpha = alpha.map_or(1 << 30, i64::from);
+        if maps.cutoff > 0 {
+            alpha = i64::from(alpha >= ratio(maps.cutoff)) << 30;
+        }
+        let [low, high] = range.unwrap_or([alpha; 2]);
+        range = Some([low.min(alpha), high.max(alpha)]);
+    });
+    let [low, high] = range.filter(|_| is_known).unwrap_or([0, 1 << 30]);
+    let mut part = N::scaled(low, 30).hull(N::scaled(high, 30));
+    if maps.cutoff == 0 {
+        part = part * N::scaled(ratio(maps.opacity), 30);
+    }
+    Some(Alpha {
+        part,
+        is_open: low != high,
+    })
+}
+
 /// The mean of the squares of roots of 8 bits.
 fn mixed<N: Enclosure>(weights: Three<N>, roots: [u8; 3]) -> N {
     let squares = roots.map(|root| i64::from(root) * i64::from(root));
@@ -66,12 +121,12 @@ fn mixed<N: Enclosure>(weights: Three<N>, roots: [u8; 3]) -> N {
     ratio.at_least(N::zero()).at_most(N::one())
 }
 
-fn texture<N: Enclosure>(
-    world: &World<'_>,
-    material: &Material,
+/// Calls a function with the multiples at which a texture may be looked up; returns whether there are few enough.
+fn at_places<N: Enclosure>(
     weights: Three<N>,
     coordinates: [[i32; 2]; 3],
-) -> Weight<N> {
+    mut call: impl FnMut([i32; 2]),
+) -> bool {
     // The first and the last of the multiples along u and v.
     let [u, v] = [0, 1].map(|axis: usize| {
         let at = |corner: usize| weights[corner] * N::int(coordinates[corner][axis].into());
@@ -80,24 +135,37 @@ fn texture<N: Enclosure>(
     });
     let places = |[low, high]: [i64; 2]| high.saturating_sub(low).saturating_add(1);
     let count = places(u).saturating_mul(places(v));
-    let mut range: Option<[[i32; 2]; 3]> = None;
-    if (1..=MOST_PLACES).contains(&count) {
-        for v in v[0]..=v[1] {
-            for u in u[0]..=u[1] {
-                let color = world.scene.texture_color(material, [u as i32, v as i32]);
-                let color = color.unwrap_or([1 << 30; 3]);
-                range = Some(match range {
-                    None => color.map(|it| [it, it]),
-                    Some(range) => [0, 1, 2].map(|k: usize| {
-                        let [low, high] = range[k];
-                        [low.min(color[k]), high.max(color[k])]
-                    }),
-                });
-            }
+    if !(1..=MOST_PLACES).contains(&count) {
+        return false;
+    }
+    for v in v[0]..=v[1] {
+        for u in u[0]..=u[1] {
+            call([u as i32, v as i32]);
         }
     }
+    true
+}
+
+fn texture<N: Enclosure>(
+    world: &World<'_>,
+    material: &Material,
+    weights: Three<N>,
+    coordinates: [[i32; 2]; 3],
+) -> Weight<N> {
+    let mut range: Option<[[i32; 2]; 3]> = None;
+    let is_known = at_places(weights, coordinates, |place| {
+        let color = world.scene.texture_color(material, place);
+        let color = color.unwrap_or([1 << 30; 3]);
+        range = Some(match range {
+            None => color.map(|it| [it, it]),
+            Some(range) => [0, 1, 2].map(|k: usize| {
+                let [low, high] = range[k];
+                [low.min(color[k]), high.max(color[k])]
+            }),
+        });
+    });
     // Any color.
-    let range = range.unwrap_or([[0, 1 << 30]; 3]);
+    let range = range.filter(|_| is_known).unwrap_or([[0, 1 << 30]; 3]);
     Weight {
         color: range.map(|[low, high]| ratio_of::<N>(low).hull(ratio_of(high))),
         is_open: range.iter().any(|[low, high]| low != high),

@@ -1,20 +1,18 @@
 //! The pixels of a picture, each enclosed.
 
-use super::crossing::{Ray, Start, exact};
+use super::camera;
 use super::deep::{self, Ball};
 use super::interval::Interval;
 use super::number::*;
 use super::reason::Reason;
-use super::search::{Open, Step, Tracer};
+use super::search::{Open, Step, Stop, Tracer};
+use super::tone;
 use super::world::{NONE, World};
 use bytemuck::{Pod, Zeroable};
 use gridel_core::format::record::View;
 use gridel_core::render::Pixel as _;
 use gridel_core::{Rgb888, Settings};
 use std::cell::{Cell, RefCell};
-
-/// Steps that a pixel is divided into on each axis.
-const SUBPIXELS: i64 = 256;
 
 /// How exactly a pixel was evaluated: bits of its numbers.
 pub const LEVELS: [usize; 3] = [53, 128, 256];
@@ -80,29 +78,6 @@ impl Enclosed {
     }
 }
 
-/// The place of a sample in its pixel, in subpixels: the first two dimensions of Sobol's sequence, in the middle of
-/// their cells.
-fn within(index: u16, count: u16) -> [i64; 2] {
-    if count == 1 {
-        return [SUBPIXELS / 2; 2];
-    }
-    let first = (0..8).fold(0, |sum, bit| sum | i64::from(index >> bit & 1) << (7 - bit));
-    // Pascal's triangle modulo 2: column `bit` has an entry in row `row` if `row` holds the bits of... `bit`.
-    let second = (0..8_u32).fold(0_i64, |sum, bit| {
-        if index >> bit & 1 == 0 {
-            return sum;
-        }
-        let column = (0..8_u32).filter(|row| row & bit == *row);
-        sum ^ column.fold(0, |column, row| column | 1 << (7 - row))
-    });
-    let mut cells = 1;
-    while cells < i64::from(count) {
-        cells *= 2;
-    }
-    let half_cell = (SUBPIXELS / 2) / cells;
-    [first + half_cell, second + half_cell]
-}
-
 /// The linear value of an 8-bit code of sRGB (IEC 61966-2-1), 65535 being white.
 fn linear_of_code(code: u16) -> u16 {
     let s = f64::from(code) / 255.0;
@@ -130,30 +105,6 @@ pub fn code(linear: [u16; 3]) -> [u8; 3] {
     code
 }
 
-/// The ray of a sample.
-pub fn primary_ray<N: Enclosure>(
-    world: &World<'_>,
-    settings: &Settings,
-    [x, y]: [u16; 2],
-    sample: u16,
-) -> Ray<N> {
-    let view = world.scene.view();
-    let [dx, dy] = within(sample, settings.samples);
-    let (x, y) = (i64::from(x) * SUBPIXELS + dx, i64::from(y) * SUBPIXELS + dy);
-    let [width, height] = [settings.width, settings.height].map(|side| i64::from(side) * SUBPIXELS);
-    // The direction times the height in subpixels: below 2^28 times 2^24, and three of that.
-    let direction = [0, 1, 2].map(|k| {
-        i64::from(view.forward[k]) * height
-            + i64::from(view.right[k]) * (2 * x - width)
-            + i64::from(view.up[k]) * (height - 2 * y)
-    });
-    Ray {
-        origin: view.eye.map(|x| N::scaled(x, 5)),
-        direction: exact(direction),
-        start: Start::Free,
-    }
-}
-
 /// One evaluation of a pixel.
 struct Evaluated {
     /// `None` where it ended without a result.
@@ -179,12 +130,13 @@ fn evaluate<N: Enclosure>(
     let black = [N::zero(); 3];
     let mut sum = black;
     let mut is_known = true;
+    let brightest = N::int(tone::brightest(world.scene.effects()));
     for sample in 0..settings.samples {
         tracer.left.set(BRANCHES[level]);
-        let ray = primary_ray::<N>(world, settings, pixel, sample);
-        match tracer.radiance(&ray, [N::one(); 3], 0) {
+        let path = camera::path::<N>(world, settings, pixel, sample);
+        match path.ok_or(Stop).and_then(|path| tracer.radiance(&path)) {
             Ok(seen) => {
-                let limit = |x: N| x.at_least(N::zero()).at_most(N::one());
+                let limit = |x: N| x.at_least(N::zero()).at_most(brightest);
                 sum = plus(sum, seen.map(limit));
             }
             Err(_) => {
@@ -197,6 +149,9 @@ fn evaluate<N: Enclosure>(
         let part = (1 << 30) / i64::from(settings.samples);
         sum = scale(sum, N::scaled(part, 30));
     }
+    let encoding = world.scene.view().encoding;
+    let [red, green, blue] = sum.map(|channel| tone::developed(encoding, channel));
+    let shown = (|| Some([red?, green?, blue?]))();
     if let Some(steps) = steps {
         steps.extend(
             tracer
@@ -208,8 +163,8 @@ fn evaluate<N: Enclosure>(
     }
     let open = tracer.open.take();
     Evaluated {
-        linear: is_known.then(|| {
-            sum.map(|x| {
+        linear: shown.filter(|_| is_known).map(|shown| {
+            shown.map(|x| {
                 let [low, high] = x.bounds();
                 [low.clamp(0.0, 1.0), high.clamp(0.0, 1.0)]
             })

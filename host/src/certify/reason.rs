@@ -29,10 +29,14 @@ pub enum Reason {
     Rounding,
     /// Which texel a point shows, or how texels are weighted there.
     Texture,
+    /// In which direction a random ray leaves, or a random point lies.
+    Sampling,
+    /// Whether a random facet sends a ray off its surface.
+    Facet,
 }
 
 impl Reason {
-    pub const ALL: [Self; 11] = [
+    pub const ALL: [Self; 13] = [
         Self::Hit,
         Self::Shadow,
         Self::Terminator,
@@ -44,6 +48,8 @@ impl Reason {
         Self::Branches,
         Self::Rounding,
         Self::Texture,
+        Self::Sampling,
+        Self::Facet,
     ];
 
     pub fn of_number(number: u8) -> Option<Self> {
@@ -64,6 +70,8 @@ impl Reason {
             Self::Branches => "too many open comparisons",
             Self::Rounding => "rounding to 8 bits",
             Self::Texture => "boundary of texels or of their weights",
+            Self::Sampling => "axes of a random direction",
+            Self::Facet => "ray level with a rough surface",
         }
     }
 }

@@ -48,7 +48,7 @@ pub struct Candidate<N> {
     pub crossing: Crossing<N>,
     pub instance: u32,
     pub solid: u32,
-    /// Planes of other surfaces that are crossed at exactly the same t.
+    /// Planes that are crossed at exactly the same t, too.
     pub also: [u32; 2],
 }
 
@@ -137,18 +137,16 @@ impl Tracer<'_, '_> {
         })?;
         let world = self.world;
         let solid = |it: &Candidate<N>| &world.space(it.instance).solids[it.solid as usize];
-        let plane = |it: &Candidate<N>| {
-            let plane = solid(it).planes[usize::from(it.crossing.part)];
-            (plane != NONE).then_some((it.instance, plane))
+        let surface = |it: &Candidate<N>| {
+            let surface = solid(it).surfaces[usize::from(it.crossing.part)];
+            (surface != NONE).then_some((it.instance, surface))
         };
         let primitive = |it: &Candidate<N>| (solid(it).primitive, it.solid);
-        // What lies in one plane is met at one t, and the first in the scene file counts.
+        // What lies in one surface is met at one t, and the first in the scene file counts.
         let order = |a: &Candidate<N>, b: &Candidate<N>| {
-            let twins = a.instance == b.instance
-                && solid(a).twin == solid(b).twin
-                && a.crossing.part == b.crossing.part
-                && a.crossing.leaves == b.crossing.leaves;
-            if twins || plane(a).is_some() && plane(a) == plane(b) {
+            let is_one = a.instance == b.instance
+                && solid(a).meets_at_one_t(solid(b), [&a.crossing, &b.crossing]);
+            if is_one {
                 Some(Ordering::Equal)
             } else {
                 compare(&a.crossing, &b.crossing)
@@ -193,8 +191,8 @@ impl Tracer<'_, '_> {
                             | Form::Cone { .. }
                     )
             };
-            plane(a).is_some()
-                && plane(a) == plane(b)
+            surface(a).is_some()
+                && surface(a) == surface(b)
                 && solid(a).object == solid(b).object
                 && is_plain(a)
                 && is_plain(b)
@@ -202,19 +200,19 @@ impl Tracer<'_, '_> {
         // Where planes are crossed at one t, what starts there starts on all of them.
         for candidate in &mut left {
             for other in &found {
-                let Some((instance, other_plane)) = plane(other) else {
+                let Some((instance, plane)) = surface(other) else {
                     continue;
                 };
                 let is_known = instance != candidate.instance
-                    || plane(candidate) == plane(other)
-                    || candidate.also.contains(&other_plane);
+                    || surface(candidate) == surface(other)
+                    || candidate.also.contains(&plane);
                 if is_known
                     || compare(&candidate.crossing, &other.crossing) != Some(Ordering::Equal)
                 {
                     continue;
                 }
                 if let Some(free) = candidate.also.iter_mut().find(|it| **it == NONE) {
-                    *free = other_plane;
+                    *free = plane;
                 }
             }
         }
@@ -387,7 +385,7 @@ impl Tracer<'_, '_> {
             solid: number,
             twin: solid.twin,
             part,
-            plane: solid.planes[usize::from(part)],
+            surface: solid.surfaces[usize::from(part)],
             also,
         })
     }

@@ -1,7 +1,8 @@
 //! The rules of effects, in exact arithmetic.
 
 use super::crossing::exact;
-use super::hit::{Hit, Seen, ratio_of};
+use super::hit::{Hit, Seen};
+use super::media::Interface;
 use super::number::*;
 use super::world::{Form, World};
 use gridel_core::format::limits::MAX_RAY_DEPTH;
@@ -95,10 +96,9 @@ fn sine_squared<N: Enclosure>(cos: N) -> N {
     (N::one() - cos.square()).at_least(N::zero())
 }
 
-/// Splits a ray of length 1 at a surface by Snell's law; `k` is one over the index of refraction.
+/// Splits a ray of length 1 at a surface by Snell's law.
 pub fn split<N: Enclosure>(
-    k: N,
-    entering: bool,
+    &Interface { k, to_denser }: &Interface<N>,
     direction: Three<N>,
     normal: Three<N>,
     cos_in: N,
@@ -113,7 +113,7 @@ pub fn split<N: Enclosure>(
     let sine = sine_squared(cos_in);
     let mut is_open = false;
     let (cos_out, scaled, lift);
-    if entering {
+    if to_denser {
         cos_out = (N::one() - k.square() * sine).sqrt();
         (scaled, lift) = (k, k * cos_in - cos_out);
     } else {
@@ -147,10 +147,10 @@ pub fn split<N: Enclosure>(
 pub fn filtered<N: Enclosure>(
     hit: &Hit<N>,
     material: &Material,
+    k: N,
     to_light: Three<N>,
 ) -> Option<Three<N>> {
     let transmit = material.transmit.map(ratio_of);
-    let k = ratio_of::<N>(material.inverse_ior);
     if (k - N::one()).sign() == Some(Ordering::Equal) {
         return Some(transmit);
     }

@@ -4,7 +4,9 @@
 //! what is known of it, not by a comparison.
 
 use super::cone;
-use super::crossing::{Crossing, Grazes, Ray, Start, axis_of, compare, exact, flat_normal};
+use super::crossing::{
+    APEX, BASE, Crossing, Grazes, MANTLE, Ray, Start, axis_of, compare, exact, flat_normal,
+};
 use super::number::*;
 use super::torus;
 use super::world::{Form, NONE, Placed, Solid};
@@ -53,26 +55,26 @@ pub fn crossings<N: Enclosure>(
     ray: &Ray<N>,
     found: &mut Vec<Crossing<N>>,
 ) -> Result<(), Grazes> {
-    let (planes, itself) = match ray.start {
+    let (surfaces, itself) = match ray.start {
         Start::On {
             instance: from,
             twin,
             part,
-            plane,
+            surface,
             also: [second, third],
             inward,
         } if from == instance => (
-            [plane, second, third],
+            [surface, second, third],
             (solid.twin == twin).then_some((part, inward)),
         ),
         _ => ([NONE; 3], None),
     };
-    let same_plane = |of: u32| of != NONE && planes.contains(&of);
+    let starts_on = |of: u32| of != NONE && surfaces.contains(&of);
     match solid.form {
         Form::Triangle {
             corners, normal, ..
         } => {
-            if same_plane(solid.planes[0]) || itself.is_some() {
+            if starts_on(solid.surfaces[0]) || itself.is_some() {
                 return Ok(());
             }
             triangle(corners, normal, ray, found)
@@ -82,13 +84,13 @@ pub fn crossings<N: Enclosure>(
             normal,
             radius,
         } => {
-            if same_plane(solid.planes[0]) || itself.is_some() {
+            if starts_on(solid.surfaces[0]) || itself.is_some() {
                 return Ok(());
             }
             disc((center, normal, radius), ray, found)
         }
         Form::Plane { point, normal } => {
-            if same_plane(solid.planes[0]) || itself.is_some() {
+            if starts_on(solid.surfaces[0]) || itself.is_some() {
                 return Ok(());
             }
             let relative = minus(exact(point), ray.origin);
@@ -105,7 +107,7 @@ pub fn crossings<N: Enclosure>(
             if itself.is_some_and(|(_, inward)| !inward) {
                 return Ok(());
             }
-            let at = solid.planes.map(same_plane);
+            let at = solid.surfaces.map(starts_on);
             cuboid([lowest, highest], at, ray, found)
         }
         Form::Cone { .. } => {
@@ -113,9 +115,9 @@ pub fn crossings<N: Enclosure>(
                 return Ok(());
             }
             let at = [
-                itself.is_some_and(|(part, _)| part == cone::MANTLE),
-                same_plane(solid.planes[1]) || itself.is_some_and(|(part, _)| part == cone::BASE),
-                same_plane(solid.planes[2]) || itself.is_some_and(|(part, _)| part == cone::APEX),
+                starts_on(solid.surfaces[0]) || itself.is_some_and(|(part, _)| part == MANTLE),
+                starts_on(solid.surfaces[1]) || itself.is_some_and(|(part, _)| part == BASE),
+                starts_on(solid.surfaces[2]) || itself.is_some_and(|(part, _)| part == APEX),
             ];
             cone::crossings(&solid.form, at, ray, found)
         }

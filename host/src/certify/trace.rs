@@ -6,66 +6,93 @@
 
 use super::crossing::Ray;
 use super::deep;
-use super::hit::{Hit, Seen, radiance_of, ratio_of};
+use super::facets::{self, Facets};
+use super::hit::{Hit, Seen};
+use super::media::{self, Boundary, Interface};
 use super::number::*;
 use super::paint;
+use super::path::Path;
+use super::random;
 use super::reason::Reason;
 use super::search::{Candidate, Stop, Tracer};
 use super::shade;
-use gridel_core::Effects;
+use super::sky;
+use super::world::NONE;
 use gridel_core::format::record::Material;
+use gridel_core::{Effects, RayKind};
+
+/// What directions of indirect light are drawn by.
+const INDIRECT: u16 = 0x1030;
+
+/// A ray that leaves a surface.
+struct Leaving<N> {
+    kind: RayKind,
+    direction: Three<N>,
+    /// Whether it leaves on the side of the geometric normal.
+    outward: bool,
+    weight: Three<N>,
+}
 
 impl Tracer<'_, '_> {
     /// What a ray brings, times its weight.
-    pub fn radiance<N: Enclosure>(
-        &self,
-        ray: &Ray<N>,
-        weight: Three<N>,
-        depth: u8,
-    ) -> Result<Three<N>, Stop> {
-        let (found, may_miss) = self.nearest(ray, depth)?;
+    pub fn radiance<N: Enclosure>(&self, path: &Path<N>) -> Result<Three<N>, Stop> {
+        let Path { ray, depth, .. } = path;
+        let (found, may_miss) = self.nearest(ray, *depth)?;
         let mut result: Option<Three<N>> = None;
         if found.len() + usize::from(may_miss) > 1 {
             let first = found[0];
             let point = along(ray.origin, first.crossing.t, ray.direction);
             let solid = &self.world.space(first.instance).solids[first.solid as usize];
-            self.note(Reason::Hit, depth, solid.primitive, point);
+            self.note(Reason::Hit, *depth, solid.primitive, point);
         }
         for candidate in &found {
             if result.is_some() {
                 self.branch()?;
             }
-            let brought = self.surface(candidate, ray, weight, depth)?;
+            let brought = self.surface(candidate, path)?;
             result = Some(result.map_or(brought, |result| hull(result, brought)));
         }
         if may_miss {
             if result.is_some() {
                 self.branch()?;
             }
-            let background = self.world.scene.view().background;
-            let brought = times(background.map(radiance_of), weight);
-            self.step(depth, "background", None, [("added", &brought)]);
+            let brought = times(self.background(path)?, path.weight);
+            self.step(*depth, "background", None, [("added", &brought)]);
             result = Some(result.map_or(brought, |result| hull(result, brought)));
         }
         result.ok_or(Stop)
+    }
+
+    /// What a ray brings that hits nothing.
+    fn background<N: Enclosure>(&self, path: &Path<N>) -> Result<Three<N>, Stop> {
+        let scene = self.world.scene;
+        let Some(record) = scene.environment() else {
+            return Ok(scene.view().background.map(radiance_of));
+        };
+        let sky = sky::seen(scene, record, path.ray.direction, path.kind);
+        if sky.as_ref().is_none_or(|sky| sky.is_open) {
+            self.note(Reason::Texture, path.depth, NONE, path.ray.origin);
+        }
+        Ok(sky.ok_or(Stop)?.radiance)
     }
 
     /// What a surface sends along a ray.
     fn surface<N: Enclosure>(
         &self,
         candidate: &Candidate<N>,
-        ray: &Ray<N>,
-        weight: Three<N>,
-        depth: u8,
+        path: &Path<N>,
     ) -> Result<Three<N>, Stop> {
+        let (ray, depth) = (&path.ray, path.depth);
         let hit = self.hit(candidate, ray, depth)?;
         let scene = self.world.scene;
         let material = scene.material(hit.object).ok_or(Stop)?;
         let is_glass = material.transmit != [0; 3];
-        let mut weight = weight;
-        if is_glass && !hit.front && material.absorption != [0; 3] {
+        let boundary = Boundary::at(scene, path.inside, hit.object, hit.front);
+        let mut weight = path.weight;
+        let medium = media::passed(scene, boundary.as_ref(), path.inside, hit.object, hit.front);
+        if let Some(medium) = medium.filter(|it| it.absorption != [0; 3]) {
             let length = hit.t * norm2(ray.direction).sqrt();
-            weight = times(weight, shade::absorbed(material, length));
+            weight = times(weight, shade::absorbed(medium, length));
         }
         let direction = unit(ray.direction).ok_or(Stop)?;
         let facing = hit.facing();
@@ -86,6 +113,59 @@ impl Tracer<'_, '_> {
             }
             diffuse = times(diffuse, paint.color);
         }
+        let mut passing = [N::zero(); 3];
+        if self.has(Effects::ALPHA) {
+            let alpha = paint::alpha(self.world, &hit, material).ok_or(Stop)?;
+            if alpha.is_open {
+                self.note(Reason::Texture, depth, hit.primitive, hit.point);
+            }
+            let rest = (N::one() - alpha.part).at_least(N::zero());
+            passing = scale(weight, rest);
+            weight = scale(weight, alpha.part);
+        }
+        let is_there = boundary.is_none_or(|it| it.is_there());
+        if !is_there {
+            (passing, weight) = (weight, [N::zero(); 3]);
+        }
+        let interface = boundary.and_then(|it| it.interface(scene));
+        let seen = Seen {
+            path,
+            hit: &hit,
+            material,
+            normal,
+            direction,
+            diffuse,
+            weight,
+            interface: interface.unwrap_or(Interface::of(hit.front, material)),
+            beyond: boundary.map_or(path.inside, |it| it.beyond),
+            reflections: path.reflections + u8::from(path.kind == RayKind::Diffuse),
+        };
+        let mut brought = [N::zero(); 3];
+        if is_there {
+            brought = self.own(&seen)?;
+        }
+        if depth < self.depth {
+            let straight = Leaving {
+                kind: RayKind::Refracted,
+                direction,
+                outward: !hit.front,
+                weight: passing,
+            };
+            brought = plus(brought, self.send(&seen, straight)?);
+            if is_there {
+                brought = plus(brought, self.bounce(&seen)?);
+            }
+        }
+        if deep::is_full() {
+            self.note(Reason::Branches, depth, hit.primitive, hit.point);
+            return Err(Stop);
+        }
+        Ok(brought)
+    }
+
+    /// The light that a surface sends out and reflects of lights, times its weight.
+    fn own<N: Enclosure>(&self, seen: &Seen<'_, N>) -> Result<Three<N>, Stop> {
+        let (scene, hit, depth) = (self.world.scene, seen.hit, seen.path.depth);
         let named = Some((hit.primitive, hit.object));
         self.step(
             depth,
@@ -94,33 +174,25 @@ impl Tracer<'_, '_> {
             [
                 ("t", &[hit.t][..]),
                 ("point", &hit.point.map(|x| x * N::scaled(1, 8))),
-                ("normal", &normal),
-                ("weight", &weight),
+                ("normal", &seen.normal),
+                ("weight", &seen.weight),
             ],
         );
-        let mut local = times(scene.view().ambient.map(radiance_of), diffuse);
-        let seen = Seen {
-            hit: &hit,
-            material,
-            normal,
-            direction,
-            diffuse,
-            depth,
-        };
-        for light in scene.lights() {
-            let lit = self.lit(light, &seen)?;
+        let mut local = times(scene.view().ambient.map(radiance_of), seen.diffuse);
+        if let Some(emission) = scene.emission(hit.object).filter(|_| hit.front) {
+            // The surface that sent such a ray has been lit by it, or has reflected it by the formula.
+            let is_counted = matches!(seen.path.kind, RayKind::Diffuse | RayKind::Glossy);
+            if emission.lights == 0 || !is_counted {
+                local = plus(local, emission.radiance.map(radiance_of));
+            }
+        }
+        for numbered in (0..).zip(scene.lights()) {
+            let lit = self.lit(numbered, seen)?;
             self.step(depth, "light", named, [("adds", &lit)]);
             local = plus(local, lit);
         }
-        let mut brought = times(local, weight);
+        let brought = times(local, seen.weight);
         self.step(depth, "surface", named, [("added", &brought)]);
-        if depth < self.depth {
-            brought = plus(brought, self.bounce(&seen, weight)?);
-        }
-        if deep::is_full() {
-            self.note(Reason::Branches, depth, hit.primitive, hit.point);
-            return Err(Stop);
-        }
         Ok(brought)
     }
 
@@ -141,32 +213,57 @@ impl Tracer<'_, '_> {
         }
     }
 
-    /// The mirrored and the refracted ray.
-    fn bounce<N: Enclosure>(&self, seen: &Seen<'_, N>, weight: Three<N>) -> Result<Three<N>, Stop> {
+    /// The rays that a surface mirrors, refracts and scatters.
+    fn bounce<N: Enclosure>(&self, seen: &Seen<'_, N>) -> Result<Three<N>, Stop> {
         let Seen {
+            path,
             hit,
             material,
             normal,
             direction,
-            depth,
+            weight,
             ..
         } = *seen;
+        let scene = self.world.scene;
         let mut brought = [N::zero(); 3];
-        let cos_in = -dot(direction, normal);
+        if seen.reflections < scene.bounces() {
+            let scattered = random::around(normal, path.point(INDIRECT));
+            let scattered = Leaving {
+                kind: RayKind::Diffuse,
+                direction: self.drawn(scattered, seen)?,
+                outward: hit.front,
+                weight: times(weight, seen.diffuse),
+            };
+            brought = plus(brought, self.send(seen, scattered)?);
+        }
+        let mut cos_in = -dot(direction, normal);
+        let (mut normal, mut facets) = (normal, None);
+        if let Some(alpha) = scene.roughness(hit.object) {
+            let all = Facets::new(alpha, normal, cos_in);
+            let facet = all.draw(direction, path.point(facets::DIMENSION));
+            normal = self.drawn(facet, seen)?;
+            cos_in = -dot(direction, normal);
+            cos_in = cos_in.at_least(N::zero()).at_most(N::one());
+            facets = Some(all);
+        }
         let mut mirrored = material.mirror.map(ratio_of);
         if material.transmit != [0; 3] {
             let transmit = material.transmit.map(ratio_of);
-            let k = ratio_of(material.inverse_ior);
-            let split = shade::split(k, hit.front, direction, normal, cos_in).ok_or(Stop)?;
+            let split = shade::split(&seen.interface, direction, normal, cos_in).ok_or(Stop)?;
             if split.is_open {
-                self.note(Reason::CriticalAngle, depth, hit.primitive, hit.point);
+                self.note(Reason::CriticalAngle, path.depth, hit.primitive, hit.point);
             }
             mirrored = plus(mirrored, scale(transmit, split.reflected));
             mirrored = mirrored.map(|x| x.at_most(N::one()));
-            let passing = N::one() - split.reflected;
-            let through = times(weight, scale(transmit, passing));
+            let rest = N::one() - split.reflected;
             if let Some(refracted) = split.refracted {
-                let sent = self.send(seen, refracted, !hit.front, through)?;
+                let through = Leaving {
+                    kind: RayKind::Refracted,
+                    direction: refracted,
+                    outward: !hit.front,
+                    weight: times(weight, scale(transmit, rest)),
+                };
+                let sent = self.send(seen, self.unmasked(seen, facets.as_ref(), through)?)?;
                 brought = if split.is_open {
                     self.branch()?;
                     plus(brought, hull([N::zero(); 3], sent))
@@ -176,21 +273,68 @@ impl Tracer<'_, '_> {
             }
         }
         let axis = |k: usize| direction[k].half() + cos_in * normal[k];
-        let reflected = [axis(0), axis(1), axis(2)];
-        let sent = self.send(seen, reflected, hit.front, times(weight, mirrored))?;
+        let reflected = Leaving {
+            kind: RayKind::Reflected,
+            direction: [axis(0), axis(1), axis(2)],
+            outward: hit.front,
+            weight: times(weight, mirrored),
+        };
+        let sent = self.send(seen, self.unmasked(seen, facets.as_ref(), reflected)?)?;
         Ok(plus(brought, sent))
+    }
+
+    /// A direction that was drawn at a surface.
+    ///
+    /// # Errors
+    /// If it is open which one it is.
+    fn drawn<N: Enclosure>(
+        &self,
+        direction: Option<Three<N>>,
+        seen: &Seen<'_, N>,
+    ) -> Result<Three<N>, Stop> {
+        if direction.is_none() {
+            let hit = seen.hit;
+            self.note(Reason::Sampling, seen.path.depth, hit.primitive, hit.point);
+        }
+        direction.ok_or(Stop)
+    }
+
+    /// A ray without what facets keep of it.
+    fn unmasked<N: Enclosure>(
+        &self,
+        seen: &Seen<'_, N>,
+        facets: Option<&Facets<N>>,
+        leaving: Leaving<N>,
+    ) -> Result<Leaving<N>, Stop> {
+        let is_sent = leaving.weight.iter().any(|it| it.bounds() != [0.0; 2]);
+        let Some(facets) = facets.filter(|_| is_sent) else {
+            return Ok(leaving);
+        };
+        let hit = seen.hit;
+        let left = facets.unmasked(hit, leaving.direction, leaving.outward);
+        if left.as_ref().is_none_or(|it| it.is_open) {
+            self.note(Reason::Facet, seen.path.depth, hit.primitive, hit.point);
+        }
+        Ok(Leaving {
+            weight: scale(leaving.weight, left.ok_or(Stop)?.part),
+            ..leaving
+        })
     }
 
     /// What a ray brings that leaves a surface, unless it would bring too little.
     fn send<N: Enclosure>(
         &self,
         seen: &Seen<'_, N>,
-        direction: Three<N>,
-        outward: bool,
-        weight: Three<N>,
+        leaving: Leaving<N>,
     ) -> Result<Three<N>, Stop> {
         let black = [N::zero(); 3];
-        let (hit, depth) = (seen.hit, seen.depth);
+        let (hit, depth) = (seen.hit, seen.path.depth);
+        let Leaving {
+            mut kind,
+            direction,
+            outward,
+            weight,
+        } = leaving;
         let [red, green, blue] = weight;
         let peak = red.at_least(green).at_least(blue);
         let cutoff = N::scaled(self.world.scene.view().cutoff.into(), 20);
@@ -224,14 +368,35 @@ impl Tracer<'_, '_> {
                 }
             }
         }
+        let alpha = self.world.scene.roughness(hit.object);
+        match (kind, seen.path.kind) {
+            (RayKind::Reflected, _) if alpha.is_some_and(facets::is_wide) => {
+                kind = RayKind::Glossy;
+            }
+            // Lights shine through glass and what is not there, too.
+            (RayKind::Refracted, RayKind::Glossy | RayKind::Diffuse) => kind = seen.path.kind,
+            _ => {}
+        }
         let mut result: Option<Three<N>> = is_open.then_some(black);
         for direction in ways {
-            let ray = Ray {
-                origin: hit.point,
-                direction,
-                start: hit.start(outward),
+            let path = Path {
+                ray: Ray {
+                    origin: hit.point,
+                    direction,
+                    start: hit.start(outward),
+                },
+                weight,
+                depth: depth + 1,
+                kind,
+                points: seen.path.points,
+                reflections: seen.reflections,
+                inside: if outward == hit.front {
+                    seen.path.inside
+                } else {
+                    seen.beyond
+                },
             };
-            let brought = self.radiance(&ray, weight, depth + 1)?;
+            let brought = self.radiance(&path)?;
             result = Some(result.map_or(brought, |result| hull(result, brought)));
         }
         Ok(result.unwrap_or(black))

@@ -2,6 +2,7 @@
 //!
 //! Lengths are in steps of the storage lattice, 1/256 unit.
 
+use super::crossing::{Crossing, MANTLE};
 use super::tree::{Bounds, Tree};
 use gridel_core::format::instance::MATRIX_BITS;
 use gridel_core::geometry::Geometry;
@@ -17,9 +18,19 @@ pub const KNOWN: Effects = Effects::SHADOW
     .with(Effects::CHECKER)
     .with(Effects::SMOOTH)
     .with(Effects::VERTEX_COLORS)
-    .with(Effects::TEXTURE);
+    .with(Effects::TEXTURE)
+    .with(Effects::ALPHA)
+    .with(Effects::NESTED)
+    .with(Effects::FALLOFF)
+    .with(Effects::AREA_LIGHT)
+    .with(Effects::TONE_MAPPING)
+    .with(Effects::EMISSION)
+    .with(Effects::DEPTH_OF_FIELD)
+    .with(Effects::INDIRECT)
+    .with(Effects::ENVIRONMENT)
+    .with(Effects::GLOSSY);
 
-/// No plane, and no instance.
+/// No surface, and no instance.
 pub const NONE: u32 = u32::MAX;
 
 /// Why a scene cannot be certified.
@@ -40,11 +51,25 @@ pub struct Solid {
     /// Its number in scene-file order, which decides between hits at one place; of a part's with those before it.
     pub primitive: u32,
     pub object: u32,
-    /// Its planes, for what is flat or has flat faces: primitives that share a number lie in one plane.
-    pub planes: [u32; 6],
+    /// The surfaces that its parts lie in, planes and cylinders without ends: a ray meets primitives that share one at
+    /// one t.
+    pub surfaces: [u32; 6],
     /// The first primitive of the very same form.
     pub twin: u32,
     pub paint: Paint,
+}
+
+impl Solid {
+    /// Whether crossings of this and of another primitive of the space lie in one surface, at one t.
+    pub fn meets_at_one_t<N>(&self, other: &Self, [own, its]: [&Crossing<N>; 2]) -> bool {
+        let same_way = own.leaves == its.leaves;
+        let surface = self.surfaces[usize::from(own.part)];
+        let is_shared = surface != NONE && surface == other.surfaces[usize::from(its.part)];
+        // A ray crosses a plane once, and what is curved once into it and once out of it.
+        let is_curved = matches!(self.form, Form::Cone { .. }) && own.part == MANTLE;
+        let twins = self.twin == other.twin && own.part == its.part;
+        is_shared && (same_way || !is_curved) || twins && same_way
+    }
 }
 
 /// What the corners of a triangle carry beside places and normals, as it is stored.
@@ -202,7 +227,7 @@ impl Space {
         mut boxes: Vec<(Bounds, Item)>,
     ) -> Result<Self, Unknown> {
         let mut space = Self::default();
-        let mut planes = Planes::default();
+        let mut surfaces = Surfaces::default();
         let mut twins = HashMap::new();
         for kind in Kind::ALL {
             for slot in 0..scene.count(kind) {
@@ -215,7 +240,7 @@ impl Space {
                     form,
                     primitive,
                     object,
-                    planes: planes.of(&form),
+                    surfaces: surfaces.of(&form),
                     twin: *twins.entry(form).or_insert(index),
                     paint: match kind {
                         Kind::Triangle => Paint {
@@ -289,13 +314,21 @@ fn form(scene: &Scene<'_>, slot: usize, geometry: Geometry) -> Option<Form> {
     })
 }
 
-/// The planes of a space, so that primitives in one plane are known by integers.
+/// The surfaces of a space that primitives may share, known by integers.
 #[derive(Default)]
-struct Planes(HashMap<([i64; 3], i128), u32>);
+struct Surfaces(HashMap<Surface, u32>);
 
-impl Planes {
+#[derive(PartialEq, Eq, Hash)]
+enum Surface {
+    /// A normal, and the distance along it.
+    Plane([i64; 3], i128),
+    /// An axis, its moment and a radius.
+    Cylinder([i64; 3], [i128; 3], i64),
+}
+
+impl Surfaces {
     fn of(&mut self, form: &Form) -> [u32; 6] {
-        let mut planes = [NONE; 6];
+        let mut surfaces = [NONE; 6];
         match *form {
             Form::Triangle {
                 corners: [point, ..],
@@ -307,37 +340,58 @@ impl Planes {
                 normal,
                 ..
             }
-            | Form::Plane { point, normal } => planes[0] = self.number(point, normal),
+            | Form::Plane { point, normal } => surfaces[0] = self.plane(point, normal),
             Form::Cuboid { lowest, highest } => {
-                for (face, plane) in planes.iter_mut().enumerate() {
+                for (face, surface) in surfaces.iter_mut().enumerate() {
                     let side = if face % 2 == 0 { lowest } else { highest };
                     let mut normal = [0; 3];
                     normal[face / 2] = 1;
-                    *plane = self.number(side, normal);
+                    *surface = self.plane(side, normal);
                 }
             }
-            Form::Cone { base, axis, .. } => {
-                planes[1] = self.number(base, axis);
-                planes[2] = self.number([0, 1, 2].map(|k| base[k] + axis[k]), axis);
+            Form::Cone {
+                base,
+                axis,
+                base_radius,
+                apex_radius,
+            } => {
+                if base_radius == apex_radius {
+                    surfaces[0] = self.cylinder(base, axis, base_radius);
+                }
+                surfaces[1] = self.plane(base, axis);
+                surfaces[2] = self.plane([0, 1, 2].map(|k| base[k] + axis[k]), axis);
             }
             Form::Sphere { .. } | Form::Torus { .. } => {}
         }
-        planes
+        surfaces
     }
 
-    fn number(&mut self, point: [i64; 3], normal: [i64; 3]) -> u32 {
-        let divisor = normal.iter().fold(0, |a, &b| gcd(a, b.unsigned_abs()));
-        if divisor == 0 {
+    fn plane(&mut self, point: [i64; 3], normal: [i64; 3]) -> u32 {
+        let normal = line(normal);
+        let along = (0..3).map(|k| i128::from(normal[k]) * i128::from(point[k]));
+        self.number(normal, Surface::Plane(normal, along.sum()))
+    }
+
+    fn cylinder(&mut self, point: [i64; 3], axis: [i64; 3], radius: i64) -> u32 {
+        let axis = line(axis);
+        let product = |i: usize, j: usize| i128::from(point[i]) * i128::from(axis[j]);
+        let moment = [(1, 2), (2, 0), (0, 1)].map(|(i, j)| product(i, j) - product(j, i));
+        self.number(axis, Surface::Cylinder(axis, moment, radius))
+    }
+
+    fn number(&mut self, direction: [i64; 3], surface: Surface) -> u32 {
+        if direction == [0; 3] {
             return NONE;
         }
-        let first = normal.iter().find(|&&x| x != 0).map_or(1, |x| x.signum());
-        let reduced = normal.map(|x| x / divisor as i64 * first);
-        let offset = (0..3)
-            .map(|k| i128::from(reduced[k]) * i128::from(point[k]))
-            .sum();
         let next = self.0.len() as u32;
-        *self.0.entry((reduced, offset)).or_insert(next)
+        *self.0.entry(surface).or_insert(next)
     }
+}
+
+/// The shortest vector of integers on the line of another one, whichever way that points.
+fn line(vector: [i64; 3]) -> [i64; 3] {
+    let first = vector.iter().find(|&&x| x != 0).map_or(1, |x| x.signum());
+    reduced(vector).map(|x| x * first)
 }
 
 /// The shortest vector of integers with the same direction.

@@ -1,0 +1,220 @@
+//! Where lights are seen from a surface, and what of them arrives without anything in the way.
+
+use super::crossing::exact;
+use super::number::*;
+use super::path::Path;
+use super::random;
+use super::reason::Reason;
+use super::search::{Stop, Tracer};
+use super::sky;
+use gridel_core::format::light_form::LightForm;
+use gridel_core::format::record::Light;
+
+/// The way to a light, or to the point of it that a sample sees.
+#[derive(Clone, Copy, Debug)]
+pub struct Aim<N> {
+    /// The way; of infinitely far lights its length means nothing.
+    pub way: Three<N>,
+    pub is_far: bool,
+    /// Where the light is a sphere, how it is seen.
+    cone: Option<Cone<N>>,
+    /// The light's color.
+    pub color: Three<N>,
+}
+
+/// The cone in which a sphere is seen.
+#[derive(Clone, Copy, Debug)]
+struct Cone<N> {
+    /// The distance of the sphere's middle.
+    distance: N,
+    /// 1 / (1 + cos) of the angle between its axis and its side.
+    widening: N,
+}
+
+/// A length with 13 fraction bits of a unit, which are 5 of a step.
+fn length<N: Enclosure>(q13: i64) -> N {
+    N::scaled(q13, 5)
+}
+
+impl Tracer<'_, '_> {
+    /// The way to a light; `None` where it does not shine on a point.
+    ///
+    /// # Errors
+    /// If it is open which way that is.
+    pub fn aim<N: Enclosure>(
+        &self,
+        (number, light): (u32, &Light),
+        point: Three<N>,
+        path: &Path<N>,
+    ) -> Result<Option<Aim<N>>, Stop> {
+        let scene = self.world.scene;
+        let color = light.color.map(radiance_of);
+        let far = |way, color| {
+            Ok(Some(Aim {
+                way,
+                is_far: true,
+                cone: None,
+                color,
+            }))
+        };
+        // Lights beyond the first 4,096 share points with these.
+        let dimension = number as u16 & 0xfff;
+        match (light.directional, scene.environment()) {
+            (1, _) => return far(exact(light.vector), color),
+            (Light::ENVIRONMENT, Some(_)) => {
+                let drawn = sky::from_map(scene, path.point(sky::DIMENSION));
+                let (way, radiance) = drawn.ok_or(Stop)?;
+                return far(way, radiance);
+            }
+            (Light::SUN, Some(record)) => {
+                let way = sky::in_sun(record, path.point(dimension)).ok_or(Stop)?;
+                return far(way, color);
+            }
+            _ => {}
+        }
+        let way = minus(light.vector.map(length), point);
+        let aim = Aim {
+            way,
+            is_far: false,
+            cone: None,
+            color,
+        };
+        match scene.light_form(light).filter(|_| light.is_area()) {
+            None => Ok(Some(aim)),
+            Some(form) if form.shape == LightForm::SPHERE => {
+                self.on_sphere(form, aim, path, dimension)
+            }
+            Some(form) => Ok(Some(Aim {
+                way: plus(way, within(form, path.point(dimension))),
+                ..aim
+            })),
+        }
+    }
+
+    /// The way to where a random direction meets a sphere.
+    fn on_sphere<N: Enclosure>(
+        &self,
+        form: &LightForm,
+        aim: Aim<N>,
+        path: &Path<N>,
+        dimension: u16,
+    ) -> Result<Option<Aim<N>>, Stop> {
+        let one = N::one();
+        let radius = length::<N>(form.edges[0][0].into());
+        let distance = norm2(aim.way).sqrt();
+        match positive(distance - radius) {
+            Some(true) => {}
+            Some(false) => return Ok(None),
+            None => return self.is_open(Reason::Terminator, path, aim.way),
+        }
+        let found = || {
+            let axis = unit(aim.way)?;
+            let [u, v] = path.point(dimension);
+            let widest = radius.over(distance)?;
+            let square = widest.square();
+            let widening = one.over(one + (one - square).sqrt())?;
+            // 1 - cos of the direction's angle, of up to that of the cone's.
+            let sag = square * widening * random::ratio(u);
+            let away = (sag + (sag - sag.square())).sqrt().at_most(widest);
+            let toward = one - sag;
+            let [sine, cosine] = random::turn::<N>(v);
+            let sides = random::beside(axis)?;
+            let direction = random::combined(axis, toward, sides, [away * cosine, away * sine]);
+            // From the middle of the chord to the surface.
+            let part = away.over(widest)?.at_most(one);
+            let inward = radius * (one - part.square()).sqrt();
+            Some(Aim {
+                way: scale(direction, distance * toward - inward),
+                cone: Some(Cone { distance, widening }),
+                ..aim
+            })
+        };
+        match found() {
+            Some(aim) => Ok(Some(aim)),
+            None => self.is_open(Reason::Sampling, path, aim.way),
+        }
+    }
+
+    /// Ends an evaluation with a reason, at a point on the way from where a path's ray starts.
+    fn is_open<N: Enclosure, R>(
+        &self,
+        reason: Reason,
+        path: &Path<N>,
+        way: Three<N>,
+    ) -> Result<R, Stop> {
+        self.note(reason, path.depth, super::world::NONE, way);
+        Err(Stop)
+    }
+}
+
+/// From the position of a flat light to a random point of it.
+fn within<N: Enclosure>(form: &LightForm, [u, v]: [u32; 2]) -> Three<N> {
+    let one = 1_u32 << 30;
+    let [along, across] = match form.shape {
+        LightForm::DISC => {
+            let (radius, [sine, cosine]) = (random::ratio::<N>(u).sqrt(), random::turn::<N>(v));
+            [radius * cosine, radius * sine]
+        }
+        // The half of a parallelogram beyond the third side is turned onto the other half.
+        LightForm::TRIANGLE if (u >> 2) + (v >> 2) > one => {
+            [N::one() - random::ratio(u), N::one() - random::ratio(v)]
+        }
+        _ => [random::ratio(u), random::ratio(v)],
+    };
+    let [first, second] = form.edges.map(|edge| edge.map(|it| length::<N>(it.into())));
+    plus(scale(first, along), scale(second, across))
+}
+
+/// What arrives of a light with a form, given the direction to it; `None` where that is open.
+pub fn arriving<N: Enclosure>(
+    form: &LightForm,
+    aim: &Aim<N>,
+    to_light: Three<N>,
+) -> Option<Three<N>> {
+    let (zero, one) = (N::zero(), N::one());
+    let own = norm2(aim.way).sqrt();
+    let distance = aim.cone.map_or(own, |cone| cone.distance);
+    let mut part = one;
+    if form.reference > 0 {
+        // Nothing is nearer than 2^-32 of that distance.
+        let ratio = length::<N>(form.reference.into()).over(distance)?;
+        part = ratio.at_most(N::int(1 << 32)).square();
+    }
+    if form.range > 0 {
+        let range = length::<N>(form.range.into());
+        let square = distance.over(range)?.square();
+        part = part * (one - square.square()).at_least(zero);
+        // A sphere's point may be in range where its middle is not, and the other way round.
+        let beyond = own - range;
+        match positive(-beyond) {
+            Some(true) => {}
+            Some(false) => part = zero,
+            None => part = part.hull(zero),
+        }
+    }
+    if let Some(cone) = aim.cone {
+        part = part * (cone.widening + cone.widening);
+    } else {
+        let cosine = -dot(form.normal.map(ratio_of), to_light);
+        let cosine = cosine.at_least(-one).at_most(one);
+        match form.shape {
+            LightForm::RECTANGLE | LightForm::DISC | LightForm::TRIANGLE => {
+                part = part * cosine.at_least(zero);
+            }
+            _ if form.cone_cosine > -(1 << 30) => {
+                let within = cosine - ratio_of(form.cone_cosine);
+                part = part
+                    * match (form.cone_width, positive(within)) {
+                        (0, Some(is_inside)) => N::int(is_inside.into()),
+                        (0, None) => zero.hull(one),
+                        (width, _) => {
+                            let within = within.at_least(zero).over(ratio_of(width))?;
+                            within.at_most(one).square()
+                        }
+                    };
+            }
+            _ => {}
+        }
+    }
+    Some(scale(aim.color, part))
+}

@@ -1,0 +1,123 @@
+//! Nested dielectrics: which of several media that overlap is there.
+
+use super::number::*;
+use gridel_core::Scene;
+use gridel_core::format::limits::MAX_MEDIA;
+use gridel_core::format::record::Material;
+
+/// Two media that meet at a surface.
+#[derive(Clone, Copy, Debug)]
+pub struct Interface<N> {
+    /// The lower index of refraction over the higher one.
+    pub k: N,
+    /// Whether the ray goes to the one with the higher index.
+    pub to_denser: bool,
+}
+
+impl<N: Enclosure> Interface<N> {
+    /// Between the surroundings and glass, whose front a ray meets or not.
+    pub fn of(front: bool, material: &Material) -> Self {
+        Self {
+            k: ratio_of(material.inverse_ior),
+            to_denser: front,
+        }
+    }
+}
+
+/// How often a ray is inside of each medium, from the highest priority on.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Inside([u8; MAX_MEDIA]);
+
+impl Inside {
+    /// The most that is counted.
+    const MOST: u8 = 15;
+
+    fn highest(self) -> Option<u8> {
+        let place = self.0.iter().position(|&count| count > 0)?;
+        Some(place as u8)
+    }
+
+    fn with(mut self, place: u8, change: impl Fn(u8) -> u8) -> Self {
+        let count = &mut self.0[usize::from(place)];
+        *count = change(*count);
+        self
+    }
+
+    fn entered(self, place: u8) -> Self {
+        self.with(place, |count| (count + 1).min(Self::MOST))
+    }
+
+    fn left(self, place: u8) -> Self {
+        self.with(place, |count| count.saturating_sub(1))
+    }
+}
+
+/// A face of a medium that a ray crosses.
+#[derive(Clone, Copy, Debug)]
+pub struct Boundary {
+    from: Option<u8>,
+    to: Option<u8>,
+    /// What a ray on the far side is inside of.
+    pub beyond: Inside,
+}
+
+impl Boundary {
+    /// That of an object; `None` of what is no medium.
+    pub fn at(scene: &Scene<'_>, inside: Inside, object: u32, enters: bool) -> Option<Self> {
+        let place = scene.place_among_media(object)?;
+        let (near, beyond) = if enters {
+            (inside, inside.entered(place))
+        } else {
+            // A ray that is not inside has begun there.
+            let beyond = inside.left(place);
+            (beyond.entered(place), beyond)
+        };
+        Some(Self {
+            from: near.highest(),
+            to: beyond.highest(),
+            beyond,
+        })
+    }
+
+    /// Whether different media fill the two sides.
+    pub fn is_there(&self) -> bool {
+        self.from != self.to
+    }
+
+    /// What meets there.
+    pub fn interface<N: Enclosure>(&self, scene: &Scene<'_>) -> Option<Interface<N>> {
+        let [from, to] = [self.from, self.to]
+            .map(|place| medium(scene, place).map_or(1 << 30, |it| it.inverse_ior));
+        let to_denser = to < from;
+        let (less, more) = (from.min(to), from.max(to));
+        let k = if less == more {
+            N::one()
+        } else {
+            ratio_of::<N>(less).over(ratio_of(more))?
+        };
+        Some(Interface { k, to_denser })
+    }
+}
+
+/// The material that a ray or light came through to a face.
+pub fn passed<'s>(
+    scene: &Scene<'s>,
+    boundary: Option<&Boundary>,
+    inside: Inside,
+    object: u32,
+    enters: bool,
+) -> Option<&'s Material> {
+    let own = scene.material(object)?;
+    let is_behind = own.transmit != [0; 3] && !enters;
+    let place = match boundary {
+        Some(boundary) => boundary.from,
+        None if is_behind => return Some(own),
+        None => inside.highest(),
+    };
+    medium(scene, place).or(is_behind.then_some(own))
+}
+
+fn medium<'s>(scene: &Scene<'s>, place: Option<u8>) -> Option<&'s Material> {
+    let number = *scene.media().get(usize::from(place?))?;
+    scene.materials().get(number as usize)
+}

@@ -1,0 +1,31 @@
+//! Rays on their way from the eye, and what they have been through.
+
+use super::crossing::Ray;
+use super::media::Inside;
+use super::number::*;
+use gridel_core::RayKind;
+use gridel_core::shade::sampler::Sampler;
+
+/// A ray of a sample.
+#[derive(Clone, Copy, Debug)]
+pub struct Path<N> {
+    pub ray: Ray<N>,
+    /// The ratio of what it brings that arrives at the eye.
+    pub weight: Three<N>,
+    /// Reflections and refractions that led to it.
+    pub depth: u8,
+    pub kind: RayKind,
+    /// The random points of its sample.
+    pub points: Sampler,
+    /// Diffuse reflections that led to it, but for the last.
+    pub reflections: u8,
+    pub inside: Inside,
+}
+
+impl<N> Path<N> {
+    /// A random point of the unit square, with 32 fraction bits.
+    pub fn point(&self, dimension: u16) -> [u32; 2] {
+        let bounce = u16::from(self.depth) << 8 | self.kind as u16;
+        self.points.point(bounce, dimension)
+    }
+}
