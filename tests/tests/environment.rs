@@ -3,8 +3,10 @@
 use glam::DVec3;
 use gridel_core::{Effects, Format, Settings, Structure};
 use gridel_host::blob::Blob;
+use gridel_host::certify::{World, enclose};
 use gridel_host::compile::{Options, compile};
 use gridel_host::explain::{LightOutcome, Subject, explain};
+use gridel_host::render::{Job, render};
 use gridel_host::scene::{Environment, Panorama, Scene, Sky, read};
 use gridel_tests::measured::{SCRAMBLES, check, measured_color};
 use std::f64::consts::{PI, TAU};
@@ -308,17 +310,13 @@ fn scenes_without_an_environment_have_no_byte_of_it() {
 }
 
 #[test]
-fn environments_are_verified_and_explained_and_not_certified() {
+fn environments_are_verified_and_explained() {
     let sky = "[environment]\nzenith = 0.5\nhorizon = 0.5\nground = 0.125\nsize = 32\n\
                sun = { direction = [0, -1, 0], angle = 4 }";
     let blob = compiled(&scene("[0, 6, 0]", "[0, 0, 0]", &format!("{sky}\n{BALL}")));
     let scene = blob.scene().expect("a scene");
     let report = gridel_host::verify::verify(&scene, 500, &|| ());
     assert_eq!(report.broken(), 0);
-    let refused = gridel_host::certify::World::of(&scene)
-        .err()
-        .expect("an error");
-    assert!(refused.to_string().contains("environment"), "{refused}");
     let explained = |origin: DVec3, direction: DVec3| {
         let ray = gridel_host::trace::SceneRay {
             origin,
@@ -344,4 +342,36 @@ fn environments_are_verified_and_explained_and_not_certified() {
     let (_, sees_sun) = missed(DVec3::Y);
     let (_, sees_no_sun) = missed(DVec3::X);
     assert!(sees_sun && !sees_no_sun);
+}
+
+/// Where a light of the sky shines over the edge of a smooth mesh, the way to it begins above the triangle and keeps its
+/// direction: the sky has no place.
+#[test]
+fn smooth_meshes_are_lit_from_the_direction_that_was_drawn() {
+    let text = "[camera]\neye = [0.5, 2, 8]\ntarget = [0, 0, 0]\nfov = 24\n\
+        [render]\nwidth = 24\nheight = 24\nsamples = 4\n\
+        [environment]\nzenith = [0.5, 0.6, 0.9]\nhorizon = 0.7\nground = 0.2\nsize = 16\n\
+        sun = { direction = [1, -1.1, -0.8], color = 1.5, angle = 2 }\n\
+        [material.clay]\ndiffuse = 0.8\n\
+        [[object]]\nkind = 'mesh'\nmaterial = 'clay'\nsmooth = 120\n\
+        vertices = [[1, 0, 0], [-1, 0, 0], [0, 1, 0], [0, -1, 0], [0, 0, 1], [0, 0, -1]]\n\
+        faces = [[0, 2, 4], [2, 1, 4], [1, 3, 4], [3, 0, 4], [2, 0, 5], [1, 2, 5], [3, 1, 5], [0, 3, 5]]";
+    let imported = read("ball.toml".as_ref(), text.into(), &Default::default());
+    let blob = compiled(&imported.expect("a scene").scene);
+    let scene = blob.scene().expect("a scene");
+    let settings = Settings::of(&scene);
+    let world = World::of(&scene).expect("a scene that is known");
+    for format in Format::ALL {
+        let job = Job::whole(format, Structure::List, settings);
+        let picture = render(&scene, &job, &|| ()).expect("a picture");
+        for (index, shown) in (0..).zip(picture.pixels.chunks(3)) {
+            let pixel = [index % 24, index / 24];
+            let enclosed = enclose(&world, &settings, pixel, 2);
+            let error = enclosed.error_of([shown[0], shown[1], shown[2]]);
+            assert!(
+                error.is_none_or(|it| it <= 1),
+                "{format:?} {pixel:?}: {enclosed:?} {shown:?}"
+            );
+        }
+    }
 }

@@ -150,7 +150,8 @@ fn lift<'s, N: Number, X: Tracer<'s, N>>(
     }
     let from = lighting.origin;
     lighting.origin = moved(from, way);
-    if lighting.light.form().is_none() {
+    // Only a point is seen in another direction from there: of the others one was drawn, or they are far away.
+    if lighting.light.directional == 0 {
         (lighting.way, lighting.distance) = lighting.light.seen_from(lighting.origin);
     }
     true
