@@ -6,7 +6,7 @@ use crate::format::lens::Lens;
 use crate::format::light_form::LightForm;
 use crate::format::limits::MAX_MEDIA;
 use crate::format::record::{
-    Emission, Header, Light, Material, SurfaceMaps, Texture, UnitBox, View,
+    Emission, Header, Light, Material, NormalMap, SurfaceMaps, Texture, UnitBox, View,
 };
 use crate::format::{Effects, Indices, Kind, Structure};
 use crate::geometry::{Geometry, PrimitiveId};
@@ -346,6 +346,23 @@ impl<'a> Scene<'a> {
         let texture = textures.texture(maps.color)?;
         (material.maps & Material::MAPS_ALPHA != 0)
             .then(|| textures.alpha(texture, coordinates, Footprint::point()))
+    }
+
+    /// The normal that a material's normal map holds at coordinates with 20 fraction bits, along u, against v and along the
+    /// surface's normal: ratios from -1 to 1 with 30 fraction bits, and the map, whose factors are not yet in them. `None`
+    /// of a material without one. Of one with levels it is that of the whole image.
+    pub fn mapped_normal(
+        &self,
+        material: &Material,
+        coordinates: [i32; 2],
+    ) -> Option<([i32; 3], &'a NormalMap)> {
+        if material.maps & Material::MAPS_NORMAL == 0 {
+            return None;
+        }
+        let textures = self.textures.get()?;
+        let (map, texture) = textures.normal_map_of(material)?;
+        let texel = textures.normal(texture, coordinates, Footprint::point());
+        Some((texel.color, map))
     }
 
     /// The texture of a material and how its alpha is used; `None` of a material without one.

@@ -80,6 +80,18 @@ impl Tracer<'_, '_> {
                 }
             }
         }
+        let is_bumped = seen.material.maps & Material::MAPS_NORMAL != 0;
+        if is_bumped && !self.has(Effects::SMOOTH.with(Effects::SHADOW)) {
+            // Light from behind does not reach a front, as it would be lifted to no surface.
+            match positive(dot(hit.facing(), to_light)) {
+                Some(true) => {}
+                Some(false) => return Ok(black),
+                None => {
+                    self.note(Reason::Terminator, depth, hit.primitive, hit.point);
+                    ways.push(None);
+                }
+            }
+        }
         let cos = cos.at_least(N::zero());
         let mut reflected = scale(seen.diffuse, cos);
         if seen.material.highlight != [0; 3] {

@@ -17,11 +17,12 @@
 //! | `path.rs`, `camera.rs` | a ray on its way from the eye, and how it begins |
 //! | `search.rs`, `hit.rs` | every crossing that may be the nearest, and the surface there |
 //! | `trace.rs`, `light.rs`, `aim.rs` | the rays of a sample, and what arrives from lights |
-//! | `shade.rs`, `paint.rs`, `media.rs`, `facets.rs`, `sky.rs`, `random.rs` | the rules of effects |
+//! | `shade.rs`, `paint.rs`, `bump.rs`, `media.rs`, `facets.rs`, `sky.rs`, `random.rs` | the rules of effects |
 //! | `tone.rs`, `picture.rs` | from samples to pixels, with more bits where that is needed |
 //! | `reason.rs`, `report.rs`, `page.rs` | why a pixel is open, and what was found |
 
 mod aim;
+mod bump;
 mod camera;
 mod cone;
 mod crossing;

@@ -122,7 +122,7 @@ fn mixed<N: Enclosure>(weights: Three<N>, roots: [u8; 3]) -> N {
 }
 
 /// Calls a function with the multiples at which a texture may be looked up; returns whether there are few enough.
-fn at_places<N: Enclosure>(
+pub fn at_places<N: Enclosure>(
     weights: Three<N>,
     coordinates: [[i32; 2]; 3],
     mut call: impl FnMut([i32; 2]),

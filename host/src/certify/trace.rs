@@ -4,6 +4,7 @@
 //! and why is recorded. The kernels of the core are not used: their answers depend on what their numbers round (where
 //! a ray starts beside a surface, what is culled), and here nothing is rounded away.
 
+use super::bump;
 use super::crossing::Ray;
 use super::deep;
 use super::facets::{self, Facets};
@@ -103,6 +104,18 @@ impl Tracer<'_, '_> {
             normal = smooth;
             if is_glass || material.mirror != [0; 3] {
                 normal = shade::turned_to_ray(normal, direction).ok_or(Stop)?;
+            }
+        }
+        if self.has(Effects::NORMAL_MAP) {
+            let bumped = bump::bumped(self.world, &hit, material, normal).ok_or(Stop)?;
+            if let Some(bumped) = bumped {
+                if bumped.is_open {
+                    self.note(Reason::Texture, depth, hit.primitive, hit.point);
+                }
+                normal = bumped.normal;
+                if is_glass || material.mirror != [0; 3] {
+                    normal = shade::turned_to_ray(normal, direction).ok_or(Stop)?;
+                }
             }
         }
         let mut diffuse = self.diffuse(&hit, material, depth);
@@ -350,7 +363,7 @@ impl Tracer<'_, '_> {
             self.branch()?;
         }
         let mut ways = vec![direction];
-        if self.has(Effects::SMOOTH) {
+        if self.has(Effects::SMOOTH) || self.has(Effects::NORMAL_MAP) {
             let normal = if outward {
                 hit.normal
             } else {

@@ -28,7 +28,8 @@ pub const KNOWN: Effects = Effects::SHADOW
     .with(Effects::DEPTH_OF_FIELD)
     .with(Effects::INDIRECT)
     .with(Effects::ENVIRONMENT)
-    .with(Effects::GLOSSY);
+    .with(Effects::GLOSSY)
+    .with(Effects::NORMAL_MAP);
 
 /// No surface, and no instance.
 pub const NONE: u32 = u32::MAX;
