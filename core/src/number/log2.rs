@@ -1,17 +1,17 @@
 //! Binary logarithms of integers, with 8 fraction bits. Each is off by less than 0.02, and takes a few instructions.
 
 /// Fraction bits of a logarithm.
-pub(crate) const LOG2_BITS: u32 = 8;
+pub const LOG2_BITS: u32 = 8;
 
 /// The binary logarithm of 2 to a power.
 #[inline(always)]
-pub(crate) const fn log2_of_power(exponent: i32) -> i32 {
+pub const fn log2_of_power(exponent: i32) -> i32 {
     exponent << LOG2_BITS
 }
 
 /// The binary logarithm of a number; that of 0 is 0, as of 1.
 #[inline(never)]
-pub(crate) fn log2(number: u64) -> i32 {
+pub fn log2(number: u64) -> i32 {
     let number = number.max(1);
     let zeros = number.leading_zeros();
     // The digits behind the first one: x of 1 + x, with 16 fraction bits.
@@ -23,7 +23,7 @@ pub(crate) fn log2(number: u64) -> i32 {
 }
 
 /// The binary logarithm of the length of a vector whose components have at most 63 bits; that of 0 is 0.
-pub(crate) fn log2_of_length(vector: [i64; 3]) -> i32 {
+pub fn log2_of_length(vector: [i64; 3]) -> i32 {
     let [x, y, z] = vector.map(i64::unsigned_abs);
     // Components below 2^31, whose squares have room.
     let excess = 33_u32.saturating_sub((x | y | z).leading_zeros());
@@ -36,7 +36,7 @@ pub(crate) fn log2_of_length(vector: [i64; 3]) -> i32 {
 }
 
 /// The binary logarithm of the sum of two numbers of which the logarithms are given.
-pub(crate) fn log2_of_sum(a: i32, b: i32) -> i32 {
+pub fn log2_of_sum(a: i32, b: i32) -> i32 {
     let (larger, smaller) = if a > b { (a, b) } else { (b, a) };
     let apart = larger.wrapping_sub(smaller).cast_unsigned();
     let whole = apart >> LOG2_BITS;

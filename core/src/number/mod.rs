@@ -27,7 +27,7 @@ mod extent;
 pub(crate) mod fixed;
 pub(crate) mod float;
 mod format;
-pub(crate) mod log2;
+pub mod log2;
 mod powers;
 mod products;
 pub(crate) mod rotation;

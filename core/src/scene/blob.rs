@@ -324,44 +324,51 @@ impl<'a> Scene<'a> {
     }
 
     /// The color of a material's texture at coordinates with 20 fraction bits: linear ratios with 30 fraction bits.
-    /// `None` of a material without a texture. Of one with levels it is that of the whole image.
-    pub fn texture_color(&self, material: &Material, coordinates: [i32; 2]) -> Option<[i32; 3]> {
+    /// `None` of a material without a texture. Of one without levels the footprint means nothing.
+    pub fn texture_color(
+        &self,
+        material: &Material,
+        coordinates: [i32; 2],
+        footprint: Footprint,
+    ) -> Option<[i32; 3]> {
         if !self.effects.contains(Effects::TEXTURE) || material.maps & Material::MAPS_TEXTURE == 0 {
             return None;
         }
         let textures = self.textures.get()?;
         let texture = textures.texture(textures.maps_of(material)?.color)?;
-        Some(
-            textures
-                .lookup(texture, coordinates, Footprint::point())
-                .color,
-        )
+        Some(textures.lookup(texture, coordinates, footprint).color)
     }
 
     /// The alpha of a material's texture at coordinates with 20 fraction bits: a ratio with 30 fraction bits. `None` of a
-    /// material that does not use it. Of a texture with levels it is that of the whole image.
-    pub fn texture_alpha(&self, material: &Material, coordinates: [i32; 2]) -> Option<i32> {
+    /// material that does not use it. Of a texture without levels the footprint means nothing.
+    pub fn texture_alpha(
+        &self,
+        material: &Material,
+        coordinates: [i32; 2],
+        footprint: Footprint,
+    ) -> Option<i32> {
         let maps = self.surface_maps(material)?;
         let textures = self.textures.get()?;
         let texture = textures.texture(maps.color)?;
         (material.maps & Material::MAPS_ALPHA != 0)
-            .then(|| textures.alpha(texture, coordinates, Footprint::point()))
+            .then(|| textures.alpha(texture, coordinates, footprint))
     }
 
     /// The normal that a material's normal map holds at coordinates with 20 fraction bits, along u, against v and along the
     /// surface's normal: ratios from -1 to 1 with 30 fraction bits, and the map, whose factors are not yet in them. `None`
-    /// of a material without one. Of one with levels it is that of the whole image.
+    /// of a material without one. Of one without levels the footprint means nothing.
     pub fn mapped_normal(
         &self,
         material: &Material,
         coordinates: [i32; 2],
+        footprint: Footprint,
     ) -> Option<([i32; 3], &'a NormalMap)> {
         if material.maps & Material::MAPS_NORMAL == 0 {
             return None;
         }
         let textures = self.textures.get()?;
         let (map, texture) = textures.normal_map_of(material)?;
-        let texel = textures.normal(texture, coordinates, Footprint::point());
+        let texel = textures.normal(texture, coordinates, footprint);
         Some((texel.color, map))
     }
 

@@ -26,3 +26,4 @@ pub use parts::{Parts, part_blobs};
 pub use poses::{Poses, PosesView};
 pub use prevalidated::Prevalidated;
 pub(crate) use read::header;
+pub use textures::Footprint;

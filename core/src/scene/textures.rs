@@ -13,7 +13,7 @@ use crate::number::log2::LOG2_BITS;
 use crate::target::{NormalMapOnly, TEXTURE_LEVELS, inline_on_boards};
 use levels::Level;
 
-pub(crate) use levels::Footprint;
+pub use levels::Footprint;
 
 impl Material {
     /// The bits of [`maps`](Self::maps) that are a number.

@@ -2,6 +2,7 @@
 
 use super::crossing::exact;
 use super::hit::Hit;
+use super::log2::Log2;
 use super::number::*;
 use super::paint::at_places;
 use super::shade;
@@ -21,7 +22,7 @@ pub struct Bumped<N> {
 pub fn bumped<N: Enclosure>(
     world: &World<'_>,
     hit: &Hit<N>,
-    material: &Material,
+    (material, size): (&Material, Option<Log2>),
     normal: Three<N>,
 ) -> Option<Option<Bumped<N>>> {
     let solid = &world.space(hit.instance).solids[hit.solid as usize];
@@ -44,8 +45,8 @@ pub fn bumped<N: Enclosure>(
     let (_, weights) = shade::weights(world, hit, corners, across)?;
     let mut range: Option<[[i32; 2]; 3]> = None;
     let mut map = None;
-    let is_known = at_places(weights, coordinates, |place| {
-        let Some((texel, its_map)) = world.scene.mapped_normal(material, place) else {
+    let is_known = at_places(weights, coordinates, size, |place, footprint| {
+        let Some((texel, its_map)) = world.scene.mapped_normal(material, place, footprint) else {
             return;
         };
         let mut all = range.unwrap_or(texel.map(|it| [it; 2]));

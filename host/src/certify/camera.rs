@@ -70,6 +70,7 @@ pub fn path<N: Enclosure>(
         points: Sampler::new(pixel, sample),
         reflections: 0,
         inside: Inside::default(),
+        length: None,
     };
     if let Some(lens) = world.scene.lens() {
         path.ray = through(lens, view, &path)?;

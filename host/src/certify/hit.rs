@@ -1,6 +1,7 @@
 //! Hits, and surfaces as they are shaded.
 
 use super::crossing::Start;
+use super::log2::Log2;
 use super::media::{Inside, Interface};
 use super::number::*;
 use super::path::Path;
@@ -56,15 +57,21 @@ pub struct Seen<'h, N> {
     pub path: &'h Path<N>,
     pub hit: &'h Hit<N>,
     pub material: &'h Material,
+    /// Whether it is a boundary, and not within a medium of a higher priority.
+    pub is_there: bool,
     pub normal: Three<N>,
     /// That of the ray, of length 1.
     pub direction: Three<N>,
     pub diffuse: Three<N>,
     /// The ratio of the light from here that arrives at the eye.
     pub weight: Three<N>,
+    /// The ratio of the light from behind that passes straight on.
+    pub passing: Three<N>,
     pub interface: Interface<N>,
     /// What a ray on the far side is inside of.
     pub beyond: Inside,
     /// Diffuse reflections that led here.
     pub reflections: u8,
+    /// How long the rays are that led here, where textures have levels.
+    pub length: Option<Log2>,
 }

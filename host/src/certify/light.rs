@@ -200,7 +200,7 @@ impl Tracer<'_, '_> {
             let mut part = white;
             if boundary.is_none_or(|it| it.is_there()) {
                 part = if material.transmit == [0; 3] {
-                    let alpha = paint::alpha(self.world, &hit, material).ok_or(Stop)?;
+                    let alpha = paint::alpha(self.world, &hit, material, None).ok_or(Stop)?;
                     let passing = N::one() - alpha.part;
                     if alpha.is_open {
                         self.note(Reason::Texture, depth, hit.primitive, hit.point);

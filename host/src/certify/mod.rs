@@ -16,8 +16,8 @@
 //! | `crossing.rs`, `shapes.rs`, `cone.rs`, `torus.rs` | where rays cross primitives |
 //! | `path.rs`, `camera.rs` | a ray on its way from the eye, and how it begins |
 //! | `search.rs`, `hit.rs` | every crossing that may be the nearest, and the surface there |
-//! | `trace.rs`, `light.rs`, `aim.rs` | the rays of a sample, and what arrives from lights |
-//! | `shade.rs`, `paint.rs`, `bump.rs`, `media.rs`, `facets.rs`, `sky.rs`, `random.rs` | the rules of effects |
+//! | `trace.rs`, `surface.rs`, `light.rs`, `aim.rs` | the rays of a sample, what they see, and what arrives from lights |
+//! | `shade.rs`, `paint.rs`, `log2.rs`, `levels.rs`, `bump.rs`, `media.rs`, `facets.rs`, `sky.rs`, `random.rs` | the rules of effects |
 //! | `tone.rs`, `picture.rs` | from samples to pixels, with more bits where that is needed |
 //! | `reason.rs`, `report.rs`, `page.rs` | why a pixel is open, and what was found |
 
@@ -30,7 +30,9 @@ mod deep;
 mod facets;
 mod hit;
 mod interval;
+mod levels;
 mod light;
+mod log2;
 mod media;
 mod number;
 mod page;
@@ -44,6 +46,7 @@ mod search;
 mod shade;
 mod shapes;
 mod sky;
+mod surface;
 mod tone;
 mod torus;
 mod trace;

@@ -4,10 +4,12 @@
 //! below the coordinates, by integers: where several of them are possible, all are looked up.
 
 use super::hit::Hit;
+use super::log2::Log2;
 use super::number::*;
 use super::shade;
 use super::world::{Form, Paint, World};
 use gridel_core::format::record::Material;
+use gridel_core::scene::Footprint;
 
 /// The most places of a texture that are looked up for a point.
 const MOST_PLACES: i64 = 64;
@@ -23,6 +25,7 @@ pub fn weight<N: Enclosure>(
     world: &World<'_>,
     hit: &Hit<N>,
     material: &Material,
+    size: Option<Log2>,
 ) -> Option<Weight<N>> {
     let white = Weight {
         color: [N::one(); 3],
@@ -50,7 +53,7 @@ pub fn weight<N: Enclosure>(
         found.color = [0, 1, 2].map(|channel: usize| mixed(weights, colors.map(|it| it[channel])));
     }
     if let Some(coordinates) = coordinates {
-        let texture = texture(world, material, weights, coordinates);
+        let texture = texture(world, material, size, (weights, coordinates));
         found.color = times(found.color, texture.color);
         found.is_open = texture.is_open;
     }
@@ -68,6 +71,7 @@ pub fn alpha<N: Enclosure>(
     world: &World<'_>,
     hit: &Hit<N>,
     material: &Material,
+    size: Option<Log2>,
 ) -> Option<Alpha<N>> {
     let whole = Alpha {
         part: N::one(),
@@ -92,8 +96,8 @@ pub fn alpha<N: Enclosure>(
     let ratio = |byte: u8| (i64::from(byte) << 30) / 255;
     let (_, weights) = shade::weights(world, hit, corners, normal)?;
     let mut range: Option<[i64; 2]> = None;
-    let is_known = at_places(weights, coordinates, |place| {
-        let alpha = world.scene.texture_alpha(material, place);
+    let is_known = at_places(weights, coordinates, size, |place, footprint| {
+        let alpha = world.scene.texture_alpha(material, place, footprint);
         let mut alpha = alpha.map_or(1 << 30, i64::from);
         if maps.cutoff > 0 {
             alpha = i64::from(alpha >= ratio(maps.cutoff)) << 30;
@@ -121,11 +125,13 @@ fn mixed<N: Enclosure>(weights: Three<N>, roots: [u8; 3]) -> N {
     ratio.at_least(N::zero()).at_most(N::one())
 }
 
-/// Calls a function with the multiples at which a texture may be looked up; returns whether there are few enough.
+/// Calls a function with the multiples at which a texture may be looked up, for what a sample may see of it; returns
+/// whether there are few enough.
 pub fn at_places<N: Enclosure>(
     weights: Three<N>,
     coordinates: [[i32; 2]; 3],
-    mut call: impl FnMut([i32; 2]),
+    size: Option<Log2>,
+    mut call: impl FnMut([i32; 2], Footprint),
 ) -> bool {
     // The first and the last of the multiples along u and v.
     let [u, v] = [0, 1].map(|axis: usize| {
@@ -138,9 +144,16 @@ pub fn at_places<N: Enclosure>(
     if !(1..=MOST_PLACES).contains(&count) {
         return false;
     }
+    let footprints: Vec<Footprint> = match size.map(Log2::footprints) {
+        None => vec![Footprint::point()],
+        Some(None) => return false,
+        Some(Some(all)) => all.collect(),
+    };
     for v in v[0]..=v[1] {
         for u in u[0]..=u[1] {
-            call([u as i32, v as i32]);
+            for &footprint in &footprints {
+                call([u as i32, v as i32], footprint);
+            }
         }
     }
     true
@@ -149,12 +162,12 @@ pub fn at_places<N: Enclosure>(
 fn texture<N: Enclosure>(
     world: &World<'_>,
     material: &Material,
-    weights: Three<N>,
-    coordinates: [[i32; 2]; 3],
+    size: Option<Log2>,
+    (weights, coordinates): (Three<N>, [[i32; 2]; 3]),
 ) -> Weight<N> {
     let mut range: Option<[[i32; 2]; 3]> = None;
-    let is_known = at_places(weights, coordinates, |place| {
-        let color = world.scene.texture_color(material, place);
+    let is_known = at_places(weights, coordinates, size, |place, footprint| {
+        let color = world.scene.texture_color(material, place, footprint);
         let color = color.unwrap_or([1 << 30; 3]);
         range = Some(match range {
             None => color.map(|it| [it, it]),

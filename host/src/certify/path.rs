@@ -1,6 +1,7 @@
 //! Rays on their way from the eye, and what they have been through.
 
 use super::crossing::Ray;
+use super::log2::Log2;
 use super::media::Inside;
 use super::number::*;
 use gridel_core::RayKind;
@@ -20,6 +21,8 @@ pub struct Path<N> {
     /// Diffuse reflections that led to it, but for the last.
     pub reflections: u8,
     pub inside: Inside,
+    /// How long the rays before it are, where textures have levels.
+    pub length: Option<Log2>,
 }
 
 impl<N> Path<N> {

@@ -3,6 +3,7 @@
 use super::camera;
 use super::deep::{self, Ball};
 use super::interval::Interval;
+use super::levels;
 use super::number::*;
 use super::reason::Reason;
 use super::search::{Open, Step, Stop, Tracer};
@@ -122,6 +123,7 @@ fn evaluate<N: Enclosure>(
     let mut tracer = Tracer {
         world,
         depth: settings.depth,
+        spread: levels::spread(world, settings),
         is_slow: level > 0,
         left: Cell::new(BRANCHES[level]),
         open: RefCell::new(Vec::new()),

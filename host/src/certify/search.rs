@@ -56,6 +56,8 @@ pub struct Candidate<N> {
 pub struct Tracer<'w, 's> {
     pub world: &'w World<'s>,
     pub depth: u8,
+    /// How far the rays of neighboring samples are apart, where textures have levels.
+    pub spread: i32,
     /// Whether numbers are so slow that intervals are asked first.
     pub is_slow: bool,
     /// How many outcomes may still be followed.

@@ -4,14 +4,11 @@
 //! and why is recorded. The kernels of the core are not used: their answers depend on what their numbers round (where
 //! a ray starts beside a surface, what is culled), and here nothing is rounded away.
 
-use super::bump;
 use super::crossing::Ray;
 use super::deep;
 use super::facets::{self, Facets};
-use super::hit::{Hit, Seen};
-use super::media::{self, Boundary, Interface};
+use super::hit::Seen;
 use super::number::*;
-use super::paint;
 use super::path::Path;
 use super::random;
 use super::reason::Reason;
@@ -19,7 +16,6 @@ use super::search::{Candidate, Stop, Tracer};
 use super::shade;
 use super::sky;
 use super::world::NONE;
-use gridel_core::format::record::Material;
 use gridel_core::{Effects, RayKind};
 
 /// What directions of indirect light are drawn by.
@@ -83,94 +79,26 @@ impl Tracer<'_, '_> {
         candidate: &Candidate<N>,
         path: &Path<N>,
     ) -> Result<Three<N>, Stop> {
-        let (ray, depth) = (&path.ray, path.depth);
-        let hit = self.hit(candidate, ray, depth)?;
-        let scene = self.world.scene;
-        let material = scene.material(hit.object).ok_or(Stop)?;
-        let is_glass = material.transmit != [0; 3];
-        let boundary = Boundary::at(scene, path.inside, hit.object, hit.front);
-        let mut weight = path.weight;
-        let medium = media::passed(scene, boundary.as_ref(), path.inside, hit.object, hit.front);
-        if let Some(medium) = medium.filter(|it| it.absorption != [0; 3]) {
-            let length = hit.t * norm2(ray.direction).sqrt();
-            weight = times(weight, shade::absorbed(medium, length));
-        }
-        let direction = unit(ray.direction).ok_or(Stop)?;
-        let facing = hit.facing();
-        let mut normal = facing;
-        if self.has(Effects::SMOOTH)
-            && let Some(smooth) = shade::smooth_normal(self.world, &hit).ok_or(Stop)?
-        {
-            normal = smooth;
-            if is_glass || material.mirror != [0; 3] {
-                normal = shade::turned_to_ray(normal, direction).ok_or(Stop)?;
-            }
-        }
-        if self.has(Effects::NORMAL_MAP) {
-            let bumped = bump::bumped(self.world, &hit, material, normal).ok_or(Stop)?;
-            if let Some(bumped) = bumped {
-                if bumped.is_open {
-                    self.note(Reason::Texture, depth, hit.primitive, hit.point);
-                }
-                normal = bumped.normal;
-                if is_glass || material.mirror != [0; 3] {
-                    normal = shade::turned_to_ray(normal, direction).ok_or(Stop)?;
-                }
-            }
-        }
-        let mut diffuse = self.diffuse(&hit, material, depth);
-        if self.has(Effects::VERTEX_COLORS) || self.has(Effects::TEXTURE) {
-            let paint = paint::weight(self.world, &hit, material).ok_or(Stop)?;
-            if paint.is_open {
-                self.note(Reason::Texture, depth, hit.primitive, hit.point);
-            }
-            diffuse = times(diffuse, paint.color);
-        }
-        let mut passing = [N::zero(); 3];
-        if self.has(Effects::ALPHA) {
-            let alpha = paint::alpha(self.world, &hit, material).ok_or(Stop)?;
-            if alpha.is_open {
-                self.note(Reason::Texture, depth, hit.primitive, hit.point);
-            }
-            let rest = (N::one() - alpha.part).at_least(N::zero());
-            passing = scale(weight, rest);
-            weight = scale(weight, alpha.part);
-        }
-        let is_there = boundary.is_none_or(|it| it.is_there());
-        if !is_there {
-            (passing, weight) = (weight, [N::zero(); 3]);
-        }
-        let interface = boundary.and_then(|it| it.interface(scene));
-        let seen = Seen {
-            path,
-            hit: &hit,
-            material,
-            normal,
-            direction,
-            diffuse,
-            weight,
-            interface: interface.unwrap_or(Interface::of(hit.front, material)),
-            beyond: boundary.map_or(path.inside, |it| it.beyond),
-            reflections: path.reflections + u8::from(path.kind == RayKind::Diffuse),
-        };
+        let hit = self.hit(candidate, &path.ray, path.depth)?;
+        let seen = self.seen(&hit, path)?;
         let mut brought = [N::zero(); 3];
-        if is_there {
+        if seen.is_there {
             brought = self.own(&seen)?;
         }
-        if depth < self.depth {
+        if path.depth < self.depth {
             let straight = Leaving {
                 kind: RayKind::Refracted,
-                direction,
+                direction: seen.direction,
                 outward: !hit.front,
-                weight: passing,
+                weight: seen.passing,
             };
             brought = plus(brought, self.send(&seen, straight)?);
-            if is_there {
+            if seen.is_there {
                 brought = plus(brought, self.bounce(&seen)?);
             }
         }
         if deep::is_full() {
-            self.note(Reason::Branches, depth, hit.primitive, hit.point);
+            self.note(Reason::Branches, path.depth, hit.primitive, hit.point);
             return Err(Stop);
         }
         Ok(brought)
@@ -207,23 +135,6 @@ impl Tracer<'_, '_> {
         let brought = times(local, seen.weight);
         self.step(depth, "surface", named, [("added", &brought)]);
         Ok(brought)
-    }
-
-    /// The diffuse color; of both kinds of cells where it is open which one it is.
-    fn diffuse<N: Enclosure>(&self, hit: &Hit<N>, material: &Material, depth: u8) -> Three<N> {
-        let even = material.diffuse.map(ratio_of);
-        if material.checker_size <= 0 {
-            return even;
-        }
-        let odd = material.odd.map(ratio_of);
-        match shade::is_odd(hit, material) {
-            Some(false) => even,
-            Some(true) => odd,
-            None => {
-                self.note(Reason::Checker, depth, hit.primitive, hit.point);
-                hull(even, odd)
-            }
-        }
     }
 
     /// The rays that a surface mirrors, refracts and scatters.
@@ -403,6 +314,7 @@ impl Tracer<'_, '_> {
                 kind,
                 points: seen.path.points,
                 reflections: seen.reflections,
+                length: seen.length,
                 inside: if outward == hit.front {
                     seen.path.inside
                 } else {

@@ -29,7 +29,8 @@ pub const KNOWN: Effects = Effects::SHADOW
     .with(Effects::INDIRECT)
     .with(Effects::ENVIRONMENT)
     .with(Effects::GLOSSY)
-    .with(Effects::NORMAL_MAP);
+    .with(Effects::NORMAL_MAP)
+    .with(Effects::TEXTURE_LEVELS);
 
 /// No surface, and no instance.
 pub const NONE: u32 = u32::MAX;

@@ -7,7 +7,7 @@ use crate::target::TextureLevelsOnly;
 
 /// How much of texture coordinates a sample covers: the binary logarithm of the side of a square of the same area.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Footprint(TextureLevelsOnly<i32>);
+pub struct Footprint(TextureLevelsOnly<i32>);
 
 /// An image of a texture.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -40,13 +40,13 @@ impl Level {
 impl Footprint {
     /// A point, which covers nothing.
     #[inline(always)]
-    pub(crate) fn point() -> Self {
+    pub fn point() -> Self {
         Self(TextureLevelsOnly::new(|| i32::MIN))
     }
 
-    /// An area whose root has this binary logarithm.
+    /// An area whose root has this binary logarithm, with [`LOG2_BITS`] fraction bits, as a part of the image.
     #[inline(always)]
-    pub(crate) fn of_log2(side: i32) -> Self {
+    pub fn of_log2(side: i32) -> Self {
         Self(TextureLevelsOnly::new(|| side))
     }
 
