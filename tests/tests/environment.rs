@@ -3,7 +3,7 @@
 use glam::DVec3;
 use gridel_core::{Effects, Format, Settings, Structure};
 use gridel_host::blob::Blob;
-use gridel_host::certify::{World, enclose};
+use gridel_host::certify::{World, code, enclose};
 use gridel_host::compile::{Options, compile};
 use gridel_host::explain::{LightOutcome, Subject, explain};
 use gridel_host::render::{Job, render};
@@ -364,13 +364,13 @@ fn smooth_meshes_are_lit_from_the_direction_that_was_drawn() {
     for format in Format::ALL {
         let job = Job::whole(format, Structure::List, settings);
         let picture = render(&scene, &job, &|| ()).expect("a picture");
-        for (index, shown) in (0..).zip(picture.pixels.chunks(3)) {
+        for (index, &linear) in (0..).zip(&picture.pixels) {
             let pixel = [index % 24, index / 24];
             let enclosed = enclose(&world, &settings, pixel, 2);
-            let error = enclosed.error_of([shown[0], shown[1], shown[2]]);
+            let error = enclosed.error_of(code(linear));
             assert!(
                 error.is_none_or(|it| it <= 1),
-                "{format:?} {pixel:?}: {enclosed:?} {shown:?}"
+                "{format:?} {pixel:?}: {enclosed:?} {linear:?}"
             );
         }
     }

@@ -9,7 +9,7 @@ use clap::Args;
 use gridel_core::format::checksum;
 use gridel_core::{Format, Settings, Structure};
 use gridel_host::certify::{
-    Enclosed, Pictures, Report, Unknown, World, certify, exact_picture, map, page, sentence,
+    Enclosed, Pictures, Report, World, certify, exact_picture, map, page, sentence,
 };
 use gridel_host::compile;
 use gridel_host::output::write_whole;
@@ -108,15 +108,9 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         ));
     }
     let world = World::of(&scene).map_err(|unknown| {
-        let how = match unknown {
-            Unknown::Effect(name) => {
-                format!("leave it out of the scene file with `--without {name}`")
-            }
-            _ => String::from("leave it out of the scene"),
-        };
         Failure::rejected(
             format!("{}: {unknown}", input.display()),
-            format!("{how}, or use `gridel accuracy`, which measures without proof"),
+            "leave it out of the scene, an effect with `--without`, or use `gridel accuracy`, which measures without proof",
         )
     })?;
     let stem = input.file_stem().unwrap_or_default().display().to_string();

@@ -125,13 +125,6 @@ fn what_cannot_be_certified_is_rejected() {
     let huge = ["certify", "ball.toml", "--size", "65535x65535"];
     folder.fails(2, &huge, &["4,294,836,225 pixels", "smaller `--size`"]);
     folder.fails(1, &["certify", "none.toml"], &["none.toml"]);
-    let ball = folder.read("ball.toml");
-    folder.write(
-        "bounced.toml",
-        &[&ball[..], b"\n[render]\nbounces = 1\n"].concat(),
-    );
-    let remedy = ["the effect `indirect`", "`--without indirect`"];
-    folder.fails(3, &["certify", "bounced.toml"], &remedy);
     folder.fails(2, &["certify", "ball.toml", "--format", "f16"], &["f16"]);
     folder.fails(2, &["certify", "ball.toml", "--samples", "0"], &["0"]);
 }
