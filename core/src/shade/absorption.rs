@@ -52,10 +52,9 @@ impl Effect for Absorption {
         ray: &Ray<N>,
         filter: &mut Filter<'s, '_, N>,
     ) {
-        let behind = (!filter.hit.front).then_some(filter.material);
-        if filter.passes
-            && let Some(medium) = filter.medium.or(behind)
-        {
+        // Whether anything passes is not known yet: alpha decides after this.
+        let is_behind = Glass::is_required_by_material(filter.material) && !filter.hit.front;
+        if let Some(medium) = filter.medium.or(is_behind.then_some(filter.material)) {
             filter.left = filter.left.times(left(ray, filter.hit, medium));
         }
     }
