@@ -395,8 +395,10 @@ fn material_record(material: &Material, lattice: &Lattice) -> record::Material {
         } => {
             // At least one sub-step.
             let size = (size / lattice.unit()).max(1.0 / 8192.0);
-            let origin = lattice.in_units(origin).to_array();
-            let origin = origin.map(|x| checker_origin(x, size));
+            // On the lattice, as faces are that lie between two layers of cells.
+            let step = lattice.step() / lattice.unit();
+            let origin = (lattice.in_units(origin) / step).round() * step;
+            let origin = origin.to_array().map(|x| checker_origin(x, size));
             let q13 = |units: f64| (units * 8192.0).round() as i32;
             (even, odd, q13(size.min(LARGEST_CELL)), origin.map(q13))
         }
