@@ -11,7 +11,7 @@ use super::path::Path;
 use super::reason::Reason;
 use super::search::{Candidate, Stop, Tracer};
 use super::shade;
-use super::world::NONE;
+use super::world::{NONE, passes};
 use gridel_core::Effects;
 use gridel_core::format::record::{Light, Material};
 use std::cmp::Ordering;
@@ -142,6 +142,7 @@ impl Tracer<'_, '_> {
         let depth = path.depth;
         let (black, white) = ([N::zero(); 3], [N::one(); 3]);
         let scene = self.world.scene;
+        // What light may pass, and what may lie in a surface of that.
         let mut surfaces: Vec<Candidate<N>> = Vec::new();
         let mut is_dark = false;
         let mut may_be_dark: Option<(u32, N)> = None;
@@ -162,8 +163,7 @@ impl Tracer<'_, '_> {
             let space = self.world.space(candidate.instance);
             let solid = &space.solids[candidate.solid as usize];
             let material = scene.material(solid.object);
-            let is_nested = scene.place_among_media(solid.object).is_some();
-            if material.is_some_and(passes) || is_nested {
+            if material.is_some_and(passes) || space.may_be_hidden(solid, &candidate.crossing) {
                 surfaces.push(candidate);
             } else if candidate.crossing.sure {
                 is_dark = true;
@@ -197,6 +197,14 @@ impl Tracer<'_, '_> {
                 return Ok(black);
             };
             let boundary = Boundary::at(scene, inside, hit.object, hit.front);
+            if !passes(material) {
+                if candidate.crossing.sure {
+                    return Ok(black);
+                }
+                self.note(Reason::Shadow, depth, hit.primitive, hit.point);
+                is_open = true;
+                continue;
+            }
             let mut part = white;
             if boundary.is_none_or(|it| it.is_there()) {
                 part = if material.transmit == [0; 3] {
@@ -318,9 +326,4 @@ impl Tracer<'_, '_> {
 /// Whether a color is black for certain.
 fn is_nothing<N: Enclosure>(color: Three<N>) -> bool {
     color.iter().all(|channel| channel.bounds() == [0.0; 2])
-}
-
-/// Whether light may pass a material.
-fn passes(material: &Material) -> bool {
-    material.transmit != [0; 3] || material.maps & Material::MAPS_ALPHA != 0
 }

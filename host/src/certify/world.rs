@@ -5,9 +5,10 @@
 use super::crossing::{Crossing, MANTLE};
 use super::tree::{Bounds, Tree};
 use gridel_core::format::instance::MATRIX_BITS;
+use gridel_core::format::record::Material;
 use gridel_core::geometry::Geometry;
 use gridel_core::{Effects, Kind, Scene};
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 
 /// The effects that are known here.
 pub const KNOWN: Effects = Effects::SHADOW
@@ -155,6 +156,8 @@ pub struct Space {
     /// Those without a box.
     pub unbounded: Vec<u32>,
     pub tree: Tree<Item>,
+    /// Surfaces and forms of which light may pass one: see [`Space::may_be_hidden`].
+    passed: [HashSet<u32>; 2],
 }
 
 /// A whole scene.
@@ -184,6 +187,7 @@ impl<'s> World<'s> {
         for (number, part) in scene.parts().iter().enumerate() {
             let first = scene.first_primitive_of_part(number).unwrap_or(0);
             parts.push(Space::of(
+                scene,
                 part,
                 |own| (first + own, scene.object(first + own)),
                 Vec::new(),
@@ -203,7 +207,7 @@ impl<'s> World<'s> {
             let around = around.and_then(|part| instance.around(part.bounds()));
             boxes.extend(around.map(|around| (Bounds::of(&around), Item::Instance(index))));
         }
-        let own = Space::of(scene, |own| (own, scene.object(own)), boxes)?;
+        let own = Space::of(scene, scene, |own| (own, scene.object(own)), boxes)?;
         Ok(Self {
             scene,
             own,
@@ -222,8 +226,21 @@ impl<'s> World<'s> {
     }
 }
 
+/// Whether light may pass a material.
+pub fn passes(material: &Material) -> bool {
+    material.transmit != [0; 3] || material.maps & Material::MAPS_ALPHA != 0
+}
+
 impl Space {
+    /// Whether a crossing may be hidden by one of a primitive that light may pass and that comes first in the scene file.
+    pub fn may_be_hidden<N>(&self, solid: &Solid, crossing: &Crossing<N>) -> bool {
+        let [surfaces, twins] = &self.passed;
+        let surface = solid.surfaces[usize::from(crossing.part)];
+        surface != NONE && surfaces.contains(&surface) || twins.contains(&solid.twin)
+    }
+
     fn of(
+        whole: &Scene<'_>,
         scene: &Scene<'_>,
         numbers: impl Fn(u32) -> (u32, u32),
         mut boxes: Vec<(Bounds, Item)>,
@@ -238,12 +255,18 @@ impl Space {
                 let form = form(scene, slot, geometry).ok_or(Unknown::Shape(kind.name()))?;
                 let (primitive, object) = numbers(scene.primitive(kind, slot as u32));
                 let index = space.solids.len() as u32;
+                let surfaces = surfaces.of(&form);
+                let twin = *twins.entry(form).or_insert(index);
+                if whole.material(object).is_some_and(passes) {
+                    space.passed[0].extend(surfaces.iter().filter(|&&it| it != NONE));
+                    space.passed[1].insert(twin);
+                }
                 space.solids.push(Solid {
                     form,
                     primitive,
                     object,
-                    surfaces: surfaces.of(&form),
-                    twin: *twins.entry(form).or_insert(index),
+                    surfaces,
+                    twin,
                     paint: match kind {
                         Kind::Triangle => Paint {
                             colors: scene.corner_colors(slot),
