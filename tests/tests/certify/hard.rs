@@ -1,23 +1,21 @@
 //! Hard cases: contact shadows, critical angles, grazing edges. Every pixel is proved and right, or open and named.
 
 use super::exact::Exact;
-use super::{holds, settings};
+use super::{holds, settings, small};
 use gridel_core::Scene;
 use gridel_host::blob::Blob;
 use gridel_host::certify::{Enclosed, LEVELS, World, code, enclose, linear};
-use gridel_host::scene::{ImportOptions, read};
 use gridel_host::shape::exact::Real;
 use gridel_tests::effort::full;
 use gridel_tests::scenes;
 use rayon::prelude::*;
 
 fn blob(text: &str) -> Blob {
-    let imported = read("hard.toml".as_ref(), text.into(), &ImportOptions::default());
-    scenes::blob(&imported.expect("a scene").scene, 24)
+    scenes::blob(&small::scene(text), 24)
 }
 
 /// The 16-bit values of an exact pixel.
-fn values(exact: &[Real; 3]) -> [u16; 3] {
+pub fn values(exact: &[Real; 3]) -> [u16; 3] {
     exact.each_ref().map(|x| {
         let value = x * Real::of(65535.0) + Real::of(0.5);
         value.to_f64().clamp(0.0, 65535.0) as u16

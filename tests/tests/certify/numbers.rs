@@ -30,8 +30,42 @@ pub fn one() -> Real {
     real(1.0)
 }
 
+/// t of crossings of the surface that a ray starts on are 0, and those of what touches a light 1, but for the roundings
+/// of 320 bits.
+pub fn nothing() -> Real {
+    real(f64::powi(2.0, -150))
+}
+
+/// A number within the valid range: what leaves it does so by rounding alone.
+pub fn limited(x: Real, low: f64, high: f64) -> Real {
+    x.max(real(low)).min(real(high))
+}
+
+/// The largest integer that is not above a number below 2^52, but for the roundings of 320 bits.
+pub fn floor(x: &Real) -> i64 {
+    let x = x + nothing();
+    let near = x.to_f64().floor();
+    let below = if x < real(near) {
+        near - 1.0
+    } else if x >= real(near + 1.0) {
+        near + 1.0
+    } else {
+        near
+    };
+    below as i64
+}
+
 pub fn black() -> Vector {
     [real(0.0), real(0.0), real(0.0)]
+}
+
+/// A sum of multiples.
+pub fn mixed(vectors: [&Vector; 3], factors: [&Real; 3]) -> Vector {
+    let parts = |k: usize| [0, 1, 2].map(|it: usize| &vectors[it][k] * factors[it]);
+    [0, 1, 2].map(|k| {
+        let [a, b, c] = parts(k);
+        a + b + c
+    })
 }
 
 pub fn peak(color: &Vector) -> Real {

@@ -1,7 +1,9 @@
 //! Primitives where their parts stand, and what a line meets of them.
 
+use super::levels::stretch;
 use super::numbers::{black, fraction, one, real};
 use gridel_core::format::instance::{Instance, MATRIX_BITS};
+use gridel_core::scene::Footprint;
 use gridel_core::{Kind, Scene};
 use gridel_host::shape::Solid;
 use gridel_host::shape::exact::{
@@ -14,6 +16,10 @@ pub struct Placed {
     pub object: u32,
     /// The normals of a triangle's corners, as they are stored.
     pub normals: Option<[[i16; 2]; 3]>,
+    /// The colors of a triangle's corners, as they are stored.
+    pub colors: Option<[[u8; 4]; 3]>,
+    /// The texture coordinates of a triangle's corners, as they are stored.
+    pub coordinates: Option<[[i32; 2]; 3]>,
     /// In units of its part.
     pub bounds: Option<[[f64; 2]; 3]>,
     /// Where its part stands, if it belongs to one.
@@ -25,6 +31,8 @@ pub struct Placed {
 pub struct Map {
     pub rows: [Vector; 3],
     pub center: Vector,
+    /// The binary logarithm of its scale.
+    pub stretch: i32,
 }
 
 impl Map {
@@ -33,6 +41,7 @@ impl Map {
         Self {
             rows: instance.matrix.map(|row| row.map(|x| fraction(x, down))),
             center: instance.center.map(|x| fraction(x, 8)),
+            stretch: stretch(instance),
         }
     }
 
@@ -66,14 +75,15 @@ impl Placed {
                 let geometry = scene.geometry(kind, slot).expect("a primitive");
                 let bounds = scene.primitive_bounds(kind, slot);
                 let primitive = first + scene.primitive(kind, slot as u32);
+                let is_triangle = kind == Kind::Triangle;
+                let corners = is_triangle.then_some(slot);
                 all.push(Self {
                     solid: Solid::of(geometry),
                     primitive,
                     object: whole.object(primitive),
-                    normals: match kind {
-                        Kind::Triangle => scene.corner_normals(slot),
-                        _ => None,
-                    },
+                    normals: corners.and_then(|it| scene.corner_normals(it)),
+                    colors: corners.and_then(|it| scene.corner_colors(it)),
+                    coordinates: corners.and_then(|it| scene.corner_coordinates(it)),
                     bounds: bounds
                         .filter(|_| kind.is_bounded())
                         .map(|bounds| bounds.0.map(|side| side.map(f64::from))),
@@ -99,11 +109,12 @@ pub struct Met<'e> {
     pub normal: Vector,
     pub front: bool,
     pub object: u32,
+    /// What a sample sees of the image there.
+    pub footprint: Footprint,
 }
 
-/// The corners of a triangle as seen from a point, the parts of the area that are opposite to them, and their normals
-/// as they are stored.
-pub type Corners = ([Vector; 3], [Real; 3], [[i16; 2]; 3]);
+/// The corners of a triangle as seen from a point, and the parts of the area that are opposite to them.
+pub type Corners = ([Vector; 3], [Real; 3]);
 
 impl Met<'_> {
     /// A vector on the side from which the ray came.
@@ -115,9 +126,8 @@ impl Met<'_> {
         }
     }
 
-    /// The corners of a triangle with normals, as seen from the point in its part, and their parts of the area.
+    /// The corners of a triangle, as seen from the point in its part, and their parts of the area.
     pub fn corners(&self) -> Option<Corners> {
-        let normals = self.placed.normals?;
         let Solid::Triangle(corners) = &self.placed.solid else {
             return None;
         };
@@ -130,12 +140,13 @@ impl Met<'_> {
         let whole = cross(&minus(b, a), &minus(c, a));
         let area = |p: &Vector, q: &Vector| dot(&cross(p, q), &whole) / dot(&whole, &whole);
         let areas = [area(b, c), area(c, a), area(a, b)];
-        Some((corners, areas, normals))
+        Some((corners, areas))
     }
 
     /// The interpolated normal on the side of the ray.
     pub fn smooth_normal(&self) -> Option<Vector> {
-        let (_, areas, normals) = self.corners()?;
+        let normals = self.placed.normals?;
+        let (_, areas) = self.corners()?;
         let mut result = black();
         for (stored, area) in normals.into_iter().zip(areas) {
             // Of nearly length 1, by a step of Newton's from a line: that is the rule.
@@ -153,7 +164,8 @@ impl Met<'_> {
 
     /// The way out to the curved surface that a triangle stands for; `None` if that does not lie above it.
     pub fn lift(&self) -> Option<Vector> {
-        let (corners, areas, normals) = self.corners()?;
+        let normals = self.placed.normals?;
+        let (corners, areas) = self.corners()?;
         let zero = || real(0.0);
         let mut way = black();
         for k in 0..3 {

@@ -158,7 +158,7 @@ fn rays_from_the_surface_do_not_meet_it_where_they_start() {
             instance: u32::MAX,
             twin: 0,
             part: 0,
-            plane: u32::MAX,
+            surface: u32::MAX,
             also: [u32::MAX; 2],
             inward: false,
         };
