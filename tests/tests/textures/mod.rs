@@ -2,7 +2,6 @@
 
 mod alpha;
 
-use alpha::before_a_wall;
 use glam::{DQuat, DVec2, DVec3};
 use gridel_core::{Effects, Format, List, NoCount, Number, Scene, Settings, Structure};
 use gridel_host::blob::Blob;
@@ -440,11 +439,6 @@ fn textured_pixels_are_certified() {
         // Pixels on the edge between both triangles.
         assert!(open < 200, "{open} open pixels");
     }
-    let alpha = blob_of(&before_a_wall([9; 4], Alpha::Blend(1.0)));
-    let error = World::of(&alpha.scene().expect("valid"))
-        .err()
-        .expect("unknown");
-    assert!(error.to_string().contains("`alpha`"), "{error}");
 }
 
 /// A real file with a texture: pixels of several colors, the same in all formats but for rounding.
