@@ -127,7 +127,9 @@ pub fn parts(context: &BuildContext<'_>, layouts: Vec<Layout>) -> Parts {
     if objects != total && objects > 1 {
         sections.push(indices(SectionKind::ObjectFirst, &object_first, 2));
     }
-    if shading_data.materials.len() > 1 {
+    // A part's objects that are not told apart have no materials, either.
+    let has_all = shading_data.object_material.len() == objects as usize;
+    if shading_data.materials.len() > 1 && has_all {
         sections.push(indices(
             SectionKind::ObjectMaterial,
             &shading_data.object_material,

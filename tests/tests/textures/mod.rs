@@ -406,6 +406,25 @@ fn coordinates_far_from_the_image_are_exact_or_rejected() {
     assert!(error.to_string().contains("texture coordinates"), "{error}");
 }
 
+/// Materials of a part's objects are those of the scene that places it.
+#[test]
+fn parts_hold_objects_with_and_without_images() {
+    let text = "[material.tile]\ntexture = 'tiles.png'\n[material.clay]\ndiffuse = 0.5\n\
+        [[part]]\nname = 'both'\n\
+        [[part.object]]\nkind = 'mesh'\nmaterial = 'tile'\nfaces = [[0, 1, 2, 3]]\n\
+        vertices = [[-1, -1, 0], [1, -1, 0], [1, 1, 0], [-1, 1, 0]]\n\
+        coordinates = [[0, 1], [1, 1], [1, 0], [0, 0]]\n\
+        [[part.object]]\nkind = 'sphere'\nmaterial = 'clay'\ncenter = [0, 0, 1]\nradius = 0.5\n\
+        [[instance]]\npart = 'both'\n[[instance]]\npart = 'both'\ntranslate = [3, 0, 0]\n";
+    let path = scenes::fixture_folder().join("both.toml");
+    let imported = scene::read(&path, text.into(), &Default::default()).expect("a scene");
+    let blob = blob_of(&imported.scene);
+    let scene = blob.scene().expect("valid");
+    assert_eq!(scene.parts().len(), 1);
+    let maps = [0, 1].map(|object| scene.material(object).expect("a material").maps);
+    assert!(maps[0] != 0 && maps[1] == 0, "{maps:?}");
+}
+
 /// The exact picture of textures: what double precision shows lies in the intervals, but for its own rounding.
 #[test]
 fn textured_pixels_are_certified() {
