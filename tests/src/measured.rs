@@ -3,6 +3,7 @@
 use crate::effort::full;
 use gridel_core::{Format, Settings, Structure};
 use gridel_host::blob::Blob;
+use gridel_host::certify::{World, code, enclose};
 use gridel_host::render::{Job, render};
 use gridel_host::scene::Scene;
 
@@ -74,4 +75,21 @@ pub fn check(name: &str, blob: &Blob, exact: f64) {
             );
         }
     }
+}
+
+/// How many pixels of a picture are proved to be off by more than one of 255, in its own size and samples.
+pub fn wrong_pixels(blob: &Blob, format: Format) -> usize {
+    let scene = blob.scene().expect("a scene");
+    let settings = Settings::of(&scene);
+    let world = World::of(&scene).expect("a scene that is known");
+    let job = Job::whole(format, Structure::List, settings);
+    let picture = render(&scene, &job, &|| ()).expect("a picture");
+    let width = usize::from(settings.width);
+    let pixels = picture.pixels.iter().enumerate();
+    let wrong = pixels.filter(|&(index, &linear)| {
+        let pixel = [index % width, index / width].map(|it| it as u16);
+        let error = enclose(&world, &settings, pixel, 2).error_of(code(linear));
+        error.is_some_and(|it| it > 1)
+    });
+    wrong.count()
 }

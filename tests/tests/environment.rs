@@ -3,12 +3,10 @@
 use glam::DVec3;
 use gridel_core::{Effects, Format, Settings, Structure};
 use gridel_host::blob::Blob;
-use gridel_host::certify::{World, code, enclose};
 use gridel_host::compile::{Options, compile};
 use gridel_host::explain::{LightOutcome, Subject, explain};
-use gridel_host::render::{Job, render};
 use gridel_host::scene::{Environment, Panorama, Scene, Sky, read};
-use gridel_tests::measured::{SCRAMBLES, check, measured_color};
+use gridel_tests::measured::{SCRAMBLES, check, measured_color, wrong_pixels};
 use std::f64::consts::{PI, TAU};
 use std::sync::Arc;
 
@@ -358,20 +356,7 @@ fn smooth_meshes_are_lit_from_the_direction_that_was_drawn() {
         faces = [[0, 2, 4], [2, 1, 4], [1, 3, 4], [3, 0, 4], [2, 0, 5], [1, 2, 5], [3, 1, 5], [0, 3, 5]]";
     let imported = read("ball.toml".as_ref(), text.into(), &Default::default());
     let blob = compiled(&imported.expect("a scene").scene);
-    let scene = blob.scene().expect("a scene");
-    let settings = Settings::of(&scene);
-    let world = World::of(&scene).expect("a scene that is known");
     for format in Format::ALL {
-        let job = Job::whole(format, Structure::List, settings);
-        let picture = render(&scene, &job, &|| ()).expect("a picture");
-        for (index, &linear) in (0..).zip(&picture.pixels) {
-            let pixel = [index % 24, index / 24];
-            let enclosed = enclose(&world, &settings, pixel, 2);
-            let error = enclosed.error_of(code(linear));
-            assert!(
-                error.is_none_or(|it| it <= 1),
-                "{format:?} {pixel:?}: {enclosed:?} {linear:?}"
-            );
-        }
+        assert_eq!(wrong_pixels(&blob, format), 0, "{format:?}");
     }
 }

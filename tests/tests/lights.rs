@@ -4,7 +4,7 @@ use gridel_core::{Effects, Format, Settings, Structure};
 use gridel_host::blob::Blob;
 use gridel_host::compile::{Options, compile};
 use gridel_host::render::{Job, render};
-use gridel_tests::measured::{ROUNDING, check, measured, read};
+use gridel_tests::measured::{ROUNDING, check, measured, read, wrong_pixels};
 use std::f64::consts::PI;
 
 /// A scene with a white surface, seen by 4 by 4 pixels that show nearly one point of it.
@@ -341,5 +341,30 @@ fn fixed_agrees_with_floats_over_the_range_of_radiance() {
         );
         let blob = scene(&light, "[0, 10, 0]", "[0, 0, 0]", FLOOR);
         check("range", &blob, 0.5);
+    }
+}
+
+/// Light that has passed some surfaces of glass ends before its lamp, whose own surface lies just behind.
+#[test]
+fn lamps_behind_glass_do_not_shadow_themselves() {
+    let text = "ambient = 0.02\n[camera]\neye = [1.7, 3.8, 5.2]\ntarget = [0, 0.3, 0]\nfov = 50\n\
+        [render]\nwidth = 32\nheight = 24\nsamples = 1\ndepth = 2\n\
+        [material.floor]\ndiffuse = 0.8\n\
+        [material.glass]\ndiffuse = 0.05\ntransmit = 0.9\nior = 1.5\n\
+        [material.lamp]\ndiffuse = 0\nemission = [6, 4, 3]\n\
+        [[object]]\nkind = 'box'\nmaterial = 'floor'\nmin = [-3, -0.5, -3]\nmax = [3, 0, 3]\n\
+        [[object]]\nkind = 'mesh'\nmaterial = 'lamp'\n\
+        vertices = [[0.6, 1.1, 0], [-0.6, 1.1, 0], [0, 1.7, 0], [0, 0.53, 0], [0, 1.1, 0.6], [0, 1.1, -0.6]]\n\
+        faces = [[0, 2, 4], [2, 1, 4], [1, 3, 4], [3, 0, 4], [2, 0, 5], [1, 2, 5], [3, 1, 5], [0, 3, 5]]\n\
+        [[object]]\nkind = 'torus'\nmaterial = 'glass'\ncenter = [0, 0.4, 0]\naxis = [0, 1, 0]\n\
+        major_radius = 1\nminor_radius = 0.25\n\
+        [[object]]\nkind = 'torus'\nmaterial = 'glass'\ncenter = [0.2, 0.7, 0.1]\naxis = [0, 1, 0]\n\
+        major_radius = 1\nminor_radius = 0.22\n";
+    let blob = compile(&read(text), &Options::default())
+        .expect("a blob")
+        .blob;
+    for format in Format::ALL {
+        let wrong = wrong_pixels(&blob, format);
+        assert!(wrong <= 2, "{format:?}: {wrong} of 768 pixels");
     }
 }

@@ -101,8 +101,10 @@ fn through<'s, N: Number, X: Tracer<'s, N>>(
             return Color::BLACK;
         }
         origin = depart(scene, &hit, !hit.front, false);
-        // The way goes on along the same slopes, so its largest component stays the measure.
-        distance = distance.map(|distance| distance - hit.t);
+        // The way goes on along the same slopes, so its largest component stays the measure. It starts beside the
+        // surface: what lies at its end, such as the light itself, may be nearer by as much.
+        let beside = (hit.error + hit.error).widen();
+        distance = distance.map(|distance| distance - hit.t - beside);
         if distance.is_some_and(|rest| rest <= zero) {
             return left;
         }
