@@ -10,6 +10,14 @@ pub const fn log2_of_power(exponent: i32) -> i32 {
 }
 
 /// The binary logarithm of a number; that of 0 is 0, as of 1.
+///
+/// ```
+/// use gridel_core::number::log2::{LOG2_BITS, log2, log2_of_power};
+///
+/// assert_eq!(log2(1 << 40), log2_of_power(40));
+/// // 2 to the power of 1.585 is 3.
+/// assert_eq!(log2(3), (1.585 * f64::from(1 << LOG2_BITS)) as i32);
+/// ```
 #[inline(never)]
 pub fn log2(number: u64) -> i32 {
     let number = number.max(1);

@@ -10,6 +10,7 @@ mod coordinates;
 pub(crate) mod environment;
 mod features;
 mod load;
+mod lookups;
 mod motion;
 mod names;
 pub(crate) mod parts;

@@ -55,7 +55,18 @@ impl Sampler {
     /// A point of the unit square, with 32 fraction bits.
     ///
     /// `bounce` tells rays of a sample apart; `dimension` tells apart what is drawn for one ray: two effects, or two
-    /// lights, with the same number would draw the same point. It has at most 16 bits.
+    /// lights, with the same number would draw the same point. Both may be any number.
+    ///
+    /// ```
+    /// use gridel_core::RayKind;
+    /// use gridel_core::shade::sampler::Sampler;
+    ///
+    /// // The first light, seen from where the camera's ray of the pixel's second sample ends.
+    /// let sampler = Sampler::new([3, 7], 1);
+    /// let bounce = RayKind::Primary as u16;
+    /// assert_eq!(sampler.point(bounce, 0), sampler.point(bounce, 0));
+    /// assert_ne!(sampler.point(bounce, 0), sampler.point(bounce, 1));
+    /// ```
     #[inline(never)]
     pub fn point(self, bounce: u16, dimension: u16) -> [u32; 2] {
         let [x, y] = self.pixel;

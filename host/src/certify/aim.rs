@@ -7,6 +7,7 @@ use super::random;
 use super::reason::Reason;
 use super::search::{Stop, Tracer};
 use super::sky;
+use super::world::NONE;
 use gridel_core::format::light_form::LightForm;
 use gridel_core::format::record::Light;
 
@@ -57,17 +58,19 @@ impl Tracer<'_, '_> {
                 color,
             }))
         };
+        let place = (path.depth, NONE);
         // Lights beyond the first 4,096 share points with these.
         let dimension = number as u16 & 0xfff;
         match (light.directional, scene.environment()) {
             (1, _) => return far(exact(light.vector), color),
             (Light::ENVIRONMENT, Some(_)) => {
                 let drawn = sky::from_map(scene, path.point(sky::DIMENSION));
-                let (way, radiance) = drawn.ok_or(Stop)?;
+                let (way, radiance) = self.known(drawn, Reason::Sampling, place, point)?;
                 return far(way, radiance);
             }
             (Light::SUN, Some(record)) => {
-                let way = sky::in_sun(record, path.point(dimension)).ok_or(Stop)?;
+                let way = sky::in_sun(record, path.point(dimension));
+                let way = self.known(way, Reason::Sampling, place, point)?;
                 return far(way, color);
             }
             _ => {}
@@ -82,7 +85,14 @@ impl Tracer<'_, '_> {
         match scene.light_form(light).filter(|_| light.is_area()) {
             None => Ok(Some(aim)),
             Some(form) if form.shape == LightForm::SPHERE => {
-                self.on_sphere(form, aim, path, dimension)
+                let radius = length::<N>(form.edges[0][0].into());
+                let beyond = positive(norm2(way).sqrt() - radius);
+                if !self.known(beyond, Reason::Terminator, place, point)? {
+                    // From within a sphere nothing is seen of it.
+                    return Ok(None);
+                }
+                let found = on_sphere(radius, aim, path.point(dimension));
+                self.known(found, Reason::Sampling, place, point).map(Some)
             }
             Some(form) => Ok(Some(Aim {
                 way: plus(way, within(form, path.point(dimension))),
@@ -90,61 +100,31 @@ impl Tracer<'_, '_> {
             })),
         }
     }
+}
 
-    /// The way to where a random direction meets a sphere.
-    fn on_sphere<N: Enclosure>(
-        &self,
-        form: &LightForm,
-        aim: Aim<N>,
-        path: &Path<N>,
-        dimension: u16,
-    ) -> Result<Option<Aim<N>>, Stop> {
-        let one = N::one();
-        let radius = length::<N>(form.edges[0][0].into());
-        let distance = norm2(aim.way).sqrt();
-        match positive(distance - radius) {
-            Some(true) => {}
-            Some(false) => return Ok(None),
-            None => return self.is_open(Reason::Terminator, path, aim.way),
-        }
-        let found = || {
-            let axis = unit(aim.way)?;
-            let [u, v] = path.point(dimension);
-            let widest = radius.over(distance)?;
-            let square = widest.square();
-            let widening = one.over(one + (one - square).sqrt())?;
-            // 1 - cos of the direction's angle, of up to that of the cone's.
-            let sag = square * widening * random::ratio(u);
-            let away = (sag + (sag - sag.square())).sqrt().at_most(widest);
-            let toward = one - sag;
-            let [sine, cosine] = random::turn::<N>(v);
-            let sides = random::beside(axis)?;
-            let direction = random::combined(axis, toward, sides, [away * cosine, away * sine]);
-            // From the middle of the chord to the surface.
-            let part = away.over(widest)?.at_most(one);
-            let inward = radius * (one - part.square()).sqrt();
-            Some(Aim {
-                way: scale(direction, distance * toward - inward),
-                cone: Some(Cone { distance, widening }),
-                ..aim
-            })
-        };
-        match found() {
-            Some(aim) => Ok(Some(aim)),
-            None => self.is_open(Reason::Sampling, path, aim.way),
-        }
-    }
-
-    /// Ends an evaluation with a reason, at a point on the way from where a path's ray starts.
-    fn is_open<N: Enclosure, R>(
-        &self,
-        reason: Reason,
-        path: &Path<N>,
-        way: Three<N>,
-    ) -> Result<R, Stop> {
-        self.note(reason, path.depth, super::world::NONE, way);
-        Err(Stop)
-    }
+/// The way to where a random direction meets a sphere from outside of it; `None` where it is open which way that is.
+fn on_sphere<N: Enclosure>(radius: N, aim: Aim<N>, [u, v]: [u32; 2]) -> Option<Aim<N>> {
+    let one = N::one();
+    let distance = norm2(aim.way).sqrt();
+    let axis = unit(aim.way)?;
+    let widest = radius.over(distance)?;
+    let square = widest.square();
+    let widening = one.over(one + (one - square).sqrt())?;
+    // 1 - cos of the direction's angle, of up to that of the cone's.
+    let sag = square * widening * random::ratio(u);
+    let away = (sag + (sag - sag.square())).sqrt().at_most(widest);
+    let toward = one - sag;
+    let [sine, cosine] = random::turn::<N>(v);
+    let sides = random::beside(axis)?;
+    let direction = random::combined(axis, toward, sides, [away * cosine, away * sine]);
+    // From the middle of the chord to the surface.
+    let part = away.over(widest)?.at_most(one);
+    let inward = radius * (one - part.square()).sqrt();
+    Some(Aim {
+        way: scale(direction, distance * toward - inward),
+        cone: Some(Cone { distance, widening }),
+        ..aim
+    })
 }
 
 /// From the position of a flat light to a random point of it.

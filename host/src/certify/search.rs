@@ -83,6 +83,23 @@ impl Tracer<'_, '_> {
         }
     }
 
+    /// What was found.
+    ///
+    /// # Errors
+    /// If it is open, with the reason and the place.
+    pub fn known<T, N: Enclosure>(
+        &self,
+        found: Option<T>,
+        reason: Reason,
+        (depth, primitive): (u8, u32),
+        point: Three<N>,
+    ) -> Result<T, Stop> {
+        if found.is_none() {
+            self.note(reason, depth, primitive, point);
+        }
+        found.ok_or(Stop)
+    }
+
     /// Takes one more outcome into account.
     ///
     /// # Errors

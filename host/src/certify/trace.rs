@@ -216,11 +216,9 @@ impl Tracer<'_, '_> {
         direction: Option<Three<N>>,
         seen: &Seen<'_, N>,
     ) -> Result<Three<N>, Stop> {
-        if direction.is_none() {
-            let hit = seen.hit;
-            self.note(Reason::Sampling, seen.path.depth, hit.primitive, hit.point);
-        }
-        direction.ok_or(Stop)
+        let hit = seen.hit;
+        let place = (seen.path.depth, hit.primitive);
+        self.known(direction, Reason::Sampling, place, hit.point)
     }
 
     /// A ray without what facets keep of it.
