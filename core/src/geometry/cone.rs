@@ -20,12 +20,13 @@
 //! axis, so no point is farther than two reaches from the middle; and `cos |Q| + g` is at most that
 //! and a radius: three reaches, below 2^31. Squares are below 2^62.
 
+use crate::axis::pick;
 use crate::format::layout::records;
 use crate::format::range::Ranges;
 use crate::format::record::UnitBox;
 use crate::format::{BlobError, Field, Reason};
 use crate::geometry::primitive::{InScene, MAX_RADIUS, Primitive};
-use crate::geometry::{Crossing, LEAVING, Part, Surface};
+use crate::geometry::{Crossing, LEAVING, Part, Surface, cross_face};
 use crate::number::Arithmetic;
 use crate::number::extent;
 use crate::ray::Ray;
@@ -180,6 +181,28 @@ impl Cone {
         }
     }
 
+    /// Where a ray crosses the planes of the caps, the nearer one first, if they are at right angles to an axis of
+    /// coordinates and not parallel to the ray.
+    #[inline(always)]
+    fn caps<N: Arithmetic>(&self, ray: &Ray<N>) -> Option<[(N, Part); 2]> {
+        let same = |k: usize| self.base[k] == self.apex[k];
+        let axis = match (same(0), same(1), same(2)) {
+            (false, true, true) => 0,
+            (true, false, true) => 1,
+            (true, true, false) => 2,
+            _ => return None,
+        };
+        let slope = pick(ray.slope, axis);
+        if slope == N::ZERO {
+            return None;
+        }
+        let [base, apex] = [pick(self.base, axis), pick(self.apex, axis)];
+        let [base_t, apex_t] = [base, apex].map(|side| cross_face(ray, axis, side));
+        let caps = [(base_t, BASE), (apex_t, APEX)];
+        let base_first = (base < apex) == (slope > N::ZERO);
+        Some(if base_first { caps } else { [caps[1], caps[0]] })
+    }
+
     #[inline(always)]
     fn middle<N: Arithmetic>(&self) -> [N; 3] {
         let axis = |k: usize| N::from_lattice(self.base[k].wrapping_add(self.apex[k])).half();
@@ -289,12 +312,25 @@ impl Primitive for Cone {
         if cut.1 < leave.0 {
             leave = (cut.1, MANTLE);
         }
-        let back = |(s, part): (N, Part)| (closest + s.scale_down(bits), part);
         // Ends beyond what counts are infinite. Written so that a NaN is no crossing.
         let (start, end) = (-reach - reach, reach + reach);
-        (enter.0 <= leave.0 && enter.0 > start && leave.0 < end).then(|| Crossing {
-            enter: ray.ahead(back(enter)),
-            leave: back(leave),
+        if !(enter.0 <= leave.0 && enter.0 > start && leave.0 < end) {
+            return None;
+        }
+        let back = |(s, part): (N, Part)| (closest + s.scale_down(bits), part);
+        let (enter, leave) = match self.caps(ray) {
+            Some([near, far]) => {
+                // The mantle's ends once more, as rounding moved the caps.
+                let (first, last) = (back((cut.0, MANTLE)), back((cut.1, MANTLE)));
+                let enter = if first.0 > near.0 { first } else { near };
+                let leave = if last.0 < far.0 { last } else { far };
+                (enter, leave)
+            }
+            None => (back(enter), back(leave)),
+        };
+        (enter.0 <= leave.0).then(|| Crossing {
+            enter: ray.ahead(enter),
+            leave,
         })
     }
 

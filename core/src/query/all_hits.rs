@@ -296,9 +296,14 @@ fn collect<N: Number, A: Accel, C: Observer>(
         count.event(ray.query(false));
     }
     if UNBOUNDED && scene.has_unbounded {
-        unbounded::each(scene, ray, count, |t, place| {
+        unbounded::each(scene, ray, count, |far| {
+            let unbounded::FarHit {
+                after_start,
+                t,
+                place,
+            } = far;
             // Farther than kernels count, the t that the caller counts decides.
-            let near = ray.until(t).tmax;
+            let near = ray.tmax.min(after_start);
             let best = Candidate {
                 t: near,
                 place,

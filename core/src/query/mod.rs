@@ -167,10 +167,10 @@ fn search_all<N: Number, A: Accel, C: Observer, const ANY: bool>(
     any: bool,
 ) -> Option<PrimitiveHit<N>> {
     let far = unbounded::nearest(scene, ray, count);
-    let end = far.map_or(*ray, |(t, _)| ray.until(t));
-    let first = far.map(|(_, place)| Candidate {
+    let end = far.map_or(*ray, |far| ray.until(far.after_start));
+    let first = far.map(|far| Candidate {
         t: end.tmax,
-        place,
+        place: far.place,
         part: 0,
     });
     let best = if any && first.is_some() {
@@ -179,10 +179,10 @@ fn search_all<N: Number, A: Accel, C: Observer, const ANY: bool>(
         search_apart::<N, A, C, ANY>(scene, &end, first, stack, count, any)?
     };
     let mut hit = found(scene, ray, best);
-    if let Some((t, place)) = far
-        && place == best.place
+    if let Some(far) = far
+        && far.place == best.place
     {
-        hit.t = t;
+        hit.t = far.t;
     }
     Some(hit)
 }

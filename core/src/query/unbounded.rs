@@ -7,49 +7,66 @@ use crate::geometry::PrimitiveId;
 use crate::geometry::primitive::Primitive;
 use crate::observe::count::Observer;
 use crate::observe::event::Event;
-use crate::ray::Ray;
+use crate::ray::{FarPoint, Ray};
 use crate::scene::Scene;
 
-/// The nearest hit in the interval that the caller gave, and its t as the caller counts it. Of hits at the same t the
-/// one that comes first in the scene file counts.
+/// Where a ray meets a shape without bounds.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct FarHit<N: Number> {
+    /// Counted from the ray's start, as kernels count.
+    pub(super) after_start: N,
+    /// As the caller counts it: what tells apart hits that lie farther away than kernels count.
+    pub(super) t: N::Wide,
+    pub(super) place: PrimitiveId,
+}
+
+/// The nearest hit in the interval that the caller gave. Of hits at the same t the one that comes first in the scene
+/// file counts.
 #[cold]
 #[inline(never)]
 pub(super) fn nearest<N: Number, C: Observer>(
     scene: &Scene<'_>,
     ray: &Ray<N>,
     count: &mut C,
-) -> Option<(N::Wide, PrimitiveId)> {
-    let mut best: Option<(N::Wide, PrimitiveId)> = None;
-    each(scene, ray, count, |t, place| {
-        if best.is_none_or(|(least, first)| {
-            t < least || t == least && scene.key(place) < scene.key(first)
-        }) {
-            best = Some((t, place));
+) -> Option<FarHit<N>> {
+    let mut best: Option<FarHit<N>> = None;
+    each(scene, ray, count, |hit| {
+        let is_nearer = best.is_none_or(|best| {
+            let (mine, other) = ((hit.after_start, hit.t), (best.after_start, best.t));
+            mine < other || mine == other && scene.key(hit.place) < scene.key(best.place)
+        });
+        if is_nearer {
+            best = Some(hit);
         }
-        best.is_some_and(|best| best.1 == place)
+        is_nearer
     });
     best
 }
 
-/// Calls `hit` with every hit in the interval that the caller gave, in the order of their records. `hit` returns whether
-/// it is the nearest so far.
+/// Calls `consider` with every hit in the interval that the caller gave, in the order of their records. It returns whether
+/// the hit is the nearest so far.
 #[inline(always)]
 pub(super) fn each<N: Number, C: Observer>(
     scene: &Scene<'_>,
     ray: &Ray<N>,
     count: &mut C,
-    mut hit: impl FnMut(N::Wide, PrimitiveId) -> bool,
+    mut consider: impl FnMut(FarHit<N>) -> bool,
 ) {
     let [tmin, tmax] = ray.given_interval();
-    let mut consider = |t: Option<N::Wide>, place: PrimitiveId, count: &mut C| {
-        let in_interval = t.filter(|&t| t >= tmin && t <= tmax);
-        let nearest = in_interval.is_some_and(|t| hit(t, place));
+    let mut test = |met: Option<FarPoint<N>>, place: PrimitiveId, count: &mut C| {
+        let hit = met.map(|met| FarHit::<N> {
+            after_start: ray.after_start(&met),
+            t: met.t(),
+            place,
+        });
+        let in_interval = hit.filter(|hit| hit.t >= tmin && hit.t <= tmax);
+        let nearest = in_interval.is_some_and(&mut consider);
         count.objects(1);
         if C::ENABLED {
             count.event(Event::Candidate {
                 kind: place.kind,
                 primitive: scene.primitive_at(place),
-                crossing: t.map(|t| [N::far_to_f64(t - ray.start_t); 2]),
+                crossing: hit.map(|hit| [N::far_to_f64(hit.t - ray.start_t); 2]),
                 nearest,
             });
         }
@@ -65,7 +82,7 @@ pub(super) fn each<N: Number, C: Observer>(
             $(if Kind::$kind.is_available() && !Kind::$kind.is_bounded() {
                 for (slot, record) in (0..).zip(scene.space.shapes.$field) {
                     let met = ray.meet_far(|place| record.cross_far(place, ray.slope));
-                    consider(met.map(|met| met.t()), PrimitiveId::in_slot(Kind::$kind, slot), count);
+                    test(met, PrimitiveId::in_slot(Kind::$kind, slot), count);
                 }
             })*
         };

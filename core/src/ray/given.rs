@@ -28,9 +28,9 @@ pub(super) type RayPoint<N> = (
 pub(crate) struct FarPoint<N: Arithmetic> {
     reference: [N::Wide; 3],
     /// The t of `reference`, counted from the origin.
-    at: N::Wide,
+    pub(super) at: N::Wide,
     /// The t from there.
-    rest: N::Wide,
+    pub(super) rest: N::Wide,
 }
 
 /// Asks for the origin only where it is kept.

@@ -6,7 +6,7 @@ mod pencil;
 mod start;
 
 pub use error::RayError;
-pub(crate) use given::Given;
+pub(crate) use given::{FarPoint, Given};
 pub use pencil::Pencil;
 
 use crate::axis::pick;
@@ -14,7 +14,7 @@ use crate::format::record::UnitBox;
 use crate::number::Arithmetic;
 use crate::observe::event::Event;
 use crate::target::{inline_on_hosts, inline_on_hosts_hint_on_boards, inline_unless_small};
-use given::{FarPoint, RayPoint, given};
+use given::{RayPoint, given};
 use start::{
     check_interval, check_origin, distance_to_box, end_after, far_start, interval, is_near,
     near_start,
@@ -315,12 +315,21 @@ impl<N: Arithmetic> Ray<N> {
         }
     }
 
-    /// The ray with an interval that ends at a t, which the caller counts, where that is less; the end as it is
-    /// counted inside of the kernels.
-    pub(crate) fn until(&self, t: N::Wide) -> Self {
-        let tmax = self
-            .tmax
-            .min(end_after::<N>(t, self.start_t).min(N::FAR.half()));
+    /// How far behind the ray's start a surface without bounds is met, to the last bit what kernels find for a shape in
+    /// that place: at most half of the longest length, and negative for what lies before the start.
+    pub(crate) fn after_start(&self, met: &FarPoint<N>) -> N {
+        let difference = end_after::<N>(met.t(), self.start_t);
+        let after = if difference >= N::ZERO && met.at == self.start_t {
+            N::narrow(met.rest).max(N::ZERO)
+        } else {
+            difference
+        };
+        after.min(N::FAR.half())
+    }
+
+    /// The ray with an interval that ends so far behind its start, where that is less.
+    pub(crate) fn until(&self, after_start: N) -> Self {
+        let tmax = self.tmax.min(after_start);
         Self { tmax, ..*self }
     }
 

@@ -5,6 +5,7 @@ mod cone;
 mod cuboid;
 mod cylinder;
 mod disc;
+mod faces;
 mod plane;
 mod self_hits;
 mod sphere;
