@@ -99,7 +99,9 @@ impl Planned<'_> {
         let missing = |what: &BTreeSet<String>| Vec::from_iter(what.clone()).join(", ");
         let at_length = is_set("GRIDEL_FULL") || is_set("GRIDEL_RECORD_BOARDS");
         let full = required || at_length;
-        let reason = if !self.scenes.is_empty() {
+        let reason = if is_set("GRIDEL_WITHOUT_BOARDS") {
+            Some(String::from("left out by GRIDEL_WITHOUT_BOARDS"))
+        } else if !self.scenes.is_empty() {
             Some(format!("needs {}", missing(&self.scenes)))
         } else if !self.tools.is_empty() && !required {
             Some(format!("needs {}", missing(&self.tools)))
