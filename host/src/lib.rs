@@ -77,6 +77,7 @@ pub mod scene;
 pub mod shape;
 #[doc(hidden)]
 pub mod simd;
+pub mod srgb;
 pub mod state;
 #[doc(hidden)]
 pub mod table;

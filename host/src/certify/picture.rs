@@ -9,6 +9,7 @@ use super::reason::Reason;
 use super::search::{Open, Step, Stop, Tracer};
 use super::tone;
 use super::world::{NONE, World};
+use crate::srgb::linear_of_srgb;
 use bytemuck::{Pod, Zeroable};
 use gridel_core::format::record::View;
 use gridel_core::render::Pixel as _;
@@ -81,12 +82,7 @@ impl Enclosed {
 
 /// The linear value of an 8-bit code of sRGB (IEC 61966-2-1), 65535 being white.
 fn linear_of_code(code: u16) -> u16 {
-    let s = f64::from(code) / 255.0;
-    let linear = if s <= 0.04045 {
-        s / 12.92
-    } else {
-        libm::pow((s + 0.055) / 1.055, 2.4)
-    };
+    let linear = linear_of_srgb(f64::from(code) / 255.0);
     (linear * 65535.0 + 0.5) as u16
 }
 

@@ -3,6 +3,7 @@
 use super::first_hits::FirstHit;
 use super::flip::{self, flip};
 use super::ssim::ssim;
+use crate::srgb::srgb_of_linear;
 use gridel_core::Rgb888;
 use gridel_core::render::Pixel;
 use serde::{Deserialize, Serialize};
@@ -30,12 +31,7 @@ pub struct Errors {
 
 /// A linear value as a display shows it, 0 to 1.
 fn display(linear: u16) -> f64 {
-    let linear = f64::from(linear) / 65535.0;
-    if linear <= 0.003_130_8 {
-        12.92 * linear
-    } else {
-        1.055 * linear.powf(1.0 / 2.4) - 0.055
-    }
+    srgb_of_linear(f64::from(linear) / 65535.0)
 }
 
 impl Errors {
@@ -60,7 +56,7 @@ impl Errors {
             pixels,
         };
         let differences = flip(picture(&expected), picture(&found));
-        let grey = |pixels: &[[u16; 3]]| -> Vec<u8> {
+        let gray = |pixels: &[[u16; 3]]| -> Vec<u8> {
             let luma = |linear: &[u16; 3]| {
                 let [r, g, b] = Rgb888::encode(*linear, None).0.map(f64::from);
                 (0.2126 * r + 0.7152 * g + 0.0722 * b).round() as u8
@@ -87,7 +83,7 @@ impl Errors {
             rmse: (squares / (3 * pixels.len()).max(1) as f64).sqrt(),
             largest,
             pixels_off,
-            ssim: ssim(width.into(), &grey(reference.0), &grey(pixels)),
+            ssim: ssim(width.into(), &gray(reference.0), &gray(pixels)),
             flip: differences.iter().sum::<f64>() / differences.len().max(1) as f64,
             other_objects,
             t_ulps: [ulps.get(ulps.len() / 2).copied().unwrap_or(0.0), last],

@@ -4,6 +4,8 @@
 //! Alternating Images", HPG 2020. Both pictures are filtered by what the eye can resolve, compared in
 //! a perceptual color space, and the difference is raised where edges or points differ.
 
+use crate::srgb::linear_of_srgb;
+
 /// Pixels a degree of the field of view: a display of 3840 pixels, 0.7 m wide, seen from 0.7 m.
 const PIXELS_PER_DEGREE: f64 = 67.020_64;
 
@@ -82,21 +84,13 @@ fn xyz(linear: [f64; 3]) -> [f64; 3] {
 /// sRGB to the opponent space Y, Cx, Cz.
 fn opponent(picture: Picture<'_>) -> Planes {
     let pixel = |srgb: &[f64; 3]| {
-        let [x, y, z] = xyz(srgb.map(linear));
+        let [x, y, z] = xyz(srgb.map(linear_of_srgb));
         [116.0 * y - 16.0, 500.0 * (x - y), 200.0 * (y - z)]
     };
     Planes {
         width: picture.width,
         height: picture.pixels.len() / picture.width.max(1),
         pixels: picture.pixels.iter().map(pixel).collect(),
-    }
-}
-
-fn linear(srgb: f64) -> f64 {
-    if srgb <= 0.04045 {
-        srgb / 12.92
-    } else {
-        ((srgb + 0.055) / 1.055).powf(2.4)
     }
 }
 

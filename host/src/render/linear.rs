@@ -2,6 +2,7 @@
 
 use super::{ALL, Job, all_chosen, renderers};
 use crate::observed::Observed;
+use crate::srgb::linear_of_srgb;
 use gridel_core::accel::DynAccel;
 use gridel_core::format::limits::MAX_STACK_DEPTH;
 use gridel_core::format::record::View;
@@ -106,7 +107,7 @@ fn rows<N: Number>(
                 *pixel = observed.radiance.map(|sum| {
                     let mean = sum / samples;
                     let linear = if is_display_value {
-                        decoded(mean)
+                        linear_of_srgb(mean)
                     } else {
                         mean
                     };
@@ -116,16 +117,6 @@ fn rows<N: Number>(
             progress();
         });
     Ok(pixels)
-}
-
-/// The linear value of a display value, by the curve of sRGB (IEC 61966-2-1), which goes on above 1.
-fn decoded(value: f64) -> f64 {
-    if value <= 0.04045 {
-        value / 12.92
-    } else {
-        // The same bits on every host, unlike the standard library's.
-        libm::pow((value + 0.055) / 1.055, 2.4)
-    }
 }
 
 #[cfg(test)]

@@ -10,9 +10,10 @@ use gridel_host::compile::{Options, compile};
 use gridel_host::render::{Aov, Job, Values, render, render_aovs, render_linear};
 use gridel_host::scene::{
     self, Alpha, Attributes, Camera, Diffuse, Image, Instance, Light, Material, Part, Placement,
-    Shape, SourceSpan, Texture, Wrap, linear_of_srgb,
+    Shape, SourceSpan, Texture, Wrap,
 };
 use gridel_host::shape::Disc;
+use gridel_host::srgb::linear_of_srgb;
 use gridel_tests::query::{UnitRay, closest, held, point_of};
 use gridel_tests::random::Random;
 use gridel_tests::{every_format, scenes};

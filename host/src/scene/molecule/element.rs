@@ -1,6 +1,7 @@
 //! The elements: radii and colors of their atoms.
 
 use crate::scene::Color;
+use crate::srgb::linear_of_srgb;
 
 /// A chemical element.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -54,16 +55,7 @@ impl Element {
     /// The conventional color.
     pub(crate) fn color(self) -> Color {
         let rgb = ELEMENTS[usize::from(self.0)].3;
-        [rgb >> 16, rgb >> 8, rgb].map(|channel| linear(f64::from(channel & 0xFF) / 255.0))
-    }
-}
-
-/// Decodes a channel of sRGB (IEC 61966-2-1).
-fn linear(channel: f64) -> f64 {
-    if channel <= 0.04045 {
-        channel / 12.92
-    } else {
-        libm::pow((channel + 0.055) / 1.055, 2.4)
+        [rgb >> 16, rgb >> 8, rgb].map(|channel| linear_of_srgb(f64::from(channel & 0xFF) / 255.0))
     }
 }
 
