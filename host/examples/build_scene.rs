@@ -45,7 +45,7 @@ pub fn scene() -> Scene {
             position: DVec3::new(4.0, 6.0, 5.0),
             color: [1.0; 3],
         }],
-        materials: vec![material("grey", [0.5; 3]), material("red", [0.8, 0.1, 0.1])],
+        materials: vec![material("gray", [0.5; 3]), material("red", [0.8, 0.1, 0.1])],
         objects: vec![object("floor", 0, floor), object("ball", 1, ball)],
         ..Scene::default()
     }

@@ -250,8 +250,8 @@ pub fn write_hits(out: &mut dyn Write, hits: &[SceneHit], with_instances: bool) 
     Ok(())
 }
 
-/// Writes the values of a picture's pixels, little-endian: an array of shape (height, width, 3) for vectors, else
-/// (height, width).
+/// Writes the values of a picture's pixels, little-endian: an array of shape (height, width, 3) for vectors,
+/// (height, width, 2) for texture coordinates, and (height, width) for numbers.
 ///
 /// # Errors
 /// If `out` has one.

@@ -212,7 +212,7 @@ mod tests {
     }
 
     #[test]
-    fn powers_of_two_are_recognised() {
+    fn powers_of_two_are_recognized() {
         assert_eq!(power_of_two(1.0), "2^0 = 1.000e0");
         assert_eq!(power_of_two(f64::powi(2.0, -20)), "2^-20 = 9.537e-7");
     }

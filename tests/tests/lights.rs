@@ -52,6 +52,35 @@ fn cornell_light_gives_the_analytic_irradiance() {
     check("wall", &blob, 15.0 * 0.043_652_6 / PI);
 }
 
+/// A lamp may be farther from a small scene than the lattice is wide, and a face that glows as large as the scene.
+#[test]
+fn far_lamps_and_large_faces_light_small_scenes() {
+    const GROUND: &str =
+        "[[object]]\nkind = 'box'\nmin = [-1, -0.1, -1]\nmax = [1, 0, 1]\nmaterial = 'white'";
+    for (height, range) in [(7.0_f64, 1e9_f64), (10.0, 30.0), (40.0, 1e3), (80.0, 1e3)] {
+        let color = 0.5 * height * height;
+        let light = format!(
+            "[[light]]\nkind = 'point'\nposition = [0, {height}, 0]\nfalloff = 'square'\ncolor = {color}\n\
+             range = {range}"
+        );
+        let blob = scene(&light, "[0, 0.3, 0]", "[0, 0, 0]", GROUND);
+        check("lamp", &blob, 0.5 * (1.0 - (height / range).powi(4)));
+    }
+    for width in [0.7_f64, 1.0, 1.5, 2.0, 3.0, 7.9] {
+        let half = width / 2.0;
+        let glowing = format!(
+            "[material.lamp]\ndiffuse = 0\nemission = 1\n[[object]]\nkind = 'mesh'\nvertices = \
+             [[-{half}, {width}, -{half}], [-{half}, {width}, {half}], [{half}, {width}, {half}], \
+             [{half}, {width}, -{half}]]\nfaces = [[0, 3, 2, 1]]\nmaterial = 'lamp'\n\
+             [[object]]\nkind = 'box'\nmin = [-0.1, -0.1, -0.1]\nmax = [0.1, 0, 0.1]\nmaterial = 'white'"
+        );
+        let blob = scene("", "[0, 0.03, 0]", "[0, 0, 0]", &glowing);
+        // A square of side a, a above its middle: of its four quarters with x = y = 1/2 in a.
+        let side = 0.5 / 1.25_f64.sqrt();
+        check("face", &blob, 4.0 * side * side.atan() / PI);
+    }
+}
+
 /// A light that shines away lights nothing.
 #[test]
 fn rectangles_and_discs_shine_to_one_side() {

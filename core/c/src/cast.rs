@@ -2,7 +2,8 @@
 //!
 //! In steps of scene coordinates there is no floating point in `fixed`, and rays and hits are those of
 //! `Scene::ray_within` and `Scene::distance`. In scene units a ray is brought to the scene in double precision and then
-//! rounded to the number format, as `gridel trace` does, with the same bits.
+//! rounded to the number format, as `gridel trace` does. The bits are the same for origins within 16 times the width of
+//! the scene. Directions longer than 2^100 units or shorter than 2^-100 are rejected.
 
 use crate::load::{read, status};
 use crate::memory::{output, scene, stack};

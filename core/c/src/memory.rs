@@ -150,13 +150,15 @@ pub struct PartViews {
 }
 
 impl PartViews {
-    /// An empty list at the start of a buffer.
+    /// An empty list at the start of a buffer; a null pointer to no bytes is one without room.
     ///
     /// # Safety
     /// As [`output`], for all bytes of the buffer, for as long as scenes refer to the parts.
     pub unsafe fn new(buffer: gridel_buffer) -> Result<Self, gridel_status> {
         let first = buffer.memory.cast::<Scene<'static>>();
-        check(first)?;
+        if buffer.bytes > 0 {
+            check(first)?;
+        }
         Ok(Self {
             first,
             room: buffer.bytes / size_of::<Scene<'_>>(),
@@ -175,6 +177,9 @@ impl PartViews {
     }
 
     pub fn finish(self) -> &'static [Scene<'static>] {
+        if self.count == 0 {
+            return &[];
+        }
         // SAFETY: so many were written, into memory that the caller of `new` promised to leave alone.
         unsafe { slice::from_raw_parts(self.first, self.count) }
     }

@@ -52,7 +52,7 @@ pub enum gridel_status {
     PictureSize = 40,
     /// The samples per pixel are not 1 to 4096.
     PictureSamples = 41,
-    /// The ray depth is above 32.
+    /// The ray depth is above 32, or above 16 in a library without the feature `indirect`.
     PictureDepth = 42,
     /// The format of the pixels is unknown.
     PictureFormat = 43,
@@ -156,7 +156,7 @@ fn text(status: u32) -> &'static CStr {
         33 => c"the ray's interval ends before it begins, or is NaN",
         40 => c"the picture has no pixels, or is more than 64 times as wide as high",
         41 => c"the samples per pixel must be 1 to 4096",
-        42 => c"the ray depth must be 0 to 32",
+        42 => c"the ray depth must be 0 to 32, or to 16 in a library without the feature `indirect`",
         43 => c"the format of the pixels is unknown: use one of gridel_pixel_format",
         44 => c"the pixels are too narrow for the number format: use fewer pixels, or gridel_render_f64",
         45 => c"the rectangle leaves the picture",

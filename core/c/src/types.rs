@@ -212,7 +212,7 @@ pub struct gridel_picture {
     pub height: u16,
     /// Samples per pixel, 1 to 4096.
     pub samples: u16,
-    /// How often a ray may be reflected or refracted, 0 to 32.
+    /// How often a ray may be reflected or refracted, 0 to 32; to 16 in a library without the feature `indirect`.
     pub depth: u16,
     /// 1 to dither, else 0.
     pub dither: u16,

@@ -4,8 +4,8 @@
 //! a quarter, and four units along the ray where the integers' three steps and roundings come to
 //! less than three. Rounding moves `p / s - o / s` by less than 2^-5 unit aside (coordinates are
 //! below 2^17), so a box's interval here holds its interval there. Hits are held to the latter, so
-//! the answers are the same. The margins lie in the ray's constants, and a box pays nothing for
-//! them. No number is NaN: an inverse slope is at most 4096 in magnitude, and all products are
+//! the answers are the same. The margins lie in the ray's constants, so a box test costs no
+//! instruction for them. No number is NaN: an inverse slope is at most 4096 in magnitude, and all products are
 //! finite.
 
 use crate::accel::cull_axis::CullArithmetic;

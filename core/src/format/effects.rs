@@ -1,5 +1,5 @@
-//! Effects: the parts of light transport that a scene uses, as a set. A scene pays only for its effects. All effects
-//! are listed here.
+//! Effects: the parts of light transport that a scene uses, as a set. An effect that a scene does not
+//! require costs no rays and no instructions. All effects are listed here.
 //!
 //! An effect is a file in [`shade`](crate::shade) and a row in the table below. Its code is a Cargo
 //! feature of the same name.

@@ -9,7 +9,7 @@ const ONE: i64 = 1 << 30;
 /// The longest length, with 13 fraction bits.
 const LONGEST: i64 = 1 << 30;
 /// The longest edge: two of them are a length.
-const EDGE: i64 = 1 << 28;
+const EDGE: i64 = 1 << 29;
 
 records! {
     /// The form of a light at a position: what shines, where to, and how its light falls off.

@@ -83,7 +83,7 @@ impl<'a> Scene<'a> {
     /// The scene with other materials in place of the blob's, one for each and in their order.
     ///
     /// An effect that a material calls for becomes one of the [scene's](Self::effects): a renderer that was
-    /// not compiled for it is refused with its name.
+    /// not compiled for it is rejected with its name.
     ///
     /// ```
     /// # static BLOB: &[u8] =

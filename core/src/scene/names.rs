@@ -8,7 +8,7 @@ use crate::scene::read::header;
 /// Names of the objects, materials and lights of a blob, read in place.
 ///
 /// [`Scene::from_bytes`](crate::Scene::from_bytes) passes over them, so that a program without names
-/// pays for the bytes of their sections and for nothing else. Names need not differ, and hold any
+/// stores their bytes and runs no code for them. Names need not differ, and hold any
 /// characters. Whoever prints them escapes control characters.
 ///
 /// ```

@@ -32,11 +32,11 @@ use core::mem::offset_of;
 /// at most and finds room on a stack of the depth that the header states. **What loading proves**,
 /// in constant time: header, section table and view; that every section lies in the blob and has
 /// records of the right size; that this build has the effects and kinds of primitives that are called
-/// for. **What nobody proves**: what `gridel build` is there for, that boxes lie in their parents' and
-/// primitives in their leaves, that numbers are in their ranges. A blob that is forged there, with a
-/// checksum that fits, gives wrong answers. It cannot do more: whatever leads from one record to
-/// another is looked up with a check, arithmetic wraps or saturates, and no loop takes its end from a
-/// record but those that end with an array. Tests hold this to records of any content, with overflow
+/// for. **What is not proved**: that boxes lie in their parents, that primitives lie in their leaves,
+/// and that numbers are in range. `gridel build` writes only such blobs. A blob that is forged there,
+/// with a checksum that fits, gives wrong answers. It cannot do more: whatever leads from one record
+/// to another is looked up with a check, arithmetic wraps or saturates, and no loop takes its end from
+/// a record but those that end with an array. Tests hold this to records of any content, with overflow
 /// checks on; and programs of such a blob hold no code that panics.
 ///
 /// Blobs for boards can be prevalidated: those that hold no structures but [`Self::STRUCTURES`].

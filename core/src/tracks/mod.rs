@@ -21,8 +21,8 @@ use records::Records;
 
 /// The tracks of a blob, read in place.
 ///
-/// [`Scene::from_bytes`](crate::Scene::from_bytes) passes over them, so that a program that asks for no time pays for
-/// the bytes of their sections and for nothing else. [`Scene`](crate::Scene) and tracks are independent: a time changes
+/// [`Scene::from_bytes`](crate::Scene::from_bytes) passes over them, so that a program that asks for no time stores
+/// their bytes and runs no code for them. [`Scene`](crate::Scene) and tracks are independent: a time changes
 /// nothing until a scene is given its state.
 ///
 /// Times are ticks, [`ticks_per_second`](Self::ticks_per_second) of them in a second. Before the first key of a track

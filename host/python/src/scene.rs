@@ -307,11 +307,14 @@ impl NativeScene {
         let (scene, rays) = (self.chosen(how)?, Rays::rows(array.rows("rays")?)?);
         let (hits, uvs) = py.detach(|| {
             let mut hits = query::all(&scene, rays, how).concat();
+            // Triangles closer to each other than the lattice moved them keep the order in which they are hit.
+            let mut last = (usize::MAX, f64::NEG_INFINITY);
             let uvs: Vec<[f32; 2]> = hits
                 .iter_mut()
                 .map(|(number, hit)| {
                     let (t, _, uv) = self.place(&rays.get(*number), hit);
-                    hit.t = t;
+                    hit.t = if last.0 == *number { t.max(last.1) } else { t };
+                    last = (*number, hit.t);
                     uv.map(|weight| weight as f32)
                 })
                 .collect();

@@ -214,7 +214,7 @@ impl State {
             Err(cause) => cause,
         };
         warn(format!(
-            "{} {cause}: every pixel is evaluated anew, and it is replaced",
+            "{} {cause}; all pixels are evaluated again, and the file is replaced",
             self.path.display()
         ));
         Ok(pixels)

@@ -163,7 +163,7 @@ fn print_findings(
     printed
 }
 
-/// Why things are as they are, where they are not held, each reason once.
+/// Returns the reasons of failed and skipped checks, each once.
 fn reasons(report: &Report) -> String {
     let mut lines = Vec::new();
     for finding in &report.findings {

@@ -33,10 +33,11 @@ use std::time::Instant;
 /// pointing outward; 0 for a miss). Those of a scene with instances have a field more behind
 /// primitive: instance (u4, 0xffffffff for the scene's own objects).
 ///
-/// A ray is rejected if its direction is zero, if it has a NaN, if its origin or direction is
-/// infinite, if tmin is greater than tmax, if its origin is more than 2^37 units away (2^21
-/// times the width of the largest scene), or if t exceeds double precision. Its t is nan in the file. Rejected rays are counted
-/// separately from misses. The first one is printed with its row and the reason.
+/// A ray is rejected if it has a NaN, if its direction is zero, or if its origin or direction is
+/// infinite. It is rejected, too, if tmin is greater than tmax, if t exceeds double precision, or if
+/// its origin is more than 2^37 units away (2^21 times the width of the largest scene). Its t is nan
+/// in the file. Rejected rays are counted separately from misses. The first one is printed with its
+/// row and the reason.
 #[derive(Args)]
 #[command(after_help = super::failure::EXIT_CODES)]
 pub struct Arguments {

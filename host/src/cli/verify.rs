@@ -23,10 +23,10 @@ use std::path::PathBuf;
 /// with double precision. Arithmetic of 320 bits, which shares no code with the kernels, judges all
 /// rays that disagree and a sample of the others.
 ///
-/// A scene passes if every structure gives the bits of brute force, any hit and closest hit agree,
-/// hits are those of exact arithmetic for a shape that is larger or smaller by at most 8 steps, all
-/// numbers are finite, secondary rays do not hit the surface that they leave, and no ray leaks out
-/// of a closed mesh.
+/// A scene passes if all of this holds. Every structure gives the bits of brute force. Any hit and
+/// closest hit agree. Hits are those of exact arithmetic for a shape that is larger or smaller by at
+/// most 8 steps. All numbers are finite. Secondary rays do not hit the surface that they leave. No
+/// ray leaks out of a closed mesh.
 ///
 /// A step is a rounding of the largest coordinate (2^-24 of it in f32, 2^-53 in f64), or 2^-13 unit
 /// in fixed.

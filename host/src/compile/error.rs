@@ -34,8 +34,8 @@ pub enum CompileError {
     ))]
     Flattened { object: String, step: f64 },
     #[error(
-        "{collapsed} triangles collapse on the lattice; cutting their neighbours, so that meshes stay \
-         closed, makes {pieces} primitives of {most}"
+        "{collapsed} triangles collapse on the lattice; cutting their neighbors, so that meshes stay \
+         closed, makes {pieces} primitives; a blob holds at most {most}"
     )]
     #[diagnostic(help("use more `--lattice-bits`, or scale the mesh less unevenly"))]
     Slivers {
@@ -51,7 +51,7 @@ pub enum CompileError {
     #[error("the smallest form of the textures takes {bytes} bytes, and the budget is {most}")]
     #[diagnostic(help("allow more `--texture-bytes`, or remove textures"))]
     TextureBytes { bytes: u64, most: u64 },
-    #[error("{object} passes the middle of the other objects at more than {most:.3e} scene units")]
+    #[error("{object} is more than {most:.3e} scene units from the middle of the other objects")]
     #[diagnostic(help("move it nearer, or add an object beside it"))]
     OutOfReach { object: String, most: f64 },
     #[error(
@@ -73,15 +73,20 @@ pub enum CompileError {
     #[diagnostic(help("remove `priority` from glass that touches no other glass"))]
     Media { count: usize },
     #[error(
-        "light {number}: its {what} of {length:.3e} scene units is more than {most:.3e}, which the scene's lattice holds"
+        "{light}: its {what} of {length:.3e} scene units is more than {most:.3e}, which the scene's lattice holds"
     )]
-    #[diagnostic(help("make it smaller or less bright, or make the scene larger"))]
+    #[diagnostic(help("make it smaller, or make the scene larger"))]
     LightForm {
-        number: usize,
+        light: String,
         what: &'static str,
         length: f64,
         most: f64,
     },
+    #[error(
+        "{light} is {times:.3e} times too bright: it would light a scene of this size beyond all limits"
+    )]
+    #[diagnostic(help("make it less bright, lower `exposure`, or make the scene larger"))]
+    LightTooBright { light: String, times: f64 },
     #[error("the {what} has a channel of {value:.4e} after exposure; it must be at most {most}")]
     #[diagnostic(help("lower `exposure` or the light"))]
     TooBright { what: String, value: f64, most: f64 },

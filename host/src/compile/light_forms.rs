@@ -9,8 +9,12 @@ use std::f64::consts::PI;
 
 /// The longest distance of a form, in units.
 const LONGEST: f64 = (1 << 17) as f64;
-/// The longest edge, in units.
-const LONGEST_EDGE: f64 = (1 << 15) as f64;
+/// The longest component of an edge, in units: that of the lattice.
+const LONGEST_EDGE: f64 = (1 << 16) as f64;
+/// The brightest color of a record.
+const BRIGHTEST: f64 = 2047.0;
+/// A range that takes no more than this part of any light needs no record.
+const UNSEEN: f64 = 1.0 / 1024.0;
 
 /// By how many steps of the lattice light starts above a surface of the scene: more than the lattice moves that, and
 /// than arithmetic errs.
@@ -37,21 +41,30 @@ pub fn lift(form: &LightForm, lattice: &Lattice) -> DVec3 {
     unit(normal) * lift_length(form, lattice)
 }
 
+/// A light that has a form.
+pub struct FormedLight<'a> {
+    pub form: &'a LightForm,
+    pub color: Color,
+    /// The light for messages.
+    pub label: &'a str,
+    /// The distance to the farthest point of the scene.
+    pub farthest: f64,
+    pub has_color_track: bool,
+}
+
 /// The record of a form, and the light's color in it: brought to the range where it is most precise, unless a track
 /// gives the light other colors.
 pub fn form_record(
-    form: &LightForm,
-    color: Color,
+    light: &FormedLight<'_>,
     lattice: &Lattice,
-    number: usize,
-    has_color_track: bool,
 ) -> Result<(Record, Color), CompileError> {
+    let FormedLight { form, color, .. } = *light;
     let units = |length: f64| length / lattice.unit();
     let limited = |what: &'static str, length: f64, most: f64| {
         let fits = units(length) <= most;
         let most = most * lattice.unit();
-        fits.then_some(()).ok_or(CompileError::LightForm {
-            number,
+        fits.then_some(()).ok_or_else(|| CompileError::LightForm {
+            light: light.label.to_owned(),
             what,
             length,
             most,
@@ -95,18 +108,32 @@ pub fn form_record(
         }
     };
     for edge in edges {
-        limited("edge or radius", edge.length(), LONGEST_EDGE)?;
+        limited("edge or radius", edge.abs().max_element(), LONGEST_EDGE)?;
     }
     // The color is as precise as it can be, and the distance at which the light has it makes up for that.
     let (peak, mut color) = (color.into_iter().fold(0.0, f64::max), color);
     if reference > 0.0 && peak > 0.0 {
-        if !has_color_track {
-            reference *= peak.sqrt();
-            color = color.map(|channel| channel / peak);
+        if !light.has_color_track {
+            let full = reference * peak.sqrt();
+            reference = full.min(LONGEST * lattice.unit());
+            let brightness = (full / reference) * (full / reference);
+            if brightness > BRIGHTEST {
+                return Err(CompileError::LightTooBright {
+                    light: light.label.to_owned(),
+                    times: brightness / BRIGHTEST,
+                });
+            }
+            color = color.map(|channel| channel / peak * brightness);
         }
         limited("distance at which it has its color", reference, LONGEST)?;
     }
-    limited("range", form.range.unwrap_or(0.0), LONGEST)?;
+    let takes = |range: f64| {
+        let part = light.farthest / range;
+        part * part * part * part
+    };
+    let range = form.range;
+    let range = range.filter(|&range| units(range) <= LONGEST || takes(range) > UNSEEN);
+    limited("range", range.unwrap_or(0.0), LONGEST)?;
     let q30 = |ratio: f64| (ratio * f64::from(1 << 30)).round() as i32;
     let cosine = |degrees: f64| degrees.to_radians().cos();
     let cone = form
@@ -116,7 +143,7 @@ pub fn form_record(
         shape,
         // A light that is there is never without a distance.
         reference: q13(reference).max(i32::from(reference > 0.0)),
-        range: form.range.map_or(0, |range| q13(range).max(1)),
+        range: range.map_or(0, |range| q13(range).max(1)),
         cone_cosine: cone.map_or(-(1 << 30), |[outer, _]| q30(outer)),
         cone_width: cone.map_or(0, |[outer, inner]| q30(inner) - q30(outer)),
         normal: normal.to_array().map(q30),

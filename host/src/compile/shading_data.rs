@@ -10,7 +10,7 @@ use super::extent::Shapes;
 use super::framing::{BACKGROUND, framing_of};
 use super::joints;
 use super::lens;
-use super::light_forms::{form_record, lift};
+use super::light_forms::{FormedLight, form_record, lift};
 use super::media::media;
 use super::section::Section;
 use super::textures::{TextureFigures, Textures};
@@ -191,7 +191,17 @@ impl ShadingData {
                 if !roughnesses.is_empty() {
                     shown_forms.push(u8::from(form.is_surface));
                 }
-                let (form, color) = form_record(&form, color, lattice, number, has_color_track)?;
+                let corner = (highest - position).abs().max((lowest - position).abs());
+                let (form, color) = form_record(
+                    &FormedLight {
+                        form: &form,
+                        color,
+                        label: &light_label(scene, number),
+                        farthest: corner.length(),
+                        has_color_track,
+                    },
+                    lattice,
+                )?;
                 let light = Light::Point { position, color };
                 let directional =
                     record::Light::with_form(light_forms.len() as u32, form.shape != 0);
@@ -354,6 +364,14 @@ fn on_lattice(
         });
     }
     Ok(q13.round().to_array().map(|x| x as i64))
+}
+
+/// A light for messages: its number, and its name if it has one.
+fn light_label(scene: &Scene, number: usize) -> String {
+    match scene.light_names.get(number) {
+        Some(name) if !name.is_empty() => format!("light {number} ({})", printable(name)),
+        _ => format!("light {number}"),
+    }
 }
 
 /// A light of a scene of some size.

@@ -9,7 +9,8 @@ mod stored;
 
 use super::CompileError;
 use super::section::{Section, section};
-use crate::scene::{Alpha, Material, Texture, Wrap, linear_of_srgb};
+use crate::scene::{Alpha, Material, Texture, Wrap};
+use crate::srgb::{linear_of_srgb, srgb_of_linear};
 use crate::table::{grouped, printable};
 use gridel_core::format::SectionKind;
 use gridel_core::format::record;
@@ -60,15 +61,6 @@ pub fn root(linear: f64, display_values: bool) -> u8 {
         channel
     };
     (libm::sqrt(channel) * 255.0).round() as u8
-}
-
-/// Undoes [`linear_of_srgb`].
-fn srgb_of_linear(linear: f64) -> f64 {
-    if linear <= 0.003_130_8 {
-        linear * 12.92
-    } else {
-        1.055 * libm::pow(linear, 1.0 / 2.4) - 0.055
-    }
 }
 
 /// How a texture is looked up, as its record says it.

@@ -30,10 +30,10 @@ pub fn c60() -> Scene {
     let mut atoms = Vec::new();
     for &corner in &corners {
         // The next nearest corners are farther by the golden ratio.
-        let neighbours = corners
+        let neighbors = corners
             .iter()
             .filter(|&&other| other != corner && other.distance(corner) < 1.3 * edge);
-        atoms.extend(neighbours.map(|&other| corner.lerp(other, HEXAGON_PENTAGON / edge)));
+        atoms.extend(neighbors.map(|&other| corner.lerp(other, HEXAGON_PENTAGON / edge)));
     }
     carbon(atoms, MoleculeStyle::BallAndStick)
 }

@@ -26,13 +26,13 @@ fn bonds(scene: &Scene) -> (Vec<f64>, HashMap<usize, usize>) {
         })
         .collect();
     let bonds = perceive(&sites).0;
-    let mut neighbours = vec![0; atoms.len()];
+    let mut neighbors = vec![0; atoms.len()];
     for &end in bonds.iter().flatten() {
-        neighbours[end as usize] += 1;
+        neighbors[end as usize] += 1;
     }
     let mut counts = HashMap::new();
-    for neighbours in neighbours {
-        *counts.entry(neighbours).or_default() += 1;
+    for neighbors in neighbors {
+        *counts.entry(neighbors).or_default() += 1;
     }
     (
         bonds
@@ -46,8 +46,8 @@ fn bonds(scene: &Scene) -> (Vec<f64>, HashMap<usize, usize>) {
 #[test]
 fn c60_has_its_bonds() {
     let scene = c60();
-    let (lengths, neighbours) = bonds(&scene);
-    assert_eq!(neighbours, HashMap::from([(3, 60)]));
+    let (lengths, neighbors) = bonds(&scene);
+    assert_eq!(neighbors, HashMap::from([(3, 60)]));
     let count = |length: f64| {
         lengths
             .iter()
@@ -65,23 +65,23 @@ fn c60_has_its_bonds() {
 #[test]
 fn nanotubes_are_closed_around() {
     for (n, m) in [(10, 10), (12, 0), (9, 4), (6, 5)] {
-        let (lengths, neighbours) = bonds(&nanotube(n, m, 60.0));
+        let (lengths, neighbors) = bonds(&nanotube(n, m, 60.0));
         // Across the bend a bond is the chord of its arc.
         assert!(
             lengths.iter().all(|l| (1.39..=1.421 + 1e-9).contains(l)),
             "({n}, {m})"
         );
-        let inner = neighbours[&3];
-        let ends: usize = neighbours
+        let inner = neighbors[&3];
+        let ends: usize = neighbors
             .iter()
             .filter(|(count, _)| **count != 3)
             .map(|(_, atoms)| atoms)
             .sum();
         assert!(
-            neighbours.keys().all(|count| *count <= 3),
-            "({n}, {m}): {neighbours:?}"
+            neighbors.keys().all(|count| *count <= 3),
+            "({n}, {m}): {neighbors:?}"
         );
-        assert!(inner > 10 * ends, "({n}, {m}): {neighbours:?}");
+        assert!(inner > 10 * ends, "({n}, {m}): {neighbors:?}");
     }
     let atoms = centers(&nanotube(10, 10, 172.0)).len();
     assert!((2780..=2820).contains(&atoms), "{atoms}");
@@ -96,12 +96,12 @@ fn a_nanotube_too_thin_is_widened() {
 #[test]
 fn diamond_is_tetrahedral() {
     let scene = diamond(DIAMOND_2_800);
-    let (lengths, neighbours) = bonds(&scene);
+    let (lengths, neighbors) = bonds(&scene);
     let bond = 3.567 * 3.0_f64.sqrt() / 4.0;
     assert!(lengths.iter().all(|l| (l - bond).abs() < 1e-12));
     assert!(
-        neighbours[&4] > 2000 && neighbours.keys().all(|count| *count <= 4),
-        "{neighbours:?}"
+        neighbors[&4] > 2000 && neighbors.keys().all(|count| *count <= 4),
+        "{neighbors:?}"
     );
     for (radius, expected) in [(DIAMOND_2_800, 2_800.0), (DIAMOND_27_000, 27_000.0)] {
         let atoms = diamond(radius).objects.len() as f64;

@@ -7,6 +7,7 @@
 
 use super::SceneError;
 use super::files::{Files, lexical};
+use super::image::Texels;
 use std::io;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -18,6 +19,8 @@ pub(super) struct Access {
     folder: Option<PathBuf>,
     /// The files in memory, which are all that there is; `None` for those of a disk.
     files: Option<Arc<Files>>,
+    /// Those of the images that were read so far.
+    pub(super) texels: Texels,
 }
 
 impl Access {
@@ -29,6 +32,7 @@ impl Access {
         Self {
             folder: (!allow_outside).then(resolved),
             files: None,
+            texels: Texels::default(),
         }
     }
 
@@ -37,6 +41,7 @@ impl Access {
         Self {
             folder: None,
             files: Some(Arc::new(files.clone())),
+            texels: Texels::default(),
         }
     }
 

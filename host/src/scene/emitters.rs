@@ -44,7 +44,7 @@ impl Scene {
         for number in 0..self.objects.len() {
             let object = &self.objects[number];
             let material = &self.materials[object.material];
-            if !material.lights_others() {
+            if !material.has_lights() {
                 continue;
             }
             let (color, name) = (material.emission, object.name.clone());
@@ -70,18 +70,16 @@ impl Scene {
     /// Marks the material of objects that have lights; where others without have it, too, a copy of it.
     fn mark_sampled(&mut self, lit: &[usize]) {
         let mut marked = vec![None; self.materials.len()];
+        // Objects of each material without lights.
+        let mut without = vec![0_i64; self.materials.len()];
+        self.all_objects()
+            .for_each(|object| without[object.material] += 1);
+        lit.iter()
+            .for_each(|&number| without[self.objects[number].material] -= 1);
         for &number in lit {
             let material = self.objects[number].material;
-            let with_lights = lit
-                .iter()
-                .filter(|&&it| self.objects[it].material == material);
-            let has_all = with_lights.count()
-                == self
-                    .all_objects()
-                    .filter(|it| it.material == material)
-                    .count();
             let to = *marked[material].get_or_insert_with(|| {
-                if has_all {
+                if without[material] == 0 {
                     return material;
                 }
                 self.materials.push(self.materials[material].clone());
@@ -138,11 +136,14 @@ impl Scene {
     }
 
     /// Names of objects that glow and do not light others, though they should: those of parts, and those with shapes that
-    /// no light has, or with too many faces.
+    /// no light has, with too many faces, or with alpha.
     pub fn emitters_without_light(&self) -> impl Iterator<Item = &str> {
         let lights = |object: &&Object| self.materials[object.material].lights_others();
         let own = self.objects.iter();
-        let own = own.filter(|object| faces(&object.shape).is_empty());
+        let own = own.filter(|object| {
+            let has_lights = self.materials[object.material].has_lights();
+            !has_lights || faces(&object.shape).is_empty()
+        });
         let in_parts = self.parts.iter().flat_map(|part| &part.objects);
         let all = own.chain(in_parts).filter(lights);
         all.map(|object| object.name.as_str())
@@ -150,8 +151,13 @@ impl Scene {
 }
 
 impl Material {
+    /// Whether lights are to stand for its objects. None is cut out or blends as an object does.
     fn lights_others(&self) -> bool {
         self.lights && self.emission != BLACK
+    }
+
+    fn has_lights(&self) -> bool {
+        self.lights_others() && self.alpha.is_none()
     }
 }
 
@@ -280,6 +286,21 @@ mod tests {
             }
             _ => panic!("no flat light"),
         }
+    }
+
+    #[test]
+    fn objects_with_alpha_glow_and_are_no_lights() {
+        let folder = tempfile::tempdir().unwrap();
+        let png = crate::scene::image::tests::png_of(1, 1, &[[255, 255, 255, 0]]);
+        std::fs::write(folder.path().join("none.png"), png).unwrap();
+        let text = "[material.lamp]\nemission = 4\ntexture = 'none.png'\nalpha = 'cutout'\n\
+                    [[object]]\nkind = 'mesh'\nvertices = [[0,0,0],[1,0,0],[0,1,0]]\nfaces = [[0,1,2]]\n\
+                    coordinates = [[0,0],[1,0],[0,1]]\nmaterial = 'lamp'";
+        let path = folder.path().join("lamp.toml");
+        std::fs::write(&path, text).unwrap();
+        let imported = crate::scene::load_with(&path, &Default::default()).unwrap();
+        assert_eq!(imported.scene.lights, []);
+        assert!(imported.warnings[0].contains("does not light other objects"));
     }
 
     #[test]

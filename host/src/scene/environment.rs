@@ -1,7 +1,8 @@
 //! The light around a scene, as scene files state it.
 
-use super::image::{Fault, Image, check_size, fault, linear_of_srgb};
+use super::image::{Fault, Image, Texels, fault};
 use super::radiance;
+use crate::srgb::linear_of_srgb;
 use glam::DVec3;
 use std::fmt;
 use std::path::Path;
@@ -133,9 +134,9 @@ impl Panorama {
     }
 
     /// Reads a Radiance, PNG or JPEG file, told apart by their content.
-    pub(super) fn decode(name: &str, bytes: &[u8]) -> Result<Self, Fault> {
+    pub(super) fn decode(name: &str, bytes: &[u8], texels: &Texels) -> Result<Self, Fault> {
         let (width, height, pixels) = if bytes.starts_with(b"#?") {
-            radiance::decode(bytes, check_size)?
+            radiance::decode(bytes, |width, height| texels.add(width, height))?
         } else {
             let is_known = bytes.starts_with(b"\x89PNG") || bytes.starts_with(b"\xff\xd8");
             if !is_known {
@@ -144,7 +145,7 @@ impl Panorama {
                     "convert it to Radiance HDR or PNG",
                 ));
             }
-            let image = Image::decode(name, bytes)?;
+            let image = Image::decode(name, bytes, texels)?;
             let linear: Vec<f32> = (0..=255_u8)
                 .map(|code| linear_of_srgb(f64::from(code) / 255.0) as f32)
                 .collect();
@@ -168,6 +169,8 @@ impl Panorama {
         let bytes = access
             .read(&path)
             .map_err(|error| of_file([error.cause, error.remedy]))?;
-        Self::decode(name, &bytes).map(Arc::new).map_err(of_file)
+        Self::decode(name, &bytes, &access.texels)
+            .map(Arc::new)
+            .map_err(of_file)
     }
 }

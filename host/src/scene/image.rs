@@ -1,10 +1,15 @@
 //! Images for textures: PNG and JPEG.
 
+use crate::srgb::linear_of_srgb;
 use std::fmt;
 use std::io::Cursor;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicUsize, Ordering};
 
 /// Most texels of an image that is read: 8192 by 8192.
 const MOST_TEXELS: usize = 1 << 26;
+/// Most texels of all images of a scene: half a gigabyte.
+const MOST_TEXELS_OF_ALL: usize = 1 << 27;
 /// Most texels of a side of an image that is read.
 const MOST_SIDE: usize = 1 << 15;
 
@@ -110,12 +115,12 @@ impl Image {
         self.pixels.iter().all(|pixel| pixel[3] == 255)
     }
 
-    /// Reads a PNG or JPEG file, told apart by their content.
-    pub(super) fn decode(name: &str, bytes: &[u8]) -> Result<Self, Fault> {
+    /// Reads a PNG or JPEG file, told apart by their content, for a scene whose images are counted.
+    pub(super) fn decode(name: &str, bytes: &[u8], texels: &Texels) -> Result<Self, Fault> {
         let (width, height, pixels) = if bytes.starts_with(b"\x89PNG\r\n\x1a\n") {
-            png(bytes)?
+            png(bytes, texels)?
         } else if bytes.starts_with(b"\xff\xd8") {
-            jpeg(bytes)?
+            jpeg(bytes, texels)?
         } else {
             return Err(fault(
                 "is neither PNG nor JPEG",
@@ -134,21 +139,38 @@ pub(super) fn fault(cause: impl Into<String>, remedy: &str) -> Fault {
 /// Width, height and pixels.
 type Decoded = (usize, usize, Vec<[u8; 4]>);
 
-/// Rejects sizes for which no memory should be taken.
-pub(super) fn check_size(width: usize, height: usize) -> Result<(), Fault> {
-    let texels = width.saturating_mul(height);
-    if width > MOST_SIDE || height > MOST_SIDE || texels > MOST_TEXELS {
-        return Err(fault(
-            format!(
-                "has {width}x{height} pixels; at most {MOST_TEXELS} are read, and {MOST_SIDE} along a side"
-            ),
-            "make the image smaller",
-        ));
+/// The texels that all images of a scene have together.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Texels(Arc<AtomicUsize>);
+
+impl Texels {
+    /// Counts an image before memory is taken for it.
+    ///
+    /// # Errors
+    /// If it is too large, alone or with those before it.
+    pub(super) fn add(&self, width: usize, height: usize) -> Result<(), Fault> {
+        let texels = width.saturating_mul(height);
+        if width > MOST_SIDE || height > MOST_SIDE || texels > MOST_TEXELS {
+            return Err(fault(
+                format!(
+                    "has {width}x{height} pixels; at most {MOST_TEXELS} are read, and {MOST_SIDE} along a side"
+                ),
+                "make the image smaller",
+            ));
+        }
+        if self.0.fetch_add(texels, Ordering::Relaxed) + texels > MOST_TEXELS_OF_ALL {
+            return Err(fault(
+                format!(
+                    "has {width}x{height} pixels, and with them the images of the scene have more than {MOST_TEXELS_OF_ALL}"
+                ),
+                "make the images smaller, or use fewer",
+            ));
+        }
+        Ok(())
     }
-    Ok(())
 }
 
-fn png(bytes: &[u8]) -> Result<Decoded, Fault> {
+fn png(bytes: &[u8], texels: &Texels) -> Result<Decoded, Fault> {
     let broken = |error: png::DecodingError| {
         fault(format!("is broken: {error}"), "save the image again as PNG")
     };
@@ -159,7 +181,7 @@ fn png(bytes: &[u8]) -> Result<Decoded, Fault> {
     decoder.set_transformations(png::Transformations::normalize_to_color8());
     let mut reader = decoder.read_info().map_err(broken)?;
     let (width, height) = (reader.info().width as usize, reader.info().height as usize);
-    check_size(width, height)?;
+    texels.add(width, height)?;
     let size = reader
         .output_buffer_size()
         .ok_or_else(|| fault("is too large", "make the image smaller"))?;
@@ -170,7 +192,7 @@ fn png(bytes: &[u8]) -> Result<Decoded, Fault> {
     Ok((width, height, pixels.map(pixel).collect()))
 }
 
-fn jpeg(bytes: &[u8]) -> Result<Decoded, Fault> {
+fn jpeg(bytes: &[u8], texels: &Texels) -> Result<Decoded, Fault> {
     use zune_jpeg::zune_core::bytestream::ZCursor;
     use zune_jpeg::zune_core::colorspace::ColorSpace;
     use zune_jpeg::zune_core::options::DecoderOptions;
@@ -190,7 +212,7 @@ fn jpeg(bytes: &[u8]) -> Result<Decoded, Fault> {
     let (width, height) = decoder
         .dimensions()
         .ok_or_else(|| fault("has no size", "save the image again"))?;
-    check_size(width, height)?;
+    texels.add(width, height)?;
     let buffer = decoder.decode().map_err(broken)?;
     let channels = buffer.len() / (width * height).max(1);
     if !(1..=4).contains(&channels) {
@@ -211,19 +233,6 @@ fn pixel(channels: &[u8]) -> [u8; 4] {
         [red, green, blue] => [red, green, blue, 255],
         [red, green, blue, alpha, ..] => [red, green, blue, alpha],
         [] => [0; 4],
-    }
-}
-
-/// A channel in sRGB, 0 to 1, as linear light (IEC 61966-2-1).
-///
-/// ```
-/// assert!((gridel_host::scene::linear_of_srgb(0.5) - 0.21404).abs() < 1e-5);
-/// ```
-pub fn linear_of_srgb(encoded: f64) -> f64 {
-    if encoded <= 0.04045 {
-        encoded / 12.92
-    } else {
-        libm::pow((encoded + 0.055) / 1.055, 2.4)
     }
 }
 

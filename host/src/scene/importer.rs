@@ -24,7 +24,7 @@ pub struct Importer {
     pub binary: bool,
     /// A small file in the format, which tests and fuzzers start from.
     pub example: &'static str,
-    /// Recognises a whole file by its content. At most one importer recognizes a file.
+    /// Recognizes a whole file by its content. At most one importer recognizes a file.
     pub(super) recognizes: fn(&[u8]) -> bool,
     /// Reads a file, all but the scene's `up`.
     pub(super) read: fn(Input<'_>) -> Result<Imported, SceneError>,

@@ -1,6 +1,6 @@
 //! What makes a light more than a point: an area, a falloff, a spot.
 
-use glam::{DAffine3, DVec3};
+use glam::{DAffine3, DMat3, DVec3};
 
 /// The form of a point light.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -55,11 +55,37 @@ pub struct Spot {
     pub outer: f64,
 }
 
+/// By how much a transform lengthens, on the mean of all directions.
+pub(super) fn scale_of(by: &DAffine3) -> f64 {
+    by.matrix3.determinant().abs().cbrt()
+}
+
+/// A normal of a surface after a transform, of any length.
+fn moved_normal(normal: DVec3, by: &DAffine3) -> DVec3 {
+    let [x, y, z] = [by.matrix3.x_axis, by.matrix3.y_axis, by.matrix3.z_axis];
+    let cofactors = DMat3::from_cols(y.cross(z), z.cross(x), x.cross(y));
+    cofactors * normal * by.matrix3.determinant().signum()
+}
+
 impl LightForm {
-    /// The form, moved. A sphere and a disc grow with the cube root of the volume.
+    /// The factor of a light's color after a transform of its scene, so that the scene looks as before: that of a point
+    /// whose light falls off is what arrives at a distance of 1.
+    pub(super) fn moved_brightness(&self, by: &DAffine3) -> f64 {
+        match self.shape {
+            LightShape::Point if self.falls_off => scale_of(by) * scale_of(by),
+            _ => 1.0,
+        }
+    }
+
+    /// The form, moved. Radii and the range grow with the cube root of the volume. Surfaces keep the side to which they
+    /// shine, in mirror images too.
     pub fn moved(&self, by: &DAffine3) -> Self {
-        let scale = by.matrix3.determinant().abs().cbrt();
+        let scale = scale_of(by);
         let turned = |vector: DVec3| by.transform_vector3(vector);
+        let spanning = |[first, second]: [DVec3; 2]| match by.matrix3.determinant() < 0.0 {
+            true => [turned(second), turned(first)],
+            false => [turned(first), turned(second)],
+        };
         Self {
             shape: match self.shape {
                 LightShape::Point => LightShape::Point,
@@ -67,16 +93,17 @@ impl LightForm {
                     radius: radius * scale,
                 },
                 LightShape::Rectangle { edges } => LightShape::Rectangle {
-                    edges: edges.map(turned),
+                    edges: spanning(edges),
                 },
                 LightShape::Triangle { edges } => LightShape::Triangle {
-                    edges: edges.map(turned),
+                    edges: spanning(edges),
                 },
                 LightShape::Disc { normal, radius } => LightShape::Disc {
-                    normal: turned(normal),
+                    normal: moved_normal(normal, by),
                     radius: radius * scale,
                 },
             },
+            range: self.range.map(|range| range * scale),
             spot: self.spot.map(|spot| Spot {
                 direction: turned(spot.direction),
                 ..spot

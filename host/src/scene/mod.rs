@@ -48,7 +48,7 @@ pub use emitters::MOST_FACES;
 pub use environment::{Environment, Panorama, Sky, Sun};
 pub use error::SceneError;
 pub use files::Files;
-pub use image::{Image, linear_of_srgb};
+pub use image::Image;
 pub use importer::Importer;
 pub(crate) use joint::JointTracks;
 pub use joint::{LARGEST_SCALE, LEAST_SCALE};
@@ -179,7 +179,7 @@ fn finish(mut imported: Imported, options: &ImportOptions) -> Result<Imported, S
         };
         imported.warnings.push(format!(
             "object {}{more} glows, and does not light other objects: spheres, discs, boxes and meshes of up to \
-             {MOST_FACES} triangles do that, outside of parts; add a `[[light]]`, or set the material's `lights = false`",
+             {MOST_FACES} triangles do that, outside of parts and without `alpha`; add a `[[light]]`, or set the material's `lights = false`",
             crate::table::printable(first)
         ));
     }

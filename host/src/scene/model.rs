@@ -71,6 +71,16 @@ pub struct Lens {
     pub focus: Option<f64>,
 }
 
+impl Lens {
+    /// The lens after the scene around it grew.
+    pub(super) fn scaled(self, by: f64) -> Self {
+        Self {
+            radius: self.radius * by,
+            focus: self.focus.map(|focus| focus * by),
+        }
+    }
+}
+
 /// A pinhole camera.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Camera {

@@ -1,8 +1,8 @@
 //! Reads PLY, binary and text: the vertices and faces of a mesh.
 //!
 //! Faces are cut into triangles, and triangle strips (the element `tristrips`, where -1 ends a
-//! strip) into theirs. Colors, normals, textures and elements of other names are ignored, with a
-//! warning each.
+//! strip) into theirs. Vertices have normals and colors: whole numbers up to 255 (`ushort`: 65,535) or others
+//! up to 1. Colors of faces, textures and elements of other names are ignored, with a warning each.
 
 mod header;
 mod payload;
@@ -12,8 +12,8 @@ use super::polygon::{self, MAX_CONCAVE};
 use super::text::{Warnings, check_encoding};
 use super::{
     Attributes, Imported, Material, Normals, Object, Scene, SceneError, Shape, SourceSpan,
-    linear_of_srgb,
 };
+use crate::srgb::linear_of_srgb;
 use glam::DVec3;
 use gridel_core::Up;
 use payload::{Payload, Skipped};
@@ -265,10 +265,11 @@ impl PropertyAccess for Vertex {
             _ => return PropertyAccessResult::Ignored,
         };
         let is_color = !name.starts_with('n') && name.len() > 1;
+        // What white is: no program writes more than a byte's numbers in longer signed types.
         let most = match property {
-            Property::UChar(_) => 255.0,
+            Property::Float(_) | Property::Double(_) => 1.0,
             Property::UShort(_) => 65_535.0,
-            _ => 1.0,
+            _ => 255.0,
         };
         let value = match property {
             Property::Float(value) => value.into(),

@@ -292,8 +292,8 @@ impl<'a> Clipper<'a> {
         // the corner.
         [self.previous[i], self.next[i]]
             .into_iter()
-            .any(|neighbour| {
-                let q = self.flat[neighbour];
+            .any(|neighbor| {
+                let q = self.flat[neighbor];
                 let into_ab = orient2d(a, b, q) > 0.0;
                 let into_bc = orient2d(b, c, q) > 0.0;
                 (into_ab || ab > 0.0) && (into_bc || bc > 0.0)

@@ -99,7 +99,12 @@ impl<'a> Images<'a> {
     /// If it lies outside of the scene's folder, or is no image: cause and remedy.
     pub(super) fn file(&mut self, scene: &Path, name: &str) -> Result<Arc<Image>, Fault> {
         let path = self.access.resolve(scene, name)?;
-        if let Some(image) = self.files.get(&path) {
+        // One file can have several names; one that is not there is missed below.
+        let key = self
+            .access
+            .canonical(&path)
+            .unwrap_or_else(|_| path.clone());
+        if let Some(image) = self.files.get(&key) {
             return Ok(Arc::clone(image));
         }
         let of_file = |[cause, remedy]: Fault| [format!("{} {cause}", path.display()), remedy];
@@ -107,8 +112,9 @@ impl<'a> Images<'a> {
             .access
             .read(&path)
             .map_err(|error| of_file([error.cause, error.remedy]))?;
-        let image = Arc::new(Image::decode(name, &bytes).map_err(of_file)?);
-        self.files.insert(path, Arc::clone(&image));
+        let image = Image::decode(name, &bytes, &self.access.texels).map_err(of_file)?;
+        let image = Arc::new(image);
+        self.files.insert(key, Arc::clone(&image));
         Ok(image)
     }
 }

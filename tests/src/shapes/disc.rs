@@ -10,7 +10,7 @@ impl Sample for Disc {
     const NAMES: &[Named] = &[Named {
         name: "disc",
         crossing: (8.0, "t from the plane, then the distance"),
-        normal: (8.0, "its own, normalised"),
+        normal: (8.0, "its own, normalized"),
     }];
 
     fn example() -> Self {

@@ -8,7 +8,7 @@ impl Sample for Plane {
     const NAMES: &[Named] = &[Named {
         name: "plane",
         crossing: (8.0, "t from the plane, as of a disc"),
-        normal: (8.0, "its own, normalised; exact along an axis"),
+        normal: (8.0, "its own, normalized; exact along an axis"),
     }];
 
     fn example() -> Self {

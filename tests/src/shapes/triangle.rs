@@ -8,7 +8,7 @@ impl Sample for Triangle {
     const NAMES: &[Named] = &[Named {
         name: "triangle",
         crossing: (8.0, "exact edge tests; t from the plane"),
-        normal: (8.0, "in integers, exact but for one normalisation"),
+        normal: (8.0, "in integers, exact but for one normalization"),
     }];
 
     fn example() -> Self {

@@ -51,7 +51,7 @@ fn readme_shows_a_part_of_the_firmware_that_is_built() {
 
 #[test]
 fn the_formats_dump_is_what_the_compiler_writes() {
-    let heading = "## A blob, read by hand";
+    let heading = "## Example: the bytes of a blob";
     let format = text("core/FORMAT.md");
     let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join("documents");
     fs::create_dir_all(&folder).expect("the target folder can be written to");

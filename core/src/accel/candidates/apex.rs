@@ -93,9 +93,8 @@ impl Traverse for Apex {
         count: &mut C,
         mut leaf: impl FnMut(Leaf, &mut C) -> Option<N>,
     ) {
-        let held = views;
         let mut tmax = ray.tmax;
-        if let Some(window) = held.look_up_window(ray) {
+        if let Some(window) = views.look_up_window(ray) {
             look_up(window.cell, count);
             let mut end = if window.outward {
                 window.level(tmax.to_cull())
@@ -103,7 +102,7 @@ impl Traverse for Apex {
                 window.level(ray.tmin.to_cull())
             };
             let mut cut = false;
-            held.lists.ascend(window.cell, end, |slot| {
+            views.lists.ascend(window.cell, end, |slot| {
                 let single = space.shapes.single(slot);
                 if single.count == 0 {
                     cut = true;

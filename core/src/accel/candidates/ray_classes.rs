@@ -142,11 +142,10 @@ impl Traverse for RayClasses {
     ) {
         /// Culling steps that a place may be off by.
         const SLACK: i32 = 4;
-        let held = views;
         let Some(point) = ClassPoint::of(space.bounds(), ray) else {
             return;
         };
-        let Some(cell) = held.cell(&point, space.bounds()) else {
+        let Some(cell) = views.cell(&point, space.bounds()) else {
             let cull = Culling::new(ray);
             return Bvh::walk(space, &views.fallback, ray, &cull, stack, count, leaf);
         };
@@ -158,7 +157,7 @@ impl Traverse for RayClasses {
         };
         let mut tmax = ray.tmax;
         let mut end = level(tmax);
-        held.lists.ascend(cell, end, |slot| {
+        views.lists.ascend(cell, end, |slot| {
             let limit = leaf(space.shapes.single(slot), count)?;
             if limit < tmax {
                 tmax = limit;

@@ -61,8 +61,7 @@ impl Traverse for Grid {
         count: &mut C,
         leaf: impl FnMut(Leaf, &mut C) -> Option<N>,
     ) {
-        let held = views;
-        let Some(shape) = held.shape else { return };
+        let Some(shape) = views.shape else { return };
         count.planes(6);
         count.boxes(1);
         let limit = <Cull as PairCulling<N>>::limit;
@@ -81,7 +80,7 @@ impl Traverse for Grid {
             return;
         }
         let mut end = root.far;
-        let mut tester = Tester::new(space, held.lists, leaf);
+        let mut tester = Tester::new(space, views.lists, leaf);
         let mut steps = Steps::new(cull, divide(space.bounds(), shape.counts()), root.near);
         loop {
             let cell = steps.cell();

@@ -108,7 +108,6 @@ impl Traverse for Octree {
         count: &mut C,
         leaf: impl FnMut(Leaf, &mut C) -> Option<N>,
     ) {
-        let held = views;
         let limit = <Cull as PairCulling<N>>::limit;
         let mut end = limit(ray.tmax);
         count.planes(6);
@@ -124,17 +123,23 @@ impl Traverse for Octree {
         if root.near > root.far {
             return;
         }
-        let divisions = held.divisions(space);
-        let mut tester = Tester::new(space, held.lists, leaf);
+        let divisions = views.divisions(space);
+        let mut tester = Tester::new(space, views.lists, leaf);
         // The children's order along the ray: on every axis the side that it comes from first.
         let from = cull.descending();
-        let (mut number, mut place) = (0_u32, CellId::root(held.levels));
+        let (mut number, mut place) = (0_u32, CellId::root(views.levels));
         stack.clear();
         loop {
             if C::ENABLED {
                 count.event(Event::Opened(node_id(number)));
             }
-            let node = OctreeNode(held.nodes.get(number as usize).copied().unwrap_or(u32::MAX));
+            let node = OctreeNode(
+                views
+                    .nodes
+                    .get(number as usize)
+                    .copied()
+                    .unwrap_or(u32::MAX),
+            );
             if node == OctreeNode::EMPTY {
             } else if node.is_leaf() {
                 count.cells(1);
@@ -162,7 +167,7 @@ impl Traverse for Octree {
                     let near = x.near.max(y.near).max(z.near);
                     let far = x.far.min(y.far).min(z.far);
                     let child = node.0.wrapping_add(sides);
-                    let empty = held.nodes.get(child as usize) == Some(&OctreeNode::EMPTY.0);
+                    let empty = views.nodes.get(child as usize) == Some(&OctreeNode::EMPTY.0);
                     if C::ENABLED {
                         count.event(Event::Tested {
                             place: node_id(child),

@@ -25,7 +25,8 @@ impl NativeScene {
     }
 
     /// Where a ray meets a triangle as it was given, in double precision, and the weights of its second and third corner;
-    /// by the hit's own t where the triangle is not a mesh's, or nearly parallel to the ray.
+    /// by the hit's own t where the triangle is not a mesh's, or nearly parallel to the ray. Never outside of the ray's
+    /// interval.
     // Inlined, it computes what is used there, and nothing else.
     #[inline(always)]
     pub(super) fn place(&self, ray: &SceneRay, hit: &Found) -> (f64, DVec3, [f64; 2]) {
@@ -44,6 +45,7 @@ impl NativeScene {
             approach * approach > 1e-6 * normal.length_squared() * ray.direction.length_squared();
         let (t, place) = if is_steep {
             let t = normal.dot(a - ray.origin) / approach;
+            let t = t.max(ray.tmin).min(ray.tmax);
             (t, ray.origin + ray.direction * t)
         } else {
             (hit.t, own)

@@ -112,8 +112,8 @@ pub struct ImportOptions {
     #[arg(long, value_name = "ID")]
     assembly: Option<String>,
 
-    /// Effects to leave out, separated by commas; it is said what is lost. The blob and its program hold nothing of
-    /// them
+    /// Effects to leave out, separated by commas. The blob and its program have no code for them; the output says what
+    /// the picture loses
     #[arg(long, value_name = "EFFECT", value_parser = effect(), value_delimiter = ',')]
     pub without: Vec<Effects>,
 

@@ -24,7 +24,7 @@ pub fn random(primitives: &[Primitive]) -> Tree {
 }
 
 /// On how many neighbors of either side along the curve the nearest is sought.
-const NEIGHBOURS: usize = 16;
+const NEIGHBORS: usize = 16;
 
 /// Pairs the nearest two: those whose common box has the least surface.
 ///
@@ -40,8 +40,8 @@ pub fn nearest(primitives: &[Primitive]) -> Tree {
         let partner: Vec<usize> = (0..clusters.len())
             .into_par_iter()
             .map(|place| {
-                let first = place.saturating_sub(NEIGHBOURS);
-                let end = (place + NEIGHBOURS + 1).min(clusters.len());
+                let first = place.saturating_sub(NEIGHBORS);
+                let end = (place + NEIGHBORS + 1).min(clusters.len());
                 let bounds = tree.nodes[clusters[place]].bounds;
                 let apart =
                     |other: &usize| area(&bounds.union(&tree.nodes[clusters[*other]].bounds));

@@ -1,7 +1,7 @@
 //! Which nodes of the hierarchy a ray between two gridels enters at.
 //!
-//! A node is replaced by those of its children that lead to something, as long as this pays: it saves
-//! the test of their boxes, and costs what each child would have been spared by its box. How often
+//! A node is replaced by those of its children that lead to something, as long as this saves
+//! tests: it saves those of their boxes, and costs what each child would have been spared by its box. How often
 //! rays of the pair miss a child's box is found with a few of them.
 
 use super::cylinder_cube::{Form, Pair, sorted};

@@ -35,7 +35,7 @@ pub fn find(vertices: &[[i32; 3]], triangles: &[[u32; 3]]) -> Vec<Strip> {
     let mesh = Mesh {
         vertices: vertices.iter().map(point).collect(),
         triangles,
-        neighbours: neighbours(vertices.len(), triangles),
+        neighbors: neighbors(vertices.len(), triangles),
     };
     join(mesh.strips())
 }
@@ -61,11 +61,11 @@ struct Mesh<'m> {
     vertices: Vec<Hull>,
     triangles: &'m [[u32; 3]],
     /// For each triangle, the neighbor over the edge opposite to each corner.
-    neighbours: Vec<[u32; 3]>,
+    neighbors: Vec<[u32; 3]>,
 }
 
 /// Pairs triangles over their edges; where more than two meet, in the order of their numbers.
-fn neighbours(vertices: usize, triangles: &[[u32; 3]]) -> Vec<[u32; 3]> {
+fn neighbors(vertices: usize, triangles: &[[u32; 3]]) -> Vec<[u32; 3]> {
     let edges = || {
         (0..).zip(triangles).flat_map(|(triangle, corners)| {
             [0, 1, 2].map(|corner: usize| {
@@ -89,7 +89,7 @@ fn neighbours(vertices: usize, triangles: &[[u32; 3]]) -> Vec<[u32; 3]> {
         sides[ends[low]] = (high, side);
         ends[low] += 1;
     }
-    let mut neighbours = vec![[NOBODY; 3]; triangles.len()];
+    let mut neighbors = vec![[NOBODY; 3]; triangles.len()];
     let mut first = 0;
     for end in ends {
         let edges = &mut sides[first..end];
@@ -102,13 +102,13 @@ fn neighbours(vertices: usize, triangles: &[[u32; 3]]) -> Vec<[u32; 3]> {
                 && same == high
                 && one >> 2 != other >> 2
             {
-                neighbours[(one >> 2) as usize][(one & 3) as usize] = other >> 2;
-                neighbours[(other >> 2) as usize][(other & 3) as usize] = one >> 2;
+                neighbors[(one >> 2) as usize][(one & 3) as usize] = other >> 2;
+                neighbors[(other >> 2) as usize][(other & 3) as usize] = one >> 2;
                 rest = tail;
             }
         }
     }
-    neighbours
+    neighbors
 }
 
 /// A path through free triangles, each of which shares an edge with the one before.
@@ -123,8 +123,8 @@ impl Mesh<'_> {
     fn strips(&self) -> Vec<Strip> {
         let mut free = vec![true; self.triangles.len()];
         let degree = |triangle: u32, free: &[bool]| {
-            let neighbours = self.neighbours[triangle as usize].iter();
-            let free = neighbours.filter(|&&it| it != NOBODY && free[it as usize]);
+            let neighbors = self.neighbors[triangle as usize].iter();
+            let free = neighbors.filter(|&&it| it != NOBODY && free[it as usize]);
             free.count()
         };
         // By how many neighbors are free; what was left last goes on first. Entries may be out of
@@ -147,9 +147,9 @@ impl Mesh<'_> {
                 free[member as usize] = false;
             }
             for member in members() {
-                for &neighbour in &self.neighbours[member as usize] {
-                    if neighbour != NOBODY && free[neighbour as usize] {
-                        waiting[degree(neighbour, &free)].push(neighbour);
+                for &neighbor in &self.neighbors[member as usize] {
+                    if neighbor != NOBODY && free[neighbor as usize] {
+                        waiting[degree(neighbor, &free)].push(neighbor);
                     }
                 }
             }
@@ -207,7 +207,7 @@ impl Mesh<'_> {
             let Some(corner) = corners.iter().position(|&it| it == left_behind) else {
                 break;
             };
-            let next = self.neighbours[last][corner];
+            let next = self.neighbors[last][corner];
             let taken = &path.triangles[..path.count];
             if next == NOBODY || !free[next as usize] || taken.contains(&next) {
                 break;

@@ -20,6 +20,12 @@ const RATE: f64 = 60.0;
 /// Most samples of a way; longer ones are sampled less often.
 const MOST_SAMPLES: f64 = 65_536.0;
 
+/// Most samples of all ways of a file.
+const MOST_SAMPLES_OF_ALL: usize = 1 << 20;
+
+/// Why ways cannot be sampled: cause and remedy.
+type Fault = [String; 2];
+
 /// How a property of a node moves.
 #[derive(Clone, Debug)]
 pub(super) struct Way {
@@ -44,8 +50,8 @@ pub(super) struct Motion {
     parents: Vec<Option<usize>>,
     /// Where each node stands in the one above, at rest.
     rest: Vec<DMat4>,
-    /// Whether some way was sampled.
-    pub(super) sampled: bool,
+    /// How many samples were taken of all ways.
+    pub(super) samples: usize,
 }
 
 /// Whether the animation was chosen by the user, and what it is called.
@@ -184,12 +190,12 @@ impl Motion {
             return rest;
         };
         let (scale, rotation, translation) = rest.to_scale_rotation_translation();
-        let at = |way: &Option<Way>| way.as_ref().map(|way| way.at(seconds));
+        let at = |way: &Option<Way>, property| way.as_ref().map(|way| way.at(seconds, property));
         let vector = |[x, y, z, _]: [f64; 4]| DVec3::new(x, y, z);
         DMat4::from_scale_rotation_translation(
-            at(&moves.scale).map_or(scale, vector),
-            at(&moves.rotation).map_or(rotation, |it| DQuat::from_array(it).normalize()),
-            at(&moves.translation).map_or(translation, vector),
+            at(&moves.scale, Property::Scale).map_or(scale, vector),
+            at(&moves.rotation, Property::Rotation).map_or(rotation, |it| DQuat::from_array(it).normalize()),
+            at(&moves.translation, Property::Translation).map_or(translation, vector),
         )
     }
 
@@ -206,7 +212,7 @@ impl Motion {
     }
 
     /// The times at which a node is sampled.
-    fn sample_times(&self, node: usize) -> Vec<f64> {
+    fn sample_times(&mut self, node: usize) -> Result<Vec<f64>, Fault> {
         let moves = self.chain(node).filter_map(|it| self.nodes.get(&it));
         let ways = moves.flat_map(|it| [&it.translation, &it.rotation, &it.scale]);
         let times = ways.flatten().flat_map(|way| way.keys.iter());
@@ -218,13 +224,22 @@ impl Motion {
             0.0 => first,
             _ => first + (last - first) * f64::from(step) / steps,
         };
-        (0..=steps as u32).map(time).collect()
+        self.samples += steps as usize + 1;
+        if self.samples > MOST_SAMPLES_OF_ALL {
+            return Err([
+                format!(
+                    "cameras and lights below nodes that move take more than {MOST_SAMPLES_OF_ALL} samples"
+                ),
+                String::from("animate fewer lights, shorten the animation, or move the lights themselves"),
+            ]);
+        }
+        Ok((0..=steps as u32).map(time).collect())
     }
 
     /// The tracks of a camera at a node; none if it stands still.
-    pub(super) fn camera(&mut self, node: usize, place: &SourceSpan) -> Vec<Track> {
+    pub(super) fn camera(&mut self, node: usize, place: &SourceSpan) -> Result<Vec<Track>, Fault> {
         if !self.moves(node) {
-            return Vec::new();
+            return Ok(Vec::new());
         }
         let track = |target, way: Way| Track {
             target,
@@ -233,9 +248,10 @@ impl Motion {
             keys: way.keys,
             place: place.clone(),
         };
-        let [eye, rotation] = self.own_ways(node).unwrap_or_else(|| {
-            self.sampled = true;
-            let times = self.sample_times(node);
+        let [eye, rotation] = if let Some(own) = self.own_ways(node) {
+            own
+        } else {
+            let times = self.sample_times(node)?;
             let worlds: Vec<_> = times.iter().map(|&it| (it, self.world(node, it))).collect();
             let eye = |&(seconds, world): &(f64, DMat4)| {
                 Key::of_vector(seconds, world.transform_point3(DVec3::ZERO))
@@ -253,11 +269,11 @@ impl Motion {
                 linear(worlds.iter().map(eye).collect()),
                 linear(worlds.iter().map(rotation).collect()),
             ]
-        });
-        vec![
+        };
+        Ok(vec![
             track(TrackTarget::CameraEye, eye),
             track(TrackTarget::CameraRotation, rotation),
-        ]
+        ])
     }
 
     /// Place and rotation of a node of which nothing above moves, with its own keys.
@@ -300,15 +316,15 @@ impl Motion {
         index: usize,
         directional: bool,
         place: &SourceSpan,
-    ) -> Option<Track> {
+    ) -> Result<Option<Track>, Fault> {
         if !self.moves(node) {
-            return None;
+            return Ok(None);
         }
         let own = self.own_ways(node).filter(|_| !directional);
         let way = match own {
             Some([way, _]) => way,
             None => {
-                self.sampled = true;
+                let times = self.sample_times(node)?;
                 let key = |seconds: f64| {
                     let world = self.world(node, seconds);
                     let vector = match directional {
@@ -319,12 +335,12 @@ impl Motion {
                 };
                 Way {
                     interpolation: Interpolation::Linear,
-                    keys: self.sample_times(node).into_iter().map(key).collect(),
+                    keys: times.into_iter().map(key).collect(),
                 }
             }
         };
         let aims = way.keys.iter().all(|key| key.vector() != DVec3::ZERO);
-        (aims || !directional).then(|| Track {
+        Ok((aims || !directional).then(|| Track {
             target: match directional {
                 true => TrackTarget::LightDirection,
                 false => TrackTarget::LightPosition,
@@ -333,7 +349,7 @@ impl Motion {
             interpolation: way.interpolation,
             keys: way.keys,
             place: place.clone(),
-        })
+        }))
     }
 }
 
@@ -432,9 +448,8 @@ impl Way {
     }
 
     /// The value at a time, as glTF defines it.
-    fn at(&self, seconds: f64) -> [f64; 4] {
-        // Of four components are rotations alone.
-        let turns = self.keys.iter().any(|key| key.value[3] != 0.0);
+    fn at(&self, seconds: f64, property: Property) -> [f64; 4] {
+        let turns = property == Property::Rotation;
         interpolate(self.interpolation, &self.keys, turns, seconds)
     }
 }

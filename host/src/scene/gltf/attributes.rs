@@ -133,7 +133,8 @@ impl Importer<'_> {
             return Ok(known);
         }
         let plain = material::read(&material, false);
-        let texture = self.texture(&material, &plain)?;
+        // A texture may bring the alpha that is a pane without it.
+        let texture = self.texture(&material, &material::read(&material, true))?;
         let normal_map = self.normal_map(&material, &plain)?;
         let is_opaque = texture.as_ref().is_none_or(|it| it.image.is_opaque());
         let alpha = material::alpha(&material).filter(|_| !is_opaque);
@@ -255,7 +256,11 @@ impl Importer<'_> {
 
     /// Reads an image, each once; `None` for a file that is not there.
     fn image(&mut self, image: &gltf::Image<'_>) -> Result<Option<Arc<Image>>, SceneError> {
-        if let Some(known) = self.images.get(&image.index()) {
+        let key = match image.source() {
+            Source::View { view, .. } => format!("view {}", view.index()),
+            Source::Uri { uri, .. } => String::from(uri),
+        };
+        if let Some(known) = self.images.get(&key) {
             return Ok(known.clone());
         }
         let what = format!("image {}", image.index());
@@ -275,17 +280,17 @@ impl Importer<'_> {
                 // As with textures of OBJ files: it was often left behind.
                 Err(error) if error.cause.contains("cannot be read") => {
                     self.warn(format!("{}; the plain color is used", error.cause));
-                    self.images.insert(image.index(), None);
+                    self.images.insert(key, None);
                     return Ok(None);
                 }
                 Err(error) => return Err(error),
             },
         };
         let name = image.name().map_or_else(|| what.clone(), str::to_owned);
-        let decoded = Image::decode(&name, &bytes)
+        let decoded = Image::decode(&name, &bytes, &self.access.texels)
             .map_err(|[cause, remedy]| self.error(format!("{what} ({name:?}) {cause}"), &remedy))?;
         let decoded = Some(Arc::new(decoded));
-        self.images.insert(image.index(), decoded.clone());
+        self.images.insert(key, decoded.clone());
         Ok(decoded)
     }
 }

@@ -154,7 +154,7 @@ fn validate(path: &Path, root: &Root) -> Result<(), SceneError> {
         Some((place, Error::Unsupported)) => Err(SceneError::new(
             path,
             format!("an extension that the file requires is not understood: {place}"),
-            "export without it; compressed and quantised meshes are not read",
+            "export without it; compressed and quantized meshes are not read",
         )),
         Some((place, error)) => {
             let cause = error.to_string().to_lowercase();

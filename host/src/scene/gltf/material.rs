@@ -6,11 +6,11 @@
 //! |---|---|
 //! | diffuse | c ((1 - m) (1 - t) + m r): what a rough metal scatters counts as diffuse |
 //! | mirror | c m (1 - r) |
-//! | highlight | F0 (n + 8) / 8, at most 1, where F0 = 0.04 (1 - m) + c m; none at r = 1 |
+//! | highlight | F0 (n + 8) / 8, scaled down to at most 1, where F0 = 0.04 (1 - m) + c m; none at r = 1 |
 //! | shininess n | 2 / r^4 - 2, from 1 to 1024, the Blinn-Phong exponent of that roughness |
 //! | transmit | c t (1 - m) |
 //! | index of refraction | that of `KHR_materials_ior` where the glass has a volume, else 1: a pane |
-//! | emission | emissive factor times `KHR_materials_emissive_strength`: 1 is display white |
+//! | emission | emissive factor times `KHR_materials_emissive_strength`: 1 is display white; on the front alone |
 //! | absorption | -ln(attenuation color) / attenuation distance |
 //!
 //! The mirror of a metal without textures and of a roughness from 0.05 to below 1 is rough instead: mirror c m with that
@@ -36,11 +36,15 @@ fn name(material: &gltf::Material<'_>) -> String {
 /// Sentences on what of a material is ignored or taken otherwise.
 pub(super) fn ignored(material: &gltf::Material<'_>) -> impl Iterator<Item = String> {
     let name = name(material);
-    // The mask of a texture is another matter.
-    let masked = material.alpha_mode() == AlphaMode::Mask && !is_there(material);
+    let has_texture = material.pbr_metallic_roughness().base_color_texture().is_some();
+    let is_masked = material.alpha_mode() == AlphaMode::Mask && !is_there(material) && !has_texture;
+    let glows = material.emissive_factor() != [0.0; 3];
     let index = material.ior().filter(|ior| !(1.0..=4.0).contains(ior));
     [
-        masked.then(|| format!("the alpha of material {name:?} is below its cutoff; it is opaque")),
+        is_masked.then(|| format!("the alpha of material {name:?} is below its cutoff; it is opaque")),
+        (material.double_sided() && glows).then(|| {
+            format!("material {name:?} has two sides, and glows on the front alone")
+        }),
         index.map(|ior| {
             let taken = taken_ior(ior);
             format!("the index of refraction {ior} of material {name:?} is taken as {taken}; it must be 1 to 4")
@@ -102,13 +106,16 @@ pub(super) fn read(material: &gltf::Material<'_>, alpha_is_used: bool) -> Materi
         let by_metal = if is_glossy { 0.0 } else { channel * metal };
         0.04 * (1.0 - metal) + by_metal
     });
+    // At most 1 in each channel, of the same hue.
+    let most = facing.into_iter().fold(0.0, f64::max);
+    let peak = ((shininess + 8.0) / 8.0).min(1.0 / most.max(1e-9));
     let scattered = if is_glossy { 0.0 } else { rough };
     let volume = material.volume().filter(|v| v.thickness_factor() > 0.0);
     let glass = times(through * (1.0 - metal));
     Material {
         diffuse: Diffuse::Plain(times((1.0 - metal) * (1.0 - through) + metal * scattered)),
         highlight: if rough < 1.0 {
-            facing.map(|channel| (channel * (shininess + 8.0) / 8.0).min(1.0) * there)
+            facing.map(|channel| channel * peak * there)
         } else {
             [0.0; 3]
         },
@@ -126,7 +133,7 @@ pub(super) fn read(material: &gltf::Material<'_>, alpha_is_used: bool) -> Materi
         }),
         emission: material.emissive_factor().map(|factor| {
             let strength = material.emissive_strength().unwrap_or(1.0);
-            f64::from(factor * strength).clamp(0.0, 2047.0)
+            f64::from(factor * strength).clamp(0.0, 2047.0) * there
         }),
         lights: true,
         is_sampled: false,

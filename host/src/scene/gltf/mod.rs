@@ -2,9 +2,10 @@
 //! materials, cameras and lights.
 //!
 //! Each set of triangles of each node becomes an object, in the order of the nodes. A mesh that several
-//! nodes share is a [part](super::Part), or is copied where that costs little. Animations of cameras and lights become tracks. Meshes stand as they are
-//! at rest: skins, morph targets and animations of meshes are ignored. Of textures only that of the base color is
-//! drawn. A warning names those of them that a file has. Images that nothing draws are not read.
+//! nodes share is a [part](super::Part), or is copied where that costs little. Animations of cameras, of lights and of
+//! nodes with meshes become tracks. Skins and morph targets are ignored: such meshes keep their shape at rest. The
+//! textures of the base color and the normal map are drawn; a warning names other textures. Images that nothing draws
+//! are not read.
 
 mod animation;
 mod attributes;
@@ -116,8 +117,9 @@ fn read(input: Input<'_>) -> Result<Imported, SceneError> {
         mut warnings,
         ..
     } = importer;
-    scene.tracks.extend(view.tracks(&mut motion, &place));
-    if motion.sampled {
+    let tracks = view.tracks(&mut motion, &place);
+    scene.tracks.extend(tracks.map_err(|[cause, remedy]| SceneError::new(path, cause, remedy))?);
+    if motion.samples > 0 {
         warnings.add_times(
             place.clone(),
             1,
@@ -150,7 +152,8 @@ struct Importer<'a> {
     place: SourceSpan,
     buffers: Buffers<'a>,
     access: &'a Access,
-    images: HashMap<usize, Option<Arc<Image>>>,
+    /// By where they lie.
+    images: HashMap<String, Option<Arc<Image>>>,
     scene: Scene,
     /// Materials in use, by their number in the file; the default has none.
     materials: HashMap<Option<usize>, usize>,

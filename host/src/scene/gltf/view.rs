@@ -174,9 +174,16 @@ impl View {
     }
 
     /// The tracks of camera and lights.
-    pub(super) fn tracks(&mut self, motion: &mut Motion, place: &SourceSpan) -> Vec<Track> {
+    ///
+    /// # Errors
+    /// If they would take too much memory: cause and remedy.
+    pub(super) fn tracks(
+        &mut self,
+        motion: &mut Motion,
+        place: &SourceSpan,
+    ) -> Result<Vec<Track>, [String; 2]> {
         let mut tracks = match self.camera {
-            Some(_) => motion.camera(self.camera_node, place),
+            Some(_) => motion.camera(self.camera_node, place)?,
             None => Vec::new(),
         };
         // Without any strength there are no lights.
@@ -186,9 +193,9 @@ impl View {
             let directional = matches!(lamp.light, Light::Directional { .. });
             let is_spot = lamp.form.is_some_and(|form| form.spot.is_some());
             self.has_moving_spots |= is_spot && motion.moves(node);
-            tracks.extend(motion.light(node, index, directional, place));
+            tracks.extend(motion.light(node, index, directional, place)?);
         }
-        tracks
+        Ok(tracks)
     }
 
     /// Puts camera and lights into a scene whose objects are all there.

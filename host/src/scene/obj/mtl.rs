@@ -1,8 +1,9 @@
 //! Reads MTL, the materials of OBJ.
 //!
 //! `Kd` is the diffuse color. `Ks` and `Ns` are the highlight, unless `illum` is 0 or 1, which
-//! have none. `illum` 3, 5 and 8 mirror with `Ks`. `illum` 4, 6, 7 and 9 are glass of index `Ni`
-//! that lets `Tf` through. Otherwise `d` below 1 (or `Tr` above 0, of which `d` takes precedence)
+//! have none. `illum` 3, 5 and 8 mirror with `Ks`. `illum` 6 and 7 are glass of index `Ni` that lets
+//! `Tf` through. `illum` 4 and 9 are so only where `d` or `Tr` says that light passes, or neither is
+//! given and `Ni` is above 1: many programs write 4 for opaque materials. Otherwise `d` below 1 (or `Tr` above 0, of which `d` takes precedence)
 //! is a pane that does not bend light: glass of index 1. `Ka` is not needed, because ambient light
 //! takes the diffuse color. `Ke` is the radiance that the surface sends out.
 //! `Pr` is the roughness of what mirrors and of glass. `map_Kd` weights `Kd`, with its options `-o`, `-s` and `-clamp`.
@@ -117,12 +118,17 @@ impl Statements {
     fn build(&self, source: &Source, warnings: &mut Warnings) -> Material {
         let default = Material::default();
         let illumination = self.illumination.unwrap_or(2);
-        let is_glass = matches!(illumination, 4 | 6 | 7 | 9);
         let specular = self.specular.unwrap_or([0.0; 3]);
         let mut opacity = self
             .dissolve
             .or(self.transparency.map(|t| 1.0 - t))
             .unwrap_or(1.0);
+        let is_glass = match illumination {
+            6 | 7 => true,
+            4 | 9 if self.dissolve.is_some() || self.transparency.is_some() => opacity < 1.0,
+            4 | 9 => self.density.is_some_and(|density| density > 1.0),
+            _ => false,
+        };
         if is_glass && opacity == 1.0 {
             // Glass that does not say how transparent it is, is so altogether.
             opacity = 0.0;
@@ -323,7 +329,7 @@ impl Reader<'_> {
             })
             .collect::<Result<Vec<f64>, _>>()?;
         let color = match numbers[..] {
-            [grey] => [grey; 3],
+            [gray] => [gray; 3],
             [r, g, b] => [r, g, b],
             _ => {
                 return Err(self.source.error_at(

@@ -190,7 +190,17 @@ impl<'w> Words<'w> {
             let name = &*property.name;
             let value = match &property.data_type {
                 PropertyType::Scalar(kind) => {
-                    Property::Double(self.number(kind, Word::Number, name)?)
+                    let number = self.number(kind, Word::Number, name)?;
+                    // Each number is of its type, so that none changes here.
+                    match kind {
+                        ScalarType::Char => Property::Char(number as i8),
+                        ScalarType::UChar => Property::UChar(number as u8),
+                        ScalarType::Short => Property::Short(number as i16),
+                        ScalarType::UShort => Property::UShort(number as u16),
+                        ScalarType::Int => Property::Int(number as i32),
+                        ScalarType::UInt => Property::UInt(number as u32),
+                        ScalarType::Float | ScalarType::Double => Property::Double(number),
+                    }
                 }
                 PropertyType::List(_, kind) => self.list(kind, name)?,
             };

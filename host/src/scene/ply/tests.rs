@@ -355,7 +355,14 @@ fn vertices_bring_their_normals() {
 
 #[test]
 fn colors_of_vertices_are_taken_from_srgb() {
-    for (kind, most) in [("uchar", "255"), ("ushort", "65535"), ("float", "1")] {
+    for (kind, most) in [
+        ("uchar", "255"),
+        ("ushort", "65535"),
+        ("int", "255"),
+        ("uint", "255"),
+        ("float", "1"),
+        ("double", "1"),
+    ] {
         let channels = ["red", "green", "blue", "alpha"];
         let properties = channels
             .map(|name| format!("property {kind} {name}\n"))
@@ -370,6 +377,16 @@ fn colors_of_vertices_are_taken_from_srgb() {
         assert_eq!(*colors, expected, "{kind}");
         assert_eq!(imported.warnings, [] as [&str; 0]);
     }
+    // Those between black and white, too.
+    let text = with_properties(
+        "property uchar red\nproperty uchar green\nproperty uchar blue\n",
+        "",
+    );
+    let rows = "0 0 0 20 40 60\n1 0 0 20 40 60\n0 1 0 20 40 60\n3 0 1 2\n";
+    let imported = read((text + rows).as_bytes()).unwrap();
+    let expected = [20.0, 40.0, 60.0].map(|it| linear_of_srgb(it / 255.0));
+    let colors = &imported.scene.objects[0].attributes.colors;
+    assert_eq!(*colors, [expected; 3]);
     let list = with_properties("property list uchar uchar red\n", "");
     let error = read((list + "0 0 0 1 2\n1 0 0 1 2\n0 1 0 1 2\n3 0 1 2\n").as_bytes());
     assert!(error.is_err());

@@ -14,6 +14,7 @@ use super::track::{self, Targets};
 use super::value::Fields;
 use super::{environment, light, view};
 use crate::scene::importer::Input;
+use crate::scene::light_form::scale_of;
 use crate::scene::texture::Images;
 use crate::scene::{Camera, Color, Light, Scene, SceneError};
 use crate::table::printable;
@@ -138,17 +139,21 @@ pub(super) fn read(input: Input<'_>, imports: &mut Imports) -> Result<Scene, Sce
         imported_tracks.extend(place.tracks(&source, item, import)?);
         if let (None, Some(camera)) = (scene.camera, import.camera) {
             scene.camera = Some(moved_camera(&source, item, &camera)?);
+            scene.lens = import.lens.map(|lens| lens.scaled(scale_of(&item.transform)));
             scene.render = render.unwrap_or(import.render);
         }
         if !lit {
             scene.display_values |= import.display_values && !import.lights.is_empty();
             for (number, light) in import.lights.iter().enumerate() {
-                scene.lights.push(moved_light(&source, item, light)?);
+                let form = import.light_forms.get(number).copied().flatten();
+                let brightness = form.map_or(1.0, |form| form.moved_brightness(&item.transform));
+                let light = moved_light(&source, item, light, brightness)?;
+                scene.lights.push(light);
                 let name = import.light_names.get(number).cloned();
                 scene.light_names.push(name.unwrap_or_default());
-                let form = import.light_forms.get(number).copied().flatten();
-                let form = form.map(|form| form.moved(&item.transform));
-                scene.light_forms.push(form);
+                scene
+                    .light_forms
+                    .push(form.map(|form| form.moved(&item.transform)));
             }
         }
         scene.background = scene.background.or(import.background);
@@ -202,11 +207,17 @@ fn moved_camera(source: &Source, item: &Item, camera: &Camera) -> Result<Camera,
     Ok(moved)
 }
 
-fn moved_light(source: &Source, item: &Item, light: &Light) -> Result<Light, SceneError> {
+fn moved_light(
+    source: &Source,
+    item: &Item,
+    light: &Light,
+    brightness: f64,
+) -> Result<Light, SceneError> {
     let by = &item.transform;
     let (moved, sound) = match *light {
         Light::Point { position, color } => {
             let position = by.transform_point3(position);
+            let color = color.map(|channel| channel * brightness);
             (Light::Point { position, color }, position.is_finite())
         }
         Light::Directional { direction, color } => {

@@ -36,11 +36,25 @@ impl ImportPlace<'_> {
             };
             if let Some(index) = index {
                 let moved = moved(track, &item.transform);
-                let moved = moved.ok_or_else(|| lost(source, item, what))?;
+                let mut moved = moved.ok_or_else(|| lost(source, item, what))?;
+                if track.target == TrackTarget::LightColor
+                    && let Some(Some(form)) = import.light_forms.get(track.index)
+                {
+                    brighten(&mut moved, form.moved_brightness(&item.transform));
+                }
                 tracks.push(Track { index, ..moved });
             }
         }
         Ok(tracks)
+    }
+}
+
+/// Multiplies the colors of a track.
+fn brighten(track: &mut Track, by: f64) {
+    for key in &mut track.keys {
+        for value in [&mut key.value, &mut key.entering, &mut key.leaving] {
+            *value = value.map(|channel| channel * by);
+        }
     }
 }
 

@@ -152,7 +152,7 @@ fn priority(fields: &Fields<'_>) -> Result<Option<u8>, SceneError> {
     };
     if fields.get("transmit").is_none() {
         return Err(value.error(
-            "`priority` is that of glass, and there is none",
+            "`priority` needs `transmit`: only glass has one",
             "add `transmit`, or remove it",
         ));
     }
@@ -166,7 +166,7 @@ fn roughness(fields: &Fields<'_>) -> Result<f64, SceneError> {
     };
     if fields.get("mirror").is_none() && fields.get("transmit").is_none() {
         return Err(value.error(
-            "`roughness` is that of a mirror or of glass, and there is none",
+            "`roughness` needs `mirror` or `transmit`",
             "add `mirror` or `transmit`, or remove it",
         ));
     }
@@ -194,7 +194,7 @@ fn alpha(fields: &Fields<'_>) -> Result<Option<Alpha>, SceneError> {
     };
     if fields.get("texture").is_none() {
         let remedy = "add a `texture`, or write a pane as `transmit = 0.5` and `ior = 1`";
-        return Err(value.error("`alpha` is that of a texture, and there is none", remedy));
+        return Err(value.error("`alpha` needs `texture`", remedy));
     }
     if fields.get("transmit").is_some() {
         let remedy = "remove `alpha` or `transmit`";
@@ -223,7 +223,7 @@ fn normal_map(
         return match scale {
             None => Ok(None),
             Some(scale) => Err(scale.error(
-                "`normal_scale` is that of a normal map, and there is none",
+                "`normal_scale` needs `normal_map`",
                 "add `normal_map`, or remove it",
             )),
         };

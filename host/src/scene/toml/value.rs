@@ -1,5 +1,6 @@
 //! Typed reads of TOML values whose errors point at the value.
 
+use crate::srgb::linear_of_srgb;
 use super::source::{Name, Source, Span, nearest};
 use crate::scene::{Color, SceneError};
 use glam::DVec3;
@@ -382,13 +383,5 @@ fn srgb(text: &str) -> Option<Color> {
     }
     let code = u32::from_str_radix(digits, 16).ok()?;
     let [_, channels @ ..] = code.to_be_bytes();
-    Some(channels.map(|channel| {
-        let encoded = f64::from(channel) / 255.0;
-        if encoded <= 0.04045 {
-            encoded / 12.92
-        } else {
-            // libm, because the standard library's powers differ from one machine to another.
-            libm::pow((encoded + 0.055) / 1.055, 2.4)
-        }
-    }))
+    Some(channels.map(|channel| linear_of_srgb(f64::from(channel) / 255.0)))
 }

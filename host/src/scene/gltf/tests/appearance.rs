@@ -43,6 +43,14 @@ fn materials() {
         "pbrMetallicRoughness": {"baseColorFactor": [1, 0, 0, 0.25], "metallicFactor": 0}}));
     assert_eq!((pane.ior, pane.transmit), (1.0, [0.75; 3]));
     assert_eq!(pane.diffuse, Diffuse::Plain([0.25, 0.0, 0.0]));
+    // As much of it glows as is there.
+    let glow = material(json!({"alphaMode": "BLEND", "emissiveFactor": [1, 0.5, 0],
+        "pbrMetallicRoughness": {"baseColorFactor": [0, 0, 0, 0.25]}}));
+    assert_eq!(glow.emission, [0.25, 0.125, 0.0]);
+    // The highlight of a metal has its hue.
+    let gold = material(json!({"pbrMetallicRoughness": {
+        "baseColorFactor": [1, 0.5, 0.25, 1], "metallicFactor": 1, "roughnessFactor": 0}}));
+    assert_eq!(gold.highlight, [1.0, 0.5, 0.25]);
 }
 
 #[test]

@@ -14,7 +14,7 @@ fn material(text: &str) -> (Material, Vec<String>) {
 #[test]
 fn materials() {
     let (plain, warnings) =
-        material("newmtl my red #2\nKd 1 0 .5\nKs .2 # grey\nNs 96.08\nillum 2\nKe 0 0 0\n");
+        material("newmtl my red #2\nKd 1 0 .5\nKs .2 # gray\nNs 96.08\nillum 2\nKe 0 0 0\n");
     assert_eq!(warnings, [] as [&str; 0]);
     assert_eq!(plain.name, "my red #2");
     assert_eq!(plain.diffuse, Diffuse::Plain([1.0, 0.0, 0.5]));
@@ -30,6 +30,25 @@ fn materials() {
     let (glass, _) = material("newmtl a\nKd 1 1 1\nillum 7\nNi 1.5\nTf .9 1 .9\nd 1\n");
     assert_eq!((glass.transmit, glass.ior), ([0.9, 1.0, 0.9], 1.5));
     assert_eq!(glass.diffuse, Diffuse::Plain([0.0; 3]));
+
+    // What many programs write for opaque materials; glass is what is said to be.
+    let opaque = "newmtl a\nillum 4\nKd .8 .2 .2\nTf 1 1 1\n";
+    for (rest, transmits) in [
+        ("Ni 1", 0.0),
+        ("d 1", 0.0),
+        ("Tr 0\nNi 1.5", 0.0),
+        ("", 0.0),
+        ("Ni 1.5", 1.0),
+        ("d .25\nNi 1.5", 0.75),
+    ] {
+        for illumination in ["illum 4", "illum 9"] {
+            let text = opaque.replace("illum 4", illumination) + rest + "\n";
+            let (made, _) = material(&text);
+            assert_eq!(made.transmit, [transmits; 3], "{text}");
+            let diffuse = [0.8, 0.2, 0.2].map(|it| it * (1.0 - transmits));
+            assert_eq!(made.diffuse, Diffuse::Plain(diffuse), "{text}");
+        }
+    }
 
     let (pane, _) = material("newmtl a\nKd 1 1 1\nd -halo .25\nNi 1.45\n");
     assert_eq!((pane.transmit, pane.ior), ([0.75; 3], 1.0));

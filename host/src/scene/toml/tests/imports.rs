@@ -1,7 +1,7 @@
 //! Scenes made of several files.
 
 use super::{load_in, material_of, named};
-use crate::scene::{IMPORTERS, Light, Shape};
+use crate::scene::{IMPORTERS, Light, LightShape, Shape};
 use crate::shape::Sphere;
 use glam::DVec3;
 use std::path::Path;
@@ -71,6 +71,38 @@ fn an_import_brings_objects_and_lends_the_view() {
             color: [1.0; 3]
         }]
     );
+}
+
+#[test]
+fn an_import_brings_its_lens_and_lights_as_large_as_it_is() {
+    let text = "[camera]\neye = [0, 0, 5]\ntarget = [0, 0, 0]\naperture = 0.5\nfocus = 2\n\
+                [[light]]\nkind = 'point'\nposition = [0, 3, 0]\nfalloff = 'square'\nrange = 5\ncolor = 2\n\
+                [[light]]\nkind = 'rectangle'\ncorner = [0, 3, 0]\nedges = [[1, 0, 0], [0, 0, 1]]\nradiance = 5\n\
+                [[light]]\nkind = 'disc'\ncenter = [0, 3, 0]\nnormal = [0, -1, 0]\nradius = 1\nradiance = 5\n\
+                [[object]]\nkind = 'sphere'\ncenter = [0, 0, 0]\nradius = 1\n";
+    let folder = folder(&[("parts/ball.toml", text)]);
+    let imported = |keys: &str| load_in(folder.path(), &importing(keys)).unwrap().scene;
+    let lens = imported("scale = 3").lens.unwrap();
+    assert_eq!((lens.radius, lens.focus), (0.75, Some(6.0)));
+    let scene = imported("scale = 3");
+    let color = |light: &Light| match *light {
+        Light::Point { color, .. } | Light::Directional { color, .. } => color[0],
+    };
+    let colors: Vec<f64> = scene.lights.iter().map(color).collect();
+    assert_eq!(colors, [2.0 * 9.0, 5.0, 5.0]);
+    assert_eq!(scene.light_forms[0].unwrap().range, Some(15.0));
+    // Mirrored, they shine down as before.
+    for keys in ["scale = [-1, 1, 1]", "scale = [2, 2, -3]"] {
+        let scene = imported(keys);
+        let LightShape::Rectangle { edges } = scene.light_forms[1].unwrap().shape else {
+            panic!("no rectangle")
+        };
+        assert!(edges[0].cross(edges[1]).y < 0.0, "{keys}");
+        let LightShape::Disc { normal, .. } = scene.light_forms[2].unwrap().shape else {
+            panic!("no disc")
+        };
+        assert_eq!(normal.normalize(), DVec3::NEG_Y, "{keys}");
+    }
 }
 
 #[test]
