@@ -1,24 +1,24 @@
 //! The target that the code is compiled for.
 
-/// Whether code shall be small where that makes it slower; no bit of an answer depends on it.
+/// True if code shall be small where that makes it slower; no bit of an answer depends on it.
 pub(crate) const SMALL: bool = cfg!(feature = "small");
 
-/// Whether the code for vertex colors is in this build.
+/// True if the code for vertex colors is in this build.
 pub(crate) const VERTEX_COLORS: bool = cfg!(feature = "vertex-colors");
 
-/// Whether the code for textures is in this build.
+/// True if the code for textures is in this build.
 pub(crate) const TEXTURE: bool = cfg!(feature = "texture");
 
-/// Whether the code for texture levels is in this build.
+/// True if the code for texture levels is in this build.
 pub(crate) const TEXTURE_LEVELS: bool = cfg!(feature = "texture-levels");
 
-/// Whether the code for an environment is in this build.
+/// True if the code for an environment is in this build.
 pub(crate) const ENVIRONMENT: bool = cfg!(feature = "environment");
 
 /// A value that only builds with [`ENVIRONMENT`] hold.
 pub(crate) type EnvironmentOnly<T> = InSomeBuilds<T, { ENVIRONMENT as usize }>;
 
-/// Whether the code of the structure `wide`, and of the clusters in its leaves, is in this build.
+/// True if the code of the structure `wide`, and of the clusters in its leaves, is in this build.
 pub(crate) const WIDE: bool = cfg!(feature = "wide");
 
 /// A value that only builds with [`WIDE`] hold.
@@ -85,8 +85,8 @@ impl<T, const COUNT: usize> InSomeBuilds<T, COUNT> {
     }
 }
 
-/// Whether this core multiplies 32 bits to 32 and no more: the Cortex-M0, the one family of Arm's
-/// without an instruction that compares and swaps.
+/// True if this core multiplies 32 bits to 32 and no more: the Cortex-M0, the one family of Arm's without an
+/// instruction that compares and swaps.
 pub(crate) const NARROW_PRODUCTS: bool =
     cfg!(all(target_arch = "arm", not(target_has_atomic = "32")));
 

@@ -160,7 +160,7 @@ impl<'a> Clusters<'a> {
         self.packs.spheres()
     }
 
-    /// Whether a cluster holds primitives, and all of them lie in a box.
+    /// Returns true if a cluster holds primitives, and all of them lie in a box.
     ///
     /// In 1/256 unit, where no sum wraps: coordinates have 24 bits and radii 25.
     pub(crate) fn inside(&self, kind: Kind, cluster: u32, outer: &UnitBox) -> bool {

@@ -22,7 +22,7 @@ fn side<N: Project>(p: [N; 2], q: [N; 2]) -> Ordering {
         .then_with(|| compare(q[0], p[0]))
 }
 
-/// Whether a triangle encloses the moved origin. Turned the other way it does so, too.
+/// Returns true if a triangle encloses the moved origin. Turned the other way it does so, too.
 pub(crate) fn encloses_origin<N: Project>(a: [N; 2], b: [N; 2], c: [N; 2]) -> bool {
     let first = side(b, c);
     first != Ordering::Equal && side(c, a) == first && side(a, b) == first

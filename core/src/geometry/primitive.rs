@@ -13,17 +13,17 @@ use bytemuck::Pod;
 /// The registry of shapes, `shapes!` in [`format::kind`](crate::format::Kind), names every record. What differs between
 /// shapes beside that is a constant here, so that a search is compiled for each of them.
 pub(crate) trait Primitive: Pod {
-    /// Whether [`cross`](Self::cross) needs the norm of the ray's slopes.
+    /// True if [`cross`](Self::cross) needs the norm of the ray's slopes.
     const NEEDS_NORM: bool = false;
-    /// Whether a test costs so much that the ray is first tested against the box.
+    /// True if a test costs so much that the ray is first tested against the box.
     const TESTS_BOX: bool = false;
-    /// Whether rounding can move a crossing out of the box. It is clamped to the box then.
+    /// True if rounding can move a crossing out of the box. It is clamped to the box then.
     const CLAMPS: bool = true;
-    /// Whether the shape has no inside: its front is the side to which its normal points.
+    /// True if the shape has no inside: its front is the side to which its normal points.
     const FLAT: bool = false;
-    /// Whether a normal that lies on the wrong side of the ray is made level with it by the caller.
+    /// True if a normal that lies on the wrong side of the ray is made level with it by the caller.
     const LEVELED: bool = true;
-    /// Whether the shape has a box. One without is in no structure: every query tests it first.
+    /// True if the shape has a box. One without is in no structure: every query tests it first.
     const BOUNDED: bool = true;
 
     /// The box on the box lattice; that of all points where the shape has none.

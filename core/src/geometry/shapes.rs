@@ -433,7 +433,7 @@ impl<'a> Shapes<'a> {
         Some(sphere::bounds(center, radius))
     }
 
-    /// Whether all primitives of a leaf exist and lie in a box.
+    /// Returns true if all primitives of a leaf exist and lie in a box.
     pub(crate) fn leaf_inside(&self, leaf: Leaf, outer: &UnitBox) -> bool {
         leaf.slots().all(|index| {
             self.bounds(leaf.kind, index)

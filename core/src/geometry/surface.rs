@@ -13,7 +13,7 @@ pub(crate) struct Surface<N> {
     /// The surface lies within this length of `point`, and what starts so far away along the normal does
     /// not meet it again.
     pub(crate) error: N,
-    /// Whether `point` lies on the surface exactly, so that t is 0 for what starts there.
+    /// True if `point` lies on the surface exactly, so that t is 0 for what starts there.
     pub(crate) is_exact: bool,
 }
 

@@ -141,7 +141,7 @@ impl<'a> Triangles<'a> {
     }
 }
 
-/// Whether the vertex indices of a blob have 16 bits.
+/// Returns true if the vertex indices of a blob have 16 bits.
 pub(crate) fn is_narrow(sections: &Sections<'_>) -> bool {
     sections.get(SectionKind::Triangles).stride == size_of::<[u16; 3]>()
 }
@@ -186,8 +186,8 @@ impl<N: Project> Projection<N> {
     }
 
     inline_unless_small!(
-        /// Whether a ray whose major axis is `MAJOR` meets a triangle, edges included; not if it is
-        /// seen edge on.
+        /// Returns true if a ray whose major axis is `MAJOR` meets a triangle, edges included; not if it is seen edge
+        /// on.
         ///
         /// Cost: 9 loads and some 30 multiplications and additions.
         pub(crate) fn meets<const MAJOR: usize, V: Vertex>(&self, a: &V, b: &V, c: &V) -> bool {
@@ -221,8 +221,9 @@ impl<N: Project> Projection<N> {
     );
 }
 
-/// Whether a ray passes through a triangle by the [half-open rule](crate::geometry::half_open): of two triangles that
-/// share an edge it passes through one there, or through both or neither where both lie on one side of it.
+/// Returns true if a ray passes through a triangle by the [half-open rule](crate::geometry::half_open): of two
+/// triangles that share an edge it passes through one there, or through both or neither where both lie on one side of
+/// it.
 #[inline(never)]
 pub(crate) fn passes<N: Project>(ray: &Ray<N>, corners: [[i32; 3]; 3]) -> bool {
     // As coarser coordinates are projected: their steps differ by a power of two.

@@ -36,7 +36,7 @@ pub(crate) fn child_box(pair: &Pair, child: usize) -> UnitBox {
 }
 
 impl Top<'_> {
-    /// Whether there is nothing, neither instances nor pairs.
+    /// Returns true if there is nothing, neither instances nor pairs.
     pub(crate) fn is_empty(&self) -> bool {
         self.instances.is_empty() && self.pairs.is_empty()
     }

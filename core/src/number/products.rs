@@ -11,7 +11,7 @@ pub trait Products: Scalar {
     fn widen(self) -> Self::Wide;
     /// The inverse of [`widen`](Self::widen); saturates.
     fn narrow(wide: Self::Wide) -> Self;
-    /// Whether a wide number is an ordinary one: false for NaN and infinities.
+    /// Returns true if a wide number is an ordinary one: false for NaN and infinities.
     fn is_finite(wide: Self::Wide) -> bool;
     /// A wide number times an integer.
     fn wide_times(wide: Self::Wide, factor: i32) -> Self::Wide;

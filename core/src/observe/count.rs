@@ -31,7 +31,7 @@ use core::any::Any;
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 pub trait Observer {
-    /// Whether [`event`](Self::event) is called.
+    /// True if [`event`](Self::event) is called.
     const ENABLED: bool = false;
 
     /// Planes of boxes were tested.

@@ -57,7 +57,7 @@ pub enum Event {
         start_t: f64,
         /// The interval that counts, from `origin`. It is empty where the scene cannot be met.
         interval: [f64; 2],
-        /// Whether any hit will do.
+        /// True if any hit will do.
         any: bool,
     },
     /// A node or a cell is tested: the ray can meet what is in it if `span` is not empty.
@@ -188,7 +188,7 @@ pub enum Event {
     Environment {
         /// The place of the nearest texel in the map, column and row.
         texel: [u32; 2],
-        /// Whether the sun is there.
+        /// True if the sun is there.
         sun: bool,
     },
     /// The light that was just considered does not shine in this direction, or not so far.
@@ -296,7 +296,7 @@ pub struct QueryHit {
     pub point: [f64; 3],
     /// The normal, of length 1.
     pub normal: [f64; 3],
-    /// Whether the ray came from the side to which the normal points.
+    /// True if the ray came from the side to which the normal points.
     pub front: bool,
     /// The object.
     pub object: u32,

@@ -75,7 +75,7 @@ impl<N: Number, const SIZE: usize> HitList<N, SIZE> {
         self.entries.len()
     }
 
-    /// Whether no hit was listed last.
+    /// Returns true if no hit was listed last.
     pub fn is_empty(&self) -> bool {
         self.entries.is_empty()
     }

@@ -7,14 +7,14 @@ use crate::scene::Scene;
 
 /// What a search does with the hits that it finds: it keeps the best one, or lists all of them.
 pub(super) trait Collect<N: Number> {
-    /// Whether both ends of every crossing are hits, and triangles are met by the [half-open
+    /// True if both ends of every crossing are hits, and triangles are met by the [half-open
     /// rule](crate::geometry::half_open).
     const ALL: bool = false;
 
-    /// Whether there is a hit.
+    /// Returns true if there is a hit.
     fn is_any(&self) -> bool;
 
-    /// Whether the last hit that counts is one of this primitive; for observers.
+    /// Returns true if the last hit that counts is one of this primitive; for observers.
     fn is_at(&self, place: PrimitiveId) -> bool;
 
     /// Takes a hit of the interval that is left. Returns the t beyond which nothing counts from here on, if that changes.

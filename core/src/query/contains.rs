@@ -120,7 +120,7 @@ pub fn contains<N: Number, A: Accel, C: Observer>(
 }
 
 impl<N: Number> PrimitiveHit<N> {
-    /// Whether it is a hit of an object, and not of a disc or a plane, which enclose nothing.
+    /// Returns true if it is a hit of an object, and not of a disc or a plane, which enclose nothing.
     fn is_of_closed(&self, scene: &Scene<'_>, solid: Solid) -> bool {
         self.encloses() && Solid::of_hit(scene, self) == solid
     }

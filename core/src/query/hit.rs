@@ -40,12 +40,12 @@ impl<N: Number> PrimitiveHit<N> {
         Some(placed.index)
     }
 
-    /// Whether the ray leaves a solid here; never of triangles and other flat surfaces.
+    /// Returns true if the ray leaves a solid here; never of triangles and other flat surfaces.
     pub fn leaves(&self) -> bool {
         self.best.part & LEAVING != 0
     }
 
-    /// Whether surfaces of the primitive's kind can enclose something: not discs and planes.
+    /// Returns true if surfaces of the primitive's kind can enclose something: not discs and planes.
     pub fn encloses(&self) -> bool {
         let kind = self.best.place.kind;
         kind == Kind::Triangle || !is_flat(kind)
@@ -110,7 +110,7 @@ pub struct Hit<N: Number> {
     /// The geometric normal, of length 1: outward from solids, to the side from which a triangle's
     /// corners run counter-clockwise, along a disc's own.
     pub normal: [N; 3],
-    /// Whether the ray came from the side to which the normal points; of a solid, whether it enters.
+    /// True if the ray came from the side to which the normal points; of a solid, whether it enters.
     pub front: bool,
     /// The object, counted in scene-file order.
     pub object: u32,
@@ -131,7 +131,7 @@ pub struct Hit<N: Number> {
     ///
     /// No other object and no extent of the scene counts.
     pub error: N,
-    /// Whether `point` lies on the surface exactly.
+    /// True if `point` lies on the surface exactly.
     is_exact: bool,
     /// The primitive by kind and slot, as a leaf's word, whichever structure found it.
     pub(super) place: u32,
@@ -241,7 +241,7 @@ impl<N: Number> Hit<N> {
         }
     }
 
-    /// Whether the primitive lies in no structure, and the hit perhaps far from the scene's box.
+    /// Returns true if the primitive lies in no structure, and the hit perhaps far from the scene's box.
     #[inline(always)]
     pub(crate) fn is_unbounded(&self) -> bool {
         UNBOUNDED && Leaf::from_word(self.place).is_some_and(|leaf| !leaf.kind.is_bounded())

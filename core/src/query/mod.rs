@@ -218,7 +218,7 @@ pub fn closest_hit<N: Number, A: Accel, C: Observer>(
 }
 
 inline_on_hosts!(
-    /// Whether a ray meets anything in its interval: whether [`closest_hit`] would find something.
+    /// Returns true if a ray meets anything in its interval: whether [`closest_hit`] would find something.
     ///
     /// ```
     /// # static BLOB: &[u8] =

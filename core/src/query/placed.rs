@@ -16,7 +16,7 @@ pub(super) type SearchPart<'f, N, C> =
 
 /// What finds the hits in parts.
 pub(super) struct PartSearch<F> {
-    /// Whether the first hit will do.
+    /// True if the first hit will do.
     pub(super) any: bool,
     pub(super) search: F,
 }

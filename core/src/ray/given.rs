@@ -13,7 +13,7 @@ pub(crate) type Given<N> = InSomeBuilds<GivenRay<N>, { UNBOUNDED as usize }>;
 pub(crate) struct GivenRay<N: Arithmetic> {
     origin: [N::Wide; 3],
     pub(super) interval: [N::Wide; 2],
-    /// Whether the ray's start is a point of the ray. It is not where the ray passes the scene far away.
+    /// True if the ray's start is a point of the ray. It is not where the ray passes the scene far away.
     pub(super) holds_start: bool,
 }
 

@@ -281,7 +281,7 @@ impl<N: Arithmetic> Ray<N> {
             .map_or(start, |ray| ray.reference_point(start))
     }
 
-    /// Whether the start is a point of the ray.
+    /// Returns true if the start is a point of the ray.
     fn holds_start(&self) -> bool {
         self.given.get().is_none_or(|ray| ray.holds_start)
     }

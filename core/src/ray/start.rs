@@ -62,8 +62,8 @@ pub(super) fn end_after<N: Arithmetic>(tmax: N::Wide, start_t: N::Wide) -> N {
 /// ranges up to here.
 const REACH: i64 = (3 * i16::MAX as i64) << 13;
 
-/// Whether every ray that is moved so far along its major axis starts within [`REACH`]: slopes are at
-/// most 1, and along its major axis a ray moves to the box. Never for numbers that are saturated.
+/// Returns true if every ray that is moved so far along its major axis starts within [`REACH`]: slopes are at most 1,
+/// and along its major axis a ray moves to the box. Never for numbers that are saturated.
 #[inline(always)]
 pub(super) fn is_near<N: Arithmetic>(origin: [N; 3], major: usize, start_t: N) -> bool {
     let (reach, start_t) = (N::narrow(N::far(REACH)), start_t.abs());

@@ -63,7 +63,7 @@ impl<'r, 's, 'a, N: Number, A: Accel, const EFFECTS: u32, O> Cursor<'r, 's, 'a, 
 }
 
 impl<N: Number, A: Accel, const EFFECTS: u32> Cursor<'_, '_, '_, N, A, EFFECTS> {
-    /// Whether all pixels were handed out.
+    /// Returns true if all pixels were handed out.
     pub fn is_done(&self) -> bool {
         self.order.is_done()
     }
@@ -91,7 +91,7 @@ impl<N: Number, A: Accel, const EFFECTS: u32> Cursor<'_, '_, '_, N, A, EFFECTS> 
 }
 
 impl<N: Number, A: Accel, const EFFECTS: u32> Cursor<'_, '_, '_, N, A, EFFECTS, CoarseToFine> {
-    /// Whether all pixels were handed out.
+    /// Returns true if all pixels were handed out.
     pub fn is_done(&self) -> bool {
         self.order.side() == 0
     }

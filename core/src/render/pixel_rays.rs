@@ -11,9 +11,9 @@ use crate::number::Format;
 use crate::ray::{Pencil, Ray, RayError};
 use crate::render::sample::SUBPIXELS;
 
-/// Whether a format distinguishes the directions of neighboring pixels, each to an eighth of their distance
-/// or better. Other directions would be drawn than those that are asked for, through a lens as long as
-/// only a very distant eye needs it.
+/// Returns true if a format distinguishes the directions of neighboring pixels, each to an eighth of their distance or
+/// better. Other directions would be drawn than those that are asked for, through a lens as long as only a very distant
+/// eye needs it.
 pub(crate) fn resolves<N: Number>(view: &View, height: u16) -> bool {
     // Components of directions have 24 bits in `f32`, and 30 or those of the blob's vectors elsewhere.
     let bits = if N::FORMAT == Format::F32 { 21 } else { 26 };

@@ -32,7 +32,7 @@ pub struct Settings {
     pub samples: u16,
     /// How often a ray may be reflected or refracted, 0 to 16, or to 32 with the feature `indirect`.
     pub depth: u8,
-    /// Whether pixels are dithered.
+    /// True if pixels are dithered.
     pub dither: bool,
 }
 

@@ -36,7 +36,7 @@ use core::marker::PhantomData;
 pub(super) struct Loop<'s, 'a> {
     pub(super) scene: &'s Scene<'a>,
     pub(super) depth: u8,
-    /// Whether rays come from the camera, so that effects of its lens act on them; not so those of the caller's own.
+    /// True if rays come from the camera, so that effects of its lens act on them; not so those of the caller's own.
     pub(super) from_camera: bool,
     /// See [`Tracer::spread`].
     pub(super) spread: Spread,
@@ -110,7 +110,7 @@ impl Loop<'_, '_> {
 }
 
 impl Loop<'_, '_> {
-    /// Whether effects of the scene act on the mean of a pixel's samples.
+    /// Returns true if effects of the scene act on the mean of a pixel's samples.
     #[inline(always)]
     pub(super) fn develops<const EFFECTS: u32>(&self) -> bool {
         let with_code = const { EFFECTS & All::DEVELOPING };

@@ -46,9 +46,9 @@ pub struct Scene<'a> {
     pub(crate) environment: EnvironmentOnly<EnvironmentMap<'a>>,
     /// Its instances and parts.
     pub(crate) placed: InstancesOnly<Placed<'a, Scene<'a>>>,
-    /// Whether any primitive's test needs the norm of the ray's direction.
+    /// True if any primitive's test needs the norm of the ray's direction.
     pub(crate) needs_norm: bool,
-    /// Whether any primitive is in no structure because it has no box.
+    /// True if any primitive is in no structure because it has no box.
     pub(crate) has_unbounded: bool,
 }
 
@@ -162,7 +162,7 @@ impl<'a> Scene<'a> {
         alpha.filter(|&alpha| alpha != 0)
     }
 
-    /// Whether rays meet a surface that shines as a light does. It is known where materials are rough.
+    /// Returns true if rays meet a surface that shines as a light does. It is known where materials are rough.
     #[inline(always)]
     pub fn is_shown(&self, light: &Light) -> bool {
         let mark = || self.rough.get()?.shown_forms.get(light.form()? as usize);
@@ -213,7 +213,7 @@ impl<'a> Scene<'a> {
         self.space.header.stack_depth.into()
     }
 
-    /// Whether the blob holds a structure.
+    /// Returns true if the blob holds a structure.
     ///
     /// ```
     /// # static BLOB: &[u8] =

@@ -92,7 +92,7 @@ impl<'a> EnvironmentMap<'a> {
         adds_up(SectionKind::EnvironmentColumns, self.columns, side)
     }
 
-    /// Whether a light is the map or the sun.
+    /// Returns true if a light is the map or the sun.
     #[inline(always)]
     pub(crate) fn has(&self, light: &Light) -> bool {
         match light.directional {

@@ -67,7 +67,7 @@ impl<'a> Names<'a> {
         })
     }
 
-    /// Whether the blob has no names.
+    /// Returns true if the blob has no names.
     pub fn is_empty(&self) -> bool {
         self.starts.is_empty()
     }

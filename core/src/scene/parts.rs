@@ -194,14 +194,14 @@ impl<'a> Scene<'a> {
         depths.max().unwrap_or(0)
     }
 
-    /// Whether the scene has objects of its own.
+    /// Returns true if the scene has objects of its own.
     #[inline(always)]
     pub(crate) fn has_own(&self) -> bool {
         let parts = self.placed.get().map_or(&[][..], |placed| placed.directory);
         parts.first().is_none_or(|part| part.first_primitive > 0)
     }
 
-    /// Whether two scenes are views of one blob.
+    /// Returns true if two scenes are views of one blob.
     fn is_same_blob(&self, other: &Scene<'_>) -> bool {
         core::ptr::eq(self.header(), other.header())
     }

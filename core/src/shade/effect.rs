@@ -21,10 +21,10 @@ pub(crate) trait Tracer<'s, N: Number> {
     /// Receives counts and events.
     type Observer: Observer;
 
-    /// Whether light may pass a surface on its way to another one.
+    /// True if light may pass a surface on its way to another one.
     const FILTERS: bool;
 
-    /// Whether surfaces may send rays on.
+    /// True if surfaces may send rays on.
     const SENDS: bool;
 
     fn scene(&self) -> &'s Scene<'s>;

@@ -160,7 +160,7 @@ fn place_of<N: Number>(direction: [N; 3]) -> ([i32; 2], N) {
     (if is_below { turned(place) } else { place }, sum)
 }
 
-/// Whether a direction, of any length, leads to the sun.
+/// Returns true if a direction, of any length, leads to the sun.
 #[inline(never)]
 fn is_in_sun<N: Number>(record: &Record, direction: [N; 3]) -> bool {
     if record.sun_radius == 0 {

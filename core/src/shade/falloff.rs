@@ -68,7 +68,7 @@ fn cosine<N: Number>(form: &LightForm, to_light: [N; 3]) -> N {
     cos.max(-N::ONE).min(N::ONE)
 }
 
-/// Whether a light shines towards a surface.
+/// Returns true if a light shines towards a surface.
 fn shines<N: Number>(form: &LightForm, to_light: [N; 3]) -> bool {
     match form.shape {
         LightForm::SPHERE => true,
@@ -79,7 +79,7 @@ fn shines<N: Number>(form: &LightForm, to_light: [N; 3]) -> bool {
     }
 }
 
-/// Whether a light's range reaches a surface.
+/// Returns true if a light's range reaches a surface.
 #[inline(always)]
 fn is_in_range<N: Number>(form: &LightForm, lighting: &Lighting<'_, N>) -> bool {
     form.range == 0

@@ -272,7 +272,7 @@ impl Boundary {
         }
     }
 
-    /// Whether the media differ.
+    /// Returns true if the media differ.
     #[inline(always)]
     fn is_there(&self) -> bool {
         self.from != self.to

@@ -93,7 +93,7 @@ impl Effect for Smooth {
     }
 }
 
-/// Whether a light is on the other side of a surface than the ray that met it.
+/// Returns true if a light is on the other side of a surface than the ray that met it.
 #[inline(always)]
 pub(super) fn is_behind<N: Number>(hit: &Hit<N>, to_light: [N; 3]) -> bool {
     let cos = N::dot(hit.normal, to_light);

@@ -49,7 +49,7 @@ pub(crate) struct Arrival<'s, 'h, N: Number> {
 pub(crate) struct Interface<N> {
     /// The lower index of refraction over the higher one, 0.25 to 1.
     pub(crate) k: N,
-    /// Whether the ray goes to the one with the higher index.
+    /// True if the ray goes to the one with the higher index.
     pub(crate) to_denser: bool,
 }
 
@@ -130,7 +130,7 @@ pub(crate) struct Filter<'s, 'h, N: Number> {
     pub(crate) medium: Option<&'s Material>,
     /// What meets there; `None` for the material and the surroundings.
     pub(crate) interface: Option<Interface<N>>,
-    /// Whether anything passes: no surface lets light through unless an effect says so.
+    /// True if anything passes: no surface lets light through unless an effect says so.
     pub(crate) passes: bool,
 }
 

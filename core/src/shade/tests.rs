@@ -74,7 +74,7 @@ fn background() -> [u16; 3] {
     picture::<f32, TRUE>(0).0[0]
 }
 
-/// Whether each channel of a pixel is a part of another's, rounding apart.
+/// Returns true if each channel of a pixel is a part of another's, rounding apart.
 fn is_part(part: u32, [whole, found]: [[u16; 3]; 2]) -> bool {
     whole
         .into_iter()

@@ -80,7 +80,7 @@ pub(super) fn check_joints(records: &Records<'_>, instances: usize) -> Result<()
     Ok(())
 }
 
-/// Whether tracks of the camera, a bit for each, are none or all that one needs.
+/// Returns true if tracks of the camera, a bit for each, are none or all that one needs.
 fn is_whole(camera: u32) -> bool {
     use TrackTarget::{
         CameraEye, CameraFieldOfView, CameraOrbit, CameraRotation, CameraTarget, CameraUp,

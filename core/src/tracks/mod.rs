@@ -95,7 +95,7 @@ impl<'a> Tracks<'a> {
         Ok(Self(records))
     }
 
-    /// Whether the blob has no tracks: its scene is the same at all times.
+    /// Returns true if the blob has no tracks: its scene is the same at all times.
     pub fn is_empty(&self) -> bool {
         self.0.tracks.is_empty()
     }

@@ -142,7 +142,7 @@ impl Gridels {
 pub struct Passage {
     /// The cell of the pair.
     pub cell: u32,
-    /// Whether the ray runs from the pair's second gridel to its first.
+    /// True if the ray runs from the pair's second gridel to its first.
     pub backward: bool,
     /// Where it enters and leaves, in lengths along the major axis with 13 fraction bits.
     enter: i32,

@@ -36,7 +36,7 @@ impl Line {
         i64::from(pick(self.origin, axis)) + rise
     }
 
-    /// Whether the line runs up an axis.
+    /// Returns true if the line runs up an axis.
     #[inline(always)]
     pub(in crate::accel) fn ascends(&self, axis: usize) -> bool {
         pick(self.slope, axis) > 0
