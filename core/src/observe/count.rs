@@ -49,8 +49,8 @@ pub trait Observer {
     /// Instances were entered.
     #[inline(always)]
     fn instances(&mut self, _: u32) {}
-    /// A ray brought radiance to its sample: red, green and blue, 1 being display white. Programs whose observer does
-    /// not ask for it convert nothing.
+    /// A ray added radiance to its sample: red, green and blue, where 1 is display white. No conversion takes place if
+    /// the observer does not override this method.
     #[inline(always)]
     fn radiance(&mut self, _: impl FnOnce() -> [f64; 3]) {}
     /// A ray was cast: a [`Ray`](crate::Ray) of some number format.

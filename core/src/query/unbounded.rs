@@ -1,4 +1,4 @@
-//! Shapes without bounds, which lie in no structure: every query tests all of them before it walks one.
+//! Shapes without bounds, which lie in no structure: every query tests all of them before it walks a structure.
 
 use crate::accel::Number;
 use crate::format::Kind;
@@ -10,8 +10,8 @@ use crate::observe::event::Event;
 use crate::ray::Ray;
 use crate::scene::Scene;
 
-/// The nearest hit in the interval that the caller gave, and its t as the caller counts it. Of hits at the same t the
-/// one that comes first in the scene file counts.
+/// Returns the nearest hit in the caller's interval, and its t as the caller counts it. At the same t, the hit that
+/// comes first in the scene file counts.
 #[cold]
 #[inline(never)]
 pub(super) fn nearest<N: Number, C: Observer>(
@@ -31,8 +31,8 @@ pub(super) fn nearest<N: Number, C: Observer>(
     best
 }
 
-/// Calls `hit` with every hit in the interval that the caller gave, in the order of their records. `hit` returns whether
-/// it is the nearest so far.
+/// Calls `hit` with every hit in the caller's interval, in the order of their records. `hit` returns true if it is the
+/// nearest so far.
 #[inline(always)]
 pub(super) fn each<N: Number, C: Observer>(
     scene: &Scene<'_>,
