@@ -223,7 +223,7 @@ impl<V: Vertex, A: Memory<V>, B: Memory<Pair>> DeformationIn<V, A, B> {
     /// Costs on a Cortex-M4F about 190 instructions per triangle, and is linear in vertices, triangles and pairs.
     ///
     /// # Errors
-    /// If the deformation was made of another scene, a vertex lies outside the scene's box, or the corners of a
+    /// If the deformation was made of another scene, or a vertex lies outside the scene's box. Also if the corners of a
     /// triangle are three places on a line. Then the vertices keep their new places, and [`Scene::with_deformation`]
     /// rejects them.
     pub fn refit(&mut self, scene: &Scene<'_>) -> Result<(), DeformError> {

@@ -10,8 +10,8 @@
 //! `p` is number `8 p + l`.
 //!
 //! **Radii.** Few scenes have more than a handful of radii. So a pack on the 24-bit lattice has four bits for each
-//! sphere: the radius's number in a window of [`RADII`], among those of the section of that name. Where the section is
-//! one window, all packs share it; else the window of pack `p` begins at `8 p`.
+//! sphere. They are the radius's number in a window of [`RADII`], among those of the section of that name. Where the
+//! section is one window, all packs share it; else the window of pack `p` begins at `8 p`.
 
 use crate::format::layout::records;
 use crate::format::record::{Vertex16, Vertex24};

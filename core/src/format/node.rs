@@ -60,9 +60,10 @@ impl NodeWord {
 
 /// A node of the tree over rays, as a word.
 ///
-/// Bits 0 to 2 are the dimension that is halved. Dimensions 0 to 2 are a coordinate of the place; 3 and 4 are the slope
-/// on the first and the second axis after the major one. Bits 3 to 31 are then the number of the first of two children,
-/// the lower half. A dimension of 7 means a leaf; bits 3 to 31 are its cell, or [`ClassNode::NONE`] for the hierarchy.
+/// Bits 0 to 2 are the dimension that is halved. Dimensions 0 to 2 are a coordinate of the place. Dimensions 3 and 4
+/// are the slope on the first and the second axis after the major one. Bits 3 to 31 are then the number of the first of
+/// two children, the lower half. A dimension of 7 means a leaf; bits 3 to 31 are its cell, or [`ClassNode::NONE`] for
+/// the hierarchy.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct ClassNode(pub u32);
 

@@ -1,8 +1,8 @@
-//! Infinite planes. They lie in no structure: a ray is tested from the origin of its caller, before it is moved to the
-//! scene's box, because it can cross planes anywhere.
+//! Infinite planes. They lie in no structure, because a ray can cross them anywhere. A ray is tested from the origin of
+//! its caller, before it is moved to the scene's box.
 //!
 //! A plane at right angles to an axis is exact: the hit's coordinate on that axis is the plane's own. Where a hit lies
-//! beyond the lengths of [`Fixed`](crate::Fixed), its point is a point of the plane in the same direction; `t` is still
+//! beyond the lengths of [`Fixed`](crate::Fixed), its point is a point of the plane in the same direction. `t` is still
 //! the plane's.
 
 use crate::axis::pick;

@@ -21,8 +21,8 @@ pub trait Project: Arithmetic {
     /// Projects a coordinate of at most 24 bits: to steps in floats, to a length along the ray's direction in
     /// [`Fixed`](crate::Fixed).
     fn project(coordinate: i32, axis: &AxisProjection<Self>) -> Self;
-    /// Returns the shear: how far a [projected](Self::project) point departs from the ray along a minor axis per step
-    /// along its major one, given the slopes there.
+    /// Returns the shear, given the slopes along the minor and the major axis. It is how far a
+    /// [projected](Self::project) point departs from the ray along a minor axis per step along its major one.
     fn shear(slope: Self, major: Self) -> Self;
     /// The shear over a depth of less than 2^17 units, by the same arithmetic for every vertex; in
     /// [`Fixed`](crate::Fixed) rounded down.

@@ -14,7 +14,7 @@
 //! **Light behind the triangle.** Near the terminator a triangle can face away from a light that its smooth normal
 //! faces, and would be black. `SmoothTriangle::lift` moves the start of the shadow ray out to the curved surface that
 //! the triangle approximates. The point is projected onto the tangent plane of each vertex, and the projections are
-//! interpolated (Hanika, "Hacking the Shadow Terminator", *Ray Tracing Gems II*, 2021).
+//! interpolated. (Hanika, "Hacking the Shadow Terminator", *Ray Tracing Gems II*, 2021.)
 
 use crate::format::range::At;
 use crate::format::{BlobError, Field, SectionKind};
@@ -175,7 +175,7 @@ impl SmoothTriangle {
         weights(self.corners, point, facing)
     }
 
-    /// Returns the interpolated normal of length 1 at a point of the triangle, on the side of `facing`, which is the
+    /// Returns the interpolated normal of length 1 at a point of the triangle, on the side of `facing`. `facing` is the
     /// geometric normal or its opposite. Returns `None` where the normals of the corners cancel out.
     #[inline(always)]
     pub(crate) fn normal<N: Arithmetic>(&self, point: [N; 3], facing: [N; 3]) -> Option<[N; 3]> {

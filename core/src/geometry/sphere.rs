@@ -1,14 +1,15 @@
 //! Spheres, tested at the point of the line that is closest to the center.
 //!
 //! The discriminant comes from the vector between that point and the center. So nothing is lost to cancellation when
-//! the sphere is small or far away (Haines, Günther, Akenine-Möller, "Precision Improvements for Ray/Sphere
-//! Intersection", Ray Tracing Gems, 2019).
+//! the sphere is small or far away. (Haines, Günther, Akenine-Möller, "Precision Improvements for Ray/Sphere
+//! Intersection", Ray Tracing Gems, 2019.)
 //!
 //! **Crossings are not clamped to the sphere's box, because they lie in its interval.** A grazing ray's t can have a
-//! large error, but the point there does not. Let the closest point be off by `D` along the ray, the vector from the
-//! center to it by `e` across, and half the chord by `h`. Let the slope have the length `s`. Squares add up to the
-//! radius's, except for products of these with at most twice the radius. So the point lies no farther from the center
-//! than the radius and `e + s (D + h)`, and what the squares round, a few parts in 2^24 of the radius.
+//! large error, but the point there does not. Let the closest point be off by `D` along the ray, and the vector from
+//! the center to it by `e` across. Let half the chord be off by `h`, and let the slope have the length `s`. Squares add
+//! up to the radius's, except for products of these with at most twice the radius. So the point lies no farther from
+//! the center than the radius and `e + s (D + h)`, apart from the rounding of the squares. That rounding is a few parts
+//! in 2^24 of the radius.
 //!
 //! In `f32`, let the center be less than 2^17 units away and the radius at most 2^15. Then `s D` is below .1 unit
 //! (seven roundings of up to `2^17 sqrt(3)`), and all the rest below .05. In `fixed` all is below 2^-7. Culling widens

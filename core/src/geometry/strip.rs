@@ -1,8 +1,8 @@
 //! Strips of triangles: the test of [`triangle`](crate::geometry::triangle) on six triangles at once.
 //!
-//! Every vertex is projected once and every edge crossed once, with exactly the operations of the test of one triangle,
-//! so the signs are the same. Where a product difference rounds to zero, its sign needs exact arithmetic. The triangles
-//! at that edge are then tested one by one. That happens to one ray in some ten thousand.
+//! Every vertex is projected once and every edge crossed once. The operations are exactly those of the test of one
+//! triangle, so the signs are the same. Where a product difference rounds to zero, its sign needs exact arithmetic. The
+//! triangles at that edge are then tested one by one. That happens to one ray in some ten thousand.
 //!
 //! **Behind.** A ray that leaves a surface hits that surface's triangle again, just behind its start. Lanes detect
 //! that, too, and then the triangle needs no exact test. With depths `d` along the major axis, the test's t is the
@@ -109,7 +109,7 @@ impl<N: Project> StripRay<N> {
         let across = x * y2 - y * x2;
         let (side_zero, across_zero) = (side.zero(), across.zero());
         let doubtful = side_zero | side_zero >> 1 | across_zero;
-        // Of a difference that is not zero.
+        // The signs of differences that are not zero.
         let (left, back) = (side.signs(), across.signs());
         let places = strip.members().lanes();
         // The sides of a triangle are two of these and, backwards, the edge across.
@@ -120,7 +120,7 @@ impl<N: Project> StripRay<N> {
         if met == 0 {
             return (0, doubtful);
         }
-        // Where some vertex lies behind the ray's start on every axis.
+        // The places where some vertex lies behind the ray's start on every axis.
         let mut near = met;
         for (role, offset) in [(2, depth), (0, right), (1, up)] {
             let vertices = offset.signs() ^ self.descends(role);

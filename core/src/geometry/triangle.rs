@@ -245,7 +245,7 @@ pub(crate) fn passes<N: Project>(ray: &Ray<N>, corners: [[i32; 3]; 3]) -> bool {
 }
 
 /// Returns where a ray crosses the plane of a triangle that it [hits](Projection::meets), and true if it does so
-/// steeply; `None` where it runs along the plane.
+/// steeply. Returns `None` where the ray runs along the plane.
 ///
 /// A steep hit needs no clamping of t to the interval of the triangle's box, because t already lies in it. Let `q` be
 /// the point of the triangle that is seen where the ray is, and `t'` its depth. Its lateral distance from the ray is

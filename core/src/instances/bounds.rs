@@ -4,13 +4,13 @@ use crate::format::Reason;
 use crate::format::instance::{Instance, MATRIX_BITS};
 use crate::format::record::UnitBox;
 
-/// Tolerance for the squares of a matrix' rows and the products of two rows: 2^-20 of the largest, with twice the
+/// Tolerance for the squares of a matrix' rows and the products of two rows. It is 2^-20 of the largest, with twice the
 /// fraction bits of an entry.
 const TOLERANCE: i64 = 1 << (2 * MATRIX_BITS - 20);
 
 /// Units by which a box is widened. The tolerance of the matrix costs up to 1.2. The transposed matrix is the inverse
-/// except for 2.8 * 2^-18 of the way from the center, which is at most 2^16 * 3^(1/2) units long. Rounding costs less
-/// than one unit. The rest is for a hit that lies outside its part's box.
+/// except for 2.8 * 2^-18 of the way from the center. That way is at most 2^16 * 3^(1/2) units long. Rounding costs
+/// less than one unit. The rest is for a hit that lies outside its part's box.
 const MARGIN: i64 = 3;
 
 /// The square of a row's length, with twice the fraction bits of an entry. Entries are within their range.

@@ -42,7 +42,7 @@ pub(crate) fn check_top(
             expected,
         });
     }
-    // Two boxes that hold what is below a node.
+    // Two boxes that hold everything below a node.
     let below = |node: Node| {
         let number = node.number() as usize;
         if node.is_leaf() {

@@ -61,7 +61,7 @@ impl<N: Arithmetic> Map<N> {
         [far(x), far(y), far(z)]
     }
 
-    /// Returns a ray of the scene in the part, whose box is given, with hits up to a t that is counted from the ray's
+    /// Returns a ray of the scene in the part, whose box is given. It has hits up to a t that is counted from the ray's
     /// start. `None` if it misses the part's surroundings.
     #[inline(always)]
     pub(crate) fn ray(&self, bounds: &UnitBox, ray: &Ray<N>, tmax: N) -> Option<PlacedRay<N>> {

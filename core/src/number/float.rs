@@ -423,8 +423,8 @@ macro_rules! float_number {
         }
 
         impl ErrorBounds for $float {
-            // Sixteen roundings of coordinates: the point's product and sum, t's three products, sums and quotient, the
-            // plane's normal, and the next test of the same surface.
+            // Sixteen roundings of coordinates. They are the point's product and sum, t's three products, sums and
+            // quotient, the plane's normal, and the next test of the same surface.
             const RELATIVE_ERROR: Self = 16.0 * $precision;
 
             // Doubled, so that the largest coordinate of such a step along a normal is not flushed to zero.
@@ -450,11 +450,11 @@ macro_rules! float_number {
             }
 
             // In parts of u, for a sphere of radius r. **The point** is off by 4.5 r because the normal's length
-            // differs from 1 by that, by r for its product with the radius, and by sum|n p| for the sum. **The start**
+            // differs from 1 by that. Its product with the radius adds r, and the sum adds sum|n p|. **The start**
             // rounds each coordinate by 1 more. **The next test** is that of a ray that leaves. The center as seen from
             // there is off by r, and the closest point by 7 r. Half the chord is a root of `r^2 - |apart|^2`, off by 8
-            // r^2, which counts 4 r where it must be less than the way to the closest point. So 17.5 r + 2 sum|n p| is
-            // enough.
+            // r^2. That counts 4 r where half the chord must be less than the way to the closest point. So 17.5 r + 2
+            // sum|n p| is enough.
             #[inline(always)]
             fn curve_error(size: Self, normal: [Self; 3], point: [Self; 3]) -> Self {
                 let part = |k: usize| $float::abs(normal[k] * point[k]);

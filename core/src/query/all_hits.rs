@@ -94,13 +94,13 @@ impl<N: Number, const SIZE: usize> HitList<N, SIZE> {
 /// the exit. All structures return this order and the same bits.
 ///
 /// Every crossing is a hit. Spheres, boxes and other solids have an entry and an exit, even if both have the same t; a
-/// torus has up to four crossings. Triangles follow the half-open rule: a ray through an edge or a vertex of a closed
+/// torus has up to four crossings. Triangles follow the half-open rule. A ray through an edge or a vertex of a closed
 /// mesh hits as many triangles as a ray next to it. So the number of hits of a whole line is even.
 ///
 /// [`closest_hit`](crate::closest_hit) follows the closed rule instead. It can report an edge that the ray only
 /// touches, at a silhouette or the border of an open mesh, where this function lists nothing. A hit that both report
-/// has the same bits. The exception is a hit in the plane where the scene's box begins: rounding can leave it to
-/// `closest_hit` alone. A ray that lies in the plane of a triangle does not hit it, in either rule.
+/// has the same bits. Only `closest_hit` can miss a hit in the plane where the scene's box begins, because of rounding.
+/// A ray that lies in the plane of a triangle does not hit it, in either rule.
 ///
 /// `stack` needs [`stack_depth`](Scene::stack_depth) entries. Each call walks through the structure once, so each list
 /// costs as much as a ray without end.

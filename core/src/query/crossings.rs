@@ -89,8 +89,8 @@ impl<N: Number, K: Culling<N>, F: Collect<N>> Search<'_, '_, N, K, F> {
         }
     }
 
-    /// Considers a triangle that the ray hits by the closed rule, if it also hits it by the half-open one, given the
-    /// crossing with its plane.
+    /// Considers a triangle that the ray hits by the closed rule, given the crossing with its plane. It counts only if
+    /// the ray also hits it by the half-open rule.
     ///
     /// A triangle that the ray passes edge on, because of rounding, counts as well, somewhere in its box. Otherwise the
     /// number of crossings of a closed mesh would be odd.

@@ -3,8 +3,8 @@
 use core::fmt;
 
 /// The reason why a ray is invalid.
-// As wide as a number in single precision, so that a value with which it shares its place in a `Result` is loaded as it
-// was stored.
+// As wide as a number in single precision. So a value with which it shares its place in a `Result` is loaded as it was
+// stored.
 #[repr(u32)]
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]

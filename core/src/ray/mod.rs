@@ -27,8 +27,8 @@ use start::{
 /// length in units (see [`Number`](crate::Number)), never overflows, and needs no normalized direction. For a direction
 /// `d` of any length, the parameter in multiples of `d` is `t / |d[major]|`.
 ///
-/// An origin before the scene's box is moved along the ray to the plane in which the box begins, and `t` is counted
-/// from there inside the kernels. [`Hit::t`](crate::Hit) is counted from the caller's origin.
+/// An origin before the scene's box is moved along the ray to the plane in which the box begins. Inside the kernels `t`
+/// is counted from there. [`Hit::t`](crate::Hit) is counted from the caller's origin.
 ///
 /// # Limits
 /// - **Origin:** each coordinate is at most 2^37 units ([`FARTHEST`](crate::format::limits::FARTHEST)), or the ray is

@@ -1,4 +1,4 @@
-//! Where a ray starts: an origin before the scene's box is moved along the ray to the box.
+//! The start of a ray: an origin before the scene's box is moved along the ray to the box.
 
 use crate::axis::pick;
 use crate::format::limits::FARTHEST;

@@ -88,8 +88,8 @@ impl Camera {
     /// `field_of_view` is the angle of the picture's height.
     ///
     /// # Errors
-    /// If eye and target are the same place, the camera looks along `up`, or the field of view is 0 or half a turn or
-    /// more.
+    /// If eye and target are the same place, or the camera looks along `up`. Also if the field of view is 0 or half a
+    /// turn or more.
     pub fn look_at(
         eye: Position,
         target: Position,

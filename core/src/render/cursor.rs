@@ -20,7 +20,7 @@ use crate::render::workspace::WorkspaceView;
 ///
 /// Between two steps the waiting rays stay in the workspace, so the cursor borrows the workspace as long as it lives.
 /// The picture of a dropped cursor can be unfinished. On a 32-bit board the cursor takes 60 bytes in `f32` and `fixed`
-/// and at most 88 in `f64`; from coarse to fine, up to 8 more.
+/// and at most 88 in `f64`. From coarse to fine, it takes up to 8 more.
 ///
 /// # What a ray costs
 /// A step counts the rays from the camera, off mirrors and through glass. Each ray costs one closest hit. If it hits a

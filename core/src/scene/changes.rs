@@ -99,8 +99,8 @@ impl<'a> Scene<'a> {
     /// ```
     ///
     /// # Errors
-    /// If there are more or fewer than the blob has, a number is out of its range, or this build lacks an effect that a
-    /// material requires.
+    /// If there are more or fewer than the blob has, or a number is out of its range. Also if this build lacks an
+    /// effect that a material requires.
     pub fn with_materials(&self, materials: &'a [Material]) -> Result<Self, BlobError> {
         if materials.len() != self.materials.len() {
             return Err(BlobError::Count {

@@ -74,8 +74,8 @@ impl<'a> Scene<'a> {
     /// ```
     ///
     /// # Errors
-    /// If the slice is not aligned, the header, the section table or the view is invalid, or this build lacks a feature
-    /// that the scene requires.
+    /// If the slice is not aligned, or the header, the section table or the view is invalid. Also if this build lacks a
+    /// feature that the scene requires.
     pub fn prevalidated(blob: Prevalidated<'a>) -> Result<Self, BlobError> {
         let header = read::header(blob.blob)?;
         let sections = Sections::read(blob.blob, header.section_count)?;

@@ -2,9 +2,9 @@
 //!
 //! In place of a cylinder, each list covers the convex hull of its two gridels. The hull is tested
 //! against the primitive itself and not against its bounding sphere. Lists are sorted along the way
-//! from one gridel to the other. A ray walks a list from the end at which it enters. Entries behind
-//! the ray's origin are skipped, and the walk ends when no later entry can be nearer than the best
-//! hit (see `Levels` in `gridels.rs`).
+//! from one gridel to the other. A ray walks a list from the end at which it enters. It skips
+//! entries behind its origin. The walk ends when no later entry can be nearer than the best hit
+//! (see `Levels` in `gridels.rs`).
 //!
 //! Memory: 15 n^4 cells, a list for each that differs from all others, and a byte more per entry
 //! than in the paper's form.

@@ -1,11 +1,11 @@
 //! Ray classification (J. Arvo and D. Kirk, "Fast Ray Tracing by Ray Classification", 1987), made
 //! offline.
 //!
-//! A ray is a point in five dimensions: the place where it begins, and its two slopes on one of the six faces of a cube
-//! of directions. A binary tree per face halves that space, one dimension at a time, and is finer where the scene's own
-//! rays fall. Its leaves hold lists of the primitives that the rays of a class can hit. A list is sorted by where on
-//! the rays' way each primitive can begin. Some classes are not worth a list, or exceed the budget; they lead to the
-//! hierarchy ([`Bvh`]).
+//! A ray is a point in five dimensions. Three are the place where it begins, and two are its slopes on one of the six
+//! faces of a cube of directions. A binary tree per face halves that space, one dimension at a time, and is finer where
+//! the scene's own rays fall. Its leaves hold lists of the primitives that the rays of a class can hit. A list is
+//! sorted by where on the rays' way each primitive can begin. Some classes are not worth a list, or exceed the budget;
+//! they lead to the hierarchy ([`Bvh`]).
 //!
 //! **No candidate is lost.** A ray's place is its point at its start, or where it enters the enlarged box of the scene
 //! (see `accel::candidates::gridels`). That point comes before every hit. In integers it is off by less than two units.

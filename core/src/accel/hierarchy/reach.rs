@@ -2,11 +2,12 @@
 //!
 //! Volumes other than boxes must hold these points, not only the primitive. A hit's t lies in the culling interval of
 //! the primitive's box, clamped to it if needed (see `accept_in_box` in `geometry`). That interval is wider than the
-//! box. By the rule of [`cull`](crate::accel::cull), a hit lies within 4 units of the box on an axis along which the
-//! ray's slope is 2^-12 or more. On the others, of which there are at most two, it lies within 16.3 units.
+//! box. The rule of [`cull`](crate::accel::cull) limits the distance of a hit from the box on each axis. It is 4 units
+//! where the ray's slope is 2^-12 or more. On the others, of which there are at most two, it is 16.3 units.
 //!
-//! A sphere's own test is sharper: the point of a hit lies within a unit of the sphere. The reason: rounding changes
-//! the half chord along the ray by its effect on the chord's square, and the error of a square counts by the radius.
+//! A sphere's own test is sharper: the point of a hit lies within a unit of the sphere. The reason is that rounding
+//! changes the half chord along the ray by its effect on the chord's square. The error of a square counts by the
+//! radius.
 
 use crate::accel::hierarchy::direction::Direction;
 use crate::format::Kind;

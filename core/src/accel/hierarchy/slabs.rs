@@ -4,8 +4,8 @@
 //! A volume has two planes for each of 3, 7 or 13 directions: the axes, the diagonals of the cube, the diagonals of its
 //! faces. Along a direction `n` a ray's coordinate is `y = n . x / 2^h`, where h keeps planes in 16 bits. It is a line
 //! like that of an axis, with a slope and an origin of its own. So slabs are culled by the rule of boxes (see
-//! `accel::cull`), and its proof holds here: the error of `y` is no larger than that of the coordinates. Volumes must
-//! hold more than the primitives: see [`Reach`].
+//! `accel::cull`). The proof of that rule holds here, because the error of `y` is no larger than that of the
+//! coordinates. Volumes must hold more than the primitives: see [`Reach`].
 //!
 //! Without flags, all planes of both children are tested, four per direction. With flags, planes that coincide with the
 //! parent's are neither stored nor tested, exactly as with boxes: two per direction. See `flagged_slabs.rs`.
@@ -94,8 +94,8 @@ pub struct SlabPairs<'a, const FLAGGED: bool> {
 pub(in crate::accel) struct SlabPair<'a, const FLAGGED: bool>(&'a [u32]);
 
 impl<'a, const FLAGGED: bool> SlabPairs<'a, FLAGGED> {
-    /// Words of a record. Each direction has a word of lower planes and a word of upper planes; in flagged pairs, one
-    /// of the inner lower and the inner upper plane. Two words follow.
+    /// Words of a record. Each direction has a word of lower planes and a word of upper planes. In flagged pairs it has
+    /// one word, of the inner lower and the inner upper plane. Two words follow.
     fn width(&self) -> usize {
         let directions = self.root.len();
         2 + if FLAGGED { directions } else { 2 * directions }

@@ -7,7 +7,7 @@
 //! A child's sphere need not lie in its parent's, because a tight sphere around primitives does not contain the tight
 //! spheres around parts of them. So loading proves that the sphere of each node holds every primitive below it, with a
 //! margin (see [`Reach`]). Then a hit's point lies in all of these spheres, at most a radius from the ray's nearest
-//! point, and no node above it is skipped.
+//! point. So no node above it is skipped.
 
 use crate::accel::cull::{Cull, PairCulling};
 use crate::accel::cull_axis::Interval;

@@ -21,8 +21,8 @@ pub trait WideCulling<N: CullArithmetic>: Culling<N> {
     ///
     /// [`children`]: Self::children
     fn span(&self, bounds: &UnitBox, limit: i32) -> [f64; 2];
-    /// Returns the children that the ray can hit up to a limit, one bit each, and where it enters them, in a form that
-    /// compares with a limit.
+    /// Returns the children that the ray can hit up to a limit, one bit each, and the places where it enters them.
+    /// These compare with a limit.
     fn children<S: Simd>(&self, simd: S, node: &WideNode, limit: i32) -> (u32, [i32; LANES]);
 }
 

@@ -6,9 +6,10 @@
 //! clusters.
 //!
 //! The answers are the list's, bit for bit. Culling is conservative, lane by lane (see `cull`). A primitive that a
-//! cluster's lanes do not reject goes through the scalar code of all structures, or has been through its operations
-//! lane by lane. Children that the ray hits are pushed in no order, but the nearest is visited at once, because sorting
-//! costs more than it saves. An any-hit query visits children in stored order, and those of a node wait in one entry.
+//! cluster's lanes do not reject is tested by the scalar code of all structures. Or the lanes have already made the
+//! operations of that code. Children that the ray hits are pushed in no order, but the nearest is visited at once,
+//! because sorting costs more than it saves. An any-hit query visits children in stored order, and those of a node wait
+//! in one entry.
 
 mod check;
 pub(crate) mod cull;

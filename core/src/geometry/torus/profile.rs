@@ -11,13 +11,12 @@
 //! counted.
 //!
 //! **Roots.** Where a convex function is positive, Newton's step never leads beyond its next root. So a walk from a
-//! piece's end reaches the root next to it, or a place where the function no longer falls: then there is no root. That
-//! is a proof as long as the computed slope is not less steep than the real one. So the slope is rounded to the steep
-//! side; a step that is too short costs another one.
+//! piece's end reaches the root next to it. Or it reaches a place where the function no longer falls: then there is no
+//! root. That is a proof as long as the computed slope is not less steep than the real one. So the slope is rounded to
+//! the steep side; a step that is too short costs another one.
 //!
 //! **Signs.** `h` comes from differences of lengths. So rounding moves the point at which it is evaluated by a few
-//! roundings of a length, and every sign is that of a point so near. A step below the roundings of a length ends a
-//! walk.
+//! roundings of a length. Every sign is that of a point this near. A step below the roundings of a length ends a walk.
 
 use crate::geometry::torus::frame::{Frame, unit};
 use crate::number::{Arithmetic, extent};

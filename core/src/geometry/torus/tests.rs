@@ -97,7 +97,7 @@ impl Exact {
         largest(self.center) + self.major + self.minor
     }
 
-    /// How far a point is outside.
+    /// The distance of a point outside the solid.
     fn excess(&self, point: Vector) -> f64 {
         let q = along(point, -1.0, self.center);
         let y = dot(q, self.axis);

@@ -350,8 +350,8 @@ impl ErrorBounds for Fixed {
     // In sub-steps. A normal's components are cut off below 2^-30 of a vector whose length is at least 1/2, and once
     // more when it is normalized. That is 3 parts in 2^30 of the way to `relative`'s point. It moves the point by .5
     // less than it should, and each coordinate is rounded by .5, so all three by .9. The start of a ray rounds by .9
-    // more. The next test is exact, except for the normal, which is the same, and for t: it rounds to 0 where the point
-    // is within 1 of the plane. The sum is 3.3 and 3 sum|r| / 2^30.
+    // more. The next test has the same normal and is exact, except for t. It rounds t to 0 where the point is within 1
+    // of the plane. The sum is 3.3 and 3 sum|r| / 2^30.
     #[inline(always)]
     fn plane_error(_: [Self; 3], relative: [Self; 3], _: [Self; 3]) -> Self {
         let [x, y, z] = relative.map(|component| component.0.unsigned_abs());
@@ -359,9 +359,9 @@ impl ErrorBounds for Fixed {
         Fixed((x.wrapping_add(y).wrapping_add(z) >> 28).wrapping_add(4) as i32)
     }
 
-    // In sub-steps, for a sphere. The point is off by .8, by 3 parts in 2^30 of a radius of up to 2^28, and by .9 for
-    // the rounding of its coordinates. The start of a ray adds .9. The next test's closest point is off by 1, half the
-    // chord by 1, and the lateral vector by .9. The sum is 5.5, and 1 for a t that is below 0.
+    // In sub-steps, for a sphere. The point is off by .8 and by 3 parts in 2^30 of a radius of up to 2^28. The rounding
+    // of its coordinates adds .9, and the start of a ray .9. The next test's closest point is off by 1, half the chord
+    // by 1, and the lateral vector by .9. The sum is 5.5, and 1 for a t that is below 0.
     #[inline(always)]
     fn curve_error(_: Self, _: [Self; 3], _: [Self; 3]) -> Self {
         Self::ABSOLUTE_ERROR

@@ -408,7 +408,7 @@ fn footprints_see_the_texels_of_the_two_levels_next_to_them() {
     };
     let found = number_seen(bilinear, &direct, [1.0 / 3.0, 0.5], whole + 1.0);
     assert!((found - 10.5).abs() < 0.06, "{found}");
-    // Without levels the image alone counts.
+    // Without levels only the image counts.
     let plain = Texture {
         filter: 0,
         ..PYRAMID
