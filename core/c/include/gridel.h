@@ -345,7 +345,7 @@ gridel_status gridel_orbit(const struct gridel_scene *loaded,
                            const struct gridel_circle *circle,
                            struct gridel_camera *camera);
 
-// Finds what a ray hits first, in integers. `stack` is memory of `gridel_stack_bytes` bytes.
+// Finds the first hit of a ray, in integers. `stack` is memory of `gridel_stack_bytes` bytes.
 //
 // # Safety
 // Each pointer is null, or points to what its type states.
@@ -354,7 +354,7 @@ gridel_status gridel_cast_fixed(const struct gridel_scene *loaded,
                                 struct gridel_buffer stack,
                                 struct gridel_hit *hit);
 
-// Finds what a ray in steps hits first, in single precision.
+// Finds the first hit of a ray in steps, in single precision.
 //
 // # Safety
 // Each pointer is null, or points to what its type states.
@@ -363,7 +363,7 @@ gridel_status gridel_cast_steps_f32(const struct gridel_scene *loaded,
                                     struct gridel_buffer stack,
                                     struct gridel_hit *hit);
 
-// Finds what a ray in scene units hits first, in single precision.
+// Finds the first hit of a ray in scene units, in single precision.
 //
 // # Safety
 // Each pointer is null, or points to what its type states.
@@ -372,7 +372,7 @@ gridel_status gridel_cast_f32(const struct gridel_scene *loaded,
                               struct gridel_buffer stack,
                               struct gridel_hit_f32 *hit);
 
-// Finds what a ray in scene units hits first, in double precision.
+// Finds the first hit of a ray in scene units, in double precision.
 //
 // # Safety
 // Each pointer is null, or points to what its type states.
@@ -619,7 +619,7 @@ gridel_status gridel_info_of(const struct gridel_scene *loaded, struct gridel_in
 // Each pointer is null, or points to what its type states.
 gridel_status gridel_stack_bytes(const struct gridel_scene *loaded, size_t *needed);
 
-// Finds what a ray hits first, in integers. `stack` is memory of `gridel_stack_bytes` bytes.
+// Finds the first hit of a ray, in integers. `stack` is memory of `gridel_stack_bytes` bytes.
 //
 // # Safety
 // Each pointer is null, or points to what its type states.
@@ -628,7 +628,7 @@ gridel_status gridel_cast_fixed(const struct gridel_scene *loaded,
                                 struct gridel_buffer stack,
                                 struct gridel_hit *hit);
 
-// Finds what a ray in steps hits first, in single precision.
+// Finds the first hit of a ray in steps, in single precision.
 //
 // # Safety
 // Each pointer is null, or points to what its type states.
@@ -637,7 +637,7 @@ gridel_status gridel_cast_steps_f32(const struct gridel_scene *loaded,
                                     struct gridel_buffer stack,
                                     struct gridel_hit *hit);
 
-// Finds what a ray in scene units hits first, in single precision.
+// Finds the first hit of a ray in scene units, in single precision.
 //
 // # Safety
 // Each pointer is null, or points to what its type states.
@@ -646,7 +646,7 @@ gridel_status gridel_cast_f32(const struct gridel_scene *loaded,
                               struct gridel_buffer stack,
                               struct gridel_hit_f32 *hit);
 
-// Finds what a ray in scene units hits first, in double precision.
+// Finds the first hit of a ray in scene units, in double precision.
 //
 // # Safety
 // Each pointer is null, or points to what its type states.

@@ -14,7 +14,7 @@ use gridel_core::{
     Fixed, Hit, NoCount, Number, Position, Ray, Scene, StackView, any_hit, closest_hit,
 };
 
-/// Finds what a ray hits first, in integers. `stack` is memory of `gridel_stack_bytes` bytes.
+/// Finds the first hit of a ray, in integers. `stack` is memory of `gridel_stack_bytes` bytes.
 ///
 /// # Safety
 /// Each pointer is null, or points to what its type states.
@@ -29,7 +29,7 @@ pub unsafe extern "C" fn gridel_cast_fixed(
     status(unsafe { cast_steps::<Fixed>(loaded, ray, stack, hit) })
 }
 
-/// Finds what a ray in steps hits first, in single precision.
+/// Finds the first hit of a ray in steps, in single precision.
 ///
 /// # Safety
 /// Each pointer is null, or points to what its type states.
@@ -44,7 +44,7 @@ pub unsafe extern "C" fn gridel_cast_steps_f32(
     status(unsafe { cast_steps::<f32>(loaded, ray, stack, hit) })
 }
 
-/// Finds what a ray in scene units hits first, in single precision.
+/// Finds the first hit of a ray in scene units, in single precision.
 ///
 /// # Safety
 /// Each pointer is null, or points to what its type states.
@@ -74,7 +74,7 @@ pub unsafe extern "C" fn gridel_cast_f32(
     status(cast())
 }
 
-/// Finds what a ray in scene units hits first, in double precision.
+/// Finds the first hit of a ray in scene units, in double precision.
 ///
 /// # Safety
 /// Each pointer is null, or points to what its type states.

@@ -6,7 +6,7 @@ use crate::format::record::UnitBox;
 use crate::geometry::{Crossing, LEAVING, Part, accept};
 use crate::ray::Ray;
 
-/// Accepts a hit as [`accept`] does, for a crossing that a kernel may have rounded out of the primitive's box.
+/// Accepts a hit as [`accept`] does, for a crossing that a kernel can have rounded out of the primitive's box.
 ///
 /// `t` is clamped to the interval of the primitive's own box, which holds the true `t`. So clamping never adds to an
 /// error, and culling is conservative whatever a kernel rounded.

@@ -1,6 +1,6 @@
 //! Limits of every blob, and the features of this build.
 
-/// The largest stack depth that a blob may need.
+/// The largest stack depth that a blob can need.
 pub const MAX_STACK_DEPTH: usize = 160;
 
 /// Maximum number of levels of a hierarchy of pairs, and the largest stack depth that one needs.

@@ -58,7 +58,7 @@ records! {
 }
 
 impl Joint {
-    /// Marks that there is no joint.
+    /// Marks a missing joint.
     pub const NONE: u32 = u32::MAX;
 }
 

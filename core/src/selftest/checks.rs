@@ -15,7 +15,7 @@ pub trait Host {
 /// Failures of one test that are printed in full.
 const SHOWN: u32 = 5;
 
-/// Checks of one test: a failure is printed, and the test goes on.
+/// Checks of one test: a failure is printed, and the test continues.
 pub(super) struct Checks<'h> {
     pub(super) host: &'h mut dyn Host,
     name: &'static str,

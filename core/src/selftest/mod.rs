@@ -51,7 +51,7 @@ const CASES: [Case; 16] = [
     ("f64: picture", picture::matches::<f64>),
 ];
 
-/// Runs all tests, prints a line for each, and returns how many failed.
+/// Runs all tests, prints a line for each, and returns the number of failed tests.
 pub fn run(host: &mut dyn Host) -> usize {
     let mut failed = 0;
     for (name, case) in CASES {

@@ -83,8 +83,8 @@ pub trait Simd: Copy {
     /// Converts integers of 24 bits to numbers, exactly. Their low 16 bits are given, and their high 8 as the bytes of
     /// words, the low ones in the first four lanes.
     fn of_i24(self, low: &[u16; 8], high: &[u16; 4]) -> Self::F32x8;
-    /// Calls a function, out of line, that is compiled for these instructions. Arguments are handed
-    /// over one by one, so that they stay in registers.
+    /// Calls a function, out of line, that is compiled for these instructions. Arguments are passed one by one, so that
+    /// they stay in registers.
     fn call<A, B, C, D, E, R>(
         self,
         function: impl FnOnce(Self, A, B, C, D, E) -> R,

@@ -28,7 +28,7 @@ pub(super) struct Part {
     duration: u32,
 }
 
-/// The key at or before a time, or else the first, and how far the time is towards the next one.
+/// Returns the key at or before a time, or else the first, and how far the time is towards the next one.
 fn locate(times: &[i32], time: i32) -> (usize, Option<Part>) {
     let after = times.partition_point(|&key| key <= time);
     let key = after.saturating_sub(1);

@@ -5,7 +5,7 @@
 //! scene's box that the planes on the way down have left. A node narrows the region:
 //!
 //! - Up to two *carves* cut it, on one axis each, to the space between two planes.
-//! - A *split* gives one child all below one plane and the other all above another, on one axis. The two may overlap,
+//! - A *split* gives one child all below one plane and the other all above another, on one axis. The two can overlap,
 //!   or leave a gap.
 //!
 //! The builder walks the hierarchy with the regions and chooses axes by the tests that they save. The split cuts off
