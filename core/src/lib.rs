@@ -7,7 +7,7 @@
 //!
 //! - **rays**: [`Scene::closest_hit`] and [`Scene::any_hit`] with a [`Ray`] of your own, or [`closest_hit`],
 //!   [`closest_primitive`] and [`any_hit`] for one structure and for counting. [`all_hits`] lists every crossing in
-//!   order, [`count_hits`] counts them, and [`contains`] tests if a point lies in an object;
+//!   order, [`count_hits`] counts them, and [`contains`] tests whether a point lies in an object;
 //! - **pictures**: a [`Renderer`] returns pixels row by row or for any rectangle. A [`Cursor`](render::Cursor) returns
 //!   them a bounded number of rays at a time, row by row or from coarse to fine.
 //!

@@ -6,10 +6,10 @@
 //! removed *before* anything is squared.
 //!
 //! The corresponding quadric `A s^2 + 2 B s + C` is evaluated at its vertex: the origin slides to `s = -B/A` (as far as
-//! the line is between the caps). There `C = (cos |Q| - g) (cos |Q| + g)` alone decides if the line hits the mantle,
-//! and the roots' `B^2 - A C` is no difference of near equals. At the tip, the mantle is thin against the solid. A root
-//! there is computed again from an origin that slid there, because the quadric's error is that of the mantle's radius
-//! at its origin.
+//! the line is between the caps). There `C = (cos |Q| - g) (cos |Q| + g)` alone decides whether the line hits the
+//! mantle, and the roots' `B^2 - A C` is no difference of near equals. At the tip, the mantle is thin against the
+//! solid. A root there is computed again from an origin that slid there, because the quadric's error is that of the
+//! mantle's radius at its origin.
 //!
 //! The mantle's interval on the line is then intersected with that of the two caps. Both solids are convex, so there is
 //! no seam: no hole at a rim, no double count, no mirrored nappe.

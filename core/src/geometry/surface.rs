@@ -20,7 +20,7 @@ pub(crate) struct Surface<N> {
 impl<N: Arithmetic> Surface<N> {
     /// The normal for a ray that grazes the surface, at right angles to the ray.
     ///
-    /// It is certain if the ray enters or leaves. The normal is not certain: where a solid is as thin as an error
+    /// It is certain whether the ray enters or leaves. The normal is not certain: where a solid is as thin as an error
     /// bound, rounding of the point turns it. For a grazing ray a bit is enough to turn it too far.
     #[cold]
     pub(crate) fn level_with(&self, ray: &Ray<N>) -> [N; 3] {

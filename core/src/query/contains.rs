@@ -1,4 +1,4 @@
-//! The test if an object contains a point.
+//! The test whether an object contains a point.
 
 use crate::accel::{Accel, Number, StackView};
 use crate::observe::count::Observer;

@@ -14,8 +14,8 @@ impl Scene<'_> {
     /// Distances are straight lines, in steps of [`coordinate_exponent`](Self::coordinate_exponent). `u64::MAX` is
     /// endless.
     ///
-    /// In `fixed`, both limits are exact to two sub-steps of 2^-13 unit and to one part in 2^28 of themselves. The part
-    /// is 2^21 in `f32` and 2^50 in `f64`.
+    /// Both limits are exact to two sub-steps of 2^-13 unit and to one part in 2^28 of themselves in `fixed`. In `f32`
+    /// the relative error is one part in 2^21, and in `f64` one in 2^50.
     ///
     /// ```
     /// # static BLOB: &[u8] =
@@ -71,8 +71,8 @@ impl Scene<'_> {
     /// Returns the distance of a hit from the origin of its ray: a straight line, in steps of
     /// [`coordinate_exponent`](Self::coordinate_exponent), rounded to nearest.
     ///
-    /// Before rounding, in `fixed`, it is exact to two sub-steps of 2^-13 unit and to one part in 2^28 of itself. The
-    /// part is 2^21 in `f32` and 2^50 in `f64`.
+    /// Before rounding, it is exact to two sub-steps of 2^-13 unit and to one part in 2^28 of itself in `fixed`. In
+    /// `f32` the relative error is one part in 2^21, and in `f64` one in 2^50.
     ///
     /// ```
     /// # static BLOB: &[u8] =

@@ -127,7 +127,7 @@ impl<'a> EnvironmentMap<'a> {
 
     /// Returns the radiance of the texel at a place over its density and π, with 20 fraction bits. That is the
     /// contribution of a light of that direction. Half the sum of the magnitudes of its direction's components is
-    /// given, with 30. It is at most the largest number.
+    /// given, with 30 fraction bits. The result is at most the largest number.
     ///
     /// Let p be the probability of the texel, of n² in the map, and s the sum. The density of a direction is p n² / (4
     /// s³).

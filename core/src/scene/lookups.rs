@@ -83,8 +83,8 @@ impl<'a> Scene<'a> {
     }
 
     /// Returns the contribution of the map as a light from a random place, over the density of that place and π, with
-    /// 20 fraction bits. Half the sum of the magnitudes of its direction's components is given, with 30. `None` without
-    /// an environment.
+    /// 20 fraction bits. Half the sum of the magnitudes of its direction's components is given, with 30 fraction bits.
+    /// `None` without an environment.
     pub fn environment_light(&self, place: [i32; 2], half_sum: i32) -> Option<[i32; 3]> {
         let map = self.environment.get()?;
         Some(map.sampled(map.record?, place, half_sum))

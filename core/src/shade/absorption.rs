@@ -52,7 +52,7 @@ impl Effect for Absorption {
         ray: &Ray<N>,
         filter: &mut Filter<'s, '_, N>,
     ) {
-        // It is not yet known if any light passes: alpha decides after this.
+        // It is not yet known whether any light passes: alpha decides after this.
         let is_behind = Glass::is_required_by_material(filter.material) && !filter.hit.front;
         if let Some(medium) = filter.medium.or(is_behind.then_some(filter.material)) {
             filter.left = filter.left.times(left(ray, filter.hit, medium));

@@ -25,8 +25,8 @@ pub(crate) struct Environment;
 /// The dimension of random points for the map.
 const DIMENSION: u16 = 0x1020;
 
-/// Returns if rays of a kind bring the map, and if they bring the sun. Where a surface has this light from a light of
-/// the scene, its rays must not bring it again.
+/// Returns whether rays of a kind bring the map, and whether they bring the sun. Where a surface has this light from a
+/// light of the scene, its rays must not bring it again.
 const fn is_seen_by(kind: RayKind) -> [bool; 2] {
     match kind {
         RayKind::Primary | RayKind::Reflected | RayKind::Refracted => [true; 2],

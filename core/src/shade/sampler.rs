@@ -22,8 +22,8 @@
 //! | 0x1020 | the environment as a light | `aim` |
 //! | 0x1030, 0x1031 | the direction of indirect light, and whether there is any | `bounce` |
 //!
-//! A point has Sobol's first two dimensions, which put one of the first 2^k points into every elementary interval of
-//! area 2^-k. Every pixel, bounce and dimension has its own shuffle of the points and its own scramble of each axis.
+//! A point is one of Sobol's first two dimensions, which put one of the first 2^k points into every elementary interval
+//! of area 2^-k. Every pixel, bounce and dimension has its own shuffle of the points and its own scramble of each axis.
 //! They keep that property (Owen, "Randomly Permuted (t,m,s)-Nets and (t,s)-Sequences", 1995). Both are hashes that
 //! change no bit because of a lower one. (Laine and Karras, "Stratified Sampling for Stochastic Transparency", 2011;
 //! Burley, "Practical Hash-based Owen Scrambling", 2020.) So the samples of a pixel are spread evenly in each
@@ -96,7 +96,7 @@ fn mirrored_second_dimension(index: u32) -> u32 {
     x ^ x >> 16
 }
 
-/// Returns a value, scrambled: the seed and the higher bits decide if a bit changes.
+/// Returns a value, scrambled: the seed and the higher bits decide whether a bit changes.
 fn scrambled(value: u32, seed: u32) -> u32 {
     mirrored_scramble(value.reverse_bits(), seed)
 }
