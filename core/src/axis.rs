@@ -1,6 +1,6 @@
-//! Components of vectors by the number of their axis.
+//! Access to components of vectors by the number of their axis.
 
-/// A component by number. Unlike an index it keeps the vector in registers.
+/// Returns a component by number. Unlike an index, it keeps the vector in registers.
 #[inline(always)]
 pub(crate) fn pick<T: Copy>(v: [T; 3], axis: usize) -> T {
     match axis {

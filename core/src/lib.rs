@@ -1,16 +1,15 @@
-//! Ray traces straight out of a scene blob: `no_std`, no allocation, no panic, no recursion, no
-//! `unsafe`, and the same bits on every machine.
+//! A ray tracer that reads a scene blob in place. It has no allocation, no panic, no recursion and no `unsafe`, is
+//! `no_std`, and gives the same bits on every machine.
 //!
-//! A host compiles a scene file into one binary blob (`gridel build`). [`Scene::from_bytes`] checks
-//! the blob once; after that nothing can fail. Firmware can have most of that done by the compiler:
-//! see [`Prevalidated`]. Two things can be asked of a scene:
+//! A host compiles a scene file into one binary blob (`gridel build`). [`Scene::from_bytes`] checks the blob once;
+//! after that nothing can fail. The compiler can do most of that for firmware: see [`Prevalidated`]. A scene answers
+//! two kinds of requests:
 //!
 //! - **rays**: [`Scene::closest_hit`] and [`Scene::any_hit`] with a [`Ray`] of your own, or [`closest_hit`],
-//!   [`closest_primitive`] and [`any_hit`] for one structure and for counting; [`all_hits`] lists every crossing in
-//!   order, [`count_hits`] counts them, and [`contains`] says whether a point lies in an object;
-//! - **pictures**: a [`Renderer`] gives pixels row by row or for any rectangle, and a
-//!   [`Cursor`](render::Cursor) gives them a bounded number of rays at a time, row by row or from coarse to
-//!   fine.
+//!   [`closest_primitive`] and [`any_hit`] for one structure and for counting. [`all_hits`] lists every crossing in
+//!   order, [`count_hits`] counts them, and [`contains`] tests whether a point lies in an object;
+//! - **pictures**: a [`Renderer`] returns pixels row by row or for any rectangle. A [`Cursor`](render::Cursor) returns
+//!   them a bounded number of rays at a time, row by row or from coarse to fine.
 //!
 //! ```
 //! # static BLOB: &[u8] =
@@ -33,16 +32,16 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 //!
-//! Both are generic over the number format (see [`Number`]): [`Fixed`] for cores without a
-//! floating-point unit, `f32`, `f64`; and over the acceleration structure ([`List`], [`Bvh`],
-//! [`Flagged`], [`DualSplit`] and others in [`accel`]). The structure never changes a bit of an answer.
+//! Both are generic over the number format (see [`Number`]): [`Fixed`] for cores without a floating-point unit, `f32`,
+//! `f64`. They are also generic over the acceleration structure ([`List`], [`Bvh`], [`Flagged`], [`DualSplit`] and
+//! others in [`accel`]). The structure never changes a bit of an answer.
 //!
 //! The page [`boards`] leads from a scene file to a picture on your own board.
 //!
 //! # Memory
-//! The blob stays where it is. The caller owns the two things that are written to: a [`Stack`] of
-//! 12 bytes per entry, whose depth the blob's header states and `from_bytes` proves, and, for
-//! pictures, a list of rays that wait (see [`Workspace`]).
+//! The blob stays where it is. Only two things are written to, and the caller owns both. One is a [`Stack`] of 12 bytes
+//! per entry, whose depth the blob's header states and `from_bytes` proves. The other, for pictures, is a list of
+//! waiting rays (see [`Workspace`]).
 //!
 //! # Units
 //! The length unit of the core is the *unit*, one step of the 16-bit box lattice; see
@@ -50,7 +49,7 @@
 #![cfg_attr(not(any(test, feature = "std")), no_std)]
 #![forbid(unsafe_code)]
 #![deny(missing_docs)]
-// A build without some structures leaves tools unused that they share.
+// In a build without some structures, the tools that they share can be unused.
 #![cfg_attr(not(feature = "all-structures"), allow(dead_code))]
 
 #[doc = include_str!("../BOARDS.md")]

@@ -1,24 +1,24 @@
 //! The target that the code is compiled for.
 
-/// Whether code shall be small where that makes it slower; no bit of an answer depends on it.
+/// True if the code is optimized for size where that makes it slower; no bit of an answer depends on it.
 pub(crate) const SMALL: bool = cfg!(feature = "small");
 
-/// Whether the code for vertex colors is in this build.
+/// True if the code for vertex colors is in this build.
 pub(crate) const VERTEX_COLORS: bool = cfg!(feature = "vertex-colors");
 
-/// Whether the code for textures is in this build.
+/// True if the code for textures is in this build.
 pub(crate) const TEXTURE: bool = cfg!(feature = "texture");
 
-/// Whether the code for texture levels is in this build.
+/// True if the code for texture levels is in this build.
 pub(crate) const TEXTURE_LEVELS: bool = cfg!(feature = "texture-levels");
 
-/// Whether the code for an environment is in this build.
+/// True if the code for an environment is in this build.
 pub(crate) const ENVIRONMENT: bool = cfg!(feature = "environment");
 
 /// A value that only builds with [`ENVIRONMENT`] hold.
 pub(crate) type EnvironmentOnly<T> = InSomeBuilds<T, { ENVIRONMENT as usize }>;
 
-/// Whether the code of the structure `wide`, and of the clusters in its leaves, is in this build.
+/// True if the code of the structure `wide`, and of the clusters in its leaves, is in this build.
 pub(crate) const WIDE: bool = cfg!(feature = "wide");
 
 /// A value that only builds with [`WIDE`] hold.
@@ -85,12 +85,12 @@ impl<T, const COUNT: usize> InSomeBuilds<T, COUNT> {
     }
 }
 
-/// Whether this core multiplies 32 bits to 32 and no more: the Cortex-M0, the one family of Arm's
-/// without an instruction that compares and swaps.
+/// True if this core multiplies only 32 bits to 32. That is the Cortex-M0, the only family of Arm's without an
+/// instruction that compares and swaps.
 pub(crate) const NARROW_PRODUCTS: bool =
     cfg!(all(target_arch = "arm", not(target_has_atomic = "32")));
 
-/// Inlines a function into every caller, except in builds for small code, where the compiler decides. For short
+/// Inlines a function into every caller, except in builds optimized for size, where the compiler decides. For short
 /// functions on the path of most rays.
 macro_rules! inline_unless_small {
     ($function:item) => {
@@ -100,7 +100,8 @@ macro_rules! inline_unless_small {
 }
 
 /// Inlines a function into every caller in builds with [`WIDE`], which are for hosts; on boards the compiler decides.
-/// For functions that hand a ray or a hit on: hosts have the room, and through memory it takes longer.
+/// For functions that pass a ray or a hit on: hosts have enough memory for copies, and passing it through memory takes
+/// longer.
 macro_rules! inline_on_hosts {
     ($function:item) => {
         #[cfg_attr(feature = "wide", inline(always))]
@@ -118,7 +119,7 @@ macro_rules! inline_on_hosts_hint_on_boards {
 }
 
 /// Inlines a function into every caller on boards, and into none in builds with [`WIDE`], which are for hosts. For
-/// functions that hosts call from many places and seldom.
+/// functions that hosts rarely call, from many places.
 macro_rules! inline_on_boards {
     ($function:item) => {
         #[cfg_attr(feature = "wide", inline(never))]

@@ -16,8 +16,8 @@
    : (depth) <= 48 ? 48 : (depth) <= 96 ? 96 : 160)
 
 
-// An object, primitive or instance that there is not: of a ray that hits nothing, and the instance of a hit of the
-// scene's own objects.
+// Marks a missing object, primitive or instance: of a ray that hits nothing, and the instance of a hit of the scene's
+// own objects.
 #define GRIDEL_NONE 4294967295
 
 // Words of a `gridel_scene`.
@@ -32,7 +32,8 @@
 // Bytes of a workspace that is large enough for every scene, in `f64`.
 #define GRIDEL_WORKSPACE_BYTES_MAX_F64 7680
 
-// What a function returns: 0, or why it did nothing. `gridel_text` gives the sentence.
+// The result of a function: 0, or the reason why it did nothing. `gridel_text` returns the
+// sentence.
 enum gridel_status
 #if defined(__cplusplus) || __STDC_VERSION__ >= 202311L
   : uint32_t
@@ -50,7 +51,7 @@ enum gridel_status
   GRIDEL_STATUS_NOT_LOADED = 4,
   // The blob does not start at a multiple of 16 bytes.
   GRIDEL_STATUS_BLOB_MISALIGNED = 10,
-  // The blob is shorter or longer than it says.
+  // The blob is shorter or longer than its header states.
   GRIDEL_STATUS_BLOB_TRUNCATED = 11,
   // The bytes are not a blob's.
   GRIDEL_STATUS_BLOB_MAGIC = 12,
@@ -128,10 +129,10 @@ typedef uint16_t gridel_pixel_format;
 #endif // __STDC_VERSION__ >= 202311L
 #endif // __cplusplus
 
-// A scene: memory of the caller's that `gridel_load` fills in. It refers to the blob, which stays where it is. It may be
+// A scene: memory of the caller that `gridel_load` fills in. It refers to the blob, which stays where it is. It can be
 // moved and copied.
 typedef struct gridel_scene {
-  // The library's own.
+  // Reserved for the library.
   size_t memory[GRIDEL_SCENE_WORDS];
 } gridel_scene;
 
@@ -151,27 +152,28 @@ typedef struct gridel_camera {
 
 // A camera at one place that looks at another, in steps.
 typedef struct gridel_look {
-  // Where the camera is.
+  // The place of the camera.
   int32_t eye[3];
-  // What is in the middle of its picture.
+  // The place in the middle of its picture.
   int32_t target[3];
   // The direction that is upwards in the picture, of any length.
   int32_t up[3];
-  // The angle under which the picture's height is seen, in 2^-32 turn: above 0 and below half a turn.
+  // The angle of the picture's height, in 2^-32 turn: above 0 and below half a turn.
   uint32_t field_of_view;
 } gridel_look;
 
-// A camera on a circle around a place, for a dial.
+// A camera on a circle around a place, for example for a dial.
 typedef struct gridel_circle {
-  // What is in the middle of its picture, in steps.
+  // The place in the middle of its picture, in steps.
   int32_t target[3];
-  // How far away the camera is, in steps.
+  // The distance of the camera, in steps.
   uint32_t distance;
-  // How far it is turned around the axis that points up, counterclockwise as seen from above, in 2^-32 turn.
+  // The angle by which it is turned around the axis that points up, counterclockwise as seen from above, in 2^-32
+// turn.
   uint32_t azimuth;
-  // How far it is raised, in 2^-32 turn; it may pass over the pole.
+  // The angle by which it is raised, in 2^-32 turn; it can pass over the pole.
   uint32_t elevation;
-  // The angle under which the picture's height is seen, in 2^-32 turn: above 0 and below half a turn.
+  // The angle of the picture's height, in 2^-32 turn: above 0 and below half a turn.
   uint32_t field_of_view;
   // The axis that points up: 2 for z, else y.
   uint32_t up_axis;
@@ -179,25 +181,25 @@ typedef struct gridel_circle {
 
 // A ray in steps of scene coordinates, without floating point: see `gridel_info`.
 typedef struct gridel_ray {
-  // Where it begins.
+  // The origin.
   int32_t position[3];
   // Its direction, of any length but 0.
   int32_t direction[3];
   // The least distance of a hit from `position`, in a straight line.
   uint64_t nearest;
-  // The greatest; `UINT64_MAX` is endless.
+  // The greatest distance; `UINT64_MAX` is endless.
   uint64_t farthest;
 } gridel_ray;
 
-// Memory of the caller's.
+// Memory of the caller.
 typedef struct gridel_buffer {
-  // Where it begins.
+  // The first byte.
   void *memory;
   // Its bytes.
   size_t bytes;
 } gridel_buffer;
 
-// What a `gridel_ray` hits first.
+// The first hit of a `gridel_ray`.
 typedef struct gridel_hit {
   // The distance from the ray's position, in a straight line, in steps; `UINT64_MAX` if nothing is hit.
   uint64_t distance;
@@ -217,19 +219,19 @@ typedef struct gridel_hit {
 
 // A ray in scene units, in single precision.
 typedef struct gridel_ray_f32 {
-  // Where it begins.
+  // The origin.
   float origin[3];
   // Its direction, of any length but 0.
   float direction[3];
   // The least t of a hit, in multiples of the direction.
   float t_min;
-  // The greatest, which may be infinite.
+  // The greatest t, which can be infinite.
   float t_max;
 } gridel_ray_f32;
 
-// What a `gridel_ray_f32` hits first.
+// The first hit of a `gridel_ray_f32`.
 typedef struct gridel_hit_f32 {
-  // Where on the ray, in multiples of the direction; infinite if nothing is hit.
+  // The place on the ray, in multiples of the direction; infinite if nothing is hit.
   float t;
   // The place that is hit, in scene units.
   float point[3];
@@ -247,19 +249,19 @@ typedef struct gridel_hit_f32 {
 
 // A ray in scene units, in double precision.
 typedef struct gridel_ray_f64 {
-  // Where it begins.
+  // The origin.
   double origin[3];
   // Its direction, of any length but 0.
   double direction[3];
   // The least t of a hit, in multiples of the direction.
   double t_min;
-  // The greatest, which may be infinite.
+  // The greatest t, which can be infinite.
   double t_max;
 } gridel_ray_f64;
 
-// What a `gridel_ray_f64` hits first.
+// The first hit of a `gridel_ray_f64`.
 typedef struct gridel_hit_f64 {
-  // Where on the ray, in multiples of the direction; infinite if nothing is hit.
+  // The place on the ray, in multiples of the direction; infinite if nothing is hit.
   double t;
   // The place that is hit, in scene units.
   double point[3];
@@ -275,9 +277,9 @@ typedef struct gridel_hit_f64 {
   uint32_t front;
 } gridel_hit_f64;
 
-// What a scene is and needs.
+// The properties and requirements of a scene.
 typedef struct gridel_info {
-  // Where `gridel_ray` counts from, in scene units.
+  // The origin of `gridel_ray`, in scene units.
   double coordinate_origin[3];
   // A step of `gridel_ray` is 2 to this power scene units.
   int32_t coordinate_exponent;
@@ -297,7 +299,7 @@ typedef struct gridel_picture {
   uint16_t height;
   // Samples per pixel, 1 to 4096.
   uint16_t samples;
-  // How often a ray may be reflected or refracted, 0 to 32.
+  // Maximum number of reflections and refractions of a ray, 0 to 32.
   uint16_t depth;
   // 1 to dither, else 0.
   uint16_t dither;
@@ -324,13 +326,13 @@ extern "C" {
 // Writes the camera of the scene file.
 //
 // # Safety
-// Pointers are null, or lead to what they say.
+// Each pointer is null, or points to what its type states.
 gridel_status gridel_camera_of(const struct gridel_scene *loaded, struct gridel_camera *camera);
 
 // Makes a camera at one place that looks at another.
 //
 // # Safety
-// Pointers are null, or lead to what they say.
+// Each pointer is null, or points to what its type states.
 gridel_status gridel_look_at(const struct gridel_scene *loaded,
                              const struct gridel_look *look,
                              struct gridel_camera *camera);
@@ -338,42 +340,42 @@ gridel_status gridel_look_at(const struct gridel_scene *loaded,
 // Makes a camera on a circle around a place.
 //
 // # Safety
-// Pointers are null, or lead to what they say.
+// Each pointer is null, or points to what its type states.
 gridel_status gridel_orbit(const struct gridel_scene *loaded,
                            const struct gridel_circle *circle,
                            struct gridel_camera *camera);
 
-// Finds what a ray hits first, in integers. `stack` is memory of `gridel_stack_bytes` bytes.
+// Finds the first hit of a ray, in integers. `stack` is memory of `gridel_stack_bytes` bytes.
 //
 // # Safety
-// Pointers are null, or lead to what they say.
+// Each pointer is null, or points to what its type states.
 gridel_status gridel_cast_fixed(const struct gridel_scene *loaded,
                                 const struct gridel_ray *ray,
                                 struct gridel_buffer stack,
                                 struct gridel_hit *hit);
 
-// Finds what a ray in steps hits first, in single precision.
+// Finds the first hit of a ray in steps, in single precision.
 //
 // # Safety
-// Pointers are null, or lead to what they say.
+// Each pointer is null, or points to what its type states.
 gridel_status gridel_cast_steps_f32(const struct gridel_scene *loaded,
                                     const struct gridel_ray *ray,
                                     struct gridel_buffer stack,
                                     struct gridel_hit *hit);
 
-// Finds what a ray in scene units hits first, in single precision.
+// Finds the first hit of a ray in scene units, in single precision.
 //
 // # Safety
-// Pointers are null, or lead to what they say.
+// Each pointer is null, or points to what its type states.
 gridel_status gridel_cast_f32(const struct gridel_scene *loaded,
                               const struct gridel_ray_f32 *ray,
                               struct gridel_buffer stack,
                               struct gridel_hit_f32 *hit);
 
-// Finds what a ray in scene units hits first, in double precision.
+// Finds the first hit of a ray in scene units, in double precision.
 //
 // # Safety
-// Pointers are null, or lead to what they say.
+// Each pointer is null, or points to what its type states.
 gridel_status gridel_cast_f64(const struct gridel_scene *loaded,
                               const struct gridel_ray_f64 *ray,
                               struct gridel_buffer stack,
@@ -382,7 +384,7 @@ gridel_status gridel_cast_f64(const struct gridel_scene *loaded,
 // Writes 1 if a ray hits anything, else 0: in integers. Takes less time than `gridel_cast_fixed`.
 //
 // # Safety
-// Pointers are null, or lead to what they say.
+// Each pointer is null, or points to what its type states.
 gridel_status gridel_any_fixed(const struct gridel_scene *loaded,
                                const struct gridel_ray *ray,
                                struct gridel_buffer stack,
@@ -391,7 +393,7 @@ gridel_status gridel_any_fixed(const struct gridel_scene *loaded,
 // Writes 1 if a ray in steps hits anything, else 0: in single precision.
 //
 // # Safety
-// Pointers are null, or lead to what they say.
+// Each pointer is null, or points to what its type states.
 gridel_status gridel_any_steps_f32(const struct gridel_scene *loaded,
                                    const struct gridel_ray *ray,
                                    struct gridel_buffer stack,
@@ -400,7 +402,7 @@ gridel_status gridel_any_steps_f32(const struct gridel_scene *loaded,
 // Writes 1 if a ray in scene units hits anything, else 0: in single precision.
 //
 // # Safety
-// Pointers are null, or lead to what they say.
+// Each pointer is null, or points to what its type states.
 gridel_status gridel_any_f32(const struct gridel_scene *loaded,
                              const struct gridel_ray_f32 *ray,
                              struct gridel_buffer stack,
@@ -409,7 +411,7 @@ gridel_status gridel_any_f32(const struct gridel_scene *loaded,
 // Writes 1 if a ray in scene units hits anything, else 0: in double precision.
 //
 // # Safety
-// Pointers are null, or lead to what they say.
+// Each pointer is null, or points to what its type states.
 gridel_status gridel_any_f64(const struct gridel_scene *loaded,
                              const struct gridel_ray_f64 *ray,
                              struct gridel_buffer stack,
@@ -420,7 +422,7 @@ gridel_status gridel_any_f64(const struct gridel_scene *loaded,
 // `gridel_load_with_parts`.
 //
 // # Safety
-// Pointers are null, or lead to what they say.
+// Each pointer is null, or points to what its type states.
 gridel_status gridel_load(struct gridel_scene *to,
                           const void *blob,
                           size_t blob_bytes);
@@ -428,52 +430,52 @@ gridel_status gridel_load(struct gridel_scene *to,
 // Writes the bytes of memory that `gridel_load_with_parts` needs; 0 for a blob without parts.
 //
 // # Safety
-// Pointers are null, or lead to what they say.
+// Each pointer is null, or points to what its type states.
 gridel_status gridel_parts_bytes(const void *blob, size_t blob_bytes, size_t *needed);
 
-// Checks a blob that has parts and fills in a scene. The memory of the parts starts at a multiple of 8 bytes, has as many
-// as `gridel_parts_bytes` states, and belongs to the scene for as long as that is used.
+// Checks a blob that has parts and fills in a scene. The memory of the parts starts at a multiple of 8 bytes. It has
+// as many bytes as `gridel_parts_bytes` states, and belongs to the scene for as long as that is used.
 //
 // # Safety
-// Pointers are null, or lead to what they say.
+// Each pointer is null, or points to what its type states.
 gridel_status gridel_load_with_parts(struct gridel_scene *to,
                                      const void *blob,
                                      size_t blob_bytes,
                                      struct gridel_buffer parts);
 
-// Writes why a blob is rejected, with the section, the record and what is expected, as a sentence that ends with 0 and is
-// cut off where the buffer ends. Returns the code. Takes some KiB of code and of stack; a program that does not call it
-// does not hold it.
+// Writes the reason why a blob is rejected as a sentence, with the section, the record and the expected value. The
+// sentence ends with 0 and is cut off where the buffer ends. Returns the code. Takes some KiB of code and of stack; a
+// program that does not call it does not hold it.
 //
 // # Safety
-// Pointers are null, or lead to what they say.
+// Each pointer is null, or points to what its type states.
 gridel_status gridel_blob_error(const void *blob,
                                 size_t blob_bytes,
                                 char *text,
                                 size_t text_bytes);
 
-// Writes what a scene is and needs.
+// Writes the properties and requirements of a scene.
 //
 // # Safety
-// Pointers are null, or lead to what they say.
+// Each pointer is null, or points to what its type states.
 gridel_status gridel_info_of(const struct gridel_scene *loaded, struct gridel_info *info);
 
 // Writes the bytes of the stack that rays need, which starts at a multiple of 8 bytes.
 //
 // # Safety
-// Pointers are null, or lead to what they say.
+// Each pointer is null, or points to what its type states.
 gridel_status gridel_stack_bytes(const struct gridel_scene *loaded, size_t *needed);
 
 // Writes the settings of the scene file, without dithering, in RGB888.
 //
 // # Safety
-// Pointers are null, or lead to what they say.
+// Each pointer is null, or points to what its type states.
 gridel_status gridel_picture_of(const struct gridel_scene *loaded, struct gridel_picture *picture);
 
 // Writes the bytes of the workspace that a picture needs in `fixed`, which starts at a multiple of 8 bytes.
 //
 // # Safety
-// Pointers are null, or lead to what they say.
+// Each pointer is null, or points to what its type states.
 gridel_status gridel_workspace_bytes_fixed(const struct gridel_scene *loaded,
                                            const struct gridel_picture *picture,
                                            size_t *needed);
@@ -481,7 +483,7 @@ gridel_status gridel_workspace_bytes_fixed(const struct gridel_scene *loaded,
 // Writes the bytes of the workspace that a picture needs in `f32`, which starts at a multiple of 8 bytes.
 //
 // # Safety
-// Pointers are null, or lead to what they say.
+// Each pointer is null, or points to what its type states.
 gridel_status gridel_workspace_bytes_f32(const struct gridel_scene *loaded,
                                          const struct gridel_picture *picture,
                                          size_t *needed);
@@ -489,7 +491,7 @@ gridel_status gridel_workspace_bytes_f32(const struct gridel_scene *loaded,
 // Writes the bytes of the workspace that a picture needs in `f64`, which starts at a multiple of 8 bytes.
 //
 // # Safety
-// Pointers are null, or lead to what they say.
+// Each pointer is null, or points to what its type states.
 gridel_status gridel_workspace_bytes_f64(const struct gridel_scene *loaded,
                                          const struct gridel_picture *picture,
                                          size_t *needed);
@@ -499,7 +501,7 @@ gridel_status gridel_workspace_bytes_f64(const struct gridel_scene *loaded,
 // whatever its rectangles.
 //
 // # Safety
-// Pointers are null, or lead to what they say.
+// Each pointer is null, or points to what its type states.
 gridel_status gridel_render_fixed(const struct gridel_scene *loaded,
                                   const struct gridel_picture *picture,
                                   const struct gridel_rectangle *rectangle,
@@ -509,7 +511,7 @@ gridel_status gridel_render_fixed(const struct gridel_scene *loaded,
 // Renders a rectangle of a picture, such as a row, in single precision: see `gridel_render_fixed`.
 //
 // # Safety
-// Pointers are null, or lead to what they say.
+// Each pointer is null, or points to what its type states.
 gridel_status gridel_render_f32(const struct gridel_scene *loaded,
                                 const struct gridel_picture *picture,
                                 const struct gridel_rectangle *rectangle,
@@ -519,18 +521,18 @@ gridel_status gridel_render_f32(const struct gridel_scene *loaded,
 // Renders a rectangle of a picture, such as a row, in double precision: see `gridel_render_fixed`.
 //
 // # Safety
-// Pointers are null, or lead to what they say.
+// Each pointer is null, or points to what its type states.
 gridel_status gridel_render_f64(const struct gridel_scene *loaded,
                                 const struct gridel_picture *picture,
                                 const struct gridel_rectangle *rectangle,
                                 struct gridel_buffer pixels,
                                 struct gridel_buffer workspace);
 
-// Renders a rectangle of a picture as a camera sees it that was made for this scene, in integers: see
+// Renders a rectangle of a picture as seen by a camera that was made for this scene, in integers: see
 // `gridel_render_fixed`.
 //
 // # Safety
-// Pointers are null, or lead to what they say.
+// Each pointer is null, or points to what its type states.
 gridel_status gridel_render_from_fixed(const struct gridel_scene *loaded,
                                        const struct gridel_camera *camera,
                                        const struct gridel_picture *picture,
@@ -538,11 +540,11 @@ gridel_status gridel_render_from_fixed(const struct gridel_scene *loaded,
                                        struct gridel_buffer pixels,
                                        struct gridel_buffer workspace);
 
-// Renders a rectangle of a picture as a camera sees it that was made for this scene, in single precision: see
+// Renders a rectangle of a picture as seen by a camera that was made for this scene, in single precision: see
 // `gridel_render_fixed`.
 //
 // # Safety
-// Pointers are null, or lead to what they say.
+// Each pointer is null, or points to what its type states.
 gridel_status gridel_render_from_f32(const struct gridel_scene *loaded,
                                      const struct gridel_camera *camera,
                                      const struct gridel_picture *picture,
@@ -550,11 +552,11 @@ gridel_status gridel_render_from_f32(const struct gridel_scene *loaded,
                                      struct gridel_buffer pixels,
                                      struct gridel_buffer workspace);
 
-// Renders a rectangle of a picture as a camera sees it that was made for this scene, in double precision: see
+// Renders a rectangle of a picture as seen by a camera that was made for this scene, in double precision: see
 // `gridel_render_fixed`.
 //
 // # Safety
-// Pointers are null, or lead to what they say.
+// Each pointer is null, or points to what its type states.
 gridel_status gridel_render_from_f64(const struct gridel_scene *loaded,
                                      const struct gridel_camera *camera,
                                      const struct gridel_picture *picture,
@@ -573,7 +575,7 @@ const char *gridel_text(uint32_t status);
 // `gridel_load_with_parts`.
 //
 // # Safety
-// Pointers are null, or lead to what they say.
+// Each pointer is null, or points to what its type states.
 gridel_status gridel_load(struct gridel_scene *to,
                           const void *blob,
                           size_t blob_bytes);
@@ -581,73 +583,73 @@ gridel_status gridel_load(struct gridel_scene *to,
 // Writes the bytes of memory that `gridel_load_with_parts` needs; 0 for a blob without parts.
 //
 // # Safety
-// Pointers are null, or lead to what they say.
+// Each pointer is null, or points to what its type states.
 gridel_status gridel_parts_bytes(const void *blob, size_t blob_bytes, size_t *needed);
 
-// Checks a blob that has parts and fills in a scene. The memory of the parts starts at a multiple of 8 bytes, has as many
-// as `gridel_parts_bytes` states, and belongs to the scene for as long as that is used.
+// Checks a blob that has parts and fills in a scene. The memory of the parts starts at a multiple of 8 bytes. It has
+// as many bytes as `gridel_parts_bytes` states, and belongs to the scene for as long as that is used.
 //
 // # Safety
-// Pointers are null, or lead to what they say.
+// Each pointer is null, or points to what its type states.
 gridel_status gridel_load_with_parts(struct gridel_scene *to,
                                      const void *blob,
                                      size_t blob_bytes,
                                      struct gridel_buffer parts);
 
-// Writes why a blob is rejected, with the section, the record and what is expected, as a sentence that ends with 0 and is
-// cut off where the buffer ends. Returns the code. Takes some KiB of code and of stack; a program that does not call it
-// does not hold it.
+// Writes the reason why a blob is rejected as a sentence, with the section, the record and the expected value. The
+// sentence ends with 0 and is cut off where the buffer ends. Returns the code. Takes some KiB of code and of stack; a
+// program that does not call it does not hold it.
 //
 // # Safety
-// Pointers are null, or lead to what they say.
+// Each pointer is null, or points to what its type states.
 gridel_status gridel_blob_error(const void *blob,
                                 size_t blob_bytes,
                                 char *text,
                                 size_t text_bytes);
 
-// Writes what a scene is and needs.
+// Writes the properties and requirements of a scene.
 //
 // # Safety
-// Pointers are null, or lead to what they say.
+// Each pointer is null, or points to what its type states.
 gridel_status gridel_info_of(const struct gridel_scene *loaded, struct gridel_info *info);
 
 // Writes the bytes of the stack that rays need, which starts at a multiple of 8 bytes.
 //
 // # Safety
-// Pointers are null, or lead to what they say.
+// Each pointer is null, or points to what its type states.
 gridel_status gridel_stack_bytes(const struct gridel_scene *loaded, size_t *needed);
 
-// Finds what a ray hits first, in integers. `stack` is memory of `gridel_stack_bytes` bytes.
+// Finds the first hit of a ray, in integers. `stack` is memory of `gridel_stack_bytes` bytes.
 //
 // # Safety
-// Pointers are null, or lead to what they say.
+// Each pointer is null, or points to what its type states.
 gridel_status gridel_cast_fixed(const struct gridel_scene *loaded,
                                 const struct gridel_ray *ray,
                                 struct gridel_buffer stack,
                                 struct gridel_hit *hit);
 
-// Finds what a ray in steps hits first, in single precision.
+// Finds the first hit of a ray in steps, in single precision.
 //
 // # Safety
-// Pointers are null, or lead to what they say.
+// Each pointer is null, or points to what its type states.
 gridel_status gridel_cast_steps_f32(const struct gridel_scene *loaded,
                                     const struct gridel_ray *ray,
                                     struct gridel_buffer stack,
                                     struct gridel_hit *hit);
 
-// Finds what a ray in scene units hits first, in single precision.
+// Finds the first hit of a ray in scene units, in single precision.
 //
 // # Safety
-// Pointers are null, or lead to what they say.
+// Each pointer is null, or points to what its type states.
 gridel_status gridel_cast_f32(const struct gridel_scene *loaded,
                               const struct gridel_ray_f32 *ray,
                               struct gridel_buffer stack,
                               struct gridel_hit_f32 *hit);
 
-// Finds what a ray in scene units hits first, in double precision.
+// Finds the first hit of a ray in scene units, in double precision.
 //
 // # Safety
-// Pointers are null, or lead to what they say.
+// Each pointer is null, or points to what its type states.
 gridel_status gridel_cast_f64(const struct gridel_scene *loaded,
                               const struct gridel_ray_f64 *ray,
                               struct gridel_buffer stack,
@@ -656,7 +658,7 @@ gridel_status gridel_cast_f64(const struct gridel_scene *loaded,
 // Writes 1 if a ray hits anything, else 0: in integers. Takes less time than `gridel_cast_fixed`.
 //
 // # Safety
-// Pointers are null, or lead to what they say.
+// Each pointer is null, or points to what its type states.
 gridel_status gridel_any_fixed(const struct gridel_scene *loaded,
                                const struct gridel_ray *ray,
                                struct gridel_buffer stack,
@@ -665,7 +667,7 @@ gridel_status gridel_any_fixed(const struct gridel_scene *loaded,
 // Writes 1 if a ray in steps hits anything, else 0: in single precision.
 //
 // # Safety
-// Pointers are null, or lead to what they say.
+// Each pointer is null, or points to what its type states.
 gridel_status gridel_any_steps_f32(const struct gridel_scene *loaded,
                                    const struct gridel_ray *ray,
                                    struct gridel_buffer stack,
@@ -674,7 +676,7 @@ gridel_status gridel_any_steps_f32(const struct gridel_scene *loaded,
 // Writes 1 if a ray in scene units hits anything, else 0: in single precision.
 //
 // # Safety
-// Pointers are null, or lead to what they say.
+// Each pointer is null, or points to what its type states.
 gridel_status gridel_any_f32(const struct gridel_scene *loaded,
                              const struct gridel_ray_f32 *ray,
                              struct gridel_buffer stack,
@@ -683,7 +685,7 @@ gridel_status gridel_any_f32(const struct gridel_scene *loaded,
 // Writes 1 if a ray in scene units hits anything, else 0: in double precision.
 //
 // # Safety
-// Pointers are null, or lead to what they say.
+// Each pointer is null, or points to what its type states.
 gridel_status gridel_any_f64(const struct gridel_scene *loaded,
                              const struct gridel_ray_f64 *ray,
                              struct gridel_buffer stack,
@@ -692,13 +694,13 @@ gridel_status gridel_any_f64(const struct gridel_scene *loaded,
 // Writes the settings of the scene file, without dithering, in RGB888.
 //
 // # Safety
-// Pointers are null, or lead to what they say.
+// Each pointer is null, or points to what its type states.
 gridel_status gridel_picture_of(const struct gridel_scene *loaded, struct gridel_picture *picture);
 
 // Writes the bytes of the workspace that a picture needs in `fixed`, which starts at a multiple of 8 bytes.
 //
 // # Safety
-// Pointers are null, or lead to what they say.
+// Each pointer is null, or points to what its type states.
 gridel_status gridel_workspace_bytes_fixed(const struct gridel_scene *loaded,
                                            const struct gridel_picture *picture,
                                            size_t *needed);
@@ -706,7 +708,7 @@ gridel_status gridel_workspace_bytes_fixed(const struct gridel_scene *loaded,
 // Writes the bytes of the workspace that a picture needs in `f32`, which starts at a multiple of 8 bytes.
 //
 // # Safety
-// Pointers are null, or lead to what they say.
+// Each pointer is null, or points to what its type states.
 gridel_status gridel_workspace_bytes_f32(const struct gridel_scene *loaded,
                                          const struct gridel_picture *picture,
                                          size_t *needed);
@@ -714,7 +716,7 @@ gridel_status gridel_workspace_bytes_f32(const struct gridel_scene *loaded,
 // Writes the bytes of the workspace that a picture needs in `f64`, which starts at a multiple of 8 bytes.
 //
 // # Safety
-// Pointers are null, or lead to what they say.
+// Each pointer is null, or points to what its type states.
 gridel_status gridel_workspace_bytes_f64(const struct gridel_scene *loaded,
                                          const struct gridel_picture *picture,
                                          size_t *needed);
@@ -724,7 +726,7 @@ gridel_status gridel_workspace_bytes_f64(const struct gridel_scene *loaded,
 // whatever its rectangles.
 //
 // # Safety
-// Pointers are null, or lead to what they say.
+// Each pointer is null, or points to what its type states.
 gridel_status gridel_render_fixed(const struct gridel_scene *loaded,
                                   const struct gridel_picture *picture,
                                   const struct gridel_rectangle *rectangle,
@@ -734,7 +736,7 @@ gridel_status gridel_render_fixed(const struct gridel_scene *loaded,
 // Renders a rectangle of a picture, such as a row, in single precision: see `gridel_render_fixed`.
 //
 // # Safety
-// Pointers are null, or lead to what they say.
+// Each pointer is null, or points to what its type states.
 gridel_status gridel_render_f32(const struct gridel_scene *loaded,
                                 const struct gridel_picture *picture,
                                 const struct gridel_rectangle *rectangle,
@@ -744,18 +746,18 @@ gridel_status gridel_render_f32(const struct gridel_scene *loaded,
 // Renders a rectangle of a picture, such as a row, in double precision: see `gridel_render_fixed`.
 //
 // # Safety
-// Pointers are null, or lead to what they say.
+// Each pointer is null, or points to what its type states.
 gridel_status gridel_render_f64(const struct gridel_scene *loaded,
                                 const struct gridel_picture *picture,
                                 const struct gridel_rectangle *rectangle,
                                 struct gridel_buffer pixels,
                                 struct gridel_buffer workspace);
 
-// Renders a rectangle of a picture as a camera sees it that was made for this scene, in integers: see
+// Renders a rectangle of a picture as seen by a camera that was made for this scene, in integers: see
 // `gridel_render_fixed`.
 //
 // # Safety
-// Pointers are null, or lead to what they say.
+// Each pointer is null, or points to what its type states.
 gridel_status gridel_render_from_fixed(const struct gridel_scene *loaded,
                                        const struct gridel_camera *camera,
                                        const struct gridel_picture *picture,
@@ -763,11 +765,11 @@ gridel_status gridel_render_from_fixed(const struct gridel_scene *loaded,
                                        struct gridel_buffer pixels,
                                        struct gridel_buffer workspace);
 
-// Renders a rectangle of a picture as a camera sees it that was made for this scene, in single precision: see
+// Renders a rectangle of a picture as seen by a camera that was made for this scene, in single precision: see
 // `gridel_render_fixed`.
 //
 // # Safety
-// Pointers are null, or lead to what they say.
+// Each pointer is null, or points to what its type states.
 gridel_status gridel_render_from_f32(const struct gridel_scene *loaded,
                                      const struct gridel_camera *camera,
                                      const struct gridel_picture *picture,
@@ -775,11 +777,11 @@ gridel_status gridel_render_from_f32(const struct gridel_scene *loaded,
                                      struct gridel_buffer pixels,
                                      struct gridel_buffer workspace);
 
-// Renders a rectangle of a picture as a camera sees it that was made for this scene, in double precision: see
+// Renders a rectangle of a picture as seen by a camera that was made for this scene, in double precision: see
 // `gridel_render_fixed`.
 //
 // # Safety
-// Pointers are null, or lead to what they say.
+// Each pointer is null, or points to what its type states.
 gridel_status gridel_render_from_f64(const struct gridel_scene *loaded,
                                      const struct gridel_camera *camera,
                                      const struct gridel_picture *picture,

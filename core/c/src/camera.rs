@@ -1,4 +1,4 @@
-//! Cameras of the caller's, in integers.
+//! The caller's own cameras, in integers.
 
 use crate::load::{read, status};
 use crate::memory::{output, scene};
@@ -9,7 +9,7 @@ use gridel_core::{Angle, Camera, Position, Scene, Up};
 /// Writes the camera of the scene file.
 ///
 /// # Safety
-/// Pointers are null, or lead to what they say.
+/// Each pointer is null, or points to what its type states.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn gridel_camera_of(
     loaded: *const gridel_scene,
@@ -27,7 +27,7 @@ pub unsafe extern "C" fn gridel_camera_of(
 /// Makes a camera at one place that looks at another.
 ///
 /// # Safety
-/// Pointers are null, or lead to what they say.
+/// Each pointer is null, or points to what its type states.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn gridel_look_at(
     loaded: *const gridel_scene,
@@ -48,7 +48,7 @@ pub unsafe extern "C" fn gridel_look_at(
 /// Makes a camera on a circle around a place.
 ///
 /// # Safety
-/// Pointers are null, or lead to what they say.
+/// Each pointer is null, or points to what its type states.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn gridel_orbit(
     loaded: *const gridel_scene,
@@ -86,7 +86,7 @@ fn of_view(view: &View) -> gridel_camera {
     }
 }
 
-/// A scene's view with another camera; numbers are checked where it is put to use.
+/// A scene's view with another camera; numbers are checked where it is used.
 pub(crate) fn view_from(scene: &Scene<'_>, camera: &gridel_camera) -> View {
     View {
         eye: camera.eye,

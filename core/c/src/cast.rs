@@ -15,10 +15,10 @@ use gridel_core::{
     Fixed, Hit, NoCount, Number, Position, Ray, Scene, StackView, any_hit, closest_hit,
 };
 
-/// Finds what a ray hits first, in integers. `stack` is memory of `gridel_stack_bytes` bytes.
+/// Finds the first hit of a ray, in integers. `stack` is memory of `gridel_stack_bytes` bytes.
 ///
 /// # Safety
-/// Pointers are null, or lead to what they say.
+/// Each pointer is null, or points to what its type states.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn gridel_cast_fixed(
     loaded: *const gridel_scene,
@@ -30,10 +30,10 @@ pub unsafe extern "C" fn gridel_cast_fixed(
     status(unsafe { cast_steps::<Fixed>(loaded, ray, stack, hit) })
 }
 
-/// Finds what a ray in steps hits first, in single precision.
+/// Finds the first hit of a ray in steps, in single precision.
 ///
 /// # Safety
-/// Pointers are null, or lead to what they say.
+/// Each pointer is null, or points to what its type states.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn gridel_cast_steps_f32(
     loaded: *const gridel_scene,
@@ -45,10 +45,10 @@ pub unsafe extern "C" fn gridel_cast_steps_f32(
     status(unsafe { cast_steps::<f32>(loaded, ray, stack, hit) })
 }
 
-/// Finds what a ray in scene units hits first, in single precision.
+/// Finds the first hit of a ray in scene units, in single precision.
 ///
 /// # Safety
-/// Pointers are null, or lead to what they say.
+/// Each pointer is null, or points to what its type states.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn gridel_cast_f32(
     loaded: *const gridel_scene,
@@ -75,10 +75,10 @@ pub unsafe extern "C" fn gridel_cast_f32(
     status(cast())
 }
 
-/// Finds what a ray in scene units hits first, in double precision.
+/// Finds the first hit of a ray in scene units, in double precision.
 ///
 /// # Safety
-/// Pointers are null, or lead to what they say.
+/// Each pointer is null, or points to what its type states.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn gridel_cast_f64(
     loaded: *const gridel_scene,
@@ -99,7 +99,7 @@ pub unsafe extern "C" fn gridel_cast_f64(
 /// Writes 1 if a ray hits anything, else 0: in integers. Takes less time than `gridel_cast_fixed`.
 ///
 /// # Safety
-/// Pointers are null, or lead to what they say.
+/// Each pointer is null, or points to what its type states.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn gridel_any_fixed(
     loaded: *const gridel_scene,
@@ -114,7 +114,7 @@ pub unsafe extern "C" fn gridel_any_fixed(
 /// Writes 1 if a ray in steps hits anything, else 0: in single precision.
 ///
 /// # Safety
-/// Pointers are null, or lead to what they say.
+/// Each pointer is null, or points to what its type states.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn gridel_any_steps_f32(
     loaded: *const gridel_scene,
@@ -129,7 +129,7 @@ pub unsafe extern "C" fn gridel_any_steps_f32(
 /// Writes 1 if a ray in scene units hits anything, else 0: in single precision.
 ///
 /// # Safety
-/// Pointers are null, or lead to what they say.
+/// Each pointer is null, or points to what its type states.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn gridel_any_f32(
     loaded: *const gridel_scene,
@@ -149,7 +149,7 @@ pub unsafe extern "C" fn gridel_any_f32(
 /// Writes 1 if a ray in scene units hits anything, else 0: in double precision.
 ///
 /// # Safety
-/// Pointers are null, or lead to what they say.
+/// Each pointer is null, or points to what its type states.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn gridel_any_f64(
     loaded: *const gridel_scene,
@@ -167,7 +167,7 @@ pub unsafe extern "C" fn gridel_any_f64(
 }
 
 /// # Safety
-/// Pointers are null, or lead to what they say.
+/// Each pointer is null, or points to what its type states.
 unsafe fn cast_steps<N: Number>(
     loaded: *const gridel_scene,
     ray: *const gridel_ray,
@@ -204,7 +204,7 @@ unsafe fn cast_steps<N: Number>(
 }
 
 /// # Safety
-/// Pointers are null, or lead to what they say.
+/// Each pointer is null, or points to what its type states.
 unsafe fn any_steps<N: Number>(
     loaded: *const gridel_scene,
     ray: *const gridel_ray,
@@ -226,7 +226,7 @@ fn ready<N: Number>(scene: &Scene<'_>, ray: &gridel_ray) -> Result<Ray<N>, gride
 }
 
 /// # Safety
-/// Pointers are null, or lead to what they say.
+/// Each pointer is null, or points to what its type states.
 unsafe fn cast_units<N: Number>(
     loaded: *const gridel_scene,
     ray: &gridel_ray_f64,
@@ -261,7 +261,7 @@ unsafe fn cast_units<N: Number>(
 }
 
 /// # Safety
-/// Pointers are null, or lead to what they say.
+/// Each pointer is null, or points to what its type states.
 unsafe fn any_units<N: Number>(
     loaded: *const gridel_scene,
     ray: &gridel_ray_f64,
@@ -295,7 +295,7 @@ impl From<gridel_ray_f32> for gridel_ray_f64 {
     }
 }
 
-/// How scene units relate to the core's.
+/// The relation of scene units to the core's.
 struct Units {
     origin: [f64; 3],
     /// A power of two.
@@ -303,7 +303,7 @@ struct Units {
     per_unit: f64,
 }
 
-/// Lengths of a direction, in units of either kind, with which no product leaves the range of numbers.
+/// Limits of a direction's length, in units of either kind, within which every product is in the range of numbers.
 const ORDINARY: core::ops::Range<f64> = 1.0 / (1_u128 << 100) as f64..(1_u128 << 100) as f64;
 
 impl Units {
@@ -325,7 +325,7 @@ impl Units {
         [a + x * self.unit, b + y * self.unit, c + z * self.unit]
     }
 
-    /// A ray in the core's form, and by how much its t is larger.
+    /// A ray in the core's form, and the factor by which its t is larger.
     fn ray<N: Number>(
         &self,
         scene: &Scene<'_>,
@@ -335,7 +335,7 @@ impl Units {
         let [x, y, z] = ray.direction.map(|x| if x < 0.0 { -x } else { x });
         let largest = larger(larger(x, y), z);
         let factor = largest * self.per_unit;
-        // Of NaN as well.
+        // True for NaN as well.
         if !ORDINARY.contains(&largest) || !ORDINARY.contains(&factor) {
             return Err(gridel_status::RayDirection);
         }

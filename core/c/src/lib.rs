@@ -58,8 +58,8 @@ pub(crate) const STRUCTURE: gridel_core::Structure = if cfg!(feature = "dual-spl
     gridel_core::Structure::List
 };
 
-/// Neither Gridel nor this library panics, which the project's tests look for in linked programs. A bare machine needs a
-/// handler all the same.
+/// Neither Gridel nor this library panics; the project's tests check that in linked programs. A bare machine still
+/// needs a handler.
 #[cfg(target_os = "none")]
 #[panic_handler]
 fn panic(_: &core::panic::PanicInfo<'_>) -> ! {

@@ -12,7 +12,7 @@ use gridel_core::{BlobError, Scene};
 /// `gridel_load_with_parts`.
 ///
 /// # Safety
-/// Pointers are null, or lead to what they say.
+/// Each pointer is null, or points to what its type states.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn gridel_load(
     to: *mut gridel_scene,
@@ -34,7 +34,7 @@ pub unsafe extern "C" fn gridel_load(
 /// Writes the bytes of memory that `gridel_load_with_parts` needs; 0 for a blob without parts.
 ///
 /// # Safety
-/// Pointers are null, or lead to what they say.
+/// Each pointer is null, or points to what its type states.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn gridel_parts_bytes(
     blob: *const c_void,
@@ -53,11 +53,11 @@ pub unsafe extern "C" fn gridel_parts_bytes(
     status(count())
 }
 
-/// Checks a blob that has parts and fills in a scene. The memory of the parts starts at a multiple of 8 bytes, has as many
-/// as `gridel_parts_bytes` states, and belongs to the scene for as long as that is used.
+/// Checks a blob that has parts and fills in a scene. The memory of the parts starts at a multiple of 8 bytes. It has
+/// as many bytes as `gridel_parts_bytes` states, and belongs to the scene for as long as that is used.
 ///
 /// # Safety
-/// Pointers are null, or lead to what they say.
+/// Each pointer is null, or points to what its type states.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn gridel_load_with_parts(
     to: *mut gridel_scene,
@@ -91,12 +91,12 @@ fn held(scene: Scene<'static>) -> Result<Scene<'static>, gridel_status> {
     }
 }
 
-/// Writes why a blob is rejected, with the section, the record and what is expected, as a sentence that ends with 0 and is
-/// cut off where the buffer ends. Returns the code. Takes some KiB of code and of stack; a program that does not call it
-/// does not hold it.
+/// Writes the reason why a blob is rejected as a sentence, with the section, the record and the expected value. The
+/// sentence ends with 0 and is cut off where the buffer ends. Returns the code. Takes some KiB of code and of stack; a
+/// program that does not call it does not hold it.
 ///
 /// # Safety
-/// Pointers are null, or lead to what they say.
+/// Each pointer is null, or points to what its type states.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn gridel_blob_error(
     blob: *const c_void,
@@ -115,13 +115,13 @@ pub unsafe extern "C" fn gridel_blob_error(
         let blob = unsafe { bytes(blob.cast(), blob_bytes) }?;
         let mut sentence = Sentence { text, used: 0 };
         match Scene::from_bytes(blob) {
-            // It is rejected for want of its parts, which are checked one by one.
+            // It is rejected only because its parts are missing; they are checked one by one.
             Err(BlobError::Parts { .. }) => part_blobs(blob)
                 .and_then(|mut parts| parts.try_for_each(|part| Scene::from_bytes(part).map(drop))),
             result => result.map(drop),
         }
         .map_err(|error| {
-            // What does not fit is cut off.
+            // The rest is cut off.
             let _ = write!(sentence, "{error}");
             gridel_status::from(error)
         })
@@ -129,7 +129,7 @@ pub unsafe extern "C" fn gridel_blob_error(
     status(explain())
 }
 
-/// A text in memory of the caller's, before the 0 at its end.
+/// A text in the caller's memory, before the 0 at its end.
 struct Sentence<'t> {
     text: &'t mut [u8],
     used: usize,
@@ -147,10 +147,10 @@ impl Write for Sentence<'_> {
     }
 }
 
-/// Writes what a scene is and needs.
+/// Writes the properties and requirements of a scene.
 ///
 /// # Safety
-/// Pointers are null, or lead to what they say.
+/// Each pointer is null, or points to what its type states.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn gridel_info_of(
     loaded: *const gridel_scene,
@@ -178,7 +178,7 @@ pub unsafe extern "C" fn gridel_info_of(
 /// Writes the bytes of the stack that rays need, which starts at a multiple of 8 bytes.
 ///
 /// # Safety
-/// Pointers are null, or lead to what they say.
+/// Each pointer is null, or points to what its type states.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn gridel_stack_bytes(
     loaded: *const gridel_scene,

@@ -1,5 +1,5 @@
-//! Memory of the caller's: the one place that trusts pointers. Each is tested for null, alignment and size before it is
-//! used; that it leads to as many bytes as the caller says is the caller's promise, as everywhere in C.
+//! The caller's memory. Only this file trusts pointers. Each pointer is tested for null, alignment and size before it
+//! is used. The caller promises that it leads to the stated number of bytes, as everywhere in C.
 
 use crate::{gridel_buffer, gridel_scene, gridel_status};
 use core::mem::MaybeUninit;
@@ -7,7 +7,7 @@ use core::slice;
 use gridel_core::render::WorkspaceView;
 use gridel_core::{Number, Scene, Stack, StackView, Workspace};
 
-/// Marks a `gridel_scene` that was loaded: "GRID", unlike what memory holds by chance.
+/// Marks a `gridel_scene` that was loaded: "GRID", which memory does not hold by chance.
 const LOADED: usize = 0x4752_4944;
 
 /// The content of a `gridel_scene`.
@@ -35,7 +35,7 @@ pub unsafe fn input<'m, T>(value: *const T) -> Result<&'m T, gridel_status> {
 /// The pointer is null, or leads to memory of that size that nothing else uses for as long as the reference lives.
 pub unsafe fn output<'m, T>(value: *mut T) -> Result<&'m mut MaybeUninit<T>, gridel_status> {
     check(value)?;
-    // SAFETY: it is not null, and aligned; the caller promises the rest. Any bytes will do for `MaybeUninit`.
+    // SAFETY: it is not null, and aligned; the caller promises the rest. Any bytes are valid for `MaybeUninit`.
     Ok(unsafe { &mut *value.cast() })
 }
 
@@ -52,17 +52,17 @@ fn check<T>(value: *const T) -> Result<(), gridel_status> {
 /// Bytes to read.
 ///
 /// # Safety
-/// The pointer is null, or leads to so many bytes that stay as they are for as long as the slice lives.
+/// The pointer is null, or leads to this many bytes that stay as they are for as long as the slice lives.
 pub unsafe fn bytes<'m>(first: *const u8, length: usize) -> Result<&'m [u8], gridel_status> {
     check(first)?;
     if length > isize::MAX as usize {
         return Err(gridel_status::BufferTooSmall);
     }
-    // SAFETY: it is not null, and no longer than a slice may be; the caller promises the rest.
+    // SAFETY: it is not null, and no longer than a slice can be; the caller promises the rest.
     Ok(unsafe { slice::from_raw_parts(first, length) })
 }
 
-/// Elements to write that any bytes are, such as pixels.
+/// Elements to write for which any bytes are valid, such as pixels.
 ///
 /// # Safety
 /// As [`output`], for all bytes of the buffer. Any bytes are a `T`.
@@ -76,10 +76,10 @@ pub unsafe fn elements<'m, T>(
     if needed.is_none_or(|needed| needed > buffer.bytes || needed > isize::MAX as usize) {
         return Err(gridel_status::BufferTooSmall);
     }
-    // Memory that was never written to becomes bytes here.
-    // SAFETY: the buffer has so many bytes, by its caller's promise.
+    // Memory that was never written to becomes bytes here. SAFETY: the buffer has this many bytes, by its caller's
+    // promise.
     unsafe { first.write_bytes(0, count) };
-    // SAFETY: it is not null, aligned, and has so many elements; the caller promises the rest.
+    // SAFETY: it is not null, aligned, and has this many elements; the caller promises the rest.
     Ok(unsafe { slice::from_raw_parts_mut(first, count) })
 }
 
@@ -185,7 +185,7 @@ impl PartViews {
     }
 }
 
-/// Does something with the smallest of some sizes, all constants, that is at least as large as a number.
+/// Runs code with the smallest of some sizes, all constants, that is at least as large as a number.
 macro_rules! with_least {
     ($needed:expr, [$($size:literal)*], $most:literal, $use:ident) => {
         match $needed {
@@ -205,7 +205,7 @@ pub fn stack_bytes(scene: &Scene<'_>) -> usize {
     with_least!(scene.stack_depth(), [8 16 24 32 48 96], 160, bytes)
 }
 
-/// A stack in memory of the caller's that is deep enough for a scene.
+/// A stack in the caller's memory that is deep enough for a scene.
 ///
 /// # Safety
 /// As [`output`], for all bytes of the buffer.
@@ -240,7 +240,7 @@ pub fn workspace_bytes<N: Number>([stack, work]: Depths) -> usize {
     with_least!(stack, [8 16 24 32 48 96], 160, with_work)
 }
 
-/// A workspace in memory of the caller's.
+/// A workspace in the caller's memory.
 ///
 /// # Safety
 /// As [`output`], for all bytes of the buffer.

@@ -16,7 +16,7 @@ const EFFECTS: u32 = Effects::AVAILABLE.0;
 /// Writes the settings of the scene file, without dithering, in RGB888.
 ///
 /// # Safety
-/// Pointers are null, or lead to what they say.
+/// Each pointer is null, or points to what its type states.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn gridel_picture_of(
     loaded: *const gridel_scene,
@@ -42,7 +42,7 @@ pub unsafe extern "C" fn gridel_picture_of(
 /// Writes the bytes of the workspace that a picture needs in `fixed`, which starts at a multiple of 8 bytes.
 ///
 /// # Safety
-/// Pointers are null, or lead to what they say.
+/// Each pointer is null, or points to what its type states.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn gridel_workspace_bytes_fixed(
     loaded: *const gridel_scene,
@@ -56,7 +56,7 @@ pub unsafe extern "C" fn gridel_workspace_bytes_fixed(
 /// Writes the bytes of the workspace that a picture needs in `f32`, which starts at a multiple of 8 bytes.
 ///
 /// # Safety
-/// Pointers are null, or lead to what they say.
+/// Each pointer is null, or points to what its type states.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn gridel_workspace_bytes_f32(
     loaded: *const gridel_scene,
@@ -70,7 +70,7 @@ pub unsafe extern "C" fn gridel_workspace_bytes_f32(
 /// Writes the bytes of the workspace that a picture needs in `f64`, which starts at a multiple of 8 bytes.
 ///
 /// # Safety
-/// Pointers are null, or lead to what they say.
+/// Each pointer is null, or points to what its type states.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn gridel_workspace_bytes_f64(
     loaded: *const gridel_scene,
@@ -86,7 +86,7 @@ pub unsafe extern "C" fn gridel_workspace_bytes_f64(
 /// whatever its rectangles.
 ///
 /// # Safety
-/// Pointers are null, or lead to what they say.
+/// Each pointer is null, or points to what its type states.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn gridel_render_fixed(
     loaded: *const gridel_scene,
@@ -102,7 +102,7 @@ pub unsafe extern "C" fn gridel_render_fixed(
 /// Renders a rectangle of a picture, such as a row, in single precision: see `gridel_render_fixed`.
 ///
 /// # Safety
-/// Pointers are null, or lead to what they say.
+/// Each pointer is null, or points to what its type states.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn gridel_render_f32(
     loaded: *const gridel_scene,
@@ -118,7 +118,7 @@ pub unsafe extern "C" fn gridel_render_f32(
 /// Renders a rectangle of a picture, such as a row, in double precision: see `gridel_render_fixed`.
 ///
 /// # Safety
-/// Pointers are null, or lead to what they say.
+/// Each pointer is null, or points to what its type states.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn gridel_render_f64(
     loaded: *const gridel_scene,
@@ -131,11 +131,11 @@ pub unsafe extern "C" fn gridel_render_f64(
     status(unsafe { render::<f64>(loaded, picture, rectangle, pixels, workspace) })
 }
 
-/// Renders a rectangle of a picture as a camera sees it that was made for this scene, in integers: see
+/// Renders a rectangle of a picture as seen by a camera that was made for this scene, in integers: see
 /// `gridel_render_fixed`.
 ///
 /// # Safety
-/// Pointers are null, or lead to what they say.
+/// Each pointer is null, or points to what its type states.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn gridel_render_from_fixed(
     loaded: *const gridel_scene,
@@ -149,11 +149,11 @@ pub unsafe extern "C" fn gridel_render_from_fixed(
     status(unsafe { render_from::<Fixed>(loaded, camera, picture, rectangle, pixels, workspace) })
 }
 
-/// Renders a rectangle of a picture as a camera sees it that was made for this scene, in single precision: see
+/// Renders a rectangle of a picture as seen by a camera that was made for this scene, in single precision: see
 /// `gridel_render_fixed`.
 ///
 /// # Safety
-/// Pointers are null, or lead to what they say.
+/// Each pointer is null, or points to what its type states.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn gridel_render_from_f32(
     loaded: *const gridel_scene,
@@ -167,11 +167,11 @@ pub unsafe extern "C" fn gridel_render_from_f32(
     status(unsafe { render_from::<f32>(loaded, camera, picture, rectangle, pixels, workspace) })
 }
 
-/// Renders a rectangle of a picture as a camera sees it that was made for this scene, in double precision: see
+/// Renders a rectangle of a picture as seen by a camera that was made for this scene, in double precision: see
 /// `gridel_render_fixed`.
 ///
 /// # Safety
-/// Pointers are null, or lead to what they say.
+/// Each pointer is null, or points to what its type states.
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn gridel_render_from_f64(
     loaded: *const gridel_scene,
@@ -185,13 +185,13 @@ pub unsafe extern "C" fn gridel_render_from_f64(
     status(unsafe { render_from::<f64>(loaded, camera, picture, rectangle, pixels, workspace) })
 }
 
-/// Entries of the stack, and places for rays that wait. What a build has no code for takes no place.
+/// Entries of the stack, and places for waiting rays. Effects without code in a build take no place.
 fn depths(scene: &Scene<'_>, depth: u8) -> [usize; 2] {
     [scene.stack_depth(), scene.effects().work_depth(depth)]
 }
 
 /// # Safety
-/// Pointers are null, or lead to what they say.
+/// Each pointer is null, or points to what its type states.
 unsafe fn count<N: Number>(
     loaded: *const gridel_scene,
     picture: *const gridel_picture,
@@ -215,7 +215,7 @@ fn settings(picture: &gridel_picture) -> Result<Settings, gridel_status> {
 }
 
 /// # Safety
-/// Pointers are null, or lead to what they say.
+/// Each pointer is null, or points to what its type states.
 unsafe fn render<N: Number>(
     loaded: *const gridel_scene,
     picture: *const gridel_picture,
@@ -230,7 +230,7 @@ unsafe fn render<N: Number>(
 }
 
 /// # Safety
-/// Pointers are null, or lead to what they say.
+/// Each pointer is null, or points to what its type states.
 unsafe fn render_from<N: Number>(
     loaded: *const gridel_scene,
     camera: *const gridel_camera,
@@ -250,7 +250,7 @@ unsafe fn render_from<N: Number>(
 }
 
 /// # Safety
-/// Pointers are null, or lead to what they say.
+/// Each pointer is null, or points to what its type states.
 unsafe fn render_scene<N: Number>(
     scene: &Scene<'_>,
     (picture, rectangle): (gridel_picture, gridel_rectangle),
@@ -288,7 +288,7 @@ unsafe fn render_scene<N: Number>(
     Ok(())
 }
 
-/// Pixels of the caller's.
+/// The caller's pixels.
 enum Target<'p> {
     Rgb888(&'p mut [Rgb888]),
     Rgb565(&'p mut [Rgb565]),

@@ -4,7 +4,8 @@ use core::ffi::{CStr, c_char};
 use gridel_core::render::{CameraError, RenderError};
 use gridel_core::{BlobError, RayError};
 
-/// What a function returns: 0, or why it did nothing. `gridel_text` gives the sentence.
+/// The result of a function: 0, or the reason why it did nothing. `gridel_text` returns the
+/// sentence.
 #[repr(u32)]
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum gridel_status {
@@ -20,7 +21,7 @@ pub enum gridel_status {
     NotLoaded = 4,
     /// The blob does not start at a multiple of 16 bytes.
     BlobMisaligned = 10,
-    /// The blob is shorter or longer than it says.
+    /// The blob is shorter or longer than its header states.
     BlobTruncated = 11,
     /// The bytes are not a blob's.
     BlobMagic = 12,

@@ -1,9 +1,9 @@
-//! What goes into the library and comes out of it.
+//! The types of arguments and results.
 
 use core::ffi::c_void;
 
-/// An object, primitive or instance that there is not: of a ray that hits nothing, and the instance of a hit of the
-/// scene's own objects.
+/// Marks a missing object, primitive or instance: of a ray that hits nothing, and the instance of a hit of the scene's
+/// own objects.
 pub const GRIDEL_NONE: u32 = 0xffff_ffff;
 
 /// Words of a `gridel_scene`.
@@ -18,29 +18,29 @@ pub const GRIDEL_WORKSPACE_BYTES_MAX: usize = 5120;
 /// Bytes of a workspace that is large enough for every scene, in `f64`.
 pub const GRIDEL_WORKSPACE_BYTES_MAX_F64: usize = 7680;
 
-/// A scene: memory of the caller's that `gridel_load` fills in. It refers to the blob, which stays where it is. It may be
+/// A scene: memory of the caller that `gridel_load` fills in. It refers to the blob, which stays where it is. It can be
 /// moved and copied.
 #[repr(C)]
 pub struct gridel_scene {
-    /// The library's own.
+    /// Reserved for the library.
     pub(crate) memory: [usize; GRIDEL_SCENE_WORDS],
 }
 
-/// Memory of the caller's.
+/// Memory of the caller.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct gridel_buffer {
-    /// Where it begins.
+    /// The first byte.
     pub memory: *mut c_void,
     /// Its bytes.
     pub bytes: usize,
 }
 
-/// What a scene is and needs.
+/// The properties and requirements of a scene.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct gridel_info {
-    /// Where `gridel_ray` counts from, in scene units.
+    /// The origin of `gridel_ray`, in scene units.
     pub coordinate_origin: [f64; 3],
     /// A step of `gridel_ray` is 2 to this power scene units.
     pub coordinate_exponent: i32,
@@ -56,17 +56,17 @@ pub struct gridel_info {
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct gridel_ray {
-    /// Where it begins.
+    /// The origin.
     pub position: [i32; 3],
     /// Its direction, of any length but 0.
     pub direction: [i32; 3],
     /// The least distance of a hit from `position`, in a straight line.
     pub nearest: u64,
-    /// The greatest; `UINT64_MAX` is endless.
+    /// The greatest distance; `UINT64_MAX` is endless.
     pub farthest: u64,
 }
 
-/// What a `gridel_ray` hits first.
+/// The first hit of a `gridel_ray`.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct gridel_hit {
@@ -90,21 +90,21 @@ pub struct gridel_hit {
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct gridel_ray_f32 {
-    /// Where it begins.
+    /// The origin.
     pub origin: [f32; 3],
     /// Its direction, of any length but 0.
     pub direction: [f32; 3],
     /// The least t of a hit, in multiples of the direction.
     pub t_min: f32,
-    /// The greatest, which may be infinite.
+    /// The greatest t, which can be infinite.
     pub t_max: f32,
 }
 
-/// What a `gridel_ray_f32` hits first.
+/// The first hit of a `gridel_ray_f32`.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct gridel_hit_f32 {
-    /// Where on the ray, in multiples of the direction; infinite if nothing is hit.
+    /// The place on the ray, in multiples of the direction; infinite if nothing is hit.
     pub t: f32,
     /// The place that is hit, in scene units.
     pub point: [f32; 3],
@@ -124,21 +124,21 @@ pub struct gridel_hit_f32 {
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct gridel_ray_f64 {
-    /// Where it begins.
+    /// The origin.
     pub origin: [f64; 3],
     /// Its direction, of any length but 0.
     pub direction: [f64; 3],
     /// The least t of a hit, in multiples of the direction.
     pub t_min: f64,
-    /// The greatest, which may be infinite.
+    /// The greatest t, which can be infinite.
     pub t_max: f64,
 }
 
-/// What a `gridel_ray_f64` hits first.
+/// The first hit of a `gridel_ray_f64`.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct gridel_hit_f64 {
-    /// Where on the ray, in multiples of the direction; infinite if nothing is hit.
+    /// The place on the ray, in multiples of the direction; infinite if nothing is hit.
     pub t: f64,
     /// The place that is hit, in scene units.
     pub point: [f64; 3],
@@ -174,29 +174,30 @@ pub struct gridel_camera {
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct gridel_look {
-    /// Where the camera is.
+    /// The place of the camera.
     pub eye: [i32; 3],
-    /// What is in the middle of its picture.
+    /// The place in the middle of its picture.
     pub target: [i32; 3],
     /// The direction that is upwards in the picture, of any length.
     pub up: [i32; 3],
-    /// The angle under which the picture's height is seen, in 2^-32 turn: above 0 and below half a turn.
+    /// The angle of the picture's height, in 2^-32 turn: above 0 and below half a turn.
     pub field_of_view: u32,
 }
 
-/// A camera on a circle around a place, for a dial.
+/// A camera on a circle around a place, for example for a dial.
 #[repr(C)]
 #[derive(Clone, Copy)]
 pub struct gridel_circle {
-    /// What is in the middle of its picture, in steps.
+    /// The place in the middle of its picture, in steps.
     pub target: [i32; 3],
-    /// How far away the camera is, in steps.
+    /// The distance of the camera, in steps.
     pub distance: u32,
-    /// How far it is turned around the axis that points up, counterclockwise as seen from above, in 2^-32 turn.
+    /// The angle by which it is turned around the axis that points up, counterclockwise as seen from above, in 2^-32
+    /// turn.
     pub azimuth: u32,
-    /// How far it is raised, in 2^-32 turn; it may pass over the pole.
+    /// The angle by which it is raised, in 2^-32 turn; it can pass over the pole.
     pub elevation: u32,
-    /// The angle under which the picture's height is seen, in 2^-32 turn: above 0 and below half a turn.
+    /// The angle of the picture's height, in 2^-32 turn: above 0 and below half a turn.
     pub field_of_view: u32,
     /// The axis that points up: 2 for z, else y.
     pub up_axis: u32,

@@ -6,10 +6,10 @@ use crate::format::record::UnitBox;
 use crate::geometry::{Crossing, LEAVING, Part, accept};
 use crate::ray::Ray;
 
-/// Accepts a hit as [`accept`] does, of a crossing that a kernel may have rounded out of the primitive's box.
+/// Accepts a hit as [`accept`] does, for a crossing that a kernel can have rounded out of the primitive's box.
 ///
-/// `t` is clamped to the interval of the primitive's own box, which holds the true one: that never
-/// adds to an error, and makes culling conservative whatever a kernel rounded.
+/// `t` is clamped to the interval of the primitive's own box, which holds the true `t`. So clamping never adds to an
+/// error, and culling is conservative whatever a kernel rounded.
 #[inline(always)]
 pub(crate) fn accept_in_box<N: Number, K: Culling<N>>(
     ray: &Ray<N>,
@@ -19,7 +19,7 @@ pub(crate) fn accept_in_box<N: Number, K: Culling<N>>(
     tmax: N,
 ) -> Option<(N, Part)> {
     let Crossing { enter, leave } = crossing;
-    // What clamping would not change needs no interval.
+    // A `t` that clamping would not change needs no interval.
     if leave.0 >= enter.0 && K::holds(ray, enter.0, &bounds) {
         if enter.0 >= ray.tmin {
             return (enter.0 <= tmax).then_some(enter);

@@ -1,26 +1,27 @@
-//! Which boxes a ray can meet, in integers, whatever the number format of the ray.
+//! Culling of boxes in integers, for rays of every number format.
 //!
 //! A plane at unit `p` on axis `k` is reached at `t = p * inverse[k] + offset[k]`, counted in
 //! *culling steps* of half a unit along the ray's major axis. All values stay below 2^31: a slope
 //! below 2^-12 is treated as 2^-12, so `inverse` (16 fraction bits) is at most 2^29.
 //!
-//! **Culling is conservative.** Let the ray's coordinate be `x(t) = o + s t` for `t` in
-//! \[0, 2^16\] units, and a kernel's hits lie within 1/4 unit of it (see the lateral errors below).
-//! For a slope of at least 2^-12 a box `[p, q]` widened by 1/4 unit is entered no earlier than
-//! `(p - 1/4 - o) / s`; `near` holds `-(o + 1/4) / s` less three steps for the roundings of
-//! `inverse` (half a step), of the product `o / s` (one) and of `p * inverse` (one), and `far`
-//! the same outward. For a smaller slope `|s| < s' = 2^-12`, entry at `(p - o) / s'` is no later
-//! than at `(p - o) / s` because both have the sign of `p - o` and t is not negative; and a box is
-//! left no earlier than at `t = 2^16` or not before `(q - o) / s' + 2^16`, if it is met at all. So
-//! `far` gets 2^17 steps more. No product is NaN and no case is special: boxes are closed, a ray
-//! in a face meets the box, and an axis along which the ray does not move is a containment test
-//! with 16 units to spare.
+//! **Culling is conservative.** Let the ray's coordinate be `x(t) = o + s t` for `t` in \[0, 2^16\] units. Let a
+//! kernel's hits lie within 1/4 unit of it (see the lateral errors below).
+//!
+//! - For a slope of at least 2^-12, a box `[p, q]` widened by 1/4 unit is entered no earlier than `(p - 1/4 - o) / s`.
+//!   `near` holds `-(o + 1/4) / s` less three steps for the roundings of `inverse` (half a step), of the product
+//!   `o / s` (one) and of `p * inverse` (one). `far` holds the same outward.
+//! - For a smaller slope `|s| < s' = 2^-12`, entry at `(p - o) / s'` is no later than at `(p - o) / s`. Both have the
+//!   sign of `p - o`, and t is not negative. A box that the ray meets is left no earlier than at `t = 2^16`, or not
+//!   before `(q - o) / s' + 2^16`. So `far` gets 2^17 steps more.
+//!
+//! No product is NaN and no case is special. Boxes are closed, so a ray in a face meets the box. An axis along which
+//! the ray does not move is a containment test with a margin of 16 units.
 //!
 //! Lateral errors: coordinates are below 2^17 units. `f32` rounds a projected coordinate by less
 //! than 2^-4 unit and `o / s` by 2^-5; `fixed` by 2^-12 and 2^-13; `f64` by less than either.
 //!
-//! Values are monotone in `p`, so a child's interval lies in its parent's, whatever was rounded. Hits lie
-//! in these intervals or are clamped to them; what cores walk with may be wider, never narrower.
+//! Values are monotone in `p`, so a child's interval lies in its parent's, whatever was rounded. Hits lie in these
+//! intervals or are clamped to them. The intervals with which cores walk can be wider, never narrower.
 
 use crate::accel::cull_axis::CullArithmetic;
 use crate::accel::cull_axis::CullAxis;
@@ -30,22 +31,22 @@ use crate::format::record::{Gridels, Pair, UnitBox, plane_word};
 use crate::ray::Ray;
 use crate::target::inline_unless_small;
 
-/// A form of a ray that culls boxes: [`Cull`] in integers, or lanes of floats where there is SIMD.
+/// A form of a ray that culls boxes: [`Cull`] in integers, or SIMD lanes of floats.
 pub trait Culling<N: CullArithmetic>: Copy + core::fmt::Debug + Default + Send + Sync {
     /// Sets up a ray.
     fn new(ray: &Ray<N>) -> Self;
-    /// The integer form, whose intervals hits are clamped to.
+    /// The integer form, to whose intervals hits are clamped.
     fn exact(&self, ray: &Ray<N>) -> Cull;
-    /// A place on the ray in units, from its form here: for events.
+    /// Returns a place on the ray in units, from its form here; for events.
     fn units(place: i32) -> f64;
-    /// Whether t is certain to stay as it is, or below 0 where it is below 0, when it is clamped to
-    /// the integer form's interval of a box; where that is cheaper to see than to set up that form.
+    /// Returns true if clamping to the integer form's interval of a box certainly keeps t, or keeps a t below 0
+    /// below 0. Returns true only where this test is cheaper than to set up the integer form.
     #[inline(always)]
     fn holds(_: &Ray<N>, _: N, _: &UnitBox) -> bool {
         false
     }
-    /// Whether a ray has no hit up to a t in the box of a primitive whose test takes long; asked where
-    /// no box was culled before.
+    /// Returns true if a ray has no hit up to a t in the box of a primitive whose test is expensive. Called where no
+    /// box was culled before.
     #[inline(always)]
     fn misses(_: &Ray<N>, _: N, _: &UnitBox) -> bool {
         false
@@ -129,8 +130,8 @@ impl<N: CullArithmetic> PairCulling<N> for Cull {
     }
 }
 
-/// The form of rays that walk lists of candidates and cull no boxes: nothing, until a hit lies so
-/// near the side of its primitive's box that the integer form has to tell.
+/// The form of rays that walk lists of candidates and cull no boxes. It is empty until a hit lies so near a side of its
+/// primitive's box that the integer form must decide.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct NoBoxCulling;
 
@@ -141,7 +142,7 @@ impl<N: CullArithmetic> Culling<N> for NoBoxCulling {
         }
     );
 
-    // Out of line, because hardly any hit comes this far.
+    // Out of line, because hardly any hit needs it.
     #[inline(never)]
     fn exact(&self, ray: &Ray<N>) -> Cull {
         Culling::<N>::new(ray)
@@ -156,10 +157,10 @@ impl<N: CullArithmetic> Culling<N> for NoBoxCulling {
         holds(ray, t, bounds)
     }
 
-    /// The box is widened by more than a hit can lie beside it ([`Gridels::SPARE`] units, see
-    /// [`gridels`](crate::accel::candidates::gridels)) and by what these few operations round, less than a unit. Seen along
-    /// the major axis, on which a step is a step of t, the line moves on another axis by its slope
-    /// there: what lies farther from the box's middle than half the box and half of that is beside it.
+    /// The box is widened by more than the distance of a hit from it ([`Gridels::SPARE`] units, see
+    /// [`gridels`](crate::accel::candidates::gridels)). It is also widened by the rounding of these few operations,
+    /// less than a unit. Along the major axis, a step is a step of t. The line moves on another axis by its slope
+    /// there. The ray misses the box if it lies farther from the box's middle than half the box and half of that move.
     ///
     /// Cost: four multiplications.
     #[inline(always)]
@@ -193,24 +194,24 @@ impl Cull {
         f64::from(step) / 2.0
     }
 
-    /// From where to where in units, as events report it.
+    /// The first and the last place in units, as events report them.
     pub(crate) fn span(interval: Interval) -> [f64; 2] {
         [interval.near, interval.far].map(Self::units_of)
     }
 
-    /// The step at which the ray enters what begins at a plane, as it comes along an axis.
+    /// Returns the step at which the ray enters a box whose near plane this is, along an axis.
     #[inline(always)]
     pub(super) fn enters(&self, axis: usize, plane: i16) -> i32 {
         self.axes[axis].entry(plane)
     }
 
-    /// The step at which the ray leaves what ends at a plane, as it comes along an axis.
+    /// Returns the step at which the ray leaves a box whose far plane this is, along an axis.
     #[inline(always)]
     pub(super) fn leaves(&self, axis: usize, plane: i16) -> i32 {
         self.axes[axis].exit(plane)
     }
 
-    /// Whether the ray runs down an axis.
+    /// Returns true if the ray runs down the axis.
     #[inline(always)]
     pub(super) fn descends(&self, axis: usize) -> bool {
         self.axes[axis].descends()
@@ -222,7 +223,7 @@ impl Cull {
         self.start
     }
 
-    /// One bit an axis, set where the ray runs down it.
+    /// One bit per axis, set where the ray runs down it.
     #[inline(always)]
     pub(crate) fn descending(&self) -> u32 {
         let [x, y, z] = self.axes.map(|axis| axis.rotation);
@@ -230,7 +231,7 @@ impl Cull {
     }
 
     inline_unless_small!(
-        /// The interval of a box, the ray's own aside.
+        /// Returns the interval of a box, without the ray's own limits.
         pub(crate) fn interval(&self, bounds: &UnitBox) -> Interval {
             let axis = |k: usize| self.axes[k].between(plane_word(bounds.0[k]));
             axis(0).and(axis(1)).and(axis(2))
@@ -238,12 +239,12 @@ impl Cull {
     );
 }
 
-/// [`Culling::holds`] for float formats: the point lies within 1/8 unit of the box, and rounding
-/// moved it by less than 2^-6, which is nearer than the 1/4 unit by which intervals are widened.
+/// [`Culling::holds`] for float formats. The point lies within 1/8 unit of the box, and rounding moved it by less than
+/// 2^-6. That is less than the 1/4 unit by which intervals are widened.
 ///
-/// So a t that is not negative lies in the interval. Of one that is, the point lies behind the
-/// origin, which so has no plane of the box farther ahead than 1/4 unit: every axis is entered below
-/// 0, and so are the interval's start and whatever t is clamped to.
+/// So a t that is not negative lies in the interval. For a negative t, the point lies behind the origin. So no plane of
+/// the box lies farther ahead of the origin than 1/4 unit, and the ray enters every axis below 0. So the start of the
+/// interval is below 0, and a clamped t is too.
 #[inline(always)]
 pub(crate) fn holds<N: CullArithmetic>(ray: &Ray<N>, t: N, bounds: &UnitBox) -> bool {
     let eighth = N::from_lattice(32);

@@ -12,10 +12,10 @@ pub trait CullArithmetic: Arithmetic {
     fn from_cull(steps: i32) -> Self;
     /// A length in culling steps, rounded towards zero or down; saturates.
     fn to_cull(self) -> i32;
-    /// The culling form of one axis (see [`cull`](crate::accel)): for a slope and the origin's
-    /// coordinate, of at most 2^17 units, the inverse slope in culling steps per unit with 16 fraction
-    /// bits, limited to 2^29, with the sign of the slope; and the offsets from its product with a plane
-    /// to the step of entry and to that of exit, the margins included.
+    /// Returns the culling form of one axis (see [`cull`](crate::accel)), for a slope and the origin's coordinate, of
+    /// at most 2^17 units. The form holds the inverse slope in culling steps per unit with 16 fraction bits, limited to
+    /// 2^29, with the sign of the slope. It also holds the offsets from its product with a plane to the step of entry
+    /// and to that of exit, with the margins.
     fn cull_axis(slope: Self, origin: Self) -> CullAxis;
 }
 
@@ -29,7 +29,7 @@ pub struct CullAxis {
     pub(crate) near: i32,
     /// The offset from a far plane's product to the step of exit.
     pub(crate) far: i32,
-    /// 16 where the ray runs down the axis and the planes of a word change roles, else 0.
+    /// 16 where the ray runs down the axis and the planes of a word swap roles, else 0.
     pub(crate) rotation: u32,
 }
 
@@ -45,14 +45,14 @@ impl CullAxis {
     }
 }
 
-/// Where the upper half of a product comes for nothing, and there is no instruction for the upper
-/// 32 of 48 bits, as the extension for signal processing has it: small cores without floats.
+/// True where the upper half of a product is free, and no instruction returns the upper 32 of 48 bits. The DSP
+/// extension has such an instruction. So this is true on small cores without floats.
 const UPPER_HALF: bool = cfg!(any(
     all(target_arch = "arm", not(target_abi = "eabihf")),
     target_arch = "riscv32"
 ));
 
-/// Whether there is an instruction that rotates.
+/// True if there is a rotate instruction.
 const ROTATES: bool = !cfg!(target_arch = "riscv32");
 
 impl CullAxis {
@@ -68,19 +68,19 @@ impl CullAxis {
         self.step(plane).wrapping_add(self.far)
     }
 
-    /// Whether the ray runs down the axis.
+    /// Returns true if the ray runs down the axis.
     #[inline(always)]
     pub(crate) fn descends(&self) -> bool {
         self.rotation != 0
     }
 
-    /// The upper half of a plane's product, the plane being the upper half of a word.
+    /// Returns the upper half of a plane's product; the plane is the upper half of a word.
     #[inline(always)]
     fn upper_half(&self, word: u32) -> i32 {
         ((self.inverse as i64 * word as i32 as i64) >> 32) as i32
     }
 
-    /// A plane's product: the upper bits of 48.
+    /// Returns a plane's product: the upper bits of 48.
     #[inline(always)]
     fn step(&self, plane: i16) -> i32 {
         if NARROW_PRODUCTS {
@@ -96,7 +96,7 @@ impl CullAxis {
         }
     }
 
-    /// The two planes of a word in the order in which the ray comes to them.
+    /// Returns the two planes of a word in the order in which the ray reaches them.
     #[inline(always)]
     pub(crate) fn ordered(&self, planes: u32) -> [i16; 2] {
         let ordered = planes.rotate_right(self.rotation);
@@ -104,7 +104,7 @@ impl CullAxis {
     }
 
     inline_unless_small!(
-        /// The steps at which the ray enters and leaves between the two planes of a word.
+        /// Returns the steps at which the ray enters and leaves between the two planes of a word.
         pub(in crate::accel) fn between(&self, planes: u32) -> Interval {
             let [near, far] = self.ordered(planes);
             Interval {
@@ -125,10 +125,10 @@ impl CullAxis {
     }
 
     inline_unless_small!(
-        /// Each plane is shifted into the upper half of a word. Below it lies the other one or nothing, so that
-        /// it counts as up to a unit higher. Below another lies the lower half of the given word alone: its
-        /// upper half is where the ray leaves if it runs up the axis, and where it enters if it runs down.
-        /// Either way the interval grows.
+        /// Each plane is shifted into the upper half of a word. The lower half holds the other plane or zero, so the
+        /// plane counts as up to a unit higher. Only the upper plane of the given word has another plane below it. The
+        /// ray leaves at the upper plane if it runs up the axis, and enters there if it runs down. Either way the
+        /// interval grows.
         pub(in crate::accel) fn around_by_shifts(&self, planes: u32) -> Interval {
             let near = planes.wrapping_shl(self.rotation ^ 16);
             let far = planes.wrapping_shl(self.rotation);

@@ -11,9 +11,9 @@ use crate::format::{Leaf, Structure};
 use crate::observe::count::Observer;
 use crate::ray::Ray;
 
-/// The structure that is chosen for a scene while the program runs, by [`Scene::choose`](crate::Scene::choose). Code
-/// around queries is compiled once for it, and not for every structure. Costs a branch and the set-up of a culling form
-/// per query more than the structure itself.
+/// A structure that a program chooses for a scene at run time, with [`Scene::choose`](crate::Scene::choose). Code
+/// around queries is compiled once for it, and not for every structure. A query costs a branch and the set-up of a
+/// culling form more than with the structure itself.
 #[derive(Clone, Copy, Debug)]
 pub enum DynAccel {}
 
@@ -30,7 +30,7 @@ macro_rules! dynamic {
             if $feature:meta;
     )*) => {
         impl Structure {
-            /// Hands the structure to a visitor as a type.
+            /// Passes the structure to a visitor as a type.
             ///
             /// ```
             /// use gridel_core::accel::Accel;

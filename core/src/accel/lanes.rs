@@ -24,7 +24,7 @@ pub struct Lanes {
     start: f32,
 }
 
-/// t as an integer of the same order; t is not negative where it matters.
+/// Returns t as an integer of the same order; t is not negative where the order matters.
 #[inline(always)]
 fn in_order(t: f32) -> i32 {
     t.to_bits() as i32

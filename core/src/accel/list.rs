@@ -1,4 +1,4 @@
-//! The plain list: every primitive is tested. What all structures are measured against.
+//! The plain list: every primitive is tested. All structures are measured against it.
 
 use crate::accel::cull::Cull;
 use crate::accel::number::Number;
@@ -59,7 +59,7 @@ impl Traverse for List {
     }
 }
 
-/// A list keeps nothing but the primitives.
+/// A list stores only the primitives.
 #[derive(Clone, Copy, Debug)]
 pub struct Views<'a>(core::marker::PhantomData<&'a ()>);
 

@@ -1,12 +1,17 @@
-//! Acceleration structures: which primitives a ray might meet.
+//! Acceleration structures: they find the primitives that a ray can hit.
 //!
-//! The answer to a query is defined without them: the least `t` over the exact test of every
-//! primitive, a tie going to the primitive that comes first in the scene file. A structure only
-//! leaves primitives out that cannot be met, so it cannot change a bit of the answer. What makes
-//! this certain, and not only likely: a primitive's `t` lies in the culling interval of the
-//! primitive's own box, or is clamped to it, [`Scene::from_bytes`](crate::Scene::from_bytes) proves
-//! that this box lies in the leaf's and every box in its parent's, and culling is monotone (see
-//! `cull`). Whatever was rounded on the way, a primitive that is met lies in boxes that are met.
+//! The answer to a query is defined without them. It is the least `t` over the exact test of every
+//! primitive; ties go to the primitive that comes first in the scene file. A structure only leaves
+//! out primitives that the ray cannot hit, so it cannot change a bit of the answer. Three facts
+//! prove this:
+//!
+//! - A primitive's `t` lies in the culling interval of the primitive's own box, or is clamped to
+//!   it.
+//! - [`Scene::from_bytes`](crate::Scene::from_bytes) proves that this box lies in the leaf's and
+//!   every box in its parent's.
+//! - Culling is monotone (see `cull`).
+//!
+//! So a primitive that is hit lies in boxes that are hit, whatever was rounded on the way.
 
 pub mod candidates;
 pub mod cells;

@@ -8,12 +8,12 @@ use crate::number::Fixed;
 
 /// A number format of queries and renderers: `fixed`, `f32` or `f64`.
 ///
-/// All arithmetic, projection and culling in one bound; see [`number`](crate::number) for the quantities that a
-/// number stands for.
+/// All arithmetic, projection and culling in one bound. See [`number`](crate::number) for the quantities that a number
+/// represents.
 pub trait Number: Project + CullArithmetic {
-    /// How rays of this format cull boxes on this machine.
+    /// The form in which rays of this format cull boxes on this machine.
     type Cull: PairCulling<Self>;
-    /// How rays of this format cull eight boxes at once.
+    /// The form in which rays of this format cull eight boxes at once.
     type WideCull: WideCulling<Self>;
 }
 
@@ -34,8 +34,8 @@ impl Number for f64 {
 
 /// The form in which rays of a float format cull on this machine.
 ///
-/// Cores with SIMD registers take four planes at a time, the others integers. Neither can change
-/// an answer; only how many boxes are visited for nothing may differ, by the width of a margin.
+/// Cores with SIMD registers test four planes at a time; the others use integers. Neither can change an answer. Only
+/// the number of boxes that are visited in vain can differ, by the width of a margin.
 type FloatCulling = cfg_select! {
     any(
         target_arch = "x86_64",

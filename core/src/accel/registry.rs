@@ -8,17 +8,17 @@ use crate::format::record::Pair;
 use crate::format::structure::structures;
 use crate::format::{BlobError, Sections, Structure};
 
-/// A structure of this build, as a type: the code of those that are not named is not in the program.
+/// A structure of this build, as a type. Structures that a program does not name are not in its code.
 #[diagnostic::on_unimplemented(
     message = "the code of the structure `{Self}` is not in this build",
     note = "enable the Cargo feature of gridel-core with the structure's name"
 )]
 pub trait Accel: Traverse {
-    /// The structure's own records among those of a scene.
+    /// Returns the structure's own records among those of a scene.
     fn views<'s, 'a>(views: &'s StructureViews<'a>) -> &'s Self::Views<'a>;
 }
 
-/// Runs code for a structure that is chosen while the program runs: see [`Structure::visit`].
+/// Runs code for a structure that is chosen at run time: see [`Structure::visit`].
 pub trait StructureVisitor {
     /// The result of the code.
     type Output;
@@ -111,7 +111,7 @@ impl<'a> StructureViews<'a> {
         self.bvh.0
     }
 
-    /// Puts other pairs of [`Bvh`](super::Bvh) in their place.
+    /// Replaces the pairs of [`Bvh`](super::Bvh).
     pub(crate) fn replace_pairs(&mut self, pairs: &'a [Pair]) {
         self.bvh.0 = pairs;
     }

@@ -1,12 +1,11 @@
 //! A ray's culling form in single precision, for lanes.
 //!
-//! The rule is that of [`Cull`](crate::accel::cull::Cull), with wider margins: half a unit aside instead of
-//! a quarter, and four units along the ray where the integers' three steps and roundings come to
-//! less than three. Rounding moves `p / s - o / s` by less than 2^-5 unit aside (coordinates are
-//! below 2^17), so a box's interval here holds its interval there. Hits are held to the latter, so
-//! the answers are the same. The margins lie in the ray's constants, so a box test costs no
-//! instruction for them. No number is NaN: an inverse slope is at most 4096 in magnitude, and all products are
-//! finite.
+//! The rule is that of [`Cull`](crate::accel::cull::Cull), with wider margins. The lateral margin is half a unit
+//! instead of a quarter. The margin along the ray is four units, where the integers' three steps and roundings come to
+//! less than three. Rounding moves `p / s - o / s` by less than 2^-5 unit laterally (coordinates are below 2^17), so a
+//! box's interval here holds its interval there. Hits are clamped to the latter, so the answers are the same. The
+//! margins lie in the ray's constants, so they cost nothing per box. No number is NaN: an inverse slope is at most 4096
+//! in magnitude, and all products are finite.
 
 use crate::accel::cull_axis::CullArithmetic;
 use crate::ray::Ray;
@@ -42,15 +41,15 @@ impl Single {
         }
     }
 
-    /// The limit for hits at or before a length, as the bits of a number: the next above, whatever
-    /// the conversion rounded; below 0 there is nothing.
+    /// Returns the limit for hits at or before a length, as the bits of a number. It is the next number above, whatever
+    /// the conversion rounded. Below 0 no hit is possible.
     #[inline(always)]
     pub(super) fn limit<N: CullArithmetic>(t: N) -> i32 {
         let t = t.to_f32();
         if t < 0.0 { -1 } else { t.to_bits() as i32 + 1 }
     }
 
-    /// The t that bits stand for; -1 for the limit below 0, whose bits are a NaN.
+    /// Returns the t of these bits; -1 for the limit below 0, whose bits are a NaN.
     pub(super) fn units(bits: i32) -> f64 {
         let t = f32::from_bits(bits as u32);
         if t.is_nan() { -1.0 } else { t.into() }

@@ -25,7 +25,7 @@ impl<'a> Space<'a> {
         &self.header.bounds
     }
 
-    /// Whether the blob holds a structure.
+    /// Returns true if the blob holds a structure.
     pub(crate) fn holds(&self, structure: Structure) -> bool {
         self.header.structures & structure.bit() != 0
     }
@@ -42,13 +42,13 @@ impl<'a> Space<'a> {
         self.simd.get().copied().unwrap_or_default()
     }
 
-    /// Whether another space's walks are chosen alike.
+    /// Returns true if another space has the same choice of walks.
     #[inline(always)]
     pub(crate) fn same_choice(&self, other: &Space<'_>) -> bool {
         self.chosen == other.chosen && self.simd == other.simd
     }
 
-    /// Chooses walks as in another space.
+    /// Copies the choice of walks from another space.
     pub(crate) fn choose_as(&mut self, other: &Space<'_>) {
         (self.chosen, self.simd) = (other.chosen, other.simd);
     }
@@ -61,7 +61,7 @@ impl<'a> Space<'a> {
             .and_then(|&word| Leaf::from_word(word))
     }
 
-    /// Proves that the blob holds a structure, to which another one leads.
+    /// Proves that the blob holds a structure that another one refers to.
     pub(in crate::accel) fn require(
         &self,
         missing: Structure,

@@ -4,7 +4,7 @@ use crate::observe::count::Observer;
 use crate::observe::event::{Event, NodeId};
 use heapless::{Vec, VecView};
 
-/// A child that waits for its turn: 12 bytes.
+/// A child that waits to be visited: 12 bytes.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Entry {
     pub(in crate::accel) node: u32,
@@ -39,14 +39,14 @@ impl<const DEPTH: usize> Stack<DEPTH> {
         Self(Vec::new())
     }
 
-    /// The stack as queries take it.
+    /// Returns the stack in the form that queries use.
     pub fn as_view(&mut self) -> &mut StackView {
         &mut self.0
     }
 }
 
-/// The next child that waits and is entered before the limit. Those that are passed over are reported: `report` gives
-/// a child's name, and where it is entered, in units.
+/// Returns the next waiting child that the ray enters before the limit. Children that are skipped are reported:
+/// `report` gets a child's name, and where the ray enters it, in units.
 #[inline(always)]
 pub(in crate::accel) fn pop<C: Observer>(
     stack: &mut StackView,

@@ -1,4 +1,4 @@
-//! How a structure is walked.
+//! The walk of a structure.
 
 use crate::accel::cull::Culling;
 use crate::accel::number::Number;
@@ -9,19 +9,19 @@ use crate::observe::count::Observer;
 use crate::ray::Ray;
 use crate::target::SMALL;
 
-/// How a structure is walked.
+/// The walk of a structure.
 pub trait Traverse: Send + Sync {
-    /// Its name; the list's of one that has none.
+    /// Its name; the list's if it has none.
     const STRUCTURE: Structure;
     /// The form in which its rays cull.
     type Cull<N: Number>: Culling<N>;
     /// Its records in a blob.
     type Views<'a>: Copy;
-    /// Whether its leaves can be [clusters](crate::format::cluster): code for these is only compiled
-    /// where they are.
+    /// True if its leaves can be [clusters](crate::format::cluster). Code for clusters is only compiled where this is
+    /// true.
     const HAS_CLUSTERS: bool = false;
-    /// Whether one copy of a query's code serves the closest hit and any hit: less code, and a branch
-    /// per leaf.
+    /// True if one copy of a query's code serves the closest hit and any hit. That is less code, and costs a branch per
+    /// leaf.
     const ONE_COPY: bool = SMALL;
 
     /// The structure that a blob must hold for the walk.
@@ -29,9 +29,8 @@ pub trait Traverse: Send + Sync {
         Self::STRUCTURE
     }
 
-    /// Calls `leaf` for every leaf whose box the ray can meet, nearer ones first where the
-    /// structure knows. `leaf` returns the t beyond which nothing counts any more, or `None` to
-    /// end the walk.
+    /// Calls `leaf` for every leaf whose box the ray can hit, nearer ones first where the structure knows the order.
+    /// `leaf` returns the t beyond which hits are ignored, or `None` to end the walk.
     #[expect(clippy::too_many_arguments, reason = "its arguments stay in registers")]
     fn walk<N: Number, C: Observer>(
         space: &Space<'_>,
@@ -43,7 +42,7 @@ pub trait Traverse: Send + Sync {
         leaf: impl FnMut(Leaf, &mut C) -> Option<N>,
     );
 
-    /// Calls `hits` for leaves whose box the ray can meet, in any order, up to the first for which it is true.
+    /// Calls `hits` for leaves whose box the ray can hit, in any order, up to the first for which it is true.
     #[expect(clippy::too_many_arguments, reason = "its arguments stay in registers")]
     #[inline(always)]
     fn walk_any<N: Number, C: Observer>(

@@ -1,26 +1,26 @@
-//! Why a mesh cannot deform.
+//! Errors of deforming meshes.
 
 use core::fmt;
 
-/// Why a mesh cannot deform, or a pose of it is rejected.
+/// The reason why a mesh cannot deform, or why a pose of it is rejected.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum DeformError {
     /// The blob holds a structure that cannot be refitted.
     Structures,
     /// The vertices of the blob have another type.
     Storage,
-    /// The blob has more vertices than there is room for.
+    /// The blob has more vertices than the deformation can hold.
     Vertices {
         /// Vertices of the blob.
         found: usize,
-        /// Vertices that there is room for.
+        /// Vertices that the deformation can hold.
         most: usize,
     },
-    /// The blob has more pairs than there is room for.
+    /// The blob has more pairs than the deformation can hold.
     Pairs {
         /// Pairs of the blob.
         found: usize,
-        /// Pairs that there is room for.
+        /// Pairs that the deformation can hold.
         most: usize,
     },
     /// The deformation was made of another scene.
@@ -35,7 +35,7 @@ pub enum DeformError {
         /// Its number.
         vertex: usize,
     },
-    /// The corners of a triangle are three places on a line: rays could slip past the one in the middle.
+    /// The corners of a triangle are three places on a line: rays could pass on either side of the middle one.
     Collapsed {
         /// Its number in the order of the scene file.
         primitive: u32,

@@ -10,7 +10,7 @@ use crate::number::fixed::halves::product;
 use crate::scene::Scene;
 use core::marker::PhantomData;
 
-/// The box that vertices must lie in, in steps.
+/// The box that limits vertices, in steps.
 pub(super) struct Room<V> {
     sides: [[i32; 2]; 3],
     vertex: PhantomData<V>,
@@ -27,7 +27,7 @@ impl<V: Vertex> Room<V> {
         }
     }
 
-    /// Whether a place lies in it, faces included.
+    /// Returns true if a place lies in the box, faces included.
     #[inline(always)]
     pub(super) fn holds(&self, steps: [i32; 3]) -> bool {
         let mut axes = self.sides.iter().zip(steps);
@@ -48,9 +48,9 @@ pub(super) fn check_room<V: Vertex>(scene: &Scene<'_>, vertices: &[V]) -> Result
     }
 }
 
-/// Whether corners are three different places on a line.
+/// Returns true if corners are three different places on a line.
 ///
-/// For most triangles the lower half of one component of the normal shows that they are not.
+/// For most triangles, the lower half of one component of the normal is enough to return false.
 #[inline(always)]
 fn is_needle<V: Vertex>(a: &V, b: &V, c: &V) -> bool {
     let edge = |to: &V, k: usize| to.steps(k).wrapping_sub(a.steps(k));
@@ -58,7 +58,7 @@ fn is_needle<V: Vertex>(a: &V, b: &V, c: &V) -> bool {
     one == edge(b, 2).wrapping_mul(edge(c, 1)) && lie_on_a_line(a, b, c)
 }
 
-/// Decides what [`is_needle`] asks.
+/// Decides [`is_needle`] with the exact normal.
 #[cold]
 #[inline(never)]
 fn lie_on_a_line<V: Vertex>(a: &V, b: &V, c: &V) -> bool {
@@ -73,7 +73,7 @@ fn lie_on_a_line<V: Vertex>(a: &V, b: &V, c: &V) -> bool {
     a != b && b != c && c != a
 }
 
-/// Computes the boxes of a pose again, and proves on the way that no triangle is a needle.
+/// Computes the boxes of a pose again, and proves that no triangle is a needle.
 pub(super) fn refit<V: Vertex>(
     scene: &Scene<'_>,
     vertices: &[V],
@@ -101,7 +101,7 @@ fn fit<V: Vertex, I: Corners>(
     let space = &scene.space;
     let mut needle = None;
     if pairs.is_empty() {
-        // One leaf, or the list alone.
+        // One leaf, or only the list.
         around(vertices, triangles, 0, &mut needle);
     }
     refit::refit(pairs, |number| {
@@ -136,7 +136,7 @@ fn around<V: Vertex, I: Corners>(
             highest[k] = highest[k].max(a).max(b).max(c);
         }
     }
-    // As `UnitBox::around` rounds.
+    // Rounded as `UnitBox::around` does.
     let less = (1_i32 << V::STEP_BITS) - 1;
     let axis = |k: usize| {
         [
@@ -170,7 +170,7 @@ mod tests {
         };
         let [a, b, c] = [[-9, 4, 7], [-8, 6, 10], [-6, 10, 16]];
         assert!(is_needle([a, b, c]) && is_needle([b, a, c]) && is_needle([c, b, a]));
-        // Two corners at one place leave the neighbors a common edge.
+        // If two corners coincide, the neighbors share an edge.
         assert!(!is_needle([a, a, c]) && !is_needle([a, c, a]) && !is_needle([c, c, c]));
         for k in 0..3 {
             let mut aside = b;

@@ -1,18 +1,18 @@
 //! Deforming meshes: vertices and boxes in RAM, everything else in the blob.
 //!
-//! A [`Deformation`] copies what changes when a mesh moves: the vertices, and the pairs of the structure
+//! A [`Deformation`] copies the data that change when a mesh moves: the vertices, and the pairs of the structure
 //! [`Bvh`](crate::Bvh). The program moves vertices, and [`refit`](Deformation::refit) computes the boxes again.
-//! [`Scene::with_deformation`] gives a scene whose queries read RAM in place of the blob. Hits are those of a blob that
-//! is compiled with the moved vertices, bit for bit: an answer is defined without the hierarchy.
+//! [`Scene::with_deformation`] returns a scene whose queries read RAM in place of the blob. Hits are those of a blob
+//! that is compiled with the moved vertices, bit for bit, because an answer is defined without the hierarchy.
 //!
-//! What a pose must keep, and `refit` proves:
+//! Rules of a pose, which `refit` proves:
 //!
 //! - Vertices lie in the scene's box, the *room*. The compiler widens it by `--room`.
-//! - No triangle is a *needle*: three places on a line. A ray never meets a triangle without an area. Where two corners
-//!   are one place, the neighbors share the other edge, and the mesh stays closed. The corner in the middle of a needle
-//!   is rounded aside on its own, so a ray could slip between the needle's neighbors.
+//! - No triangle is a *needle*: three different places on a line. A ray never hits a triangle without an area. Where
+//!   two corners coincide, the neighbors share the other edge, and the mesh stays closed. The corner in the middle of a
+//!   needle is rounded laterally on its own, so a ray could slip between the needle's neighbors.
 //!
-//! Nothing else in a blob depends on vertices: normals, hit bounds and offsets come from the corners when a ray hits.
+//! No other data of a blob depend on vertices: normals, hit bounds and offsets come from the corners when a ray hits.
 //! Other structures would not fit the moved mesh, so blobs that hold any are rejected. Instances keep their boxes,
 //! because those hold the whole room of a part.
 
@@ -32,8 +32,8 @@ use heapless::Vec;
 /// The vertices and the boxes of a deforming mesh, in RAM.
 ///
 /// `V` is [`Vertex16`](crate::format::record::Vertex16) for a blob of at most 16 lattice bits, and
-/// [`Vertex24`](crate::format::record::Vertex24) for others. [`Requirements`](crate::Requirements) states `VERTICES` and
-/// `PAIRS` of a blob, so the size is known when the program is compiled: 6 or 12 bytes per vertex, 32 bytes per pair, and
+/// [`Vertex24`](crate::format::record::Vertex24) for others. [`Requirements`](crate::Requirements) states `VERTICES`
+/// and `PAIRS` of a blob, so the size is known at compile time. It is 6 or 12 bytes per vertex, 32 bytes per pair, and
 /// a few words.
 ///
 /// ```
@@ -64,14 +64,14 @@ use heapless::Vec;
 pub type Deformation<V, const VERTICES: usize, const PAIRS: usize> =
     DeformationIn<V, Vec<V, VERTICES>, Vec<Pair, PAIRS>>;
 
-/// A [`Deformation`] in memory of any sort: on hosts, as much as a scene takes.
+/// A [`Deformation`] in memory of any sort. On hosts it grows with the scene.
 #[derive(Clone, Debug)]
 pub struct DeformationIn<V, A, B> {
     vertices: A,
     pairs: B,
     /// The checksum of the blob that it was made of.
     blob: u32,
-    /// Whether the boxes are those of the vertices.
+    /// True if the boxes are those of the vertices.
     refitted: bool,
     vertex: PhantomData<V>,
 }
@@ -90,10 +90,10 @@ impl<V, A: Default, B: Default> Default for DeformationIn<V, A, B> {
 
 /// Memory for the records of a deformation.
 pub trait Memory<T>: DerefMut<Target = [T]> {
-    /// Puts copies of these in place of all that there are. Returns whether there is room.
+    /// Replaces all records by copies of these. Returns true if there is enough capacity.
     fn copy_from(&mut self, records: &[T]) -> bool;
 
-    /// Number of records that there is room for.
+    /// Number of records that the memory can hold.
     fn room(&self) -> usize;
 }
 
@@ -109,7 +109,8 @@ impl<T: Copy, const MOST: usize> Memory<T> for Vec<T, MOST> {
 }
 
 impl<V, const VERTICES: usize, const PAIRS: usize> Deformation<V, VERTICES, PAIRS> {
-    /// A deformation of no scene yet, for a `static`: [`reset`](DeformationIn::reset) makes it one of a scene.
+    /// A deformation without a scene, for a `static`: [`reset`](DeformationIn::reset) makes it the deformation of a
+    /// scene.
     pub const fn new() -> Self {
         Self {
             vertices: Vec::new(),
@@ -123,7 +124,7 @@ impl<V, const VERTICES: usize, const PAIRS: usize> Deformation<V, VERTICES, PAIR
     /// A deformation of a scene, at rest.
     ///
     /// # Errors
-    /// As [`reset`](DeformationIn::reset).
+    /// The errors of [`reset`](DeformationIn::reset).
     pub fn of(scene: &Scene<'_>) -> Result<Self, DeformError>
     where
         V: Vertex,
@@ -138,11 +139,11 @@ impl<V, const VERTICES: usize, const PAIRS: usize> Deformation<V, VERTICES, PAIR
 pub const STRUCTURES: [Structure; 2] = [Structure::List, Structure::Bvh];
 
 impl<V: Vertex, A: Memory<V>, B: Memory<Pair>> DeformationIn<V, A, B> {
-    /// Copies vertices and boxes of a scene, or of a part of one, in place of all there is.
+    /// Copies vertices and boxes of a scene, or of a part, and replaces the present ones.
     ///
     /// # Errors
-    /// If the blob holds other structures than [`STRUCTURES`], its vertices have another type, or there
-    /// is not enough room.
+    /// If the blob holds other structures than [`STRUCTURES`], its vertices have another type, or the capacity is too
+    /// small.
     pub fn reset(&mut self, scene: &Scene<'_>) -> Result<(), DeformError> {
         self.refitted = false;
         let held = STRUCTURES.iter();
@@ -174,9 +175,9 @@ impl<V: Vertex, A: Memory<V>, B: Memory<Pair>> DeformationIn<V, A, B> {
         &self.vertices
     }
 
-    /// The vertices, to be moved: coordinates of [`Vertex16`](crate::format::record::Vertex16) are units, and those of
-    /// [`Vertex24`](crate::format::record::Vertex24) 1/256 unit. They are in the blob's own order, and where they are at
-    /// rest [`Scene::stored_vertices`] tells. Call [`refit`](Self::refit) afterwards.
+    /// Returns the vertices for writing. Coordinates of [`Vertex16`](crate::format::record::Vertex16) are units, and
+    /// those of [`Vertex24`](crate::format::record::Vertex24) 1/256 unit. The order is the blob's own;
+    /// [`Scene::stored_vertices`] returns their places at rest. Call [`refit`](Self::refit) afterwards.
     pub fn vertices_mut(&mut self) -> &mut [V] {
         self.refitted = false;
         &mut self.vertices
@@ -191,7 +192,7 @@ impl<V: Vertex, A: Memory<V>, B: Memory<Pair>> DeformationIn<V, A, B> {
     /// [`refit`](Self::refit) afterwards.
     ///
     /// # Errors
-    /// If there is no such vertex, or the place lies outside of the scene's box. Then the vertex stays.
+    /// If there is no such vertex, or the place lies outside the scene's box. Then the vertex stays.
     pub fn place(
         &mut self,
         scene: &Scene<'_>,
@@ -222,9 +223,9 @@ impl<V: Vertex, A: Memory<V>, B: Memory<Pair>> DeformationIn<V, A, B> {
     /// Costs on a Cortex-M4F about 190 instructions per triangle, and is linear in vertices, triangles and pairs.
     ///
     /// # Errors
-    /// If the deformation was made of another scene, a vertex lies outside of the scene's box, or the corners of a
-    /// triangle are three places on a line. Then the vertices are as they were moved, and
-    /// [`Scene::with_deformation`] rejects them.
+    /// If the deformation was made of another scene, or a vertex lies outside the scene's box. Also if the corners of a
+    /// triangle are three places on a line. Then the vertices keep their new places, and [`Scene::with_deformation`]
+    /// rejects them.
     pub fn refit(&mut self, scene: &Scene<'_>) -> Result<(), DeformError> {
         self.refitted = false;
         self.check_scene(scene)?;
@@ -248,7 +249,7 @@ impl<V: Vertex, A: Memory<V>, B: Memory<Pair>> DeformationIn<V, A, B> {
 }
 
 impl<'a> Scene<'a> {
-    /// The vertices as they lie in the blob; `None` if they have another type.
+    /// Returns the vertices in the blob; `None` if they have another type.
     pub fn stored_vertices<V: Vertex>(&self) -> Option<&'a [V]> {
         self.space.shapes.vertices.stored()
     }
@@ -260,9 +261,9 @@ impl<'a> Scene<'a> {
 
     /// Returns the scene with the vertices and boxes of a deformation in place of the blob's own. Costs nothing per ray.
     ///
-    /// Triangles are shaded flat: the normals that a blob may have are those at rest.
+    /// Triangles are shaded flat, because the normals of a blob are those at rest.
     ///
-    /// A part is deformed likewise: [`Parts::with_part`](crate::Parts::with_part) puts it in its place.
+    /// A part is deformed likewise: pass it to [`Parts::with_part`](crate::Parts::with_part).
     ///
     /// # Errors
     /// If the deformation was made of another scene, or vertices moved since it was refitted.

@@ -2,9 +2,9 @@
 
 use crate::format::record::Header;
 
-/// The checksum of a blob: FNV-1a over its 32-bit words, the checksum's own taken as 0.
+/// The checksum of a blob: FNV-1a over its 32-bit words. The word of the checksum itself counts as 0.
 ///
-/// Every step is a bijection of the state, so a change of any single word always shows.
+/// Every step is a bijection of the state, so the checksum detects a change of any single word.
 ///
 /// ```
 /// # static BLOB: &[u8] =
@@ -30,7 +30,7 @@ pub const fn checksum(blob: &[u8]) -> u32 {
         words = after;
     }
     if !rest.is_empty() {
-        // The last bytes as a word that ends in zeros.
+        // The last bytes, padded with zeros to a word.
         let mut word = 0;
         while let [before @ .., byte] = rest {
             word = word << 8 | *byte as u32;
@@ -41,7 +41,7 @@ pub const fn checksum(blob: &[u8]) -> u32 {
     state
 }
 
-/// Bytes aligned as a blob must be; what [`include_blob!`](crate::include_blob) makes.
+/// Bytes with the alignment of a blob. [`include_blob!`](crate::include_blob) returns them.
 #[derive(Clone, Copy, Debug)]
 #[repr(C, align(16))]
 pub struct Aligned<T: ?Sized>(pub T);

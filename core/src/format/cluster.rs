@@ -1,17 +1,17 @@
 //! Clusters: strips of triangles and packs of spheres, in rows of eight lanes.
 //!
-//! A cluster holds its geometry itself, so that a leaf of the eight-wide structure is one record:
-//! a vertex that several triangles share is stored, converted and projected once, and no index
-//! leads anywhere. Where [`Structure::Wide`](crate::Structure::Wide) is a blob's only structure,
-//! its triangles and spheres lie in clusters alone.
+//! A cluster holds its geometry itself, so that a leaf of the eight-wide structure is one record. A vertex that several
+//! triangles share is stored, converted and projected once, and no index is needed. Where
+//! [`Structure::Wide`](crate::Structure::Wide) is a blob's only structure, only clusters hold its triangles and
+//! spheres.
 //!
-//! **Members.** The triangles of all strips, and after them the spheres of all packs, are counted
-//! from 0 in the order in which they lie there; the section of that name has the primitive of each.
-//! All packs but the last are full, so the sphere in lane `l` of pack `p` is number `8 p + l`.
+//! **Members.** The triangles of all strips, and then the spheres of all packs, are counted from 0 in stored order. The
+//! section of that name has the primitive of each. All packs but the last are full, so the sphere in lane `l` of pack
+//! `p` is number `8 p + l`.
 //!
-//! **Radii.** Few scenes have more than a handful of them, so a pack on the 24-bit lattice has four
-//! bits for each: its number in a window of [`RADII`] among those of the section of that name. Where
-//! the section is one window, all packs share it; else the one of pack `p` begins at `8 p`.
+//! **Radii.** Few scenes have more than a handful of radii. So a pack on the 24-bit lattice has four bits for each
+//! sphere. They are the radius's number in a window of [`RADII`], among those of the section of that name. Where the
+//! section is one window, all packs share it; else the window of pack `p` begins at `8 p`.
 
 use crate::format::layout::records;
 use crate::format::record::{Vertex16, Vertex24};
@@ -24,7 +24,7 @@ use core::array;
 pub const LANES: usize = 8;
 /// Radii of a window.
 pub const RADII: usize = 2 * LANES;
-/// Most triangles of a strip.
+/// Maximum number of triangles of a strip.
 pub const STRIP_TRIANGLES: usize = LANES - 2;
 
 records! {
@@ -116,8 +116,7 @@ pub(crate) struct Windowed24<'a> {
 }
 
 impl StripMembers {
-    /// The six ways in which the corners of a triangle in scene-file order lie on the three
-    /// vertices of its place.
+    /// The six ways in which the corners of a triangle, in scene-file order, map to the three vertices of its place.
     pub const ARRANGEMENTS: [[usize; 3]; 6] = [
         [0, 1, 2],
         [1, 2, 0],
@@ -127,7 +126,7 @@ impl StripMembers {
         [1, 0, 2],
     ];
 
-    /// Members from number `first` on; `arrangements` is, for each place, the number of one of the
+    /// Creates members from number `first` on. `arrangements` is, for each place, the number of one of the
     /// [`ARRANGEMENTS`](Self::ARRANGEMENTS), or `None` where there is no triangle.
     pub fn new(first: u32, arrangements: [Option<u32>; STRIP_TRIANGLES]) -> Self {
         let word = (0..).zip(arrangements).fold(0, |word, (place, number)| {
@@ -147,7 +146,7 @@ impl StripMembers {
         from_24(self.first)
     }
 
-    /// A bit for each place where there is a triangle.
+    /// One bit for each place with a triangle.
     #[inline(always)]
     pub fn lanes(&self) -> u32 {
         from_24(self.corners) >> 18
@@ -159,8 +158,8 @@ impl StripMembers {
         self.lanes().count_ones()
     }
 
-    /// The vertices of a place's triangle in the order of its corners; `None` where the number of
-    /// the arrangement means nothing.
+    /// Returns the vertices of a place's triangle in the order of its corners; `None` if the number of the arrangement
+    /// is invalid.
     #[inline(always)]
     pub(crate) fn corners(&self, place: u32) -> Option<[usize; 3]> {
         let number = from_24(self.corners) >> ((3 * place) & 31) & 7;
@@ -255,7 +254,7 @@ impl Rows for Rows24 {
     }
 }
 
-/// A row by number, which is below 3: an address, and no branch that would be guessed wrong.
+/// Returns a row by number, which is below 3. It computes an address, without a branch that would be mispredicted.
 #[inline(always)]
 fn row<T, const N: usize>(rows: &[[T; N]; 3], axis: usize) -> &[T; N] {
     rows.get(axis).unwrap_or(&rows[0])
@@ -320,7 +319,7 @@ pub(crate) trait Pack {
         (radius > 0).then(|| (self.rows().position(lane as usize), radius))
     }
 
-    /// A bit for each lane that holds a sphere.
+    /// One bit for each lane that holds a sphere.
     fn lanes(&self) -> u32 {
         let holds = |lane: &usize| self.radius(*lane) > 0;
         (0..LANES)

@@ -7,8 +7,9 @@
 use crate::format::limits::{MAX_RAY_DEPTH, work_depth};
 use core::fmt;
 
-/// Hands the table of effects to a macro: constant, bit in the blob, name and Cargo feature, type and
-/// module in `shade`, the most rays that wait after a hit because of it, and what requires it.
+/// Passes the table of effects to a macro. The columns are constant, bit in the blob, name and Cargo feature, type and
+/// module in `shade`. The last two are the most rays that wait after a hit because of the effect, and the scenes that
+/// require it.
 ///
 /// At each place of the ray loop effects act in this order.
 macro_rules! effects {
@@ -84,7 +85,7 @@ macro_rules! effects {
 
 pub(crate) use effects;
 
-/// The advice about a Cargo feature that a scene requires and that this build lacks.
+/// The advice on a Cargo feature that a scene requires and that this build lacks.
 macro_rules! enable {
     ($feature:literal) => {
         concat!(
@@ -145,10 +146,10 @@ macro_rules! sets {
 effects!(sets);
 
 impl Effects {
-    /// None: surfaces have their diffuse color under unshadowed lights.
+    /// No effects: surfaces have their diffuse color under unshadowed lights.
     pub const NONE: Effects = Effects(0);
 
-    /// Whether all of `other` are in this set.
+    /// Returns true if all of `other` are in this set.
     ///
     /// ```
     /// use gridel_core::Effects;
@@ -160,7 +161,7 @@ impl Effects {
         self.0 & other.0 == other.0
     }
 
-    /// This set without those of `other`.
+    /// Returns this set without the effects of `other`.
     ///
     /// ```
     /// use gridel_core::Effects;
@@ -204,10 +205,10 @@ impl Effects {
         }
     }
 
-    /// Places for waiting rays that every scene finds enough.
+    /// Places for waiting rays that are enough for every scene.
     pub const MAX_WORK_DEPTH: usize = Self::AVAILABLE.work_depth(MAX_RAY_DEPTH as u8);
 
-    /// Whether a hit causes two rays, diffuse ones apart: one that is mirrored, and one that goes on.
+    /// Returns true if a hit causes two rays, without diffuse ones: a mirrored one and one that passes through.
     const fn casts_two(self) -> bool {
         let mirrors = self.contains(Self::MIRROR) || self.contains(Self::GLASS);
         let goes_on = self.contains(Self::GLASS) || self.contains(Self::ALPHA);

@@ -45,14 +45,14 @@ impl Environment {
 }
 
 impl Light {
-    /// What [`directional`](Self::directional) is for the map of the environment as a light. Its color and vector mean
-    /// nothing.
+    /// The value of [`directional`](Self::directional) that marks the map of the environment as a light. Its color and
+    /// vector are not used.
     pub const ENVIRONMENT: u32 = 4;
-    /// What [`directional`](Self::directional) is for the sun of the environment. Its vector means nothing; its color is
-    /// the sun's radiance times the square of the sun's radius.
+    /// The value of [`directional`](Self::directional) that marks the sun of the environment. Its vector is not used;
+    /// its color is the sun's radiance times the square of the sun's radius.
     pub const SUN: u32 = 5;
 
-    /// Whether it is the map or the sun of the environment.
+    /// Returns true if the light is the map or the sun of the environment.
     pub const fn is_environment(&self) -> bool {
         matches!(self.directional, Self::ENVIRONMENT | Self::SUN)
     }

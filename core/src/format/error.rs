@@ -1,4 +1,4 @@
-//! Errors of invalid blobs, in words that say what to do.
+//! Errors of invalid blobs. Each says what to do.
 
 use crate::format::section::SectionKind;
 use crate::format::{Effects, Field, Reason, Structure};
@@ -8,23 +8,24 @@ use core::fmt;
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[non_exhaustive]
-// A plain tag: a tag that shares a word with a field costs boards two to six percent of their code.
+// A plain tag, because a tag that shares a word with a field costs boards two to six percent of
+// their code.
 #[repr(u32)]
 pub enum BlobError {
     /// The slice does not start at a multiple of 16 bytes.
     Misaligned,
-    /// The blob is shorter, or longer, than it says.
+    /// The blob is shorter or longer than its header states.
     Truncated {
         /// Bytes that the blob needs.
         needed: usize,
-        /// Bytes that there are.
+        /// Bytes of the slice.
         found: usize,
     },
     /// The first bytes are not a blob's.
     Magic,
     /// Blob and machine differ in byte order.
     Endianness {
-        /// The word that says so.
+        /// The word that shows the byte order.
         found: u32,
     },
     /// The blob was written in another version of the format.
@@ -34,7 +35,7 @@ pub enum BlobError {
     },
     /// The bytes were changed since the blob was written.
     Checksum {
-        /// The checksum of what there is.
+        /// The checksum of the bytes.
         found: u32,
         /// The checksum in the header.
         expected: u32,
@@ -44,17 +45,17 @@ pub enum BlobError {
         /// The effects.
         missing: Effects,
     },
-    /// The scene holds primitives of a kind, or stored in a way, or colors, that this build was
-    /// compiled without.
+    /// The scene holds primitives of a kind, primitives in a stored form, or colors that this build
+    /// was compiled without.
     MissingPart {
         /// The Cargo feature that is missing.
         missing: &'static str,
     },
-    /// The blob holds a structure without another one that it leads to.
+    /// The blob holds a structure without another one that it needs.
     MissingStructure {
-        /// The structure that is not there.
+        /// The missing structure.
         missing: Structure,
-        /// The structure that leads to it.
+        /// The structure that needs it.
         needed_by: Structure,
     },
     /// The blob has other parts than those that it was loaded with.
@@ -68,7 +69,7 @@ pub enum BlobError {
     Stride {
         /// The section.
         section: SectionKind,
-        /// Bytes a record.
+        /// Bytes per record.
         found: usize,
         /// Bytes that a record has (the largest where there are several forms).
         expected: usize,
@@ -77,25 +78,25 @@ pub enum BlobError {
     Count {
         /// The section.
         section: SectionKind,
-        /// Records that there are.
+        /// Records in the section.
         found: usize,
-        /// Records that there must be.
+        /// Records that are required.
         expected: usize,
     },
     /// A number is out of its range.
     OutOfRange {
-        /// Where it is.
+        /// The location of the number.
         location: Location,
         /// The field.
         field: Field,
         /// The number.
         found: i64,
-        /// The least and the greatest number that it can be.
+        /// The least and the greatest valid number.
         range: [i64; 2],
     },
-    /// A part of the blob is not as it must be.
+    /// A part of the blob is invalid.
     Invalid {
-        /// Which part.
+        /// The part.
         location: Location,
         /// The reason.
         reason: Reason,
@@ -129,7 +130,7 @@ impl Location {
         }
     }
 
-    /// The error for a part that is not as it must be.
+    /// The error for an invalid part.
     #[inline(always)]
     pub(crate) const fn invalid(self, reason: Reason) -> BlobError {
         BlobError::Invalid {

@@ -1,4 +1,4 @@
-//! Arrays of integers that are as narrow as their values allow.
+//! Arrays of integers, as narrow as their values allow.
 
 use crate::format::Sections;
 use crate::format::error::BlobError;
@@ -7,7 +7,7 @@ use crate::format::section::SectionKind;
 /// A read-only array of integers in one to four bytes each, or none at all.
 #[derive(Clone, Copy, Debug)]
 pub enum Indices<'a> {
-    /// No array: the caller's rule says what an index means.
+    /// No array: the caller defines the meaning of an index.
     Absent,
     /// One byte each.
     U8(&'a [u8]),
@@ -49,13 +49,12 @@ impl<'a> Indices<'a> {
         }
     }
 
-    /// Whether there is no array.
+    /// Returns true if there is no array.
     pub fn is_empty(&self) -> bool {
         self.len() == 0
     }
 
-    /// Whether integers that ascend from one place to another hold one; `false` where there are no such
-    /// places.
+    /// Returns true if integers that ascend from one place to another hold `value`; false if there are no such places.
     pub(crate) fn hold(&self, places: core::ops::Range<usize>, value: u32) -> bool {
         fn search<T: Copy>(
             array: &[T],

@@ -2,8 +2,8 @@
 //!
 //! A part is a blob of its own, with its own lattice, primitives and structures. An instance places it in the scene by
 //! a map from the scene's units to the part's: a rotation and a uniform scale. A place `p` of the scene, in units, is
-//! the place `2^exponent * matrix * (p - center)` of the part, in the part's units, where `matrix` has 23 fraction bits
-//! and `center` has 8. These integers are the geometry: every number format holds them exactly.
+//! the place `2^exponent * matrix * (p - center)` of the part, in the part's units. `matrix` has 23 fraction bits and
+//! `center` has 8. These integers are the geometry: every number format holds them exactly.
 
 use crate::format::layout::records;
 use crate::format::limits::INSTANCE_EXPONENT;

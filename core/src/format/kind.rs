@@ -1,12 +1,12 @@
-//! The kinds of primitives there are: the one place that names them all.
+//! The kinds of primitives. Only this file names them all.
 //!
-//! A shape is a file in [`geometry`](crate::geometry) and a line in the table below. Its code is a Cargo
-//! feature of the same name, and so is that of the wider forms in which primitives are stored.
+//! A shape is a file in [`geometry`](crate::geometry) and a line in the table below. Its code is a Cargo feature of the
+//! same name, and so is that of the wider forms in which primitives are stored.
 
-/// Hands the table of shapes to a macro. Triangles and spheres have several forms of records, for few bits and
-/// many, alone and in clusters. Every other shape has one record: its line says kind, number in the blob,
-/// name in tables and Cargo feature, slice of records, module of `geometry` and record, section. What follows the
-/// macro's name is handed on before the table.
+/// Passes the table of shapes to a macro. Triangles and spheres have several forms of records, for few bits and many,
+/// alone and in clusters. Every other shape has one record. Its line states the kind, the number in the blob, the name
+/// in tables and Cargo feature. Then come the slice of records, the module of `geometry` and record, and the section.
+/// Arguments after the macro's name are passed on before the table.
 #[doc(hidden)]
 #[macro_export]
 macro_rules! shapes {

@@ -12,12 +12,12 @@ pub struct Layout {
     pub form: Form,
 }
 
-/// What a layout consists of.
+/// The form of a layout.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Form {
     /// A number of the type with this name.
     Number(&'static str),
-    /// So many of one layout, at rising offsets.
+    /// An array of one layout, at rising offsets.
     Array(usize, &'static Layout),
     /// Fields.
     Record(&'static RecordLayout),
@@ -49,12 +49,12 @@ pub struct FieldLayout {
     pub valid: Option<[i64; 2]>,
 }
 
-/// What a section holds.
+/// The content of a section.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SectionLayout {
     /// The lines of its documentation.
     pub doc: &'static [&'static str],
-    /// The forms that the compiler gives its records. All records of a section have one form.
+    /// The forms that the compiler gives to its records. All records of a section have one form.
     pub records: &'static [Layout],
 }
 
@@ -84,8 +84,8 @@ impl<T: Stored, const N: usize> Stored for [T; N] {
     };
 }
 
-/// Declares records. Every one states its size, `#[bytes(..)]`, which a change must not alter by accident; the offsets
-/// of its fields are in `FORMAT.md`. A field with `#[valid(FIELD: RANGE)]` is tested by
+/// Declares records. Every record states its size, `#[bytes(..)]`, so that a change cannot alter it by accident. The
+/// offsets of its fields are in `FORMAT.md`. A field with `#[valid(FIELD: RANGE)]` is tested by
 /// [`check_ranges`](crate::format::range::Ranges), which names it `FIELD` in errors.
 macro_rules! records {
     ($(

@@ -5,8 +5,9 @@ use core::ops::Range;
 
 /// A range of slots, all of one kind of primitive: one word.
 ///
-/// Bits 0 to 23 are the first slot of that kind, 24 to 28 the number of slots (1 to 31), 29 to 31
-/// the kind. No slots stand for a [cluster](crate::format::cluster) of the kind, by its number.
+/// Bits 0 to 23 are the first slot of that kind. Bits 24 to 28 are the number of slots (1 to 31),
+/// and 29 to 31 are the kind. A number of 0 slots marks a [cluster](crate::format::cluster) of the
+/// kind, by its number.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Leaf {
     /// The kind of its primitives.
@@ -18,7 +19,7 @@ pub struct Leaf {
 }
 
 impl Leaf {
-    /// Most primitives that a leaf can hold.
+    /// Maximum number of primitives of a leaf.
     pub const MAX_COUNT: u32 = 31;
     /// Number of slots of one kind that leaves can address.
     pub const SLOTS: u32 = 1 << 24;

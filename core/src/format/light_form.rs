@@ -1,4 +1,5 @@
-//! The record of what makes a light more than a point that shines alike in all directions and at all distances.
+//! The record of a light's form. It describes lights that are not points which shine equally in all directions and at
+//! all distances.
 
 use crate::format::layout::records;
 use crate::format::record::Light;
@@ -57,12 +58,12 @@ impl LightForm {
 }
 
 impl Light {
-    /// Whether the light is a point with a form.
+    /// The value for a point light with a form.
     const FORM: u32 = 2;
-    /// Whether it is an area.
+    /// The value for an area light.
     const AREA: u32 = 3;
 
-    /// What [`directional`](Self::directional) is for a light whose form has a number below 2^30.
+    /// The value of [`directional`](Self::directional) for a light whose form has a number below 2^30.
     pub const fn with_form(number: u32, is_area: bool) -> u32 {
         number << 2 | if is_area { Self::AREA } else { Self::FORM }
     }
@@ -76,7 +77,7 @@ impl Light {
         }
     }
 
-    /// Whether an area shines in place of a point.
+    /// Returns true if the light is an area and not a point.
     pub const fn is_area(&self) -> bool {
         self.directional & Self::AREA == Self::AREA
     }

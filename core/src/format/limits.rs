@@ -1,21 +1,21 @@
-//! Limits that every blob keeps, and what this build can read.
+//! Limits of every blob, and the features of this build.
 
-/// The largest stack depth that a blob may need.
+/// The largest stack depth that a blob can need.
 pub const MAX_STACK_DEPTH: usize = 160;
 
-/// Most levels of a hierarchy of pairs, and the largest stack depth that one needs.
+/// Maximum number of levels of a hierarchy of pairs, and the largest stack depth that one needs.
 pub const MAX_LEVELS: usize = 48;
 
 /// The largest ray depth of a scene.
 pub const MAX_RAY_DEPTH: usize = if INDIRECT { 32 } else { 16 };
 
-/// How often light may be reflected diffusely at most.
+/// Maximum number of diffuse reflections of a ray of light.
 pub const MAX_BOUNCES: usize = 32;
 
-/// Most samples per pixel.
+/// Maximum number of samples per pixel.
 pub const MAX_SAMPLES: u16 = 4096;
 
-/// Most bytes of a name.
+/// Maximum number of bytes of a name.
 pub const MAX_NAME_BYTES: usize = 255;
 
 /// Places for waiting rays that a ray depth needs where a hit causes up to two.
@@ -23,7 +23,7 @@ pub const fn work_depth(depth: u8) -> usize {
     depth as usize + 1
 }
 
-/// How far from the lattice's middle an origin may be along each axis: 2^37 units, with 13 fraction bits.
+/// The greatest distance of an origin from the lattice's middle along each axis: 2^37 units, with 13 fraction bits.
 /// Eyes and lights of a blob are no farther away, so sums and products with ratios stay in 64 bits.
 pub const FARTHEST: i64 = 1 << 50;
 
@@ -31,18 +31,18 @@ pub const FARTHEST: i64 = 1 << 50;
 /// reaches [`FARTHEST`].
 pub const MAX_COORDINATE_SHIFT: u8 = 19;
 
-/// Shapes without bounds are met at less than 2^49 units from a ray's origin, or from where it comes to the scene's box,
-/// with 13 fraction bits.
+/// Rays hit shapes without bounds at less than 2^49 units, with 13 fraction bits. The distance is measured from the
+/// ray's origin, or from where the ray reaches the scene's box.
 pub const FARTHEST_HIT: i64 = 1 << 62;
 
-/// How far from the lattice's middle the point of a shape without bounds is on each axis, in 1/256 unit: 2^17 units.
-/// So some point of it is a length in every format, with as much to spare.
+/// The greatest distance of the point of a shape without bounds from the lattice's middle on each axis, in 1/256 unit:
+/// 2^17 units. So some point of the shape is a length in every format, with the same margin.
 pub const FARTHEST_POINT: i64 = 1 << 25;
 
-/// Most instances of a scene.
+/// Maximum number of instances of a scene.
 pub const MAX_INSTANCES: usize = 1 << 20;
 
-/// Most levels of the hierarchy above instances.
+/// Maximum number of levels of the hierarchy above instances.
 pub const MAX_INSTANCE_LEVELS: usize = 24;
 
 /// The least and the greatest scale of a joint, with 24 fraction bits: 1/16384 and 64.
@@ -54,32 +54,32 @@ pub const INSTANCE_EXPONENT: [i64; 2] = [-4, 18];
 /// The least α of rough materials, with 30 fraction bits: that of a roughness of 0.05.
 pub const LEAST_ROUGHNESS: i32 = 2_684_354;
 
-/// Most materials with a priority.
+/// Maximum number of materials with a priority.
 pub const MAX_MEDIA: usize = 8;
 
 /// The narrowest and the widest [angle](crate::Angle) that a camera of a track sees.
 pub const FIELD_OF_VIEW: [i32; 2] = [2, i32::MAX];
 
-/// Whether this build holds the code for scenes whose colors are display values.
+/// True if this build holds the code for scenes whose colors are display values.
 pub(crate) const DISPLAY_VALUES: bool = cfg!(feature = "display-values");
 
-/// Whether this build holds the code for coordinates of more than 16 bits.
+/// True if this build holds the code for coordinates of more than 16 bits.
 pub(crate) const WIDE_LATTICE: bool = cfg!(feature = "wide-lattice");
 
-/// Whether this build holds the code for vertex indices of more than 16 bits.
+/// True if this build holds the code for vertex indices of more than 16 bits.
 pub(crate) const WIDE_INDICES: bool = cfg!(feature = "wide-indices");
 
-/// Whether this build holds the code for shapes without bounds.
+/// True if this build holds the code for shapes without bounds.
 pub(crate) const UNBOUNDED: bool = cfg!(feature = "unbounded");
 
-/// Whether this build holds the code for indirect light.
+/// True if this build holds the code for indirect light.
 pub(crate) const INDIRECT: bool = cfg!(feature = "indirect");
 
-/// Whether this build holds the code for nested dielectrics.
+/// True if this build holds the code for nested dielectrics.
 pub(crate) const NESTED: bool = cfg!(feature = "nested");
 
-/// Whether this build holds the code for smooth normals.
+/// True if this build holds the code for smooth normals.
 pub(crate) const SMOOTH: bool = cfg!(feature = "smooth");
 
-/// Whether this build holds the code for parts and their instances.
+/// True if this build holds the code for parts and their instances.
 pub(crate) const INSTANCES: bool = cfg!(feature = "instances");

@@ -1,13 +1,13 @@
-//! How a pair names its children.
+//! The names of a pair's children.
 
 /// The two children of a pair, in one word.
 ///
 /// Bits 0 to 23 are the number of the first child that is a pair; if both are, the right one
-/// follows the left. Bits 24 and 25 say that the left and the right child is a leaf. Bits 26 to 31
-/// are the owners of a [flagged pair](crate::format::record::FlaggedPair)'s planes.
+/// follows the left. Bits 24 and 25 are set if the left and the right child is a leaf. Bits 26 to
+/// 31 are the owners of a [flagged pair](crate::format::record::FlaggedPair)'s planes.
 ///
-/// Leaves need no number of their own, because pairs lie in breadth-first order: of the `2 j + 1`
-/// nodes that were numbered before the children of pair `j`, all that are not pairs are leaves.
+/// Leaves need no number of their own, because pairs lie in breadth-first order. `2 j + 1` nodes
+/// are numbered before the children of pair `j`. All of these that are not pairs are leaves.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Link(pub u32);
 
@@ -20,8 +20,8 @@ impl Link {
         Self(first_pair | (left_is_leaf as u32) << 24 | (right_is_leaf as u32) << 25)
     }
 
-    /// The link with owners: bits 0 to 2 for the lower planes of x, y and z, bits 3 to 5 for
-    /// the upper ones; a set bit means the right child.
+    /// The link with owners. Bits 0 to 2 are for the lower planes of x, y and z, bits 3 to 5 for
+    /// the upper ones. A set bit means the right child.
     pub const fn with_owners(self, owners: u32) -> Self {
         Self(self.0 & 0x03ff_ffff | owners << 26)
     }

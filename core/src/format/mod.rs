@@ -1,7 +1,6 @@
 //! The format of a scene blob: sections of flat records, little-endian, read in place.
 //!
-//! This module says what a blob is made of, and nothing else. `FORMAT.md` beside the crate's manifest specifies
-//! every byte.
+//! This module only defines the content of a blob. `FORMAT.md`, next to the crate's manifest, specifies every byte.
 
 pub(crate) mod checksum;
 pub mod cluster;

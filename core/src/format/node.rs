@@ -1,19 +1,19 @@
-//! The words of nodes: what a node is, and where its children lie.
+//! Node words: they say whether a node is a leaf, and where its children lie.
 
 use crate::format::leaf::Leaf;
 
 /// The kind and the children of a node: the last word of its record.
 ///
-/// Bits 0 to 23 are the number of its first child, which the second follows, or that of its leaf.
-/// Bits 24 and 25 are the split's axis, 26 and 27 the first carve's, 28 and 29 the second's; 3
-/// stands for none, and a node without a split is a leaf. Bits 30 and 31 are 0.
+/// Bits 0 to 23 are the number of its first child, which the second follows, or that of its leaf. Bits 24 and 25 are
+/// the split's axis, 26 and 27 the first carve's, 28 and 29 the second's. An axis of 3 means none, and a node without a
+/// split is a leaf. Bits 30 and 31 are 0.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct NodeWord(pub u32);
 
 impl NodeWord {
     /// Number of distinct nodes or leaves.
     pub const NODES: u32 = 1 << 24;
-    /// The axis of a split or carve that there is not.
+    /// The axis of an absent split or carve.
     pub const NONE: u32 = 3;
 
     /// A node's last word.
@@ -60,22 +60,22 @@ impl NodeWord {
 
 /// A node of the tree over rays, as a word.
 ///
-/// Bits 0 to 2 are the dimension that is halved: 0 to 2 a coordinate of the place, 3 and 4 the slope
-/// on the first and the second axis after the major one. Bits 3 to 31 are then the number of the
-/// first of two children, the lower half. A dimension of 7 means a leaf; bits 3 to 31 are its cell,
-/// or [`ClassNode::NONE`] for the hierarchy.
+/// Bits 0 to 2 are the dimension that is halved. Dimensions 0 to 2 are a coordinate of the place. Dimensions 3 and 4
+/// are the slope on the first and the second axis after the major one. Bits 3 to 31 are then the number of the first of
+/// two children, the lower half. A dimension of 7 means a leaf; bits 3 to 31 are its cell, or [`ClassNode::NONE`] for
+/// the hierarchy.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct ClassNode(pub u32);
 
 impl ClassNode {
     /// The cell of a leaf that has no list.
     pub const NONE: u32 = u32::MAX >> 3;
-    /// Stands for the dimension of a leaf.
+    /// The dimension that marks a leaf.
     const LEAF: u32 = 7;
     /// Dimensions of the space of rays.
     pub const DIMENSIONS: usize = 5;
 
-    /// A node whose children are `first` and the next one.
+    /// Returns a node whose children are `first` and the next one.
     pub const fn split(dimension: usize, first: u32) -> Self {
         Self(dimension as u32 | first << 3)
     }
@@ -102,9 +102,9 @@ impl ClassNode {
 
 /// A node: one word.
 ///
-/// An inner node is the number of the first of its eight children, which lie together, the one with
-/// bit 0 set on the upper side of x, bit 1 of y, bit 2 of z. A leaf has bit 31 set and is the number
-/// of its list, or all bits for one without primitives.
+/// An inner node is the number of the first of its eight children, which lie together. The child with bit 0 set is on
+/// the upper side of x, bit 1 of y, bit 2 of z. A leaf has bit 31 set and is the number of its list, or all bits for
+/// one without primitives.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct OctreeNode(pub u32);
 
@@ -130,14 +130,13 @@ impl OctreeNode {
 
 /// A child of a node, in one word.
 ///
-/// Bits 29 to 31 are 7 for a node, whose number is in bits 0 to 23. Any other word is a [`Leaf`];
-/// one of no slots is the cluster of that number: a strip where its kind is triangles, a pack
-/// where it is spheres.
+/// Bits 29 to 31 are 7 for a node, whose number is in bits 0 to 23. Any other word is a [`Leaf`]. A leaf of no slots is
+/// the cluster of that number: a strip where its kind is triangles, a pack where it is spheres.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Child(pub u32);
 
 impl Child {
-    /// In the lanes behind a node's last child.
+    /// The word in the lanes behind a node's last child.
     pub const NONE: Self = Self(u32::MAX);
     /// Number of nodes that a word can address.
     pub const NODES: u32 = (1 << 24) - 1;

@@ -2,13 +2,13 @@
 
 use crate::format::{BlobError, Field, Location, Reason, SectionKind};
 
-/// An error unless a field of the header is at most `most`.
+/// Returns an error unless a field of the header is at most `most`.
 #[inline(always)]
 pub(crate) fn at_most(field: Field, found: u32, most: u32) -> Result<(), BlobError> {
     in_header(field, found, 0, most)
 }
 
-/// An error unless a field of the header is `expected`.
+/// Returns an error unless a field of the header is `expected`.
 #[inline(always)]
 pub(crate) fn exactly(field: Field, found: u32, expected: u32) -> Result<(), BlobError> {
     in_header(field, found, expected, expected)
@@ -31,7 +31,7 @@ pub(crate) struct At {
 }
 
 impl At {
-    /// An error unless `found` lies in `low..=high`.
+    /// Returns an error unless `found` lies in `low..=high`.
     pub(crate) fn within(
         self,
         field: Field,
@@ -47,7 +47,7 @@ impl At {
         Ok(())
     }
 
-    /// An error unless every one of `found` lies in `low..=high`.
+    /// Returns an error unless every one of `found` lies in `low..=high`.
     pub(crate) fn all_within<T: Into<i64> + Copy>(
         self,
         field: Field,
@@ -60,7 +60,7 @@ impl At {
             .try_for_each(|&value| self.within(field, value.into(), low, high))
     }
 
-    /// An error for this reason unless a condition holds.
+    /// Returns an error with this reason unless a condition holds.
     pub(crate) fn ensure(self, holds: bool, reason: Reason) -> Result<(), BlobError> {
         if holds {
             return Ok(());
@@ -70,7 +70,7 @@ impl At {
 }
 
 impl Location {
-    /// An error for this reason unless a condition holds.
+    /// Returns an error with this reason unless a condition holds.
     pub(crate) fn ensure(self, holds: bool, reason: Reason) -> Result<(), BlobError> {
         if holds {
             return Ok(());
@@ -89,14 +89,14 @@ pub(crate) struct FieldRange {
 
 /// A record whose fields are tested against the ranges that its declaration states.
 pub(crate) trait Ranges {
-    /// An error unless every field lies in its range.
+    /// Returns an error unless every field lies in its range.
     fn check_ranges(&self, location: Location) -> Result<(), BlobError>;
 }
 
 /// A field: a number or an array of numbers.
 pub(crate) trait Numbers {
-    /// Puts an error in place of the result unless all of it lies in a range, or there is an error already.
-    // One result for all fields of a record: each of its own would take call stack.
+    /// Replaces the result by an error unless all of the field lies in a range, or there is an error already.
+    // One result for all fields of a record, because a result per field would use more call stack.
     fn test(&self, result: &mut Result<(), BlobError>, location: &Location, range: &FieldRange);
 }
 
@@ -135,7 +135,7 @@ impl<T: Numbers, const N: usize> Numbers for [T; N] {
 }
 
 impl At {
-    /// Where the record lies, for errors.
+    /// The location of the record, for errors.
     #[inline(always)]
     pub(crate) fn location(self) -> Location {
         Location::Record(self.section, self.index)

@@ -1,7 +1,7 @@
-//! The errors of a blob, each as one plain sentence.
+//! The errors of a blob, each as one sentence.
 //!
-//! An error carries a byte of these enumerations. Their texts are reached through `Display` alone, so a
-//! program that prints no error does not hold them.
+//! An error carries a byte of these enumerations. Their texts are reached only through `Display`, so a program that
+//! prints no error does not hold them.
 
 macro_rules! texts {
     (

@@ -8,10 +8,10 @@ use crate::format::word::{half, proved, word};
 use crate::format::{BlobError, Effects, SectionKind, Structure};
 use core::mem::offset_of;
 
-/// The requirements of a blob on the program that it is compiled into, those of its parts among them.
+/// The requirements of a blob, with its parts, on the program that it is compiled into.
 ///
-/// [`Requirements::of`] is a `const fn`. A program that compares it with what it provides, as the modules of
-/// `gridel build --emit-rust` do, does not compile with a blob that requires more.
+/// [`Requirements::of`] is a `const fn`. A program can compare it with its own memory and features, as the modules of
+/// `gridel build --emit-rust` do. Such a program does not compile with a blob that requires more.
 ///
 /// ```
 /// # macro_rules! scene { () => { concat!(env!("CARGO_MANIFEST_DIR"), "/../fixtures/blobs/dual-split.gridel") } }
@@ -47,7 +47,7 @@ pub struct Requirements {
     structures: u32,
     /// A bit for each [`SectionKind`] of which there are records.
     sections: u128,
-    /// Whether triangles or spheres lie in clusters alone.
+    /// True if only clusters hold triangles or spheres.
     clusters_alone: bool,
     wide_lattice: bool,
     wide_indices: bool,
@@ -58,7 +58,7 @@ impl Requirements {
     /// Reads the requirements: a few operations per section and part.
     ///
     /// # Errors
-    /// If the blob is cut off. Nothing else is proved: that is for [`Prevalidated`](crate::scene::Prevalidated).
+    /// If the blob is cut off. Nothing else is proved: use [`Prevalidated`](crate::scene::Prevalidated) for that.
     pub const fn of(blob: &[u8]) -> Result<Self, BlobError> {
         let (mut demand, [directory, blobs]) = proved!(Self::without_parts(blob));
         let mut part = 0;
@@ -98,7 +98,7 @@ impl Requirements {
         }
     }
 
-    /// The requirements of a blob apart from its parts, and where its sections of parts begin: directory and blobs.
+    /// The requirements of a blob without its parts, and where its sections of parts begin: directory and blobs.
     const fn without_parts(blob: &[u8]) -> Result<(Self, [usize; 2]), BlobError> {
         let lattice_bits = proved!(half(blob, offset_of!(Header, lattice_bits))) & 0xff;
         let mut demand = Self {
@@ -160,13 +160,13 @@ impl Requirements {
         self.sections >> kind as u16 & 1 != 0
     }
 
-    /// Whether the blob holds a structure.
+    /// Returns true if the blob holds a structure.
     pub const fn holds(&self, structure: Structure) -> bool {
         self.structures & structure.bit() != 0
     }
 
-    /// A sentence about a Cargo feature that the scene requires and that this build lacks. A blob that
-    /// requires one is rejected when it is loaded.
+    /// A sentence about a Cargo feature that the scene requires and that this build lacks. Loading rejects a blob that
+    /// requires one.
     pub const fn missing(&self) -> Option<&'static str> {
         macro_rules! parts {
             ($($required:expr => $feature:literal,)*) => {

@@ -62,8 +62,8 @@ macro_rules! kinds {
     };
 }
 
-/// Hands the table of sections to a macro, given that of shapes. A line says number, name, the forms that a record can
-/// have, and what [`record_name`](SectionKind::record_name) returns.
+/// Passes the table of sections to a macro, given that of shapes. A line states the number, the name, the possible
+/// forms of a record, and the result of [`record_name`](SectionKind::record_name).
 macro_rules! sections {
     (
         $macro:ident

@@ -105,13 +105,14 @@ impl<'a> Sections<'a> {
         section.unwrap_or_default()
     }
 
-    /// Number of records of a section. Records have bytes.
+    /// Number of records of a section. No record is empty.
     pub(crate) fn len(&self, kind: SectionKind) -> usize {
         let entry = self.entry(kind).filter(|entry| entry.stride > 0);
         entry.map_or(0, |entry| entry.count as usize)
     }
 
-    /// The records of a section, which must have the stride of `T` unless it is empty.
+    /// Returns the records of a section, which must have the stride of `T` unless the section is
+    /// empty.
     pub(crate) fn records<T: bytemuck::Pod + Stored>(
         &self,
         kind: SectionKind,
@@ -130,7 +131,7 @@ impl<'a> Sections<'a> {
         bytemuck::try_cast_slice(section.bytes).map_err(|_| BlobError::Misaligned)
     }
 
-    /// The words of a section whose records have so many each.
+    /// Returns the words of a section whose records have this many each.
     pub(crate) fn words(&self, kind: SectionKind, width: usize) -> Result<&'a [u32], BlobError> {
         let section = self.get(kind);
         let expected = width * size_of::<u32>();

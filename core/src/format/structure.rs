@@ -1,11 +1,10 @@
-//! The structures there are: the one place that names them all.
+//! The structures. Only this file names them all.
 //!
-//! A structure is a file in a folder of [`accel`](crate::accel) and a line in the table below. Its
-//! code is a Cargo feature of the same name; a build passes over sections of structures that it was
-//! compiled without.
+//! A structure is a file in a folder of [`accel`](crate::accel) and a line in the table below. Its code is a Cargo
+//! feature of the same name. A build ignores sections of structures that it was compiled without.
 
-/// Hands the table of structures to a macro: name, number in the blob, name in tables and Cargo feature,
-/// field of the views and module in `accel`, condition.
+/// Passes the table of structures to a macro. The columns are name, number in the blob, name in tables and Cargo
+/// feature, field of the views and module in `accel`, condition.
 macro_rules! structures {
     ($macro:ident) => {
         $macro! {
@@ -97,7 +96,7 @@ impl Structure {
         1 << self as u32
     }
 
-    /// The structure of a set that is fastest for most scenes; `set` holds their [bits](Self::bit).
+    /// Returns the structure of a set that is fastest for most scenes; `set` holds their [bits](Self::bit).
     pub(crate) fn fastest(set: u32) -> Self {
         let first = [Self::Wide, Self::DualSplit, Self::Flagged, Self::Bvh];
         let all = first.into_iter().chain(Self::ALL.into_iter().rev());
@@ -105,9 +104,9 @@ impl Structure {
         held.next().unwrap_or(Self::List)
     }
 
-    /// Returns whether loading a blob proves that this structure gives the answers of the list. For lists of
-    /// candidates it does not, because their completeness cannot be proved in linear time: the blob's compiler is
-    /// trusted there. A walk through them still ends, and every hit is a true one.
+    /// Returns whether loading proves that this structure gives the answers of the list. Loading cannot prove it for
+    /// lists of candidates, because a proof that they are complete takes more than linear time. There the blob's
+    /// compiler is trusted. A walk through them still ends, and every hit is a true one.
     ///
     /// ```
     /// use gridel_core::Structure;

@@ -1,7 +1,7 @@
-//! The records of tracks: what moves, when, and from where to where.
+//! The records of tracks: which value moves, when, and between which values.
 //!
-//! A track gives one number or vector of the scene a value at each of its keys. Values are words, `i32` each; how
-//! many a key has follows from what moves and how it is interpolated: see [`Track::words`].
+//! A track gives one number or vector of the scene a value at each of its keys. Values are words, `i32` each. The
+//! number of words per key follows from the target and its interpolation: see [`Track::words`].
 
 use crate::format::layout::records;
 use crate::format::limits::{FIELD_OF_VIEW, SCALES};
@@ -58,11 +58,11 @@ records! {
 }
 
 impl Joint {
-    /// In place of a joint: none.
+    /// Marks a missing joint.
     pub const NONE: u32 = u32::MAX;
 }
 
-/// How a value moves from a key to the next one.
+/// The way in which a value moves from a key to the next one.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(u16)]
 pub enum Interpolation {
@@ -70,8 +70,8 @@ pub enum Interpolation {
     Step = 0,
     /// It changes evenly; rotations turn evenly about one axis.
     Linear = 1,
-    /// It follows a cubic Hermite spline: each key has the change per segment with which it is entered, the value,
-    /// and the change per segment with which it is left.
+    /// It follows a cubic Hermite spline. Each key has the value, and the changes per segment with which the spline
+    /// enters and leaves it.
     Cubic = 2,
 }
 
@@ -89,7 +89,7 @@ impl Interpolation {
     }
 }
 
-/// What the words of a value are.
+/// The meaning of the words of a value.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ValueKind {
     /// Three scene coordinates: a [`Position`](crate::Position).
@@ -100,8 +100,8 @@ pub enum ValueKind {
     UnitDirection,
     /// An [`Angle`](crate::Angle) of which a camera sees something.
     FieldOfView,
-    /// A quaternion of about length 1, x, y, z and w with 30 fraction bits; where it is interpolated linearly also
-    /// the [`Angle`](crate::Angle) between it and that of the next key, at most a quarter of a turn.
+    /// A quaternion of about length 1, x, y, z and w with 30 fraction bits. Where it is interpolated linearly, the
+    /// [`Angle`](crate::Angle) to that of the next key follows, at most a quarter of a turn.
     Rotation,
     /// Turns, with 24 fraction bits.
     Turns,
@@ -138,17 +138,17 @@ impl ValueKind {
         }
     }
 
-    /// Whether it is a direction, of any length or of about 1.
+    /// Returns true if it is a direction, of any length or of about 1.
     pub const fn is_direction(self) -> bool {
         matches!(self, Self::Direction | Self::UnitDirection)
     }
 
-    /// Whether some component must differ from 0.
+    /// Returns true if some component must differ from 0.
     pub(crate) const fn has_length(self) -> bool {
         matches!(self, Self::Direction | Self::UnitDirection | Self::Rotation)
     }
 
-    /// What an error calls a component.
+    /// The name of a component in errors.
     pub(crate) const fn field(self) -> Field {
         match self {
             Self::Position | Self::Shift => Field::Coordinate,
@@ -229,29 +229,29 @@ targets! {
 }
 
 impl TrackTarget {
-    /// Whether it is a property of the camera.
+    /// Returns true if it is a property of the camera.
     pub const fn is_of_camera(self) -> bool {
         (self as u16) < Self::LightPosition as u16
     }
 
-    /// Whether it is a property of a material.
+    /// Returns true if it is a property of a material.
     pub const fn is_of_material(self) -> bool {
         self as u16 >= Self::MaterialDiffuse as u16 && (self as u16) < Self::JointRotation as u16
     }
 
-    /// Whether it is a property of a joint.
+    /// Returns true if it is a property of a joint.
     pub const fn is_of_joint(self) -> bool {
         self as u16 >= Self::JointRotation as u16
     }
 }
 
 impl Track {
-    /// What moves; `None` where the number means nothing.
+    /// The target; `None` if its number is invalid.
     pub fn target(&self) -> Option<TrackTarget> {
         TrackTarget::ALL.get(usize::from(self.target)).copied()
     }
 
-    /// How it moves; `None` where the number means nothing.
+    /// The interpolation; `None` if its number is invalid.
     pub fn interpolation(&self) -> Option<Interpolation> {
         Interpolation::ALL
             .get(usize::from(self.interpolation))

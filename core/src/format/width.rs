@@ -1,4 +1,4 @@
-//! Records in two widths, read alike: a kernel is generic over these.
+//! Records in two widths with one interface, so that a kernel is generic over the width.
 
 use crate::axis::pick;
 use crate::format::record::{Sphere16, Sphere24, Vertex16, Vertex24};

@@ -1,4 +1,4 @@
-//! Words of a blob, read while a program is compiled.
+//! Words of a blob, read at compile time.
 
 use crate::format::error::BlobError;
 

@@ -1,15 +1,15 @@
-//! What vertices carry beside their place and normal: colors and texture coordinates, interpolated over triangles.
+//! Vertex attributes other than place and normal: colors and texture coordinates, interpolated over triangles.
 //!
-//! **Storage.** A color takes four bytes per vertex: red, green and blue as square roots of linear light, of which 255
-//! is 1, and alpha. So a step is at most one of a display, and decoding is one multiplication. Texture coordinates take
+//! **Storage.** A color takes four bytes per vertex: alpha, and red, green and blue as square roots of linear light, of
+//! which 255 is 1. So a step is at most one of a display, and decoding is one multiplication. Texture coordinates take
 //! four bytes per vertex where all lie in -2 to 2 (14 fraction bits), else eight (20 fraction bits, -1024 to 1024). The
-//! lowest u of all stands for none. Vertices behind the last that has a color are white, and those behind the last that
-//! has coordinates have none. A triangle has a texture if its three vertices have coordinates.
+//! lowest u of all means none. Vertices behind the last that has a color are white, and those behind the last that has
+//! coordinates have none. A triangle has a texture if its three vertices have coordinates.
 //!
 //! **Interpolation.** The weights of the corners are computed in the number format, as for [smooth
-//! normals](crate::geometry::smooth), and become integers with 30 fraction bits. Everything behind them is integer
-//! arithmetic, which all formats share. At a corner the value is that of the vertex, and on an edge it depends on that
-//! edge alone, but for the rounding of the weights.
+//! normals](crate::geometry::smooth). They become integers with 30 fraction bits. All later arithmetic is in integers,
+//! which all formats share. At a corner the value is that of the vertex. On an edge it depends only on that edge,
+//! except for the rounding of the weights.
 
 use crate::format::{BlobError, SectionKind, Sections};
 use crate::number::Arithmetic;
@@ -17,8 +17,9 @@ use crate::number::Arithmetic;
 /// Fraction bits of texture coordinates in the arithmetic.
 pub const COORDINATE_BITS: u32 = 20;
 
-/// The weights of the corners of a triangle at a point, and whether its front is turned away from `facing`, the
-/// geometric normal or its opposite. Weights are ratios whose sum is not 1, but at most 3/2 in magnitude.
+/// Returns the weights of the corners of a triangle at a point, and true if its front is turned away from `facing`.
+/// `facing` is the geometric normal or its opposite. Weights are ratios whose sum is not 1, but at most 3/2 in
+/// magnitude.
 #[inline(always)]
 pub(crate) fn weights<N: Arithmetic>(
     corners: [[i32; 3]; 3],
@@ -39,7 +40,7 @@ pub(crate) fn weights<N: Arithmetic>(
     ([u, v, w], (u + v + w < N::ZERO) != (across < N::ZERO))
 }
 
-/// Twice the areas into which a point cuts a triangle as it is seen along an axis, given the other two.
+/// Twice the areas into which a point cuts a triangle, as seen along an axis. The other two axes are given.
 #[inline(always)]
 fn areas<N: Arithmetic, const FIRST: usize, const SECOND: usize>(
     corners: [[i32; 3]; 3],
@@ -57,8 +58,8 @@ fn areas<N: Arithmetic, const FIRST: usize, const SECOND: usize>(
     [area(b, c), area(c, a), area(a, b)]
 }
 
-/// Where in a triangle a point lies: the weights of its second and third corner with 30 fraction bits, which are not
-/// negative and at most 1 together. The first corner has the rest.
+/// The place of a point in a triangle. It holds the weights of the second and third corner with 30 fraction bits, which
+/// are not negative and at most 1 together. The first corner has the rest.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Weights([i32; 2]);
 
@@ -68,7 +69,7 @@ impl Weights {
     pub(crate) fn at<N: Arithmetic>(corners: [[i32; 3]; 3], point: [N; 3], normal: [N; 3]) -> Self {
         let ([u, v, w], _) = weights(corners, point, normal);
         let sum = u + v + w;
-        // Negative by rounding alone.
+        // Only rounding makes it negative.
         let second = v.div(sum).max(N::ZERO).min(N::ONE);
         let third = w.div(sum).max(N::ZERO).min(N::ONE - second);
         Self([second.to_q30(), third.to_q30()])
@@ -103,7 +104,8 @@ impl Weights {
     }
 }
 
-/// A ratio with 30 fraction bits from the square of a root of 8 bits, of which 255 stands for 1, with 16 fraction bits.
+/// Returns a ratio with 30 fraction bits from the square of a root of 8 bits, of which 255 means 1, with 16 fraction
+/// bits.
 #[inline(always)]
 pub(crate) fn linear(square_q16: u32) -> i32 {
     // 2^62 / (255^2 2^16), rounded up, so that 255 is 1 exactly.
@@ -161,7 +163,7 @@ impl<'a> Coordinates<'a> {
     }
 }
 
-/// An error unless a section has at most as many records as there are vertices.
+/// Returns an error unless a section has at most as many records as there are vertices.
 pub(crate) fn at_most_vertices(
     section: SectionKind,
     found: usize,

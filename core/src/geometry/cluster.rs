@@ -85,7 +85,7 @@ impl Packs<'_> {
         }
     }
 
-    /// A bit for each lane of a pack that holds a sphere.
+    /// One bit for each lane of a pack that holds a sphere.
     pub(crate) fn lanes(&self, pack: u32) -> u32 {
         match self {
             Packs::P16(packs) => packs.get(pack as usize).map_or(0, Pack::lanes),
@@ -117,12 +117,12 @@ pub(crate) struct Clusters<'a> {
     pub(crate) packs: Packs<'a>,
     /// The primitive of each member, or its slot where other structures share the primitives.
     pub(crate) members: Indices<'a>,
-    /// Where other structures share the primitives: where each slot lies in the hierarchy.
+    /// The location of each slot in the hierarchy, where other structures share the primitives.
     pub(crate) locations: &'a [u32],
 }
 
 impl<'a> Clusters<'a> {
-    /// No clusters: those of builds without code for them.
+    /// No clusters: used in builds without code for them.
     pub(crate) const NONE: Self = Self {
         strips: Strips::S16(&[]),
         packs: Packs::P16(&[]),
@@ -160,7 +160,7 @@ impl<'a> Clusters<'a> {
         self.packs.spheres()
     }
 
-    /// Whether a cluster holds primitives, and all of them lie in a box.
+    /// Returns true if a cluster holds primitives, and all of them lie in a box.
     ///
     /// In 1/256 unit, where no sum wraps: coordinates have 24 bits and radii 25.
     pub(crate) fn inside(&self, kind: Kind, cluster: u32, outer: &UnitBox) -> bool {
@@ -222,7 +222,7 @@ impl<'a> Clusters<'a> {
     }
 }
 
-/// The last of `count` ascending numbers that is not beyond `value`.
+/// Returns the last of `count` ascending numbers that is not above `value`.
 fn last_at_or_before(
     count: usize,
     value: usize,

@@ -1,24 +1,23 @@
 //! Capped cylinders, cones and frusta: one solid of revolution between two flat caps.
 //!
-//! With the point of the line that is closest to the solid's middle as origin, `y` along the axis
-//! and the half angle of the cone as `sin`, `cos`, the line is in the solid's mantle where
-//! `cos |Q + D s| <= g - e s`; `Q` and `D` are position and direction without their axial parts,
-//! `g = cos r - sin y` and `e = sin d.y`. The axial parts are removed *before* anything is squared.
+//! The origin is the point of the line that is closest to the solid's middle. `y` is along the axis, and `sin`, `cos`
+//! belong to the half angle of the cone. The line is in the solid's mantle where `cos |Q + D s| <= g - e s`. `Q` and
+//! `D` are position and direction without their axial parts, `g = cos r - sin y` and `e = sin d.y`. The axial parts are
+//! removed *before* anything is squared.
 //!
-//! The quadric `A s^2 + 2 B s + C` of that is judged at its vertex: the origin slides to `s = -B/A`
-//! (as far as the line is between the caps), where `C = (cos |Q| - g) (cos |Q| + g)` decides alone whether the
-//! line meets the mantle, and where the roots' `B^2 - A C` is no difference of near equals. A root
-//! where the mantle is thin against the solid, at the tip, is taken again from an origin that slid
-//! there, because the quadric's error is that of the mantle's radius at its origin.
+//! The corresponding quadric `A s^2 + 2 B s + C` is evaluated at its vertex: the origin slides to `s = -B/A` (as far as
+//! the line is between the caps). There `C = (cos |Q| - g) (cos |Q| + g)` alone decides whether the line hits the
+//! mantle, and the roots' `B^2 - A C` is no difference of near equals. At the tip, the mantle is thin against the
+//! solid. A root there is computed again from an origin that slid there, because the quadric's error is that of the
+//! mantle's radius at its origin.
 //!
-//! The mantle's interval on the line is then cut with that of the two caps, and since both solids
-//! are convex there is no seam: no hole at a rim, no double count, no mirrored nappe.
+//! The mantle's interval on the line is then intersected with that of the two caps. Both solids are convex, so there is
+//! no seam: no hole at a rim, no double count, no mirrored nappe.
 //!
-//! **Ranges of `fixed`.** A solid lies in the scene's box, so its reach (half the height and the
-//! widest radius) is below 80,300 units, or 2^29.3 sub-steps, and scaled up below 2^29. The closest
-//! point lies within one reach of the middle and the origin slides by at most one along the major
-//! axis, so no point is farther than two reaches from the middle; and `cos |Q| + g` is at most that
-//! and a radius: three reaches, below 2^31. Squares are below 2^62.
+//! **Ranges of `fixed`.** A solid lies in the scene's box. So its reach (half the height and the widest radius) is
+//! below 80,300 units, or 2^29.3 sub-steps, and scaled up below 2^29. The closest point lies within one reach of the
+//! middle, and the origin slides by at most one reach along the major axis. So no point is farther than two reaches
+//! from the middle. `cos |Q| + g` is at most that and a radius: three reaches, below 2^31. Squares are below 2^62.
 
 use crate::axis::pick;
 use crate::format::layout::records;
@@ -59,8 +58,8 @@ const MANTLE: Part = 0;
 const BASE: Part = 1;
 const APEX: Part = 2;
 
-/// How often the origin slides on towards the tip, at most: where the solid is thinner by half than
-/// at the last place.
+/// Maximum number of times the origin slides on towards the tip, where the solid is thinner by half than at the last
+/// place.
 const SLIDES: usize = 4;
 
 /// The solid's frame, from its integers.
@@ -84,7 +83,7 @@ struct Mantle<N: Arithmetic> {
     g: N,
     e: N,
     a: N::Wide,
-    /// Beyond twice this nothing counts, on either side.
+    /// Crossings beyond twice this length are ignored, on either side.
     reach: N,
 }
 
@@ -112,7 +111,7 @@ impl<N: Arithmetic> Mantle<N> {
         } else if magnitude(b) >= mean {
             N::geometric_mean(magnitude(b) - mean, magnitude(b) + mean)
         } else if a < zero {
-            // Steeper than the mantle: such a line always meets it, here at the tip.
+            // Steeper than the mantle: such a line always hits it, here at the tip.
             zero
         } else {
             return None;
@@ -139,8 +138,8 @@ impl<N: Arithmetic> Mantle<N> {
                 (high, N::FAR)
             }
         } else if b == zero || self.e == N::ZERO {
-            // (So nearly parallel, perhaps, that the square of the slope vanishes.)
-            // Along a line of the mantle, or parallel to the axis of a cylinder: inside or not.
+            // Along a line of the mantle, or parallel to the axis of a cylinder: inside or not. (Or so nearly parallel
+            // that the square of the slope underflows.)
             if c > zero {
                 return None;
             }
@@ -283,7 +282,7 @@ impl Primitive for Cone {
             a: (d_norm * cos - e).wide(d_norm * cos + e),
             reach,
         };
-        // Between the caps and within reach: farther away, a line along the mantle has its vertex.
+        // Between the caps and within reach: a line along the mantle has its vertex farther away.
         let (nearest, farthest) = (enter.0.max(-reach), leave.0.min(reach));
         if nearest > farthest {
             return None;
@@ -334,8 +333,8 @@ impl Primitive for Cone {
         })
     }
 
-    /// A point of the solid near a point of its surface, at least `depth` away from mantle and caps,
-    /// or where the solid is thinner, on the axis.
+    /// A point of the solid near a point of its surface, at least `depth` away from mantle and caps. Where the solid is
+    /// thinner, the point lies on the axis.
     fn inside<N: Arithmetic>(&self, [point, _]: [[N; 3]; 2], depth: N) -> [N; 3] {
         let Frame {
             axis,
@@ -357,7 +356,7 @@ impl Primitive for Cone {
         let excess = (across * cos + along * sin - mantle).max(N::ZERO);
         across = across - excess * cos;
         along = (along - excess * sin).max(-highest).min(highest);
-        // Next to a cap the mantle may be near again; next to the tip there is only the axis.
+        // Next to a cap the mantle can be near again; next to the tip there is only the axis.
         let left = mantle - along * sin;
         if left <= N::ZERO {
             across = N::ZERO;
@@ -369,8 +368,8 @@ impl Primitive for Cone {
         [k(0), k(1), k(2)]
     }
 
-    /// Outward. Where the point says too little about the mantle's normal, at the tip above all, it is
-    /// at least turned to `toward`: where the ray comes from that enters, or goes that leaves.
+    /// The normal points outward. Where the point determines the mantle's normal badly, mainly at the tip, the normal
+    /// is at least turned to `toward`. A ray that enters comes from there, and a ray that leaves goes there.
     fn surface<N: Arithmetic>(&self, ray: &Ray<N>, part: Part, point: [N; 3]) -> Surface<N> {
         let toward = if part & LEAVING != 0 {
             ray.slope
@@ -391,15 +390,15 @@ impl Primitive for Cone {
                 let axial = N::from_wide(N::dot(q, frame.axis));
                 let axis = |k: usize| q[k] - axial * frame.axis[k];
                 let (outward, distance) = N::normalize([axis(0), axis(1), axis(2)]);
-                // What is left next to the axis is rounding in part, and leans; a ray that goes along the
-                // mantle would meet it again. On the axis any way is outward.
+                // Next to the axis, the rest is partly rounding and leans. A ray that runs along the mantle would hit
+                // it again. On the axis any direction is outward.
                 let mut outward = upright(outward, frame.axis);
                 let normal = |outward: [N; 3]| {
                     let axis = |k: usize| outward[k] * frame.cos + frame.axis[k] * frame.sin;
                     N::normalize([axis(0), axis(1), axis(2)]).0
                 };
-                // So near the axis the point may lie on the wrong side of it. Every normal supports the
-                // tip; elsewhere one that is wrong by a little is levelled with the ray.
+                // So near the axis the point can lie on the wrong side of it. Every normal supports the tip; elsewhere
+                // a slightly wrong normal is made level with the ray.
                 let astray = distance.scale_down(bits) <= N::error_bound(size);
                 if astray && N::from_wide(N::dot(normal(outward), toward)) < -N::ratio(1 << 22) {
                     outward = upright(toward, frame.axis);
@@ -407,7 +406,7 @@ impl Primitive for Cone {
                 normal(outward)
             }
         };
-        // The point is the ray's, which is off by what all coordinates round.
+        // The point is the ray's, with the rounding errors of all coordinates.
         let magnitude = extent(ray.origin).max(extent(point));
         Surface {
             normal,
@@ -428,8 +427,8 @@ impl Primitive for Cone {
     }
 }
 
-/// A direction at right angles to an axis: `lean` without its part along the axis, or without that
-/// the axis of coordinates that is farthest from it.
+/// A direction at right angles to an axis: `lean` without its part along the axis. If nothing is left, the axis of
+/// coordinates that is farthest from it, without that part.
 fn upright<N: Arithmetic>(lean: [N; 3], axis: [N; 3]) -> [N; 3] {
     let without = |v: [N; 3]| {
         let along = N::from_wide(N::dot(v, axis));
@@ -445,7 +444,7 @@ fn upright<N: Arithmetic>(lean: [N; 3], axis: [N; 3]) -> [N; 3] {
         [N::ZERO, N::ZERO, N::ONE]
     };
     let upright = without(lean);
-    // Once more, because little may have been left.
+    // Once more, because the rest can be small.
     let upright = without(upright);
     if extent(upright) == N::ZERO {
         without(farthest)

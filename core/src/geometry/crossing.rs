@@ -15,7 +15,7 @@ pub(crate) const LEAVING: Part = 1 << 7;
 /// Added to the part where a ray enters a solid for the second time, and where it leaves it then.
 pub(crate) const LATER: Part = 1 << 6;
 
-/// Where a line enters and leaves a primitive; the same place twice for a flat one.
+/// The places where a line enters and leaves a primitive; the same place twice for a flat one.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Crossing<N> {
     pub(crate) enter: (N, Part),
@@ -46,9 +46,8 @@ pub(crate) fn accept<N: Arithmetic>(
     (leave.0 >= ray.tmin && leave.0 <= tmax).then_some((leave.0, leave.1 | LEAVING))
 }
 
-/// Where a ray crosses a plane through `relative` (a point as seen from the ray's origin) with a normal of
-/// any length, of which `approach` is the product with the ray's slope. `None` where the ray runs along
-/// the plane.
+/// Returns where a ray crosses a plane through `relative`, a point as seen from the ray's origin. The normal has any
+/// length, and `approach` is its product with the ray's slope. Returns `None` if the ray runs along the plane.
 #[inline(always)]
 pub(crate) fn cross_plane<N: Arithmetic>(
     normal: [N; 3],

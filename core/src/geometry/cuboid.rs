@@ -1,12 +1,12 @@
 //! Axis-aligned boxes as objects, by the slabs of Kay and Kajiya.
 //!
-//! Closed: a ray that lies in a face meets it. An axis along which the ray does not move is a
-//! containment test, so nothing is divided by zero.
+//! Closed: a ray that lies in a face hits it. An axis along which the ray does not move is a containment test, so
+//! nothing is divided by zero.
 //!
-//! Crossings need no clamping to the box on the box lattice, which holds this one: a t is where one face
-//! is crossed and lies between those of the others, so the point there is beside the box by no more than
-//! a coordinate and a t of less than 2^18 units are rounded, 2^-5 unit in `f32`, and culling widens boxes
-//! by more (see [`cull`](crate::accel)).
+//! Crossings need no clamping to the box on the box lattice, which holds this one. A t is where the ray crosses one
+//! face, and lies between the crossings of the others. So the point lies outside the box by at most the rounding of a
+//! coordinate and of a t of less than 2^18 units. That is 2^-5 unit in `f32`, and culling widens boxes by more (see
+//! [`cull`](crate::accel)).
 
 use crate::axis::pick;
 use crate::format::layout::records;
@@ -41,7 +41,7 @@ impl Primitive for Cuboid {
 
     /// The crossing with the box. Part `2 k` is the lower face of axis `k`, and `2 k + 1` the upper one.
     ///
-    /// Cost: six divisions; in integers two, where the box is met, and none where it is not.
+    /// Cost: six divisions in floats. In integers, two if the ray hits the box, else none.
     #[inline(always)]
     fn cross<N: Arithmetic>(&self, ray: &Ray<N>, _: N) -> Option<Crossing<N>> {
         let mut enter = ((-N::FAR).quotient(N::ONE), 0);
@@ -78,8 +78,8 @@ impl Primitive for Cuboid {
         })
     }
 
-    /// Outward. At an edge the point stays on the face: as far from the other faces as rays start beside
-    /// them.
+    /// The normal points outward. At an edge the point stays on the face, at the distance from the other faces at which
+    /// rays start.
     fn surface<N: Arithmetic>(&self, _: &Ray<N>, part: Part, point: [N; 3]) -> Surface<N> {
         let part = part & !LEAVING;
         let (axis, is_upper) = (usize::from(part / 2), part & 1 != 0);
@@ -107,8 +107,8 @@ impl Primitive for Cuboid {
 }
 
 impl Cuboid {
-    /// The point beneath all faces that is nearest to a point: a step beside them, given their coordinates, or where the
-    /// box is no thicker than that, halfway between them.
+    /// Returns the point beneath all faces that is nearest to a point, given their coordinates. It lies a step inside
+    /// the faces, or halfway between them where the box is no thicker than that.
     #[inline(always)]
     fn beneath_faces<N: Arithmetic>(&self, point: [N; 3], step: impl Fn(N) -> N) -> [N; 3] {
         let axis = |k: usize| {

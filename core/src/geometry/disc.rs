@@ -51,8 +51,8 @@ impl Primitive for Disc {
         let relative = [axis(0), axis(1), axis(2)];
         let normal = self.normal();
         let t = cross_plane(normal, relative, N::dot(normal, ray.slope))?;
-        // A ray passes through the scene within 2^16 units; more would leave the range of `fixed`
-        // below, where the point may be as far again from the center.
+        // A ray passes through the scene within 2^16 units. A longer way would leave the range of `fixed` below, where
+        // the point can be equally far again from the center.
         let within_scene = t.abs() <= N::FAR.half();
         if !within_scene {
             return None;
@@ -60,13 +60,13 @@ impl Primitive for Disc {
         let radius = N::from_lattice(self.radius);
         let axis = |k: usize| t * ray.slope[k] - relative[k];
         let apart = [axis(0), axis(1), axis(2)];
-        // The box first, so that squares stay in range.
+        // The box is tested first, so that squares stay in range.
         let near = |k: usize| apart[k].abs() <= radius;
         let inside = near(0) && near(1) && near(2) && N::dot(apart, apart) <= radius.wide(radius);
         inside.then_some(Crossing::flat(t))
     }
 
-    /// The front is where the normal points.
+    /// The front is the side to which the normal points.
     fn surface<N: Arithmetic>(&self, _: &Ray<N>, _: Part, point: [N; 3]) -> Surface<N> {
         flat::surface(self.normal(), self.center, point)
     }

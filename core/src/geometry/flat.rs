@@ -1,4 +1,4 @@
-//! Flat surfaces: where a point of a plane lies next to a point that was computed, and how far off that is.
+//! Flat surfaces: the point of a plane next to a computed point, and its error bound.
 
 use crate::axis::pick;
 use crate::geometry::Surface;
@@ -26,8 +26,8 @@ pub(crate) fn face<N: Arithmetic>(
     }
 }
 
-/// The surface of a plane, at a point of it next to `point`. `normal` is of any length, and
-/// `through` is the point of the plane that t was computed with.
+/// The surface of a plane, at a point of it next to `point`. `normal` is of any length, and `through` is the point of
+/// the plane from which t was computed.
 #[inline(always)]
 pub(crate) fn surface<N: Arithmetic>(
     normal: [N; 3],
@@ -50,8 +50,8 @@ pub(crate) fn surface<N: Arithmetic>(
     )
 }
 
-/// The surface of a plane at right angles to no axis, given its normal of length 1: the point moves onto
-/// the plane along the normal, by its distance from `through`.
+/// The surface of a plane at right angles to no axis, given its normal of length 1. The point moves onto the plane
+/// along the normal, by its distance from `through`.
 #[inline(always)]
 fn tilted<N: Arithmetic>(normal: [N; 3], through: [N; 3], point: [N; 3]) -> Surface<N> {
     let relative = |k: usize| through[k] - point[k];

@@ -1,15 +1,15 @@
-//! The half-open rule, by which crossings are counted: a point of the plane lies in exactly one of the triangles that
-//! surround it, even on their edges and at their vertices.
+//! The half-open rule, which counts crossings: a point of the plane lies in exactly one of the triangles that surround
+//! it. That holds even on their edges and at their vertices.
 //!
 //! The point is moved by `(e, e^2)`, with `e` above 0 and smaller than any number. So it lies on no edge, and each edge
-//! leaves it on one side: on that which the exact product says, or where that is 0, on the side from which it was moved
-//! away. Two triangles that share an edge see it run the other way, and the sign changes exactly. A closed mesh is
-//! crossed by every line an even number of times therefore, whichever vertices and edges the line leads through
-//! (after Edelsbrunner and Muecke, "Simulation of Simplicity", ACM Transactions on Graphics, 1990).
+//! leaves it on one side. The exact product gives that side; where the product is 0, it is the side from which the
+//! point was moved away. Two triangles that share an edge see it run the other way, and the sign changes exactly. So
+//! every line crosses a closed mesh an even number of times, whichever vertices and edges the line leads through.
+//! (After Edelsbrunner and Muecke, "Simulation of Simplicity", ACM Transactions on Graphics, 1990.)
 //!
-//! Closest hits follow the closed rule: edges and vertices are parts of all triangles that share them. The two differ
-//! where a ray touches an edge from outside, at a silhouette or at the border of an open mesh: there is a closest hit,
-//! and this rule counts none, or two at the same t, or at a border perhaps one.
+//! Closest hits follow the closed rule: edges and vertices are parts of all triangles that share them. The two rules
+//! differ where a ray touches an edge from outside, at a silhouette or at the border of an open mesh. There is a
+//! closest hit then. This rule counts none, or two at the same t, or at a border perhaps one.
 
 use crate::geometry::Project;
 use core::cmp::Ordering;
@@ -22,7 +22,7 @@ fn side<N: Project>(p: [N; 2], q: [N; 2]) -> Ordering {
         .then_with(|| compare(q[0], p[0]))
 }
 
-/// Whether a triangle encloses the moved origin. Turned the other way it does so, too.
+/// Returns true if a triangle encloses the moved origin. The orientation of the triangle does not matter.
 pub(crate) fn encloses_origin<N: Project>(a: [N; 2], b: [N; 2], c: [N; 2]) -> bool {
     let first = side(b, c);
     first != Ordering::Equal && side(c, a) == first && side(a, b) == first

@@ -1,4 +1,4 @@
-//! The layouts of all sections, those of shapes among them.
+//! The layouts of all sections, with those of shapes.
 
 use crate::format::kind::shapes;
 use crate::format::layout::{SectionLayout, Stored};

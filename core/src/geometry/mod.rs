@@ -1,8 +1,8 @@
-//! Primitives: where a ray crosses them, and how their surface lies there.
+//! Primitives: the crossings of rays with them, and their surfaces.
 //!
-//! One file for each shape. Each kernel gives the *crossing*: where the line of the ray enters and
-//! leaves the primitive, behind the origin too. What of that is a hit is decided once for
-//! all of them, in `accept`.
+//! One file per shape. Each kernel returns the *crossing*: where the line of the ray enters and
+//! leaves the primitive, behind the origin too. `accept` decides for all shapes which part of a
+//! crossing is a hit.
 
 pub mod attributes;
 pub(crate) mod cluster;

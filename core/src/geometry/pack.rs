@@ -8,7 +8,7 @@ use crate::number::Arithmetic;
 use crate::ray::Ray;
 use crate::simd::{F32x8, Simd};
 
-/// The spheres of a pack that the line of a ray meets, a bit each, and what makes a crossing of them.
+/// The spheres of a pack that the line of a ray hits, one bit each, and the values from which a crossing is computed.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct LaneHits {
     pub(crate) lanes: u32,
@@ -38,7 +38,7 @@ pub(crate) fn met<N: Arithmetic, S: Simd, P: Pack>(
     recip_norm2: N,
     pack: &P,
 ) -> LaneHits {
-    // No closures, which need not be inlined.
+    // No closures, because the compiler does not always inline them.
     let ([x, y, z], rows) = (ray.origin, pack.rows());
     let x = rows.units(simd, 0) - simd.splat(x.to_f32());
     let y = rows.units(simd, 1) - simd.splat(y.to_f32());

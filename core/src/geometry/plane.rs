@@ -1,9 +1,9 @@
-//! Infinite planes, which lie in no structure: a ray is tested from the origin that its caller gave, before it is moved
-//! to the scene's box, because it can cross them anywhere.
+//! Infinite planes. They lie in no structure, because a ray can cross them anywhere. A ray is tested from the origin of
+//! its caller, before it is moved to the scene's box.
 //!
-//! A plane at right angles to an axis is exact: the hit's coordinate on that axis is the plane's own. Where a hit
-//! lies beyond the lengths of [`Fixed`](crate::Fixed), its point is one of the plane in the same direction; `t` is the
-//! plane's all the same.
+//! A plane at right angles to an axis is exact: the hit's coordinate on that axis is the plane's own. Where a hit lies
+//! beyond the lengths of [`Fixed`](crate::Fixed), its point is a point of the plane in the same direction. `t` is still
+//! the plane's.
 
 use crate::axis::pick;
 use crate::format::layout::records;
@@ -35,7 +35,7 @@ records! {
 }
 
 impl Plane {
-    /// The normal as it is stored, scaled by a power of two: without any rounding.
+    /// The stored normal, scaled by a power of two without any rounding.
     fn direction<N: Arithmetic>(&self) -> [N; 3] {
         N::direction(self.normal.map(i64::from))
     }
@@ -61,10 +61,10 @@ impl Plane {
         [axis(0), axis(1), axis(2)]
     }
 
-    /// A point of the plane, moved towards the plane's own until it is a length on every axis: so it stays in the
+    /// A point of the plane, moved towards the plane's own point until it is a length on every axis. So it stays in the
     /// plane.
     fn within_reach<N: Arithmetic>(&self, mut place: [N::Wide; 3]) -> [N::Wide; 3] {
-        // More halves than a far coordinate has bits.
+        // More halvings than a far coordinate has bits.
         for _ in 0..64 {
             if place.iter().all(|&x| held::<N>(x).widen() == x) {
                 break;
@@ -146,7 +146,7 @@ fn far_dot<N: Arithmetic>(far: [N::Wide; 3], ratios: [N; 3]) -> N::Wide {
     part(0) + part(1) + part(2)
 }
 
-/// A far coordinate as a length: the nearest that leaves room for steps beside it.
+/// Returns a far coordinate as a length: the nearest that leaves room for error bounds.
 fn held<N: Arithmetic>(coordinate: N::Wide) -> N {
     let most = N::narrow(N::far(1 << 60)) - N::from_unit(16);
     N::narrow(coordinate).max(-most).min(most)

@@ -8,34 +8,35 @@ use crate::number::Arithmetic;
 use crate::ray::Ray;
 use bytemuck::Pod;
 
-/// The record of a shape: all that the core knows of it.
+/// The record of a shape: everything that the core knows of it.
 ///
-/// The registry of shapes, `shapes!` in [`format::kind`](crate::format::Kind), names every record. What differs between
-/// shapes beside that is a constant here, so that a search is compiled for each of them.
+/// The registry of shapes, `shapes!` in [`format::kind`](crate::format::Kind), names every record. Other differences
+/// between shapes are constants here, so that a search is compiled for each of them.
 pub(crate) trait Primitive: Pod {
-    /// Whether [`cross`](Self::cross) needs the norm of the ray's slopes.
+    /// True if [`cross`](Self::cross) needs the norm of the ray's slopes.
     const NEEDS_NORM: bool = false;
-    /// Whether a test costs so much that the ray is first tested against the box.
+    /// True if a test is so expensive that the ray is first tested against the box.
     const TESTS_BOX: bool = false;
-    /// Whether rounding can move a crossing out of the box. It is clamped to the box then.
+    /// True if rounding can move a crossing out of the box. Then it is clamped to the box.
     const CLAMPS: bool = true;
-    /// Whether the shape has no inside: its front is the side to which its normal points.
+    /// True if the shape has no inside: its front is the side to which its normal points.
     const FLAT: bool = false;
-    /// Whether a normal that lies on the wrong side of the ray is made level with it by the caller.
+    /// True if the caller makes a normal level with the ray when it lies on the wrong side of the ray.
     const LEVELED: bool = true;
-    /// Whether the shape has a box. One without is in no structure: every query tests it first.
+    /// True if the shape has a box. A shape without one is in no structure: every query tests it first.
     const BOUNDED: bool = true;
 
-    /// The box on the box lattice; that of all points where the shape has none.
+    /// The box on the box lattice; the box of all points for a shape without a box.
     fn bounds(&self) -> UnitBox;
 
     /// The crossing of a ray's line: where it enters and leaves the shape, behind the origin too. `recip_norm2` is
     /// [`Vectors::recip_norm2`](crate::number::Vectors::recip_norm2) of the ray's slopes, where it is needed.
     ///
-    /// A shape that a line can enter more than once chooses the first interval that ends at or after the ray's `tmin`.
+    /// A shape that a line can enter more than once returns the first interval that ends at or after the ray's `tmin`.
     fn cross<N: Arithmetic>(&self, ray: &Ray<N>, recip_norm2: N) -> Option<Crossing<N>>;
 
-    /// The crossing behind one that leaves the shape at `after`; `None` where the line enters it no more, as is the rule.
+    /// Returns the crossing behind one that leaves the shape at `after`; `None` if the line does not enter again, as
+    /// for most shapes.
     fn cross_after<N: Arithmetic>(&self, _: &Ray<N>, _: N, _after: N) -> Option<Crossing<N>> {
         None
     }
@@ -46,12 +47,12 @@ pub(crate) trait Primitive: Pod {
         None
     }
 
-    /// The surface where a ray meets it: the normal points outward, or to the front. `part` is that of the
+    /// Returns the surface where a ray hits it: the normal points outward, or to the front. `part` is that of the
     /// crossing, with [`LEAVING`](crate::geometry::LEAVING) where the ray leaves.
     fn surface<N: Arithmetic>(&self, ray: &Ray<N>, part: Part, point: [N; 3]) -> Surface<N>;
 
-    /// A point of a solid near a point of its surface, `depth` beneath all faces; where the solid is thinner,
-    /// halfway between them.
+    /// Returns a point of a solid near a point of its surface, `depth` beneath all faces. Where the solid is thinner,
+    /// the point lies halfway between them.
     fn inside<N: Arithmetic>(&self, [point, normal]: [[N; 3]; 2], depth: N) -> [N; 3] {
         offset_inward(point, normal, depth)
     }
@@ -79,7 +80,7 @@ pub(crate) struct InScene<'a> {
 }
 
 impl InScene<'_> {
-    /// An error unless a point in 1/256 unit lies in the scene's box.
+    /// Returns an error unless a point in 1/256 unit lies in the scene's box.
     #[inline(always)]
     pub(crate) fn point(self, field: Field, point: [i32; 3]) -> Result<(), BlobError> {
         let mut sides = self.bounds.0.iter().zip(point);
@@ -92,7 +93,7 @@ impl InScene<'_> {
         self.point_outside(field, point)
     }
 
-    /// The error of a point outside of the scene's box.
+    /// The error for a point outside the scene's box.
     #[cold]
     #[inline(never)]
     fn point_outside(self, field: Field, point: [i32; 3]) -> Result<(), BlobError> {
@@ -103,7 +104,7 @@ impl InScene<'_> {
         })
     }
 
-    /// An error unless the box of the record lies in the scene's.
+    /// Returns an error unless the box of the record lies in the scene's.
     pub(crate) fn inner(self, bounds: &UnitBox) -> Result<(), BlobError> {
         let inside = self.bounds.contains(bounds);
         self.at.ensure(inside, Reason::OutsideScene)

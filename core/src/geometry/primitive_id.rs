@@ -1,9 +1,9 @@
-//! Where a blob keeps a primitive.
+//! The location of a primitive in a blob.
 
 use crate::format::Kind;
 use crate::target::WideOnly;
 
-/// Where a blob keeps a primitive.
+/// The location of a primitive in a blob.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct PrimitiveId {
     /// The kind of the primitive.
@@ -15,14 +15,14 @@ pub(crate) struct PrimitiveId {
 }
 
 impl PrimitiveId {
-    /// Among the records of its kind.
+    /// The location among the records of its kind.
     #[inline(always)]
     pub(crate) fn in_slot(kind: Kind, number: u32) -> Self {
         let lane = WideOnly::new(|| None);
         Self { kind, number, lane }
     }
 
-    /// In a lane of a strip, whose place it is, or of a pack.
+    /// The location in a lane of a strip, whose place it is, or of a pack.
     #[inline(always)]
     pub(crate) fn in_cluster(kind: Kind, number: u32, lane: u32) -> Self {
         let lane = WideOnly::new(|| Some(lane as u8));

@@ -21,26 +21,27 @@ pub trait Project: Arithmetic {
     /// Projects a coordinate of at most 24 bits: to steps in floats, to a length along the ray's direction in
     /// [`Fixed`](crate::Fixed).
     fn project(coordinate: i32, axis: &AxisProjection<Self>) -> Self;
-    /// The shear: how far a [projected](Self::project) point departs from the ray along a minor axis per step along
-    /// its major one, given the slopes there.
+    /// Returns the shear, given the slopes along the minor and the major axis. It is how far a
+    /// [projected](Self::project) point departs from the ray along a minor axis per step along its major one.
     fn shear(slope: Self, major: Self) -> Self;
     /// The shear over a depth of less than 2^17 units, by the same arithmetic for every vertex; in
     /// [`Fixed`](crate::Fixed) rounded down.
     fn shear_by(depth: Self, shear: Self) -> Self;
-    /// Whether the triangle of three points of the plane contains the origin, edges included; not if
-    /// all edges lead through it. Exact for either orientation.
+    /// Returns true if the triangle of three points of the plane contains the origin, edges included. Returns false if
+    /// all edges lead through the origin. Exact for either orientation.
     fn surrounds_origin(a: [Self; 2], b: [Self; 2], c: [Self; 2]) -> bool;
-    /// On which side of the origin a line from one point of the plane to another runs: how `p x q` compares to 0, exactly.
+    /// Returns the side of the origin on which a line from one point of the plane to another runs: how `p x q` compares
+    /// to 0, exactly.
     fn side(p: [Self; 2], q: [Self; 2]) -> Ordering;
-    /// Whether three numbers are certain to be all above or all below zero, where that is cheaper to
-    /// see than what comes of it.
+    /// Returns true if three numbers are certainly all above or all below zero. Can return false where the exact answer
+    /// would cost more than it saves.
     #[inline(always)]
     fn same_sign(_: [Self; 3]) -> bool {
         false
     }
-    /// Whether the product of such a [`direction`](crate::number::Vectors::direction) with a slope says that a ray comes at
-    /// a surface of this normal steeply, where that is known to bound the error of t: at least 2^-8 in
-    /// [`Fixed`](crate::Fixed), see `geometry/triangle.rs`.
+    /// Returns true if a ray hits a surface steeply, given the product of the normal's
+    /// [`direction`](crate::number::Vectors::direction) with a slope. Steep means that the error of t is bounded: at
+    /// least 2^-8 in [`Fixed`](crate::Fixed), see `geometry/triangle.rs`.
     #[inline(always)]
     fn is_steep(_: Self::Wide) -> bool {
         false

@@ -309,7 +309,7 @@ impl<'a> Shapes<'a> {
         self.before(Kind::ALL.len())
     }
 
-    /// Number of those that have a box too: structures count slots among them.
+    /// Number of primitives that also have a box: structures count slots among them.
     pub(crate) fn bounded(&self) -> usize {
         let kinds = Kind::ALL.iter().filter(|kind| kind.is_bounded());
         kinds.fold(0, |sum: usize, &kind| sum.wrapping_add(self.records(kind)))
@@ -324,8 +324,8 @@ impl<'a> Shapes<'a> {
         }
     }
 
-    /// Where the primitive of a slot lies: triangles and spheres that have no records of their own
-    /// are counted in the order of the clusters.
+    /// The location of the primitive of a slot. Triangles and spheres without records of their own are counted in the
+    /// order of the clusters.
     pub(crate) fn place(&self, kind: Kind, slot: u32) -> PrimitiveId {
         if WIDE && self.records(kind) == 0 {
             let index = slot as usize;
@@ -348,8 +348,8 @@ impl<'a> Shapes<'a> {
         self.before(kind as usize).wrapping_add(index as usize)
     }
 
-    /// Number of primitives of the first so many kinds: all of them are records of one slice of
-    /// memory, so no sum wraps.
+    /// Number of primitives of the first kinds, this many. All of them are records of one slice of memory, so no sum
+    /// wraps.
     fn before(&self, kinds: usize) -> usize {
         let kinds = Kind::ALL.iter().take(kinds);
         kinds.fold(0, |sum: usize, &kind| sum.wrapping_add(self.records(kind)))
@@ -390,7 +390,7 @@ impl<'a> Shapes<'a> {
         Some([position(a)?, position(b)?, position(c)?])
     }
 
-    /// Takes the normals away, where vertices move.
+    /// Removes the normals, where vertices move.
     pub(crate) fn drop_normals(&mut self) {
         self.normals = SmoothOnly::new(Default::default);
     }
@@ -412,7 +412,7 @@ impl<'a> Shapes<'a> {
         self.coordinates.get().copied().unwrap_or_default()
     }
 
-    /// The corners of a triangle in a slot and their normals, if it has some.
+    /// The corners of a triangle in a slot and their normals, if there are any.
     #[inline(always)]
     pub(crate) fn smooth_triangle(&self, slot: usize) -> Option<SmoothTriangle> {
         let [a, b, c] = self.triangles.corners(slot)?;
@@ -433,7 +433,7 @@ impl<'a> Shapes<'a> {
         Some(sphere::bounds(center, radius))
     }
 
-    /// Whether all primitives of a leaf exist and lie in a box.
+    /// Returns true if all primitives of a leaf exist and lie in a box.
     pub(crate) fn leaf_inside(&self, leaf: Leaf, outer: &UnitBox) -> bool {
         leaf.slots().all(|index| {
             self.bounds(leaf.kind, index)
@@ -442,8 +442,8 @@ impl<'a> Shapes<'a> {
     }
 
     inline_on_hosts!(
-        /// How a primitive's surface lies where a ray hit it, and whether the ray came from the side to
-        /// which the normal points.
+        /// Returns the surface of a primitive where a ray hit it, and true if the ray came from the side to which the
+        /// normal points.
         pub(crate) fn surface<N: Arithmetic>(
             &self,
             place: PrimitiveId,

@@ -1,19 +1,20 @@
 //! Smooth normals: those of a triangle's vertices, interpolated.
 //!
-//! **Storage.** A normal is a point of the octahedron `|x| + |y| + |z| = 32767`, whose lower half is folded
-//! over the upper one, so that two numbers of 16 bits say all (Cigolle, Donow, Evangelakos, Mara, McGuire, Meyer, "A
-//! Survey of Efficient Representations for Independent Unit Vectors", JCGT 2014): four bytes per vertex, at most
-//! 8e-5 radians off. Vertices with a normal come first; a triangle is smooth if its three vertices have one.
+//! **Storage.** A normal is a point of the octahedron `|x| + |y| + |z| = 32767`, whose lower half is folded over the
+//! upper one. So two numbers of 16 bits are enough: four bytes per vertex, at most 8e-5 radians off. (Cigolle, Donow,
+//! Evangelakos, Mara, McGuire, Meyer, "A Survey of Efficient Representations for Independent Unit Vectors", JCGT 2014.)
+//! Vertices with a normal come first; a triangle is smooth if its three vertices have one.
 //!
-//! **Interpolation.** The normals, of length 1, are weighted by the areas that the point cuts the triangle into, as seen
-//! along the largest component of the geometric normal. Cores without an instruction for roots take a hundred others for
-//! one, so inverse roots are those of a line and Newton's steps: of corners within 0.5 %, which turns the normal by
-//! at most 1/800 of the angle between theirs, and of the sum within the rounding of the format.
+//! **Interpolation.** The normals, of length 1, are weighted by the areas into which the point cuts the triangle. The
+//! areas are seen along the largest component of the geometric normal. Cores without a root instruction need a hundred
+//! others for a root. So inverse roots are those of a line and Newton's steps. Those of corners are within 0.5 %, which
+//! turns the normal by at most 1/800 of the angle between the corners' normals. That of the sum is within the rounding
+//! of the format.
 //!
 //! **Light behind the triangle.** Near the terminator a triangle can face away from a light that its smooth normal
-//! faces, and would be black. `SmoothTriangle::lift` moves the start of the shadow ray out to the curved surface for
-//! which the triangle stands (Hanika, "Hacking the Shadow Terminator", *Ray Tracing Gems II*, 2021): the point is
-//! projected onto the tangent plane of each vertex, and the projections are interpolated.
+//! faces, and would be black. `SmoothTriangle::lift` moves the start of the shadow ray out to the curved surface that
+//! the triangle approximates. The point is projected onto the tangent plane of each vertex, and the projections are
+//! interpolated. (Hanika, "Hacking the Shadow Terminator", *Ray Tracing Gems II*, 2021.)
 
 use crate::format::range::At;
 use crate::format::{BlobError, Field, SectionKind};
@@ -23,7 +24,7 @@ use crate::number::{Arithmetic, Format, extent};
 /// The largest coordinate of a stored normal; the sum of the magnitudes of all three.
 pub const LARGEST: i16 = i16::MAX;
 
-/// The stored form of a direction, which need not have length 1; the nearest one, but for rounding. Zero becomes some
+/// Returns the stored form of a direction of any length; the nearest one, except for rounding. Zero becomes some
 /// direction.
 ///
 /// ```
@@ -49,7 +50,7 @@ pub fn encode([x, y, z]: [f64; 3]) -> [i16; 2] {
     [x, y].map(|x| libm::round(x * f64::from(LARGEST)) as i16)
 }
 
-/// The direction that a stored normal stands for, on the octahedron.
+/// The direction of a stored normal, on the octahedron.
 #[inline(always)]
 fn unfold([x, y]: [i16; 2]) -> [i16; 3] {
     let (x, y) = (i32::from(x), i32::from(y));
@@ -68,13 +69,13 @@ fn unfold([x, y]: [i16; 2]) -> [i16; 3] {
     [x as i16, y as i16, z as i16]
 }
 
-/// The normal of length 1 that a stored one stands for.
+/// The normal of length 1 of a stored one.
 #[inline(always)]
 pub(crate) fn decode<N: Arithmetic>(stored: [i16; 2]) -> [N; 3] {
     N::normalize(unfold(stored).map(N::from_unit)).0
 }
 
-/// The inverse root of a ratio, by some of Newton's steps from `a - b x`, which is given with 30 fraction bits.
+/// The inverse root of a ratio, by some of Newton's steps from `a - b x`, given with 30 fraction bits.
 #[inline(always)]
 fn inverse_root<N: Arithmetic>(x: N, [a, b]: [i32; 2], steps: usize) -> N {
     let mut root = N::ratio(a) - N::ratio(b) * x;
@@ -112,8 +113,8 @@ fn weighted<N: Arithmetic>([x, y]: [i16; 2], weight: N) -> [N; 3] {
     [v[0] * scale, v[1] * scale, v[2] * scale]
 }
 
-/// The mean of normals, given their weighted sum and that of the weights, with length 1, or its opposite; `None` where
-/// they cancel out.
+/// Returns the mean of normals with length 1, or its opposite, given their weighted sum and that of the weights; `None`
+/// where they cancel out.
 #[inline(always)]
 fn unit<N: Arithmetic>(sum: [N; 3], weights: N, is_away: bool) -> Option<[N; 3]> {
     if N::FORMAT != Format::Fixed {
@@ -174,8 +175,8 @@ impl SmoothTriangle {
         weights(self.corners, point, facing)
     }
 
-    /// The interpolated normal of length 1 at a point of the triangle, on the side of `facing`, which is the geometric
-    /// normal or its opposite. `None` where the normals of the corners cancel out.
+    /// Returns the interpolated normal of length 1 at a point of the triangle, on the side of `facing`. `facing` is the
+    /// geometric normal or its opposite. Returns `None` where the normals of the corners cancel out.
     #[inline(always)]
     pub(crate) fn normal<N: Arithmetic>(&self, point: [N; 3], facing: [N; 3]) -> Option<[N; 3]> {
         let ([u, v, w], is_away) = self.weights(point, facing);
@@ -189,8 +190,8 @@ impl SmoothTriangle {
         )
     }
 
-    /// The way from a point of the triangle out to the curved surface, on the side of `facing`; zero where that
-    /// surface lies on the other side.
+    /// Returns the way from a point of the triangle out to the curved surface, on the side of `facing`. It is zero
+    /// where that surface lies on the other side.
     #[cold]
     #[inline(never)]
     pub(crate) fn lift<N: Arithmetic>(&self, point: [N; 3], facing: [N; 3]) -> [N; 3] {
@@ -198,7 +199,7 @@ impl SmoothTriangle {
         let sum = weights[0] + weights[1] + weights[2];
         let mut way = [N::ZERO; 3];
         for ((corner, normal), weight) in self.corners.iter().zip(self.normals).zip(weights) {
-            // Negative by rounding alone.
+            // Only rounding makes it negative.
             let weight = weight.div(sum).max(N::ZERO).min(N::ONE);
             let mut normal = decode::<N>(normal);
             if is_away {
@@ -215,7 +216,7 @@ impl SmoothTriangle {
     }
 }
 
-/// A place moved along a way, but no farther from the lattice's middle than rays can start.
+/// Returns a place moved along a way, but no farther from the lattice's middle than rays can start.
 #[inline(always)]
 pub(crate) fn moved<N: Arithmetic>(place: [N; 3], way: [N; 3]) -> [N; 3] {
     let most = N::from_unit(i16::MAX) + N::from_unit(i16::MAX);
@@ -240,7 +241,7 @@ pub(crate) fn barycentric<N: Arithmetic>(
     if sum == N::ZERO {
         return [N::ONE, N::ZERO, N::ZERO];
     }
-    // Below 0 by rounding alone.
+    // Only rounding makes it negative.
     let weight = |weight: N| weight.div(sum).max(N::ZERO).min(N::ONE);
     let [_, second, third] = weights.map(weight);
     [(N::ONE - second - third).max(N::ZERO), second, third]

@@ -1,18 +1,19 @@
-//! Spheres, judged at the point of the line that is closest to the center.
+//! Spheres, tested at the point of the line that is closest to the center.
 //!
-//! The discriminant is formed from the vector between that point and the center, which loses
-//! nothing to cancellation when the sphere is small or far away (Haines, Günther, Akenine-Möller,
-//! "Precision Improvements for Ray/Sphere Intersection", Ray Tracing Gems, 2019).
+//! The discriminant comes from the vector between that point and the center. So nothing is lost to cancellation when
+//! the sphere is small or far away. (Haines, Günther, Akenine-Möller, "Precision Improvements for Ray/Sphere
+//! Intersection", Ray Tracing Gems, 2019.)
 //!
-//! **Crossings are not clamped to the sphere's box, because they lie in its interval.** A grazing ray's
-//! t may be off by much, but the point there is not. Let the closest point be off by `D` along the ray,
-//! the vector from the center to it by `e` across, half the chord by `h`, with a slope of length `s`.
-//! Squares add up to the radius's but for products of these with at most twice the radius: so the point
-//! lies no farther from the center than the radius and `e + s (D + h)`, and what the squares round, a few
-//! parts in 2^24 of the radius. In `f32`, with the center less than 2^17 units away and a radius of at
-//! most 2^15, `s D` is below .1 unit (seven roundings of up to `2^17 sqrt(3)`), and all the rest below
-//! .05; in `fixed` all is below 2^-7. Culling widens boxes by 1/4 unit, 2^-5 of which `f32` takes for
-//! itself (see [`cull`](crate::accel)).
+//! **Crossings are not clamped to the sphere's box, because they lie in its interval.** A grazing ray's t can have a
+//! large error, but the point there does not. Let the closest point be off by `D` along the ray, and the vector from
+//! the center to it by `e` across. Let half the chord be off by `h`, and let the slope have the length `s`. Squares add
+//! up to the radius's, except for products of these with at most twice the radius. So the point lies no farther from
+//! the center than the radius and `e + s (D + h)`, apart from the rounding of the squares. That rounding is a few parts
+//! in 2^24 of the radius.
+//!
+//! In `f32`, let the center be less than 2^17 units away and the radius at most 2^15. Then `s D` is below .1 unit
+//! (seven roundings of up to `2^17 sqrt(3)`), and all the rest below .05. In `fixed` all is below 2^-7. Culling widens
+//! boxes by 1/4 unit, of which `f32` uses 2^-5 for its own rounding (see [`cull`](crate::accel)).
 
 use crate::format::limits::WIDE_LATTICE;
 use crate::format::range::At;
@@ -87,7 +88,7 @@ pub(crate) fn cross<N: Arithmetic>(
     let closest = N::from_wide(N::wide_scale(N::dot(relative, ray.slope), recip_norm2));
     let axis = |k: usize| relative[k] - closest * ray.slope[k];
     let apart = [axis(0), axis(1), axis(2)];
-    // The box first, so that squares stay in range.
+    // The box is tested first, so that squares stay in range.
     if !(apart[0].abs() <= radius && apart[1].abs() <= radius && apart[2].abs() <= radius) {
         return None;
     }
@@ -98,8 +99,8 @@ pub(crate) fn cross<N: Arithmetic>(
     Some(tangent_crossing(closest, square, recip_norm2))
 }
 
-/// The crossing whose middle lies at `closest`, with `square` the radius squared less the square of
-/// the line's distance from the center.
+/// Returns the crossing whose middle lies at `closest`. `square` is the radius squared less the square of the line's
+/// distance from the center.
 #[inline(always)]
 pub(crate) fn tangent_crossing<N: Arithmetic>(
     closest: N,
@@ -122,7 +123,7 @@ pub(crate) fn bounds(center: [i32; 3], radius: i32) -> UnitBox {
     )
 }
 
-/// Outward. The point lies a radius from the center, whatever t was rounded by.
+/// The normal points outward. The point lies a radius from the center, however t was rounded.
 pub(crate) fn surface<N: Arithmetic>(center: [i32; 3], radius: i32, point: [N; 3]) -> Surface<N> {
     let center = center.map(N::from_lattice);
     let radius = N::from_lattice(radius);
@@ -130,7 +131,7 @@ pub(crate) fn surface<N: Arithmetic>(center: [i32; 3], radius: i32, point: [N; 3
     let (normal, _) = N::normalize([axis(0), axis(1), axis(2)]);
     let axis = |k: usize| center[k] + radius * normal[k];
     let point = [axis(0), axis(1), axis(2)];
-    // That of the rounded point, which small spheres far from the lattice's middle turn away from.
+    // The error of the rounded point, which turns the normals of small spheres far from the lattice's middle.
     let axis = |k: usize| point[k] - center[k];
     let (normal, _) = N::normalize([axis(0), axis(1), axis(2)]);
     Surface {

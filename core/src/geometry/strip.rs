@@ -1,22 +1,24 @@
 //! Strips of triangles: the test of [`triangle`](crate::geometry::triangle) on six triangles at once.
 //!
-//! Every vertex is projected once and every edge crossed once, with the very operations of the
-//! test of one triangle, so the signs are the same. Where a product difference rounds to zero its
-//! sign needs exact arithmetic, and the triangles at that edge are tested one by one; that happens
-//! to one ray in some ten thousand.
+//! Every vertex is projected once and every edge crossed once. The operations are exactly those of the test of one
+//! triangle, so the signs are the same. Where a product difference rounds to zero, its sign needs exact arithmetic. The
+//! triangles at that edge are then tested one by one. That happens to one ray in some ten thousand.
 //!
-//! **Behind.** A ray that leaves a surface meets that surface's triangle again, just behind its start.
-//! Lanes see that, too, and then the triangle needs no exact test. With depths `d` along the major axis,
-//! the test's t is the quotient of two determinants, of the three vertices and of their projections:
-//! `d0 (x1 y2 - x2 y1) + d1 (x2 y0 - x0 y2) + d2 (x0 y1 - x1 y0)` and the sum of the brackets, with
-//! the sign of the ray's direction. Let `m` be the largest magnitude of the `x`, `y` and `d`, and `e`
-//! 2^-24. An `x` is off by 6 e m, a bracket by 28 e m^2, and what lanes make of the determinants by
-//! 108 e m^3 and 96 e m^2. The test takes t from normal, offset and slope, which have no component
-//! above 32 m^2, 2 m and 1, and whose products are off by less than 8 e each: in sum by 768 e m^3 and
-//! 512 e m^2. So where both determinants are above 1024 e times m^3 or m^2, both computations have
-//! their signs, and where these say so, the test's t is below 0. It is clamped to the interval of the
-//! triangle's box then (see [`accept_in_box`](crate::accel::clamp::accept_in_box)), but that starts below 0 as well if the box
-//! begins behind or beside the ray's start on every axis: if some vertex does. No hit starts below 0.
+//! **Behind.** A ray that leaves a surface hits that surface's triangle again, just behind its start. Lanes detect
+//! that, too, and then the triangle needs no exact test. With depths `d` along the major axis, the test's t is the
+//! quotient of two determinants, of the three vertices and of their projections. The first is
+//! `d0 (x1 y2 - x2 y1) + d1 (x2 y0 - x0 y2) + d2 (x0 y1 - x1 y0)`. The second is the sum of the brackets, with the sign
+//! of the ray's direction.
+//!
+//! Let `m` be the largest magnitude of the `x`, `y` and `d`, and `e` 2^-24. An `x` is off by 6 e m and a bracket by 28
+//! e m^2. The determinants that lanes compute are off by 108 e m^3 and 96 e m^2. The test computes t from normal,
+//! offset and slope, which have no component above 32 m^2, 2 m and 1. Their products are off by less than 8 e each: in
+//! sum by 768 e m^3 and 512 e m^2. So where both determinants are above 1024 e times m^3 or m^2, both computations have
+//! their signs. Where these signs say so, the test's t is below 0.
+//!
+//! It is then clamped to the interval of the triangle's box (see
+//! [`accept_in_box`](crate::accel::clamp::accept_in_box)). That interval also starts below 0 if on every axis the box
+//! does not begin ahead of the ray's start. This is true if some vertex lies there. No hit starts below 0.
 
 use crate::format::cluster::{Rows, Strip};
 use crate::format::record::{Vertex16, Vertex24};
@@ -27,14 +29,14 @@ use crate::number::Format;
 use crate::ray::Ray;
 use crate::simd::{F32x8, Simd};
 
-/// A ray as strips are tested with it.
+/// A ray in the form in which strips are tested.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct StripRay<N> {
     projection: Projection<N>,
-    /// The axis of each role: the two minor ones, then the major one. In bits of one word, because
-    /// what was just stored in parts cannot be loaded at once.
+    /// The axis of each role: the two minor ones, then the major one. They are bits of one word, because a load cannot
+    /// join parts that were just stored.
     axes: u32,
-    /// A bit for each role whose axis the ray runs down.
+    /// One bit for each role whose axis the ray runs down.
     descends: u32,
 }
 
@@ -70,8 +72,8 @@ impl<N: Project> StripRay<N> {
         0_u32.wrapping_sub(self.descends >> role & 1)
     }
 
-    /// The places of a strip whose triangles the ray meets: what [`Projection::meets`] says of each,
-    /// but for some that are met behind the ray's start alone.
+    /// Returns the places of a strip whose triangles the ray hits, as [`Projection::meets`] does. Some triangles that
+    /// the ray hits only behind its start are left out.
     ///
     /// Cost in `f32`: some 100 operations in four lanes.
     #[inline(always)]
@@ -86,11 +88,11 @@ impl<N: Project> StripRay<N> {
         met & !doubtful | self.met_one_by_one(strip, doubtful)
     }
 
-    /// The places that are met, and those of which lanes cannot say.
+    /// The places that the ray hits, and those that lanes cannot decide.
     #[inline(always)]
     fn met_in_lanes<S: Simd, T: Strip>(&self, simd: S, strip: &T) -> (u32, u32) {
         let Projection { axes, shear, .. } = &self.projection;
-        // No closures, which need not be inlined.
+        // No closures, because the compiler does not always inline them.
         let rows = strip.rows();
         let last = rows.measure(simd, axis(self.axes, 2));
         let depth = last + simd.splat(axes[2].offset.to_f32());
@@ -107,10 +109,10 @@ impl<N: Project> StripRay<N> {
         let across = x * y2 - y * x2;
         let (side_zero, across_zero) = (side.zero(), across.zero());
         let doubtful = side_zero | side_zero >> 1 | across_zero;
-        // Of a difference that is not zero.
+        // The signs of differences that are not zero.
         let (left, back) = (side.signs(), across.signs());
         let places = strip.members().lanes();
-        // Round a triangle run two sides and, backwards, the edge across.
+        // The sides of a triangle are two of these and, backwards, the edge across.
         let (met, doubtful) = (
             !(left ^ left >> 1) & (left ^ back) & places,
             doubtful & places,
@@ -118,7 +120,7 @@ impl<N: Project> StripRay<N> {
         if met == 0 {
             return (0, doubtful);
         }
-        // Where some vertex lies behind the ray's start on every axis.
+        // The places where some vertex lies behind the ray's start on every axis.
         let mut near = met;
         for (role, offset) in [(2, depth), (0, right), (1, up)] {
             let vertices = offset.signs() ^ self.descends(role);
@@ -131,8 +133,8 @@ impl<N: Project> StripRay<N> {
         (met & !near, doubtful)
     }
 
-    /// The places that are certain to be met behind the ray's start alone, of those that are not
-    /// doubtful and where some vertex lies behind it on every axis; see above.
+    /// Returns the places that the ray certainly hits only behind its start. The candidates are those that are not
+    /// doubtful and where some vertex lies behind the start on every axis; see above.
     #[inline(always)]
     fn behind<S: Simd>(
         &self,

@@ -1,17 +1,15 @@
 //! Tori: the solid that a disc sweeps along a circle around an axis.
 //!
-//! With `R` the circle's radius, `r` the disc's, `rho` a point's distance from the axis and `y` its
-//! height along it, a point lies in the solid where `h = (rho - R)^2 + y^2 - r^2` is not positive. So
-//! a spindle torus (`r > R`) has its outer surface alone. The textbook's quartic is
-//! `h ((rho + R)^2 + y^2 - r^2)`; it is neither expanded nor solved in radicals, because its
-//! coefficients lose the tube of a thin ring to rounding: see `torus/profile.rs`.
+//! Let `R` be the circle's radius, `r` the disc's, `rho` a point's distance from the axis and `y` its height along it.
+//! A point lies in the solid where `h = (rho - R)^2 + y^2 - r^2` is not positive. So a spindle torus (`r > R`) has only
+//! its outer surface. The textbook's quartic is `h ((rho + R)^2 + y^2 - r^2)`. It is neither expanded nor solved in
+//! radicals, because its coefficients lose the tube of a thin ring to rounding: see `torus/profile.rs`.
 //!
-//! The line's origin is its point closest to the center, so lengths are those of the solid, wherever
-//! the ray comes from.
+//! The line's origin is its point closest to the center, so lengths are those of the solid, wherever the ray starts.
 //!
-//! **Ranges of `fixed`.** The reach `R + r` is at most 2^16 units, or 2^29 sub-steps, and scaled up below
-//! that. A line that passes farther from the center is rejected, and it counts as far as it is within
-//! reach, so no position exceeds 2^29 by more than what is rounded, and no sum of three squares 2^60.
+//! **Ranges of `fixed`.** The reach `R + r` is at most 2^16 units, or 2^29 sub-steps, and scaled up below that. A line
+//! that passes farther from the center is rejected, and it counts only within reach. So no position exceeds 2^29 by
+//! more than the rounding, and no sum of three squares exceeds 2^60.
 
 mod frame;
 mod profile;
@@ -69,8 +67,8 @@ impl Torus {
         [self.major_radius, self.minor_radius].map(N::from_lattice)
     }
 
-    /// Where a point near the surface lies. On the axis any way across is outward, and on the circle
-    /// any way is away from it.
+    /// The frame of a point near the surface. On the axis any direction across is outward, and on the circle any
+    /// direction is away from it.
     fn place<N: Arithmetic>(&self, frame: &Frame<N>, point: [N; 3]) -> TorusPoint<N> {
         let q = |k: usize| point[k] - N::from_lattice(self.center[k]);
         let [major, minor] = self.radii::<N>();
@@ -85,7 +83,7 @@ impl Torus {
         }
     }
 
-    /// The point at a place whose distance from the circle is changed.
+    /// Returns the point at a place with another distance from the circle.
     fn offset_point<N: Arithmetic>(
         &self,
         frame: &Frame<N>,
@@ -126,7 +124,7 @@ impl Torus {
 }
 
 impl Torus {
-    /// The first crossing whose end counts.
+    /// Returns the first crossing whose end counts.
     #[inline(always)]
     fn first_crossing<N: Arithmetic>(
         &self,
@@ -140,7 +138,7 @@ impl Torus {
         let axis = |k: usize| closest * ray.slope[k] - relative[k];
         let apart = [axis(0), axis(1), axis(2)];
         let reach = N::from_lattice(self.major_radius.wrapping_add(self.minor_radius));
-        // The box first, so that squares stay in range.
+        // The box is tested first, so that squares stay in range.
         let near = |k: usize| apart[k].abs() <= reach;
         if !(near(0) && near(1) && near(2) && N::dot(apart, apart) <= reach.wide(reach)) {
             return None;
@@ -168,7 +166,7 @@ impl Torus {
 impl Primitive for Torus {
     const NEEDS_NORM: bool = true;
     const TESTS_BOX: bool = true;
-    // In a pit, where the way along the axis alone leads out, the normal stays.
+    // In a pit, where only the way along the axis leads out, the normal stays.
     const LEVELED: bool = false;
 
     #[inline(always)]
@@ -176,7 +174,7 @@ impl Primitive for Torus {
         self.bounds
     }
 
-    /// The first stretch of the line inside the solid that does not end before the ray's interval.
+    /// Returns the first interval of the line inside the solid that does not end before the ray's interval.
     /// `recip_norm2` is [`Vectors::recip_norm2`](crate::number::Vectors::recip_norm2) of the ray's slopes.
     fn cross<N: Arithmetic>(&self, ray: &Ray<N>, recip_norm2: N) -> Option<Crossing<N>> {
         self.first_crossing(ray, recip_norm2, |leave| leave >= ray.tmin)
@@ -191,11 +189,11 @@ impl Primitive for Torus {
         self.first_crossing(ray, recip_norm2, |leave| leave > after)
     }
 
-    /// Outward.
+    /// The normal points outward.
     ///
-    /// Next to the axis, in the pit of a spindle torus and at the center of a horn torus, the surface
-    /// has no normal, and a step away from one of its sides leads through the other: there the normal is
-    /// the axis, and the error bound is as long as the way to where the pit is wide enough.
+    /// Next to the axis, in the pit of a spindle torus and at the center of a horn torus, the surface has no normal. A
+    /// step away from one of its sides leads through the other. There the normal is the axis, and the error bound is
+    /// the length of the way to where the pit is wide enough.
     fn surface<N: Arithmetic>(&self, ray: &Ray<N>, part: Part, point: [N; 3]) -> Surface<N> {
         let frame = Frame::new(self.axis);
         let place = self.place(&frame, point);
@@ -208,7 +206,7 @@ impl Primitive for Torus {
             return self.pit((&frame, &place), error, toward);
         }
         let point = self.offset_point(&frame, &place, minor);
-        // That of the rounded point, which thin rings far from the lattice's middle turn away from.
+        // The error of the rounded point, which turns the normals of thin rings far from the lattice's middle.
         let TorusPoint { outward, away, .. } = self.place(&frame, point);
         let normal = frame.vector(away[1], outward.map(|x| away[0] * x));
         let mut surface = Surface {
@@ -224,7 +222,7 @@ impl Primitive for Torus {
         surface
     }
 
-    /// A point `depth` beneath a point of the surface, or on the circle where the tube is thinner.
+    /// Returns a point `depth` beneath a point of the surface, or on the circle where the tube is thinner.
     fn inside<N: Arithmetic>(&self, [point, _]: [[N; 3]; 2], depth: N) -> [N; 3] {
         let [_, minor] = self.radii::<N>();
         let frame = Frame::new(self.axis);

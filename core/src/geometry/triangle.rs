@@ -1,12 +1,13 @@
 //! Triangles: watertight, with t from the triangle's plane.
 //!
-//! A vertex is projected along the ray onto the plane of the two minor axes, by arithmetic that
-//! depends on the vertex and the ray alone; so every triangle at a vertex computes the same point.
-//! The signs of the edge tests on those points are exact ([`Project::surrounds_origin`](crate::geometry::Project::surrounds_origin)). Whatever the
-//! projection rounded, the projected mesh is a mesh, and no ray slips between two triangles of it
-//! (after Woop, Benthin, Wald, "Watertight Ray/Triangle Intersection", JCGT 2013). `t` is not
-//! interpolated, which goes wrong on stretched triangles, but taken from the plane, whose normal is
-//! computed in integers without any rounding and is the same in every number format.
+//! A vertex is projected along the ray onto the plane of the two minor axes. The arithmetic depends only on the vertex
+//! and the ray, so every triangle at a vertex computes the same point. The signs of the edge tests on those points are
+//! exact ([`Project::surrounds_origin`](crate::geometry::Project::surrounds_origin)). So the projected mesh is a mesh,
+//! however the projection was rounded. No ray slips between two triangles of it (after Woop, Benthin, Wald, "Watertight
+//! Ray/Triangle Intersection", JCGT 2013).
+//!
+//! `t` is not interpolated, because interpolation fails on stretched triangles. It comes from the plane, whose normal
+//! is computed in integers without any rounding and is the same in every number format.
 
 use crate::axis::pick;
 use crate::format::limits::{WIDE_INDICES, WIDE_LATTICE};
@@ -63,7 +64,7 @@ impl<'a> Vertices<'a> {
         }
     }
 
-    /// All of them as they are stored; `None` if they have another type.
+    /// Returns all vertices as stored; `None` if they have another type.
     pub(crate) fn stored<V: Vertex>(&self) -> Option<&'a [V]> {
         match self {
             Vertices::V16(vertices) if V::STEP_BITS == Vertex16::STEP_BITS => {
@@ -76,7 +77,7 @@ impl<'a> Vertices<'a> {
         }
     }
 
-    /// Puts others in their place that have the same type.
+    /// Replaces the vertices by others of the same type.
     pub(crate) fn replace<V: Vertex>(&mut self, others: &'a [V]) {
         match self {
             Vertices::V16(vertices) => {
@@ -141,13 +142,13 @@ impl<'a> Triangles<'a> {
     }
 }
 
-/// Whether the vertex indices of a blob have 16 bits.
+/// Returns true if the vertex indices of a blob have 16 bits.
 pub(crate) fn is_narrow(sections: &Sections<'_>) -> bool {
     sections.get(SectionKind::Triangles).stride == size_of::<[u16; 3]>()
 }
 
-/// The projection along a ray: how its origin sees coordinates on the axes in the order of their roles
-/// (the two minor ones, then the major one), and how far the ray strays for each step of depth.
+/// The projection along a ray. It holds how its origin sees coordinates on the axes in the order of their roles (the
+/// two minor ones, then the major one). It also holds how far the ray moves on them per step of depth.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Projection<N> {
     pub(crate) axes: [AxisProjection<N>; 3],
@@ -155,10 +156,10 @@ pub(crate) struct Projection<N> {
     major: usize,
 }
 
-/// Stands for a major axis that is not known when the code is compiled.
+/// Marks a major axis that is not known at compile time.
 pub(crate) const ANY: usize = 3;
 
-/// The axis of a role, by a major axis as a constant, or else as it is.
+/// The axis of a role, by a major axis as a constant, or else by the ray's own.
 #[inline(always)]
 fn axis<const MAJOR: usize>(major: usize, role: usize) -> usize {
     let major = if MAJOR == ANY { major } else { MAJOR };
@@ -186,8 +187,8 @@ impl<N: Project> Projection<N> {
     }
 
     inline_unless_small!(
-        /// Whether a ray whose major axis is `MAJOR` meets a triangle, edges included; not if it is
-        /// seen edge on.
+        /// Returns true if a ray whose major axis is `MAJOR` hits a triangle, edges included. Returns false if the
+        /// triangle is seen edge on.
         ///
         /// Cost: 9 loads and some 30 multiplications and additions.
         pub(crate) fn meets<const MAJOR: usize, V: Vertex>(&self, a: &V, b: &V, c: &V) -> bool {
@@ -221,11 +222,12 @@ impl<N: Project> Projection<N> {
     );
 }
 
-/// Whether a ray passes through a triangle by the [half-open rule](crate::geometry::half_open): of two triangles that
-/// share an edge it passes through one there, or through both or neither where both lie on one side of it.
+/// Returns true if a ray passes through a triangle by the [half-open rule](crate::geometry::half_open). Where two
+/// triangles share an edge, the ray passes through one of them there. If both lie on one side of it, it passes through
+/// both or neither.
 #[inline(never)]
 pub(crate) fn passes<N: Project>(ray: &Ray<N>, corners: [[i32; 3]; 3]) -> bool {
-    // As coarser coordinates are projected: their steps differ by a power of two.
+    // Projected like coarser coordinates: their steps differ by a power of two.
     let Projection { axes, shear, major } = Projection::<N>::of::<ANY, Vertex24>(ray);
     let corner = |corner: [i32; 3]| {
         let seen = |role: usize| {
@@ -242,17 +244,18 @@ pub(crate) fn passes<N: Project>(ray: &Ray<N>, corners: [[i32; 3]; 3]) -> bool {
     half_open::encloses_origin(corner(a), corner(b), corner(c))
 }
 
-/// Where a ray meets the plane of a triangle that it [meets](Projection::meets), and whether it does so
-/// steeply; `None` where it runs along the plane.
+/// Returns where a ray crosses the plane of a triangle that it [hits](Projection::meets), and true if it does so
+/// steeply. Returns `None` where the ray runs along the plane.
 ///
-/// Met steeply, t needs no clamping to the interval of the triangle's box: there it is anyway. Let `q` be
-/// the point of the triangle that is seen where the ray is, and `t'` its depth. Beside the ray it lies by
-/// what the projection rounded ([`Project::shear_by`](crate::geometry::Project::shear_by)), and `n . q` differs from what it is for the plane
-/// through the first corner by what the normal `n` lacks, less than a step a component, over the
-/// triangle's extent of less than 2^16 units. So in [`Fixed`](crate::number::Fixed), where `n` has 30
-/// fraction bits and a projected coordinate is off by less than 2^-13 unit, `|n . d| |t - t'|` is below
-/// `(3 * 2^16 + 2 * 2^30 * 2^-13) / 2^30 < 2^-11` units. Where `|n . d|` is at least 2^-8, the hit lies
-/// within 1/8 unit of `q`, and a point within 1/4 unit of a box has a t in its interval (see
+/// A steep hit needs no clamping of t to the interval of the triangle's box, because t already lies in it. Let `q` be
+/// the point of the triangle that is seen where the ray is, and `t'` its depth. Its lateral distance from the ray is
+/// the rounding of the projection ([`Project::shear_by`](crate::geometry::Project::shear_by)). `n . q` differs from its
+/// value for the plane through the first corner by the rounding of the normal `n`. That is less than a step per
+/// component, over the triangle's extent of less than 2^16 units.
+///
+/// In [`Fixed`](crate::number::Fixed), `n` has 30 fraction bits and a projected coordinate is off by less than 2^-13
+/// unit. So `|n . d| |t - t'|` is below `(3 * 2^16 + 2 * 2^30 * 2^-13) / 2^30 < 2^-11` units. Where `|n . d|` is at
+/// least 2^-8, the hit lies within 1/8 unit of `q`. A point within 1/4 unit of a box has a t in its interval (see
 /// [`cull`](crate::accel)).
 #[inline(always)]
 pub(crate) fn cross<N: Project>(ray: &Ray<N>, corners: [[i32; 3]; 3]) -> Option<(N, bool)> {
@@ -296,7 +299,7 @@ pub(crate) fn bounds([a, b, c]: [[i32; 3]; 3]) -> UnitBox {
 }
 
 inline_on_hosts!(
-    /// The front is where the corners run counter-clockwise.
+    /// The front is the side from which the corners run counter-clockwise.
     pub(crate) fn surface<N: Arithmetic>(corners: [[i32; 3]; 3], point: [N; 3]) -> Surface<N> {
         flat::surface(normal(corners), corners[0], point)
     }

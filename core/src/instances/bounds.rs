@@ -4,13 +4,13 @@ use crate::format::Reason;
 use crate::format::instance::{Instance, MATRIX_BITS};
 use crate::format::record::UnitBox;
 
-/// How far the squares of a matrix' rows, and the products of two rows, may be off: 2^-20 of the largest, with twice the
+/// Tolerance for the squares of a matrix' rows and the products of two rows. It is 2^-20 of the largest, with twice the
 /// fraction bits of an entry.
 const TOLERANCE: i64 = 1 << (2 * MATRIX_BITS - 20);
 
-/// Units by which a box is widened. The tolerance of the matrix costs up to 1.2: the transposed matrix is the inverse but
-/// for 2.8 * 2^-18 of the way from the center, which is at most 2^16 * 3^(1/2) units long. Rounding costs less than one.
-/// The rest is for a hit that lies beside its part's box.
+/// Units by which a box is widened. The tolerance of the matrix costs up to 1.2. The transposed matrix is the inverse
+/// except for 2.8 * 2^-18 of the way from the center. That way is at most 2^16 * 3^(1/2) units long. Rounding costs
+/// less than one unit. The rest is for a hit that lies outside its part's box.
 const MARGIN: i64 = 3;
 
 /// The square of a row's length, with twice the fraction bits of an entry. Entries are within their range.
@@ -21,7 +21,7 @@ fn dot([a, b, c]: [i32; 3], [x, y, z]: [i32; 3]) -> i64 {
         .wrapping_add(product(c, z))
 }
 
-/// An error unless a matrix is a rotation times a factor from 1/2 to 1, within a [tolerance](TOLERANCE).
+/// Returns an error unless a matrix is a rotation times a factor from 1/2 to 1, within a [tolerance](TOLERANCE).
 pub(crate) fn check_rotation(matrix: &[[i32; 3]; 3]) -> Result<(), Reason> {
     let &[x, y, z] = matrix;
     let square = dot(x, x);
@@ -30,7 +30,7 @@ pub(crate) fn check_rotation(matrix: &[[i32; 3]; 3]) -> Result<(), Reason> {
     let scaled = square >= largest / 4 - TOLERANCE && square <= largest + TOLERANCE;
     let even = is_small(dot(y, y).wrapping_sub(square)) && is_small(dot(z, z).wrapping_sub(square));
     let upright = is_small(dot(x, y)) && is_small(dot(y, z)) && is_small(dot(z, x));
-    // Near enough to a rotation or a reflection that the rounded product tells which.
+    // Near enough to a rotation or a reflection that the rounded product decides between them.
     let wedge = |i: usize, j: usize| {
         let product = |a: i32, b: i32| i64::from(a).wrapping_mul(b.into());
         (product(x[i], y[j]).wrapping_sub(product(x[j], y[i])) >> MATRIX_BITS) as i32
@@ -93,9 +93,9 @@ pub(crate) fn around(instance: &Instance, part: &UnitBox) -> Option<UnitBox> {
 }
 
 impl Instance {
-    /// Returns a box around the placed box of a part, in units of the scene; `None` where it would leave the scene's
-    /// lattice, or the matrix is not a rotation times a factor from 1/2 to 1. Loading proves that an instance's own box
-    /// holds this one.
+    /// Returns a box around the placed box of a part, in units of the scene. Returns `None` where it would leave the
+    /// scene's lattice, or the matrix is not a rotation times a factor from 1/2 to 1. Loading proves that an instance's
+    /// own box holds this one.
     ///
     /// ```
     /// use gridel_core::format::instance::{Instance, MATRIX_BITS};

@@ -1,9 +1,9 @@
 //! The hierarchy above instances in RAM, built in place.
 //!
-//! Top down: the instances of a pair are divided in halves along the axis on which their centers spread most. Halving
-//! the interval of the coordinate finds the middle, so `n` instances take at most `24 n` steps per level and there are
-//! `log2 n` levels, rounded up. Then boxes, from the last pair to the first. No memory but the hierarchy's own and a word per
-//! instance.
+//! Top down: the instances of a pair are divided in halves along the axis on which their centers spread most. Bisection
+//! of the coordinate's interval finds the middle. So `n` instances take at most `24 n` steps per level, and there are
+//! `log2 n` levels, rounded up. Then the boxes follow, from the last pair to the first. This needs only the hierarchy's
+//! own memory and a word per instance.
 
 use crate::format::instance::Instance;
 use crate::format::link::Node;
@@ -12,10 +12,10 @@ use crate::format::{BlobError, Location, Reason, SectionKind};
 use crate::instances::top::child_box;
 
 /// Builds the hierarchy above instances, with one pair fewer than instances. `around` is the box of an instance, and
-/// `scene` that of the scene, which holds all of them. `order` has as many words as there are instances.
+/// `scene` that of the scene, which holds all of them. `order` has one word per instance.
 ///
 /// # Errors
-/// If an instance lies outside of the scene's box.
+/// If an instance lies outside the scene's box.
 pub(crate) fn build(
     instances: &[Instance],
     order: &mut [u32],
@@ -106,7 +106,7 @@ fn divide(instances: &[Instance], order: &mut [u32], pairs: &mut [Pair]) {
     }
 }
 
-/// Brings those instances to the front, so many, whose centers are least along the axis on which centers spread most.
+/// Moves this many instances to the front: those whose centers are least along the axis on which centers spread most.
 fn halve(instances: &[Instance], order: &mut [u32], front: usize) {
     let spread = |axis: usize| {
         let (least, greatest) = extremes(instances, order, axis);
@@ -157,7 +157,7 @@ fn extremes(instances: &[Instance], order: &[u32], axis: usize) -> (i32, i32) {
         })
 }
 
-/// Brings those to the front whose coordinate is at most `most`; returns how many there are.
+/// Moves those to the front whose coordinate is at most `most`; returns their number.
 fn partition(instances: &[Instance], order: &mut [u32], axis: usize, most: i32) -> usize {
     let mut below = 0;
     for place in 0..order.len() {

@@ -1,4 +1,4 @@
-//! The proof that instances are where their boxes are, and that the hierarchy above leads to each of them.
+//! The proof that instances lie in their boxes, and that the hierarchy above leads to each of them.
 
 use crate::accel::hierarchy::order::Order;
 use crate::format::instance::Instance;
@@ -18,8 +18,8 @@ pub(crate) fn check_instance(index: usize, instance: &Instance) -> Result<(), Bl
     check_rotation(&instance.matrix).map_err(|reason| at.location().invalid(reason))
 }
 
-/// Proves the hierarchy: nodes in breadth-first order, every instance reached once, and every box around what is below
-/// it: `around` is the box of an instance. The scene's box is around all.
+/// Proves the hierarchy: nodes lie in breadth-first order, every instance is reached once, and every box holds
+/// everything below it. `around` is the box of an instance. The scene's box holds all.
 pub(crate) fn check_top(
     top: &Top<'_>,
     scene: &UnitBox,
@@ -42,7 +42,7 @@ pub(crate) fn check_top(
             expected,
         });
     }
-    // Two boxes that hold what is below a node.
+    // Two boxes that hold everything below a node.
     let below = |node: Node| {
         let number = node.number() as usize;
         if node.is_leaf() {

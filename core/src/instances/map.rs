@@ -1,7 +1,7 @@
 //! The map of an instance: rays into the part, hits back into the scene.
 //!
-//! All numbers of a map are integers that every format holds exactly; what is rounded is what the map is applied to.
-//! The power of two stays apart, so that ratios are ratios.
+//! All numbers of a map are integers that every format holds exactly; only the mapped values are rounded. The power of
+//! two stays apart, so that ratios are ratios.
 
 use crate::format::instance::{Instance, MATRIX_BITS};
 use crate::format::record::UnitBox;
@@ -21,7 +21,7 @@ pub(crate) struct Map<N> {
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct PlacedRay<N: Arithmetic> {
     pub(crate) ray: Ray<N>,
-    /// How much longer t is in the part, without the map's power of two: a product of two ratios, above 1/4.
+    /// The factor by which t is longer in the part, without the map's power of two: a product of two ratios, above 1/4.
     stretch: N::Wide,
     exponent: i32,
 }
@@ -61,8 +61,8 @@ impl<N: Arithmetic> Map<N> {
         [far(x), far(y), far(z)]
     }
 
-    /// A ray of the scene in the part, whose box is given, with hits up to a t that is counted from the ray's start.
-    /// `None` if it misses the part's surroundings.
+    /// Returns a ray of the scene in the part, whose box is given. It has hits up to a t that is counted from the ray's
+    /// start. `None` if it misses the part's surroundings.
     #[inline(always)]
     pub(crate) fn ray(&self, bounds: &UnitBox, ray: &Ray<N>, tmax: N) -> Option<PlacedRay<N>> {
         let direction = self.rotate(ray.slope);
@@ -76,7 +76,7 @@ impl<N: Arithmetic> Map<N> {
             let scaled = N::wide_scale(t.widen(), N::from_wide(stretch));
             N::far_times_power(scaled, exponent)
         };
-        // What starts beside a surface stays beside it.
+        // A ray that starts outside a surface stays outside.
         let tmin = if ray.tmin > N::ZERO {
             let (mapped, beside) = (into(ray.tmin), N::step_beside(N::ZERO).widen());
             if mapped > beside { mapped } else { beside }
@@ -107,14 +107,16 @@ impl<N: Arithmetic> Map<N> {
         N::narrow(N::far_times_power(length, self.exponent.wrapping_neg()))
     }
 
-    /// The surface that a part's is in the scene: point, normal and error bound. `near` is the place on the scene's ray
-    /// at the hit's t.
+    /// Returns the surface in the scene of a surface of the part: point, normal and error bound. `near` is the place on
+    /// the scene's ray at the hit's t.
     ///
-    /// The point is the one of the mapped tangent plane next to `near`, so the part's rounding and the way there count,
-    /// and not how well the map can be inverted. **Error bound**, beside the part's own: mapping a place rounds each
-    /// coordinate by 4 u of three products, 12 u of its distance from the center in all, once here and once for the next
-    /// ray; the point and the start of that ray are rounded by 2 u of a coordinate each. In `fixed` a mapped coordinate
-    /// is rounded to a sub-step of the part.
+    /// The point is the one of the mapped tangent plane next to `near`. So the part's rounding and the way there count,
+    /// but not the precision of the inverse map.
+    ///
+    /// **Error bound**, in addition to the part's own. Mapping a place rounds each coordinate by 4 u of three products,
+    /// 12 u of its distance from the center in all. That happens once here and once for the next ray. The point and the
+    /// start of that ray are rounded by 2 u of a coordinate each. In `fixed` a mapped coordinate is rounded to a
+    /// sub-step of the part.
     pub(crate) fn surface(&self, near: [N; 3], surface: &PlacedSurface<N>) -> PlacedSurface<N> {
         let (normal, along) = self.normal(surface.normal);
         let there = self.point(near).map(N::narrow);
@@ -148,8 +150,8 @@ impl<N: Arithmetic> Map<N> {
         }
     }
 
-    /// A way of the part in the scene: less than a few error bounds long, so that the transposed matrix serves as
-    /// its inverse.
+    /// Returns a way of the part in the scene. It is less than a few error bounds long, so the transposed matrix is
+    /// used as its inverse.
     pub(crate) fn step(&self, way: [N; 3]) -> [N; 3] {
         let (direction, length) = N::normalize(way);
         let (direction, along) = self.normal(direction);
@@ -201,8 +203,8 @@ impl<N: Arithmetic> PlacedRay<N> {
     }
 }
 
-/// The end of the search in a part for hits with a t of at most this one in the scene: beyond it by more than what
-/// mapping a t to the part and back rounds.
+/// Returns the end of the search in a part for hits with a t of at most this one in the scene. It lies beyond that t by
+/// more than the rounding of mapping a t to the part and back.
 #[inline(always)]
 pub(crate) fn beyond<N: Arithmetic>(t: N) -> N {
     let rounded = N::wide_over(t.widen(), 1 << 16) + N::far(4);

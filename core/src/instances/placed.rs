@@ -12,7 +12,7 @@ pub(crate) struct Placed<'a, S> {
 }
 
 impl<'a, S> Placed<'a, S> {
-    /// Those of a scene without instances.
+    /// Used for scenes without instances.
     pub(crate) const NONE: Self = Self {
         top: Top {
             instances: &[],

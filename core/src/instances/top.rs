@@ -1,4 +1,4 @@
-//! The top level: which instances a ray can meet.
+//! The top level: it finds the instances that a ray can hit.
 
 use crate::accel::Number;
 use crate::accel::cull::{Culling, PairCulling};
@@ -36,7 +36,7 @@ pub(crate) fn child_box(pair: &Pair, child: usize) -> UnitBox {
 }
 
 impl Top<'_> {
-    /// Whether there is nothing, neither instances nor pairs.
+    /// Returns true if there are neither instances nor pairs.
     pub(crate) fn is_empty(&self) -> bool {
         self.instances.is_empty() && self.pairs.is_empty()
     }
@@ -51,11 +51,11 @@ impl Top<'_> {
         }
     }
 
-    /// Calls `visit` for every instance whose box the ray can meet, the nearer child of a pair first. `visit` returns
-    /// the t beyond which nothing counts any more, or `None` to end the walk.
+    /// Calls `visit` for every instance whose box the ray can hit, the nearer child of a pair first. `visit` returns
+    /// the t beyond which hits are ignored, or `None` to end the walk.
     ///
-    /// A child that waits takes a word: its pair's number, and which of the two it is. So its box is tested again when
-    /// its turn comes. A single instance is visited without a test, because the part's box is tested anyway.
+    /// A waiting child takes a word: its pair's number, and its number in the pair. So its box is tested again when its
+    /// turn comes. A single instance is visited without a test, because the part's box is tested anyway.
     #[inline(always)]
     pub(crate) fn walk<N: Number, C: Observer>(
         &self,
@@ -71,7 +71,7 @@ impl Top<'_> {
         let cull = N::Cull::new(ray);
         let mut limit = <N::Cull as PairCulling<N>>::limit(tmax);
         let mut waiting: Vec<u32, MAX_INSTANCE_LEVELS> = Vec::new();
-        // The number of the pair, and which of its children are to be entered.
+        // The number of the pair, and the children to enter.
         let (mut number, mut wanted) = (0, [true; 2]);
         loop {
             let Some(pair) = self.pairs.get(number as usize) else {

@@ -12,8 +12,7 @@ impl Angle {
     /// Half a turn.
     pub const HALF: Self = Self(1 << 31);
 
-    /// The angle of `part` of `whole` turns, to nearest; of whole turns only what goes beyond them counts.
-    /// A `whole` of 0 counts as 1.
+    /// Returns the angle of `part` of `whole` turns, to nearest; whole turns are dropped. A `whole` of 0 counts as 1.
     ///
     /// ```
     /// use gridel_core::Angle;
@@ -29,7 +28,7 @@ impl Angle {
         Self(scaled.div_euclid(whole) as u32)
     }
 
-    /// The angle of so many degrees, to nearest.
+    /// Returns the angle of this many degrees, to nearest.
     ///
     /// ```
     /// use gridel_core::Angle;
@@ -51,8 +50,8 @@ impl Angle {
         Self(self.0.wrapping_neg())
     }
 
-    /// The sine and the cosine, as ratios with 30 fraction bits, within 2^-29; exact at multiples of a
-    /// quarter turn. 14 products of 32 bits.
+    /// Returns the sine and the cosine, as ratios with 30 fraction bits, within 2^-29; exact at multiples of a quarter
+    /// turn. Cost: 14 products of 32 bits.
     ///
     /// ```
     /// use gridel_core::Angle;
@@ -63,7 +62,7 @@ impl Angle {
     /// ```
     pub const fn sin_cos(self) -> [i32; 2] {
         let rest = self.0 & (Self::QUARTER.0 - 1);
-        // Of angles beyond an eighth of a turn, that of the other angle to a quarter of a turn.
+        // Beyond an eighth of a turn, uses the complement to a quarter of a turn.
         let swapped = rest > Self::QUARTER.0 / 2;
         let [sine, cosine] = if swapped {
             let [sine, cosine] = small_sin_cos(Self::QUARTER.0 - rest);
@@ -80,7 +79,7 @@ impl Angle {
     }
 }
 
-/// Sine and cosine of up to an eighth of a turn: power series, whose first term left out is below 2^-33.
+/// Sine and cosine of up to an eighth of a turn: power series, whose first omitted term is below 2^-33.
 const fn small_sin_cos(turn: u32) -> [i32; 2] {
     /// 2 pi with 29 fraction bits.
     const TURN: u64 = 3_373_259_426;

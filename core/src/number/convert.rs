@@ -1,4 +1,4 @@
-//! Conversions between numbers and what blobs, displays and reports hold.
+//! Conversions between numbers and the values of blobs, displays and reports.
 
 use crate::number::scalar::Scalar;
 

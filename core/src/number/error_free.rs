@@ -15,8 +15,7 @@ pub(crate) fn product_error<N: Arithmetic<Wide = N>>(a: N, b: N, splitter: N) ->
     ((a_high * b_high - product) + a_high * b_low + a_low * b_high) + a_low * b_low
 }
 
-/// `a + b`, rounded, and what that lacks to the sum (D. E. Knuth, "The Art of Computer Programming",
-/// volume 2, 4.2.2).
+/// Returns `a + b`, rounded, and its rounding error (D. E. Knuth, "The Art of Computer Programming", volume 2, 4.2.2).
 #[inline(always)]
 pub(super) fn two_sum<N: Arithmetic<Wide = N>>(a: N, b: N) -> (N, N) {
     let sum = a + b;
@@ -28,7 +27,7 @@ pub(super) fn two_sum<N: Arithmetic<Wide = N>>(a: N, b: N) -> (N, N) {
 pub(super) const SPLITTER_F32: f32 = 4097.0;
 pub(crate) const SPLITTER_F64: f64 = 134_217_729.0;
 
-/// `origin + depth * slope`, of depth and slope as pairs of numbers.
+/// Returns `origin + depth * slope`, with depth and slope as pairs of numbers.
 #[inline(always)]
 pub(super) fn carry<N: Arithmetic<Wide = N>>(
     origin: N,

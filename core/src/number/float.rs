@@ -1,7 +1,7 @@
 //! IEEE 754 arithmetic in single and double precision.
 //!
-//! Only operations whose result is the same on every machine: no fused multiply-add, no `min` and
-//! `max` of the standard library (they differ on signed zeros), square roots by libm.
+//! Uses only operations whose result is the same on every machine. There is no fused multiply-add, and no `min` and
+//! `max` of the standard library (they differ on signed zeros). Square roots are those of libm.
 
 use crate::axis::pick;
 use crate::number::Convert;
@@ -35,11 +35,11 @@ fn near_one<N: Arithmetic<Wide = N>>(mut v: [N; 3]) -> [N; 3] {
     v
 }
 
-/// One of the [`Vectors::slopes`](crate::number::Vectors::slopes) of a direction whose length is far from 1, by way of one that is
-/// not: magnitudes of \[2^-149, 2^128\] or \[2^-1074, 2^1024\] are halved or doubled until they
-/// fit. `None` where there are none.
+/// Returns one of the [`Vectors::slopes`](crate::number::Vectors::slopes) of a direction whose length is far from 1.
+/// Magnitudes of \[2^-149, 2^128\] or \[2^-1074, 2^1024\] are first halved or doubled until they are in range. Returns
+/// `None` where there are no slopes.
 ///
-/// One at a time, because one comes back in a register: through memory they would burden all rays.
+/// One at a time, because a single number returns in a register; memory would cost all rays time.
 #[cold]
 #[inline(never)]
 fn slope_of_extremes<N: Arithmetic<Wide = N>>(
@@ -65,7 +65,7 @@ fn slope_of_extremes<N: Arithmetic<Wide = N>>(
     })
 }
 
-/// All of them. Not a closure, whose captures would lie in memory for all rays.
+/// Returns all slopes. Not a closure, because its captures would lie in memory for all rays.
 #[inline(always)]
 fn slopes_of_extremes<N: Arithmetic<Wide = N>>(
     x: N,
@@ -112,8 +112,8 @@ macro_rules! float_number {
 
             #[inline(always)]
             fn sqrt(self) -> Self {
-                // The nearest number either way. On x86-64 libm has an instruction of SSE, for which a core
-                // waits while its wide registers are in use.
+                // Rounded to nearest either way. On x86-64 libm uses an SSE instruction, for which a core waits while
+                // its wide registers are in use.
                 #[cfg(feature = "std")]
                 let root = $float::sqrt;
                 #[cfg(not(feature = "std"))]
@@ -423,25 +423,25 @@ macro_rules! float_number {
         }
 
         impl ErrorBounds for $float {
-            // Sixteen roundings of coordinates: the point's product and sum, t's three products,
-            // sums and quotient, the plane's normal, and the next test of the same surface.
+            // Sixteen roundings of coordinates. They are the point's product and sum, t's three products, sums and
+            // quotient, the plane's normal, and the next test of the same surface.
             const RELATIVE_ERROR: Self = 16.0 * $precision;
 
-            // Twice, so that of a step so long along a normal the largest coordinate is not flushed to zero.
+            // Doubled, so that the largest coordinate of such a step along a normal is not flushed to zero.
             const ABSOLUTE_ERROR: Self = $smallest + $smallest;
 
-            // A sum is rounded to the next number where it lies more than half way there, which is at most
-            // u of the coordinate.
+            // A sum is rounded to the next number if it lies more than half way there, which is at most u of the
+            // coordinate.
             #[inline(always)]
             fn step_beside(coordinate: Self) -> Self {
                 coordinate.abs() * ($precision * (1.0 + 4.0 * $precision)) + $smallest
             }
 
-            // In parts of u. **The point.** Of `n . r`, by which it moves onto the plane, each term is off
-            // by 7: the normal's component by 3, `r` by 1, the product by 1, the sums by 2. The sum that
-            // moves it rounds each coordinate by 1: 7 sum|n r| + sum|n p| in all. **The start** of a ray
-            // rounds each coordinate by 1 more. **The next test** takes the sign of t from the same sum
-            // with a normal that is not normalized: 6 sum|n r|. So 13 sum|n r| + 2 sum|n p| would do.
+            // In parts of u. **The point.** `n . r` moves the point onto the plane. Each of its terms is off by 7: the
+            // normal's component by 3, `r` by 1, the product by 1, the sums by 2. The sum that moves the point rounds
+            // each coordinate by 1: 7 sum|n r| + sum|n p| in all. **The start** of a ray rounds each coordinate by 1
+            // more. **The next test** uses the sign of t from the same sum with a normal that is not normalized: 6
+            // sum|n r|. So 13 sum|n r| + 2 sum|n p| is enough.
             #[inline(always)]
             fn plane_error(normal: [Self; 3], relative: [Self; 3], point: [Self; 3]) -> Self {
                 let part = |v: [Self; 3], k: usize| $float::abs(normal[k] * v[k]);
@@ -449,12 +449,12 @@ macro_rules! float_number {
                 Self::error_bound(sum(relative) + sum(point) * 0.25)
             }
 
-            // In parts of u, for a sphere of radius r. **The point** is off by 4.5 r because that is how
-            // far the normal's length is from 1, by r for its product with the radius, and by sum|n p| for
-            // the sum. **The start** rounds each coordinate by 1 more. **The next test**, of a ray that
-            // leaves: the center as seen from there is off by r, and the closest point by 7 r. Half the
-            // chord is a root of `r^2 - |apart|^2`, off by 8 r^2, which counts 4 r where it has to be less
-            // than the way to the closest point. So 17.5 r + 2 sum|n p| would do.
+            // In parts of u, for a sphere of radius r. **The point** is off by 4.5 r because the normal's length
+            // differs from 1 by that. Its product with the radius adds r, and the sum adds sum|n p|. **The start**
+            // rounds each coordinate by 1 more. **The next test** is that of a ray that leaves. The center as seen from
+            // there is off by r, and the closest point by 7 r. Half the chord is a root of `r^2 - |apart|^2`, off by 8
+            // r^2. That counts 4 r where half the chord must be less than the way to the closest point. So 17.5 r + 2
+            // sum|n p| is enough.
             #[inline(always)]
             fn curve_error(size: Self, normal: [Self; 3], point: [Self; 3]) -> Self {
                 let part = |k: usize| $float::abs(normal[k] * point[k]);

@@ -1,6 +1,6 @@
 //! The number formats.
 
-/// Which arithmetic a kernel runs in.
+/// The arithmetic of a kernel.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub enum Format {

@@ -34,7 +34,7 @@ pub fn log2(number: u64) -> i32 {
 /// The binary logarithm of the length of a vector whose components have at most 63 bits; that of 0 is 0.
 pub fn log2_of_length(vector: [i64; 3]) -> i32 {
     let [x, y, z] = vector.map(i64::unsigned_abs);
-    // Components below 2^31, whose squares have room.
+    // The squares of components below 2^31 fit.
     let excess = 33_u32.saturating_sub((x | y | z).leading_zeros());
     let square = |it: u64| {
         it.wrapping_shr(excess)
@@ -44,7 +44,7 @@ pub fn log2_of_length(vector: [i64; 3]) -> i32 {
     (log2(sum) >> 1).wrapping_add(log2_of_power(excess.cast_signed()))
 }
 
-/// The binary logarithm of the sum of two numbers of which the logarithms are given.
+/// Returns the binary logarithm of the sum of two numbers, given their logarithms.
 pub fn log2_of_sum(a: i32, b: i32) -> i32 {
     let (larger, smaller) = if a > b { (a, b) } else { (b, a) };
     let apart = larger.wrapping_sub(smaller).cast_unsigned();

@@ -1,9 +1,8 @@
 //! The arithmetic of a kernel, in three number formats.
 //!
-//! Every kernel is written once, over [`Number`](crate::number::Arithmetic), and reads the same in `fixed`, `f32` and `f64`.
-//! A number stands for one of four quantities. In the float formats all four are plain floats; in
-//! [`Fixed`] each has its own binary point, and the operations are defined so that the same
-//! expression keeps it:
+//! Every kernel is written once, over [`Number`](crate::number::Arithmetic), and reads the same in `fixed`, `f32` and
+//! `f64`. A number represents one of four quantities. In the float formats all four are plain floats. In [`Fixed`] each
+//! has its own binary point, and the operations are defined so that the same expression keeps it:
 //!
 //! | quantity | unit | [`Fixed`] | range |
 //! |---|---|---|---|
@@ -12,11 +11,11 @@
 //! | radiance | display white | 20 fraction bits | +-2048 |
 //! | [`Scalar::Wide`] (any product of two of these, a far coordinate) | | an `i64` | |
 //!
-//! The operator `*` multiplies by a *ratio*: length by ratio is a length, ratio by ratio a ratio,
-//! radiance by ratio a radiance. Products of two lengths go through [`Products::wide`].
+//! The operator `*` multiplies by a *ratio*: length by ratio is a length, ratio by ratio a ratio, radiance by ratio a
+//! radiance. Products of two lengths need [`Products::wide`].
 //!
-//! The operators of [`Fixed`] wrap and never panic. That no kernel wraps is a matter of ranges,
-//! which the ray's set-up establishes (see [`crate::ray`]) and every kernel keeps.
+//! The operators of [`Fixed`] wrap and never panic. The ray's set-up establishes ranges (see [`crate::ray`]) and every
+//! kernel keeps them, so that no kernel wraps.
 
 mod angle;
 mod arithmetic;

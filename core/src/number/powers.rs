@@ -1,8 +1,8 @@
-//! Far coordinates times powers of two.
+//! Products of far coordinates and powers of two.
 
 use crate::number::products::Products;
 
-/// Arithmetic of far coordinates that are scaled by powers of two, as maps between coordinate systems scale them.
+/// Arithmetic of far coordinates that are scaled by powers of two, as in maps between coordinate systems.
 pub trait Powers: Products {
     /// A product of a length and a ratio times a power of two, from 2^-4 to 2^29, as a far coordinate; rounded to nearest.
     fn far_of_product(product: Self::Wide, exponent: i32) -> Self::Wide;

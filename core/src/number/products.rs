@@ -11,7 +11,7 @@ pub trait Products: Scalar {
     fn widen(self) -> Self::Wide;
     /// The inverse of [`widen`](Self::widen); saturates.
     fn narrow(wide: Self::Wide) -> Self;
-    /// Whether a wide number is an ordinary one: false for NaN and infinities.
+    /// Returns true if a wide number is finite: false for NaN and infinities.
     fn is_finite(wide: Self::Wide) -> bool;
     /// A wide number times an integer.
     fn wide_times(wide: Self::Wide, factor: i32) -> Self::Wide;
@@ -22,15 +22,15 @@ pub trait Products: Scalar {
     fn upper(wide: Self::Wide) -> Self;
     /// A far coordinate from an integer with 13 fraction bits.
     fn far(q13: i64) -> Self::Wide;
-    /// `a - b` of far coordinates that may be any: wraps in [`Fixed`](crate::Fixed).
+    /// `a - b` of arbitrary far coordinates: wraps in [`Fixed`](crate::Fixed).
     fn difference(a: Self::Wide, b: Self::Wide) -> Self::Wide;
     /// `a - b` of far coordinates, of which `a` is not the smaller, as a length: at most
     /// [`FAR`](crate::number::Scalar::FAR).
     fn difference_as_length(a: Self::Wide, b: Self::Wide) -> Self;
-    /// Where a line comes to a plane far away, on one axis: `origin + (plane - from) * step / stride`
-    /// in twice the precision of a far coordinate. `from` is the origin's coordinate on the plane's own
-    /// axis, `step` and `stride` are the direction's on this axis and on that; `stride` is not 0 and
-    /// `step` no larger. Coordinates are at most 2^37 units; saturates.
+    /// Returns where a line reaches a plane far away, on one axis: `origin + (plane - from) * step / stride` in twice
+    /// the precision of a far coordinate. `from` is the origin's coordinate on the plane's own axis. `step` and
+    /// `stride` are the direction's on this axis and on that; `stride` is not 0 and `step` no larger. Coordinates are
+    /// at most 2^37 units; saturates.
     fn carry(
         origin: Self::Wide,
         from: Self::Wide,
@@ -48,8 +48,8 @@ pub trait Products: Scalar {
     fn from_wide(product: Self::Wide) -> Self;
     /// Product of a `Wide` (length by ratio, or length squared) with a ratio, as the same kind of `Wide`.
     fn wide_scale(wide: Self::Wide, ratio: Self) -> Self::Wide;
-    /// Quotient of two products whose kinds differ by one factor: (length by ratio) over (ratio by
-    /// ratio), or (length by length) over (length by ratio): a length; saturates, and 0 / 0 is 0.
+    /// Returns the quotient of two products whose kinds differ by one factor, which is a length. The kinds are (length
+    /// by ratio) over (ratio by ratio), or (length by length) over (length by ratio). Saturates, and 0 / 0 is 0.
     fn divide(numerator: Self::Wide, denominator: Self::Wide) -> Self;
     /// A far coordinate over a product of two ratios that is not 0, as a far coordinate; saturates at 2^49 units or
     /// beyond.

@@ -3,8 +3,8 @@
 use crate::number::fixed::base::RATIO_BITS;
 use crate::number::{Angle, Fixed, Scalar, Vectors};
 
-/// The matrix of a quaternion of any length, x, y, z and w: its columns are where the axes are turned to, as ratios.
-/// `None` if it has no length.
+/// Returns the matrix of a quaternion of any length, x, y, z and w, as ratios: its columns are the turned axes. `None`
+/// if the quaternion has no length.
 pub(crate) fn columns(rotation: [i32; 4]) -> Option<[[Fixed; 3]; 3]> {
     let [x, y, z, w] = unit_quaternion(rotation)?;
     let half = Fixed(1 << (RATIO_BITS - 1));
@@ -36,8 +36,8 @@ pub(crate) fn columns(rotation: [i32; 4]) -> Option<[[Fixed; 3]; 3]> {
     ])
 }
 
-/// The quaternion that turns about an axis of any length, counterclockwise as seen from its tip; `None` if the axis has
-/// no length.
+/// Returns the quaternion that turns about an axis of any length, counterclockwise as seen from its tip; `None` if the
+/// axis has no length.
 pub(crate) fn about(axis: [i32; 3], angle: Angle) -> Option<[i32; 4]> {
     let (axis, length) = Fixed::normalize(Fixed::direction(axis.map(i64::from)));
     if length == Fixed::ZERO {
@@ -48,7 +48,7 @@ pub(crate) fn about(axis: [i32; 3], angle: Angle) -> Option<[i32; 4]> {
     Some([x, y, z, cosine.0])
 }
 
-/// The quaternion at length 1, as ratios; `None` if it has no length.
+/// Returns the quaternion at length 1, as ratios; `None` if it has no length.
 fn unit_quaternion(rotation: [i32; 4]) -> Option<[Fixed; 4]> {
     let all = rotation.iter().fold(0, |all, x| all | x.unsigned_abs());
     // 29 bits each, so that the length of three has no more than 30.

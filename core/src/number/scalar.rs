@@ -4,7 +4,8 @@ use crate::number::format::Format;
 use core::fmt::Debug;
 use core::ops::{Add, Mul, Neg, Sub};
 
-/// Closes [`Scalar`] to other crates: a fourth format would have to keep the exactness that the watertight tests rely on.
+/// Closes [`Scalar`] to other crates, because a fourth format would have to keep the exactness on which the watertight
+/// tests rely.
 pub(in crate::number) trait Sealed {}
 
 /// A number of one format; see the [module](crate::number) for the four quantities.
@@ -36,7 +37,7 @@ pub trait Scalar:
         + Send
         + Sync
         + 'static;
-    /// A number over another: in integers exactly, since they divide slowly and compare fast.
+    /// A number over another. In integers it is exact, because integers divide slowly and compare fast.
     type Quotient: Copy + PartialOrd;
     /// The name of this format.
     const FORMAT: Format;
@@ -50,7 +51,7 @@ pub trait Scalar:
     fn abs(self) -> Self;
     /// Half; exact in floats, rounded down in [`Fixed`](crate::Fixed).
     fn half(self) -> Self;
-    /// A coordinate without digits so small that exact products would lose them: 0 in their place.
+    /// Returns a coordinate, or 0 if its digits are so small that exact products would lose them.
     fn flush_tiny(self) -> Self;
     /// The smaller; the first where they are equal.
     #[inline(always)]
@@ -74,8 +75,8 @@ pub trait Scalar:
     fn quotient(self, divisor: Self) -> Self::Quotient;
     /// Rounds a quotient to the result of [`div`](Self::div).
     fn rounded(quotient: Self::Quotient) -> Self;
-    /// e to the power of minus the product of a non-negative length and a coefficient in 1/unit,
-    /// given with 32 fraction bits: a ratio in \[0, 1\].
+    /// Returns e to the power of minus a product, as a ratio in \[0, 1\]. The factors are a non-negative length and a
+    /// coefficient in 1/unit, given with 32 fraction bits.
     fn exp_neg(self, coefficient_q32: u32) -> Self;
     /// The greatest integer at or below `self / size`, for lengths and `size` above 0.
     fn cell(self, size: Self) -> i32;

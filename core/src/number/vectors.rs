@@ -1,11 +1,11 @@
-//! Vectors: directions, norms, and room for their squares.
+//! Vectors: directions, norms, and shifts that keep their squares in range.
 
 use crate::number::products::Products;
 
 /// Arithmetic of vectors.
 pub trait Vectors: Products {
-    /// A vector of integers (below 2^52) as ratios: exact up to one common factor and two roundings
-    /// each; the largest magnitude in \[1/4, 1\] in [`Fixed`](crate::Fixed), unscaled in floats.
+    /// Returns a vector of integers (below 2^52) as ratios: exact up to one common factor and two roundings each. The
+    /// largest magnitude lies in \[1/4, 1\] in [`Fixed`](crate::Fixed), and is unscaled in floats.
     fn direction(v: [i64; 3]) -> [Self; 3];
     /// Products of one kind as numbers in the same proportions: the largest magnitude in \[1/8, 1/2\] in
     /// [`Fixed`](crate::Fixed), unscaled in floats.
@@ -19,8 +19,8 @@ pub trait Vectors: Products {
     fn recip_norm2(d: [Self; 3]) -> Self;
     /// A vector of one quantity scaled to length 1 (ratios), and its length. A zero vector stays zero.
     fn normalize(v: [Self; 3]) -> ([Self; 3], Self);
-    /// For lengths up to `size`, how many bits they can be shifted up before products overflow;
-    /// 0 in floats, which need no such thing.
+    /// Returns by how many bits lengths up to `size` can be shifted up before products overflow; 0 in floats, which
+    /// need no shift.
     fn headroom(size: Self) -> u32;
     /// Shifts a length up by [`headroom`](Self::headroom).
     fn scale_up(self, bits: u32) -> Self;

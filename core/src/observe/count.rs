@@ -31,7 +31,7 @@ use core::any::Any;
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 pub trait Observer {
-    /// Whether [`event`](Self::event) is called.
+    /// True if [`event`](Self::event) is called.
     const ENABLED: bool = false;
 
     /// Planes of boxes were tested.
@@ -49,8 +49,8 @@ pub trait Observer {
     /// Instances were entered.
     #[inline(always)]
     fn instances(&mut self, _: u32) {}
-    /// A ray brought radiance to its sample: red, green and blue, 1 being display white. Programs whose observer does
-    /// not ask for it convert nothing.
+    /// A ray added radiance to its sample: red, green and blue, where 1 is display white. No conversion takes place if
+    /// the observer does not override this method.
     #[inline(always)]
     fn radiance(&mut self, _: impl FnOnce() -> [f64; 3]) {}
     /// A ray was cast: a [`Ray`](crate::Ray) of some number format.

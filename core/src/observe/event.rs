@@ -1,8 +1,8 @@
 //! Events of rays, reported to an [`Observer::event`].
 //!
-//! Events come from the very code that traces and renders, in the order in which it works. Points,
-//! lengths and t are in units (see [`Number`](crate::accel::Number)), t along the ray's major axis; colors
-//! are linear, 1 being display white. All are exactly what the number format holds.
+//! Events come from the code that traces and renders, in the order of its work. Points, lengths and t are in units (see
+//! [`Number`](crate::accel::Number)), t along the ray's major axis. Colors are linear, and 1 is display white. All are
+//! the exact values of the number format.
 //!
 //! [`Observer::event`]: crate::Observer::event
 
@@ -21,22 +21,22 @@ pub enum RayKind {
     Refracted,
     /// Off a surface in a random direction.
     Diffuse,
-    /// Off a rough mirror or rough glass, and from there through glass: the lights that it may meet were reflected where
-    /// it was sent.
+    /// Off a rough mirror or rough glass, and from there through glass. The lights that it can hit were already
+    /// reflected at the rough surface.
     Glossy,
 }
 
-/// Something that happened.
+/// An event.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Event {
-    /// The ray loop takes up a ray: one from the camera, or the last of those that were [sent] and
-    /// not yet taken up.
+    /// The ray loop starts with a ray: one from the camera, or the last of those that were [sent] and are still
+    /// waiting.
     ///
     /// [sent]: Event::Sent
     RayStarted {
         /// The purpose of the ray.
         kind: RayKind,
-        /// How many reflections and refractions led to it.
+        /// Number of reflections and refractions that led to it.
         depth: u8,
         /// The factor of its radiance.
         weight: [f64; 3],
@@ -46,36 +46,34 @@ pub enum Event {
         /// The point, in units.
         point: [f64; 3],
     },
-    /// A structure is asked what a ray meets.
+    /// A query of a structure starts.
     Query {
-        /// Where the ray starts inside of the kernels: its own origin, or where it comes to the
-        /// scene's box.
+        /// The start of the ray inside the kernels: its own origin, or where it reaches the scene's box.
         origin: [f64; 3],
         /// Its direction; the largest component is 1 or -1.
         slope: [f64; 3],
         /// The t of `origin` as the caller counts it.
         start_t: f64,
-        /// The interval that counts, from `origin`. It is empty where the scene cannot be met.
+        /// The interval of the query, from `origin`. It is empty if the ray misses the scene.
         interval: [f64; 2],
-        /// Whether any hit will do.
+        /// True if any hit will do.
         any: bool,
     },
-    /// A node or a cell is tested: the ray can meet what is in it if `span` is not empty.
+    /// A node or a cell is tested: the ray can hit its content if `span` is not empty.
     Tested {
         /// The part that is tested.
         place: NodeId,
-        /// The planes that were tested for it. `None` for one that was not, because it coincides
-        /// with a plane around it, or is not worth it.
+        /// The planes that were tested for it. `None` for a plane that was not, because it coincides with a plane
+        /// around it, or is not worth a test.
         sides: Sides,
-        /// From where to where the ray is in it, from the query's origin; empty if the first is
-        /// greater.
+        /// The interval of the ray in it, from the query's origin; empty if the first number is greater.
         span: [f64; 2],
     },
     /// The node that was just tested is empty: the ray does not enter it.
     Empty(NodeId),
-    /// A node that was put off is given up, because a hit was found before it.
+    /// A waiting node is dropped, because a hit was found before it.
     NodeSkipped {
-        /// The part that is given up.
+        /// The part that is dropped.
         place: NodeId,
         /// Where the ray would enter it.
         enters: f64,
@@ -89,15 +87,15 @@ pub enum Event {
         index: u32,
         /// The number of the part's first primitive among all of the scene.
         first_primitive: u32,
-        /// Where the mapped ray starts inside of the kernels.
+        /// The start of the mapped ray inside the kernels.
         origin: [f64; 3],
         /// Its direction; the largest component is 1 or -1.
         slope: [f64; 3],
-        /// The interval that counts, from `origin`.
+        /// The interval of the query, from `origin`.
         interval: [f64; 2],
         /// The t of `origin`, counted from the query's origin, in the part's units.
         start_t: f64,
-        /// What t in the part is multiplied with for t in the scene.
+        /// The factor from t in the part to t in the scene.
         scale: f64,
     },
     /// The ray leaves the instance that it entered last.
@@ -111,8 +109,8 @@ pub enum Event {
         kind: Kind,
         /// Its number in scene-file order; in an instance, among the primitives of its part.
         primitive: u32,
-        /// Where the line of the ray enters and leaves it, from the query's origin; `None` if it
-        /// does not meet it, or was seen to meet it behind the origin before that was computed.
+        /// The places where the line of the ray enters and leaves it, from the query's origin. `None` if the ray does
+        /// not hit it, or if it certainly lies behind the origin.
         crossing: Option<[f64; 2]>,
         /// True for the nearest hit so far.
         nearest: bool,
@@ -125,8 +123,7 @@ pub enum Event {
     Light {
         /// Its number.
         number: u32,
-        /// The cosine of the angle under which it shines on the surface; at or below 0 the surface
-        /// is turned away.
+        /// The cosine of the angle under which it shines on the surface; at or below 0 the surface faces away.
         cosine: f64,
     },
     /// The surface that was hit is shaded with a smooth normal.
@@ -148,9 +145,9 @@ pub enum Event {
     },
     /// The diffuse color of the surface that was hit is weighted by that of a texture.
     Textured {
-        /// Where the texture is looked up, u to the right and v down.
+        /// The place in the texture, u to the right and v down.
         coordinates: [f64; 2],
-        /// How often the image is halved to what is looked up; a fraction lies between two of its levels.
+        /// The number of times that the image is halved for this look-up; a fraction lies between two of its levels.
         level: f64,
         /// The nearest texel of the finer level, counted from the upper left one, or the upper left one of the four that
         /// are mixed.
@@ -158,15 +155,15 @@ pub enum Event {
         /// The texture's color: linear ratios.
         color: [f64; 3],
     },
-    /// The surface that was hit is that of a medium with a priority. Where both media are the same, a medium with a higher
-    /// priority is around it, and the ray goes straight on.
+    /// The surface that was hit belongs to a medium with a priority. Where both media are the same, a medium with a
+    /// higher priority is around it, and the ray goes straight on.
     Boundary {
         /// The materials of the media on the near side and on the far side; `None` for the surroundings.
         media: [Option<u32>; 2],
     },
-    /// The surface that was hit is there in part; the rest of the ray goes straight on.
+    /// The surface that was hit is partly transparent; the rest of the ray goes straight on.
     Alpha {
-        /// How much of it is there, 0 to 1.
+        /// The opaque part, 0 to 1.
         alpha: f64,
     },
     /// The light that was just considered, which the smooth normal faces, lies behind the triangle, and does not
@@ -184,30 +181,30 @@ pub enum Event {
         /// The place of the texel in the map, column and row; `None` for the sun.
         texel: Option<[u32; 2]>,
     },
-    /// The ray met nothing and brings the light of the environment.
+    /// The ray hit nothing and brings the light of the environment.
     Environment {
         /// The place of the nearest texel in the map, column and row.
         texel: [u32; 2],
-        /// Whether the sun is there.
+        /// True if the sun is there.
         sun: bool,
     },
-    /// The light that was just considered does not shine in this direction, or not so far.
+    /// The light that was just considered does not shine in this direction, or not this far.
     Outside,
     /// The light that was just considered falls off with distance or angle.
     Fallen {
         /// The radiance that arrives, after shadows.
         arriving: [f64; 3],
     },
-    /// The surface that was hit, by a diffuse or a glossy ray, sends out light that its lights have brought already.
+    /// The surface was hit by a diffuse or a glossy ray. It emits light that is already counted as light of its lights.
     EmittedByLight,
-    /// The surface that was hit sends out light of its own.
+    /// The surface that was hit emits light.
     Emitted {
         /// Its radiance.
         radiance: [f64; 3],
     },
-    /// Light for a shadow comes through the glass that was just met.
+    /// Light for a shadow passes the glass that was just hit.
     Filtered {
-        /// The part of it that is left.
+        /// The part of it that remains.
         left: [f64; 3],
     },
     /// The radiance that a light adds to a surface, without the ray's weight.
@@ -217,16 +214,16 @@ pub enum Event {
         /// Its diffuse part and its highlight.
         radiance: [f64; 3],
     },
-    /// The ray came through glass that took up light on the way.
+    /// The ray passed glass that absorbed light on the way.
     Absorbed {
-        /// The part of the ray's weight that is left.
+        /// The part of the ray's weight that remains.
         weight: [f64; 3],
     },
-    /// Radiance is added to the sample, its weight included.
+    /// Radiance is added to the sample, with its weight.
     Added {
-        /// Why.
+        /// The reason.
         source: Source,
-        /// How much.
+        /// The radiance.
         radiance: [f64; 3],
     },
     /// A facet of a rough surface is drawn, at which the ray is mirrored and refracted.
@@ -246,27 +243,27 @@ pub enum Event {
         /// The factor of its radiance.
         weight: [f64; 3],
     },
-    /// A ray is not cast, because it could change too little.
+    /// A ray is not cast, because its effect would be too small.
     Dropped {
         /// The purpose that the ray would have had.
         kind: RayKind,
         /// The factor that its radiance would have had.
         weight: [f64; 3],
     },
-    /// A ray meets a mirror or glass at the largest depth. Its reflection or refraction stays black.
+    /// A ray hits a mirror or glass at the largest depth. Its reflection or refraction stays black.
     TooDeep,
-    /// A sample is done.
+    /// A sample is complete.
     SampleFinished {
         /// Its place in 1/256 pixel from the left and from the top of the picture; `None` for a ray
         /// of the caller's own.
         place: Option<[i32; 2]>,
-        /// Its radiance, each channel limited to 0 to 1; to 16 where effects act on the mean of samples, or
+        /// Its radiance, each channel limited to 0 to 1. The limit is 16 where effects act on the mean of samples, or
         /// need it to be right.
         radiance: [f64; 3],
     },
 }
 
-/// A node, a leaf or a cell: what a structure calls it, and its number.
+/// A node, a leaf or a cell: its name in the structure, and its number.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct NodeId {
     /// Such as `pair` or `leaf`.
@@ -278,10 +275,10 @@ pub struct NodeId {
 /// Planes of a box that were tested, in units: `[axis][lower, upper]`.
 pub type Sides = [[Option<i16>; 2]; 3];
 
-/// Why radiance is added.
+/// The reason why radiance is added.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Source {
-    /// The ray met nothing and brings the background.
+    /// The ray hit nothing and brings the background.
     Background,
     /// A surface under ambient light and lights.
     Surface,
@@ -290,13 +287,13 @@ pub enum Source {
 /// The result of a query.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct QueryHit {
-    /// As the caller counts it.
+    /// The t as the caller counts it.
     pub t: f64,
     /// The point.
     pub point: [f64; 3],
     /// The normal, of length 1.
     pub normal: [f64; 3],
-    /// Whether the ray came from the side to which the normal points.
+    /// True if the ray came from the side to which the normal points.
     pub front: bool,
     /// The object.
     pub object: u32,

@@ -1,4 +1,4 @@
-//! Observers: counters of work, and the story of a ray.
+//! Observers: counters of work, and events of rays.
 
 pub mod count;
 pub mod event;

@@ -1,8 +1,8 @@
-//! All hits of a ray, in order, as many at a time as the caller has room for.
+//! All hits of a ray, in order, as many at a time as the caller's list can hold.
 //!
-//! Hits are ordered by t, then by instance and primitive, and of a solid the way in comes before the way out. A walk
-//! through the structure keeps the first hits behind the last one that was listed before. So nothing is listed twice,
-//! even where a structure leads to a primitive in several cells, and nothing is lost between two lists.
+//! Hits are ordered by t, then by instance and primitive; of a solid the entry comes before the exit. A walk through
+//! the structure keeps the first hits behind the last one of the previous list. So nothing is listed twice, even where
+//! a structure lists a primitive in several cells, and nothing is lost between two lists.
 
 use crate::accel::{Accel, Number, StackView};
 use crate::format::limits::{INSTANCES, UNBOUNDED};
@@ -20,8 +20,8 @@ use crate::scene::Scene;
 use crate::target::InstancesOnly;
 use heapless::{Vec, VecView};
 
-/// The order of hits: by t as it is counted from the ray's start, t as the caller counts it, instance (none first),
-/// primitive, and which end of a solid it is.
+/// The order of hits: first by t as counted from the ray's start, then by t as the caller counts it. Then by instance
+/// (none first), primitive, and end of a solid.
 type Order<N> = (
     N,
     <N as crate::number::Scalar>::Wide,
@@ -37,7 +37,7 @@ struct Entry<N: Number> {
     hit: PrimitiveHit<N>,
 }
 
-/// Room for some of the hits of a ray, in order: what [`all_hits`] fills, and where it goes on.
+/// A list for some of the hits of a ray, in order. [`all_hits`] fills it and continues from it.
 ///
 /// `SIZE` is at least 1. An entry takes some 70 bytes in `f32` and `fixed` and 90 in `f64`. A list of `k` entries that
 /// is filled once holds the nearest `k` hits.
@@ -75,7 +75,7 @@ impl<N: Number, const SIZE: usize> HitList<N, SIZE> {
         self.entries.len()
     }
 
-    /// Whether no hit was listed last.
+    /// Returns true if no hit was listed last.
     pub fn is_empty(&self) -> bool {
         self.entries.is_empty()
     }
@@ -86,23 +86,24 @@ impl<N: Number, const SIZE: usize> HitList<N, SIZE> {
     }
 }
 
-/// Lists the hits of a ray in its interval: the first ones, and when it is called again with the list, those behind
-/// them. Returns whether there may be more, because the list is full.
+/// Lists the hits of a ray in its interval: the first ones, and at each later call with the list, those behind them.
+/// Returns true if more hits are possible, because the list is full.
 ///
-/// Hits are ordered by t; at the same t those of the scene's own objects come first, then those of instances in
-/// scene-file order; then the primitive that comes first in the scene file, and the way into a solid before the way
-/// out. The order and the bits are those of every structure.
+/// Hits are ordered by t. At the same t those of the scene's own objects come first, then those of instances in
+/// scene-file order. Then the primitive that comes first in the scene file counts, and the entry into a solid before
+/// the exit. All structures return this order and the same bits.
 ///
-/// Every crossing is a hit: of spheres, boxes and other solids the way in and the way out, also where both have the
-/// same t, and of a torus up to four. Triangles are met by the half-open rule: a ray through an edge or a vertex of a
-/// closed mesh meets as many triangles as a ray beside it, so the number of hits of a whole line is even.
-/// [`closest_hit`](crate::closest_hit) follows the closed rule instead: it may report an edge that the ray only
-/// touches, at a silhouette or the border of an open mesh, where this function lists nothing. A hit that both
-/// report has the same bits, except a hit in the plane where the scene's box begins, of which rounding can keep
-/// `closest_hit` alone. A ray that lies in the plane of a triangle does not meet it, in either rule.
+/// Every crossing is a hit. Spheres, boxes and other solids have an entry and an exit, even if both have the same t; a
+/// torus has up to four crossings. Triangles follow the half-open rule. A ray through an edge or a vertex of a closed
+/// mesh hits as many triangles as a ray next to it. So the number of hits of a whole line is even.
 ///
-/// `stack` needs [`stack_depth`](Scene::stack_depth) entries. Each call walks through the structure once, so the cost is
-/// that of a ray without end, for each list that is filled.
+/// [`closest_hit`](crate::closest_hit) follows the closed rule instead. It can report an edge that the ray only
+/// touches, at a silhouette or the border of an open mesh, where this function lists nothing. A hit that both report
+/// has the same bits. Only `closest_hit` can miss a hit in the plane where the scene's box begins, because of rounding.
+/// A ray that lies in the plane of a triangle does not hit it, in either rule.
+///
+/// `stack` needs [`stack_depth`](Scene::stack_depth) entries. Each call walks through the structure once, so each list
+/// costs as much as a ray without end.
 ///
 /// ```
 /// # static BLOB: &[u8] =
@@ -147,13 +148,14 @@ pub fn all_hits<N: Number, A: Accel, C: Observer, const SIZE: usize>(
     !list.is_done
 }
 
-/// Entries of the lists that hits are counted by.
+/// Entries of the lists with which hits are counted.
 pub(super) const COUNTED: usize = 16;
 
 /// Returns the number of hits of a ray in its interval, as [`all_hits`] lists them.
 ///
-/// Of a closed mesh a whole line has an even number, and a ray an odd one if it begins inside and ends outside.
-/// `stack` needs [`stack_depth`](Scene::stack_depth) entries. The cost is that of a ray without end, for every 16 hits.
+/// For a closed mesh, a whole line has an even number of hits. A ray has an odd number if it begins inside and ends
+/// outside. `stack` needs [`stack_depth`](Scene::stack_depth) entries. The cost is that of a ray without end, for every
+/// 16 hits.
 ///
 /// ```
 /// # static BLOB: &[u8] =
@@ -228,7 +230,7 @@ impl<N: Number> Collector<'_, N> {
         debug_assert!(inserted.is_ok(), "there is room");
     }
 
-    /// The t beyond which nothing counts; `None` while there is room.
+    /// The t beyond which hits are ignored; `None` while the list is not full.
     fn limit(&self) -> Option<N> {
         let last = self.entries.last().filter(|_| self.entries.is_full());
         last.map(|last| last.order.0)

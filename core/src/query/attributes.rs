@@ -10,15 +10,16 @@ use crate::query::hit::{Hit, find};
 use crate::scene::Scene;
 use crate::target::{TEXTURE, TEXTURE_LEVELS, VERTEX_COLORS, inline_on_boards};
 
-/// How an image lies on a triangle: see [`Hit::tangent`].
+/// The placement of an image on a triangle: see [`Hit::tangent`].
 pub(crate) struct Tangent<N> {
     pub(crate) direction: [N; 3],
     pub(crate) is_mirrored: bool,
     pub(crate) coordinates: [i32; 2],
 }
 
-/// Twice the area of a triangle in texture coordinates, positive if the image is seen from its front as it is, with twice
-/// [`COORDINATE_BITS`] fraction bits: a number of 2^62 less another may not fit, and is limited.
+/// Twice the area of a triangle in texture coordinates, with twice [`COORDINATE_BITS`] fraction bits. It is positive if
+/// the image is seen unmirrored from the triangle's front. It is limited, because a number of 2^62 less another can
+/// overflow.
 #[inline(always)]
 fn mapped_area([a, b, c]: [[i32; 2]; 3]) -> i64 {
     // At most 2^31 in magnitude.
@@ -36,8 +37,8 @@ fn area([a, b, c]: [[i32; 3]; 3]) -> [i64; 3] {
     [axis(1, 2), axis(2, 0), axis(0, 1)]
 }
 
-/// The direction in which u grows over a triangle, below 2^52 in magnitude, and whether the image is seen mirrored from
-/// its front: places with 8 fraction bits, coordinates with [`COORDINATE_BITS`].
+/// Returns the direction in which u grows over a triangle, below 2^52 in magnitude, and true if the image is seen
+/// mirrored from its front. Places have 8 fraction bits, coordinates [`COORDINATE_BITS`].
 #[inline(always)]
 fn along_u(corners: [[i32; 3]; 3], coordinates: [[i32; 2]; 3]) -> Option<([i64; 3], bool)> {
     let [a, b, c] = corners;
@@ -96,9 +97,9 @@ impl<N: Number> Hit<N> {
     }
 
     inline_on_boards!(
-        /// The direction in which the u of texture coordinates grows, of any length, with their values at the hit and
-        /// whether the image is seen mirrored from the triangle's front. `None` where there are none, or they are the
-        /// same along a line.
+        /// Returns the direction in which the u of texture coordinates grows, of any length. Returns also their values
+        /// at the hit, and true if the image is seen mirrored from the triangle's front. `None` if there are no
+        /// coordinates, or if they lie on a line.
         pub(crate) fn tangent(&self, scene: &Scene<'_>) -> Option<Tangent<N>> {
             if !TEXTURE {
                 return None;
@@ -122,8 +123,9 @@ impl<N: Number> Hit<N> {
         }
     );
 
-    /// How far texture coordinates are apart per unit of length around the hit: the binary logarithm of the root of the
-    /// ratio of their areas, with 8 fraction bits. `None` where there are none, or where they lie on a line.
+    /// Returns the distance of texture coordinates per unit of length around the hit. It is the binary logarithm of the
+    /// root of the ratio of their areas, with 8 fraction bits. `None` if there are no coordinates, or if they lie on a
+    /// line.
     ///
     /// Out of line: it is long, and only textures with levels need it.
     #[inline(never)]
@@ -175,7 +177,7 @@ impl<N: Number> Hit<N> {
         Some(weights.color(vertices.map(color)))
     }
 
-    /// The primitives among which the triangle is that was hit, its vertices, and the weights of these.
+    /// The primitives that hold the triangle that was hit, its vertices, and the weights of these.
     #[inline(always)]
     fn weights<'s>(&self, scene: &'s Scene<'_>) -> Option<(&'s Shapes<'s>, [usize; 3], Weights)> {
         let slot = self.triangle_slot()?;

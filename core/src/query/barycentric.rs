@@ -7,11 +7,11 @@ use crate::query::hit::{Hit, find};
 use crate::scene::Scene;
 
 impl<N: Number> Hit<N> {
-    /// Returns the weights of a triangle's corners at the hit's point, in the order in which the blob holds them, which
-    /// may begin with another corner than the scene file does: each is at least 0, and their sum is 1 but for rounding.
-    /// `None` of what is not a triangle. `scene` is that of the query.
+    /// Returns the weights of a triangle's corners at the hit's point; `None` if the hit is not of a triangle. The
+    /// order of corners is the blob's, which can begin with another corner than the scene file. Each weight is at least
+    /// 0, and their sum is 1, except for rounding. `scene` is that of the query.
     ///
-    /// The weights are taken from the point, so they are off by the hit's [error](Hit::error) over the triangle's heights.
+    /// The weights come from the point, so they are off by the hit's [error](Hit::error) over the triangle's heights.
     ///
     /// ```
     /// # static BLOB: &[u8] =

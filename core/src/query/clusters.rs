@@ -12,7 +12,7 @@ use crate::query::search::Search;
 use crate::simd::{Portable, Simd, SimdLevel, with_simd};
 
 impl<N: Number, K: Culling<N>, F: Collect<N>> Search<'_, '_, N, K, F> {
-    /// Tests the primitives of a cluster, or, where `ANY` hit will do, of a pack only until one is hit.
+    /// Tests the primitives of a cluster, or, if `ANY` hit is enough, of a pack only until one is hit.
     #[inline(always)]
     pub(super) fn cluster<C: Observer, const ANY: bool>(&mut self, leaf: Leaf, count: &mut C) {
         let clusters = self.scene.space.shapes.clusters();
@@ -61,7 +61,7 @@ impl<N: Number, K: Culling<N>, F: Collect<N>> Search<'_, '_, N, K, F> {
         }
     }
 
-    /// The places of a strip whose triangles the ray meets.
+    /// The places of a strip whose triangles the ray hits.
     #[inline(always)]
     fn strip_met<S: Strip>(&self, strip: &S) -> u32 {
         let Some(ray) = self.strip_ray.get() else {
@@ -77,7 +77,7 @@ impl<N: Number, K: Culling<N>, F: Collect<N>> Search<'_, '_, N, K, F> {
         }
     }
 
-    /// Takes a triangle of a strip that the ray meets somewhere on its line.
+    /// Processes a triangle of a strip that the line of the ray hits.
     #[inline(never)]
     fn triangle_in_strip<S: Strip, C: Observer>(
         &mut self,

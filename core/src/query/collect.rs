@@ -1,23 +1,24 @@
-//! What a search does with the hits that it finds.
+//! The collection of hits in a search.
 
 use crate::accel::Number;
 use crate::geometry::{Part, PrimitiveId};
 use crate::query::candidate::Candidate;
 use crate::scene::Scene;
 
-/// What a search does with the hits that it finds: it keeps the best one, or lists all of them.
+/// Collects the hits of a search: keeps the best one, or lists all of them.
 pub(super) trait Collect<N: Number> {
-    /// Whether both ends of every crossing are hits, and triangles are met by the [half-open
+    /// True if both ends of every crossing are hits, and triangles follow the [half-open
     /// rule](crate::geometry::half_open).
     const ALL: bool = false;
 
-    /// Whether there is a hit.
+    /// Returns true if there is a hit.
     fn is_any(&self) -> bool;
 
-    /// Whether the last hit that counts is one of this primitive; for observers.
+    /// Returns true if the last collected hit is one of this primitive; for observers.
     fn is_at(&self, place: PrimitiveId) -> bool;
 
-    /// Takes a hit of the interval that is left. Returns the t beyond which nothing counts from here on, if that changes.
+    /// Collects a hit in the remaining interval. Returns the t beyond which hits are ignored from here on, if that
+    /// changes.
     fn commit(&mut self, scene: &Scene<'_>, hit: (N, Part), place: PrimitiveId) -> Option<N>;
 }
 
@@ -33,7 +34,7 @@ impl<N: Number> Collect<N> for Option<Candidate<N>> {
         self.is_some_and(|best| best.place == place)
     }
 
-    /// Takes the hit unless an earlier primitive is met at the same t.
+    /// Commits the hit unless an earlier primitive is hit at the same t.
     #[inline(always)]
     fn commit(&mut self, scene: &Scene<'_>, (t, part): (N, Part), place: PrimitiveId) -> Option<N> {
         // No hit lies beyond the best one, so this one is nearer, or as near.

@@ -1,4 +1,4 @@
-//! Whether an object contains a point.
+//! The test whether an object contains a point.
 
 use crate::accel::{Accel, Number, StackView};
 use crate::observe::count::Observer;
@@ -7,7 +7,7 @@ use crate::query::hit::PrimitiveHit;
 use crate::ray::{Ray, RayError};
 use crate::scene::Scene;
 
-/// An object that may contain points: one of the scene's own, or one of an instance.
+/// An object that can contain points: one of the scene's own, or one of an instance.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Solid {
@@ -35,8 +35,8 @@ impl Solid {
     }
 }
 
-/// The ray by which it is judged what contains a point, in units: along an axis to the nearest side of the scene's box.
-/// `None` for a point outside of the box.
+/// Returns the ray that decides what contains a point, in units: along an axis to the nearest side of the scene's box.
+/// `None` for a point outside the box.
 ///
 /// # Errors
 /// If the point is not finite.
@@ -66,13 +66,13 @@ pub fn containment_ray<N: Number>(
     Ray::new(scene.bounds(), point, direction, start, end).map(Some)
 }
 
-/// Returns whether an object contains a point, given in units: whether a ray from there crosses the object's surface an
-/// odd number of times, by the half-open rule of [`all_hits`]. That is right for every closed mesh and every solid, and
-/// for a closed mesh whose surface is inside out as well.
+/// Returns true if an object contains a point, given in units. The test counts how often a ray from the point crosses
+/// the object's surface, by the half-open rule of [`all_hits`]: inside, the count is odd. That is right for every
+/// closed mesh and every solid, and for a closed mesh whose surface is inside out as well.
 ///
-/// A point whose distance from the surface is below the rounding of the format, 2^-13 unit in `fixed` and the
-/// [error bound](crate::Hit::error) of a hit there in all formats, may be on either side; the answer is the same each
-/// time, in every structure. Of an open mesh the answer says only how often one ray crosses it. Discs and planes contain
+/// A point very near the surface can be on either side; the answer is the same each time, in every structure. Very near
+/// means below the rounding of the format: 2^-13 unit in `fixed`, and the [error bound](crate::Hit::error) of a hit
+/// there in all formats. For an open mesh the answer only says how often one ray crosses it. Discs and planes contain
 /// nothing.
 ///
 /// `stack` needs [`stack_depth`](Scene::stack_depth) entries. The cost is that of a ray without end to the nearest side
@@ -120,7 +120,7 @@ pub fn contains<N: Number, A: Accel, C: Observer>(
 }
 
 impl<N: Number> PrimitiveHit<N> {
-    /// Whether it is a hit of an object, and not of a disc or a plane, which enclose nothing.
+    /// Returns true if it is a hit of an object, and not of a disc or a plane, which enclose nothing.
     fn is_of_closed(&self, scene: &Scene<'_>, solid: Solid) -> bool {
         self.encloses() && Solid::of_hit(scene, self) == solid
     }

@@ -1,4 +1,4 @@
-//! The search where all hits are listed: both ends of every crossing, and triangles by the half-open rule.
+//! The search for all hits: both ends of every crossing, and triangles by the half-open rule.
 
 use crate::accel::Number;
 use crate::accel::cull::Culling;
@@ -10,7 +10,7 @@ use crate::query::search::Search;
 
 /// Searches that list all hits.
 impl<N: Number, K: Culling<N>, F: Collect<N>> Search<'_, '_, N, K, F> {
-    /// Takes both ends of a crossing, or the one of a flat primitive.
+    /// Considers both ends of a crossing, or the one of a flat primitive.
     #[inline(never)]
     pub(super) fn consider_both(&mut self, crossing: Crossing<N>, place: PrimitiveId) {
         let Crossing { enter, leave } = crossing;
@@ -20,8 +20,9 @@ impl<N: Number, K: Culling<N>, F: Collect<N>> Search<'_, '_, N, K, F> {
         }
     }
 
-    /// Takes an end of a crossing that lies in the interval. All that is crossed lies in the scene's box: what is met
-    /// before a ray that starts where the box begins is rounded there.
+    /// Considers an end of a crossing that lies in the interval. All crossings lie in the scene's box. So for a ray
+    /// that starts where the box begins, a crossing before the start is moved there, because only rounding put it
+    /// before.
     fn consider_end(&mut self, (t, part): (N, Part), place: PrimitiveId) {
         let t = if t < N::ZERO && self.starts_at_box() {
             N::ZERO
@@ -48,7 +49,7 @@ impl<N: Number, K: Culling<N>, F: Collect<N>> Search<'_, '_, N, K, F> {
         before && self.ray.tmin == N::ZERO
     }
 
-    /// Takes both ends of a crossing that may have been rounded out of the primitive's box.
+    /// Considers both ends of a crossing that rounding can have moved out of the primitive's box.
     #[inline(never)]
     pub(super) fn consider_both_in_box(
         &mut self,
@@ -70,7 +71,7 @@ impl<N: Number, K: Culling<N>, F: Collect<N>> Search<'_, '_, N, K, F> {
         self.consider_both(clamped, place);
     }
 
-    /// Takes the second crossing of a primitive that a line can enter twice.
+    /// Considers the second crossing of a primitive that a line can enter twice.
     #[inline(always)]
     pub(super) fn consider_later<T: Primitive>(
         &mut self,
@@ -88,11 +89,11 @@ impl<N: Number, K: Culling<N>, F: Collect<N>> Search<'_, '_, N, K, F> {
         }
     }
 
-    /// Takes a triangle that the ray meets by the closed rule, where it does so by the half-open one, given the crossing
-    /// with its plane.
+    /// Considers a triangle that the ray hits by the closed rule, given the crossing with its plane. It counts only if
+    /// the ray also hits it by the half-open rule.
     ///
-    /// One that the ray passes edge on, by what was rounded, counts as well, somewhere in its box: else the number of
-    /// crossings of a closed mesh would be odd.
+    /// A triangle that the ray passes edge on, because of rounding, counts as well, somewhere in its box. Otherwise the
+    /// number of crossings of a closed mesh would be odd.
     #[inline(never)]
     pub(super) fn triangle_half_open(
         &mut self,

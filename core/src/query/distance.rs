@@ -1,7 +1,7 @@
-//! Rays and hits in scene coordinates, as range finders need them: integers from the place of the sensor to the
-//! distance of what it meets.
+//! Rays and hits in scene coordinates, for range finders: integers from the place of the sensor to the distance of the
+//! hit.
 //!
-//! In [`Fixed`](crate::Fixed) no floating-point code is needed for any of this.
+//! In [`Fixed`](crate::Fixed) this needs no floating-point code.
 
 use crate::accel::Number;
 use crate::format::limits::MAX_COORDINATE_SHIFT;
@@ -10,12 +10,12 @@ use crate::ray::{Ray, RayError};
 use crate::scene::{Position, Scene};
 
 impl Scene<'_> {
-    /// Returns the ray from a place in a direction of any length but 0, which meets what lies between two distances
-    /// from there: straight lines, in steps of [`coordinate_exponent`](Self::coordinate_exponent). `u64::MAX` is
+    /// Returns the ray from a place in a direction of any length but 0, limited to the interval between two distances.
+    /// Distances are straight lines, in steps of [`coordinate_exponent`](Self::coordinate_exponent). `u64::MAX` is
     /// endless.
     ///
-    /// Both limits are exact to two sub-steps of 2^-13 unit and to one part in 2^28 of themselves in `fixed`, in
-    /// 2^21 in `f32` and in 2^50 in `f64`.
+    /// Both limits are exact to two sub-steps of 2^-13 unit and to one part in 2^28 of themselves in `fixed`. In `f32`
+    /// the relative error is one part in 2^21, and in `f64` one in 2^50.
     ///
     /// ```
     /// # static BLOB: &[u8] =
@@ -54,7 +54,7 @@ impl Scene<'_> {
         let (slope, _) = N::slopes(direction).ok_or(RayError::Direction)?;
         let (_, norm) = N::normalize(slope);
         let ratios = norm.wide(N::ONE);
-        // Along the ray's major axis a way is shorter by the norm of its slopes.
+        // Along the ray's major axis a length is shorter by the norm of its slopes.
         let limit = |steps: u64| match self.sub_steps(steps) {
             Some(q13) => N::far_over(N::far(q13), ratios),
             None => N::far(i64::MAX),
@@ -68,11 +68,11 @@ impl Scene<'_> {
         )
     }
 
-    /// Returns how far a hit is from the origin of its ray: a straight line, in steps of
+    /// Returns the distance of a hit from the origin of its ray: a straight line, in steps of
     /// [`coordinate_exponent`](Self::coordinate_exponent), rounded to nearest.
     ///
-    /// Before it is rounded, it is exact to two sub-steps of 2^-13 unit and to one part in 2^28 of itself in `fixed`, in
-    /// 2^21 in `f32` and in 2^50 in `f64`.
+    /// Before rounding, it is exact to two sub-steps of 2^-13 unit and to one part in 2^28 of itself in `fixed`. In
+    /// `f32` the relative error is one part in 2^21, and in `f64` one in 2^50.
     ///
     /// ```
     /// # static BLOB: &[u8] =

@@ -1,4 +1,4 @@
-//! Queries through the structure that is chosen while the program runs.
+//! Queries through the structure that is chosen at run time.
 
 use crate::accel::{DynAccel, Number, StackView};
 use crate::format::Structure;
@@ -30,8 +30,8 @@ impl Scene<'_> {
         query::closest_hit::<N, DynAccel, _>(self, ray, stack, &mut NoCount)
     }
 
-    /// Returns whether a ray meets anything in its interval. `stack` needs [`stack_depth`](Scene::stack_depth)
-    /// entries. [`any_hit`](crate::any_hit) is the form for one structure, and for counting.
+    /// Returns true if a ray hits anything in its interval. `stack` needs [`stack_depth`](Scene::stack_depth) entries.
+    /// [`any_hit`](crate::any_hit) is the form for one structure, and for counting.
     ///
     /// ```
     /// # static BLOB: &[u8] =
@@ -48,7 +48,7 @@ impl Scene<'_> {
         query::any_hit::<N, DynAccel, _>(self, ray, stack, &mut NoCount)
     }
 
-    /// Lists the next hits of a ray in its interval, and returns whether there may be more: see
+    /// Lists the next hits of a ray in its interval. Returns true if more hits are possible: see
     /// [`all_hits`](crate::all_hits). `stack` needs [`stack_depth`](Scene::stack_depth) entries.
     ///
     /// ```
@@ -81,7 +81,7 @@ impl Scene<'_> {
         query::count_hits::<N, DynAccel, _>(self, ray, stack, &mut NoCount)
     }
 
-    /// Returns whether an object contains a point, given in units: see [`contains`](crate::contains). `stack` needs
+    /// Returns true if an object contains a point, given in units: see [`contains`](crate::contains). `stack` needs
     /// [`stack_depth`](Scene::stack_depth) entries.
     ///
     /// # Errors
@@ -95,8 +95,8 @@ impl Scene<'_> {
         query::contains::<N, DynAccel, _>(self, solid, point, stack, &mut NoCount)
     }
 
-    /// Returns the scene with a structure chosen in place of the fastest one, for queries here and for
-    /// [`DynAccel`]; `None` if the blob does not hold it.
+    /// Returns the scene with a structure chosen in place of the fastest one, for the queries here and for
+    /// [`DynAccel`]. Returns `None` if the blob does not hold it.
     ///
     /// ```
     /// # static BLOB: &[u8] =

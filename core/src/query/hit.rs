@@ -1,4 +1,4 @@
-//! Answers of queries: the primitive that a ray meets, the point, and the surface there.
+//! Answers of queries: the primitive that a ray hits, the point, and the surface there.
 
 use crate::accel::Number;
 use crate::format::instance::Instance;
@@ -12,19 +12,19 @@ use crate::ray::Ray;
 use crate::scene::Scene;
 use crate::target::{InstancesOnly, inline_on_hosts};
 
-/// The first primitive that a ray meets, and its t: a hit without its surface.
+/// The first primitive that a ray hits, and its t: a hit without its surface.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PrimitiveHit<N: Number> {
-    /// Where on the ray: a length in units along the ray's major axis (see [`Ray`]).
+    /// The place on the ray: a length in units along the ray's major axis (see [`Ray`]).
     pub t: N::Wide,
     /// The primitive, counted in scene-file order over all objects.
     pub primitive: u32,
     pub(super) best: Candidate<N>,
-    /// Where it lies in the scene if it is an instance's; `best` is then counted in the part.
+    /// The place in the scene if the primitive is an instance's; `best` is then counted in the part.
     pub(super) placed: InstancesOnly<Option<InInstance<N>>>,
 }
 
-/// Where a hit of an instance lies in the scene.
+/// The place of an instance's hit in the scene.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct InInstance<N> {
     pub(super) index: u32,
@@ -40,12 +40,12 @@ impl<N: Number> PrimitiveHit<N> {
         Some(placed.index)
     }
 
-    /// Whether the ray leaves a solid here; never of triangles and other flat surfaces.
+    /// Returns true if the ray leaves a solid here; always false for triangles and other flat surfaces.
     pub fn leaves(&self) -> bool {
         self.best.part & LEAVING != 0
     }
 
-    /// Whether surfaces of the primitive's kind can enclose something: not discs and planes.
+    /// Returns true if surfaces of the primitive's kind can enclose something: not discs and planes.
     pub fn encloses(&self) -> bool {
         let kind = self.best.place.kind;
         kind == Kind::Triangle || !is_flat(kind)
@@ -99,25 +99,26 @@ impl<N: Number> PrimitiveHit<N> {
     );
 }
 
-/// The point where a ray meets a primitive, and the surface there.
+/// The point where a ray hits a primitive, and the surface there.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Hit<N: Number> {
-    /// Where on the ray: a length in units along the ray's major axis (see [`Ray`]).
+    /// The place on the ray: a length in units along the ray's major axis (see [`Ray`]).
     pub t: N::Wide,
-    /// The point of the surface next to where `t` lies on the ray, in units. In `fixed`, a plane met more than 2^18
-    /// units from the lattice's middle has a nearer point of it here, and `t` alone says where it is met.
+    /// The point of the surface next to the place of `t` on the ray, in units. In `fixed`, a plane can be hit more than
+    /// 2^18 units from the lattice's middle. Then this is a nearer point of the plane, and only `t` says where the hit
+    /// is.
     pub point: [N; 3],
     /// The geometric normal, of length 1: outward from solids, to the side from which a triangle's
     /// corners run counter-clockwise, along a disc's own.
     pub normal: [N; 3],
-    /// Whether the ray came from the side to which the normal points; of a solid, whether it enters.
+    /// True if the ray came from the side to which the normal points; for a solid, if the ray enters.
     pub front: bool,
     /// The object, counted in scene-file order.
     pub object: u32,
     /// The primitive, counted in scene-file order over all objects.
     pub primitive: u32,
-    /// The surface lies within this length of `point`, measured along the normal, and a ray that starts so
-    /// far away does not meet it again. With `u` = 2^-24 in `f32` and 2^-53 in `f64`, and `p` the point:
+    /// The surface lies within this length of `point`, measured along the normal. A ray that starts this far away does
+    /// not hit it again. With `u` = 2^-24 in `f32` and 2^-53 in `f64`, and `p` the point:
     ///
     /// | surface | bound | in `fixed` |
     /// |---|---|---|
@@ -129,9 +130,9 @@ pub struct Hit<N: Number> {
     /// | torus | `16 u` of the largest coordinate of the solid; on the axis, where `r` is at least `R`, the way along it to where the surface is that far away | likewise, of 8 sub-steps |
     /// | any of an instance | the part's own bound in the scene's units; `32 u` of the largest coordinate of `p` less the instance's center; `4 u` of the largest coordinate of `p` | the part's own bound and 8 sub-steps of the part, in the scene's units; 20 sub-steps |
     ///
-    /// No other object and no extent of the scene counts.
+    /// Other objects and the extent of the scene do not affect it.
     pub error: N,
-    /// Whether `point` lies on the surface exactly.
+    /// True if `point` lies on the surface exactly.
     is_exact: bool,
     /// The primitive by kind and slot, as a leaf's word, whichever structure found it.
     pub(super) place: u32,
@@ -143,8 +144,8 @@ pub struct Hit<N: Number> {
 const NO_INSTANCE: u32 = u32::MAX;
 
 impl<N: Number> Hit<N> {
-    /// Returns the origin for a ray that goes on from here on the normal's side and must not meet this surface again:
-    /// the point, moved along the normal by the error bound.
+    /// Returns the origin for a ray that continues from here on the normal's side and must not hit this surface again.
+    /// It is the point, moved along the normal by the error bound.
     ///
     /// ```
     /// # static BLOB: &[u8] =
@@ -164,9 +165,9 @@ impl<N: Number> Hit<N> {
         [axis(0), axis(1), axis(2)]
     }
 
-    /// Returns the origin for a ray that goes on from here on the other side. `scene` is that of the query. In a solid
-    /// it lies beneath *all* faces by their error bounds, so that the ray leaves the solid again; where the solid is
-    /// thinner than that, halfway between them.
+    /// Returns the origin for a ray that continues from here on the other side. `scene` is that of the query. In a
+    /// solid it lies beneath *all* faces by their error bounds, so that the ray leaves the solid again. Where the solid
+    /// is thinner than that, it lies halfway between them.
     ///
     /// ```
     /// # static BLOB: &[u8] =
@@ -231,8 +232,8 @@ impl<N: Number> Hit<N> {
         (instance != NO_INSTANCE).then_some(instance)
     }
 
-    /// The origin for a ray that leads away from the surface on the normal's side and has a t above 0: the point itself
-    /// where it lies on the surface exactly.
+    /// Returns the origin for a ray that leaves the surface on the normal's side and has a t above 0. It is the point
+    /// itself where that lies on the surface exactly.
     pub(crate) fn offset_point(&self) -> [N; 3] {
         if self.is_exact {
             self.point
@@ -241,7 +242,7 @@ impl<N: Number> Hit<N> {
         }
     }
 
-    /// Whether the primitive lies in no structure, and the hit perhaps far from the scene's box.
+    /// Returns true if the primitive lies in no structure, so that the hit can be far from the scene's box.
     #[inline(always)]
     pub(crate) fn is_unbounded(&self) -> bool {
         UNBOUNDED && Leaf::from_word(self.place).is_some_and(|leaf| !leaf.kind.is_bounded())

@@ -1,10 +1,9 @@
 //! Queries: the first hit of a ray, any hit, and all hits.
 //!
-//! `search` tests the primitives to which a structure leads, `clusters` those in leaves of eight, `unbounded`
-//! those that lie in no structure. `collect` is what a search does with what it finds. `all_hits` lists all hits, for
-//! which `crossings` is the search, and `contains` counts them; `hit` is the answer, `smooth` its normal for shading, `attributes` what
-//! its vertices carry,
-//! and `distance` what range finders make of it.
+//! `search` tests the primitives of a structure's leaves, `clusters` those in leaves of eight, `unbounded` those that
+//! lie in no structure. `collect` keeps or lists the hits of a search. `all_hits` lists all hits with the search in
+//! `crossings`, and `contains` counts them. `hit` is the answer, `smooth` its normal for shading, `attributes` its
+//! vertex attributes, and `distance` its form for range finders.
 
 mod all_hits;
 mod attributes;
@@ -41,10 +40,10 @@ use placed::{PartSearch, SearchPart};
 use search::{search_apart, search_structure};
 
 inline_on_hosts_hint_on_boards!(
-    /// The primitive that a ray meets first in its interval, found through the structure `A`.
+    /// Returns the primitive that a ray hits first in its interval, found through the structure `A`.
     ///
-    /// Among hits at the same t the one that comes first in the scene file counts, so the answer is the
-    /// same whatever the structure. The stack must be as deep as the blob says.
+    /// At the same t, the hit that comes first in the scene file counts, so the answer is the same for every structure.
+    /// The stack must be as deep as the blob states.
     ///
     /// ```
     /// # static BLOB: &[u8] =
@@ -59,7 +58,7 @@ inline_on_hosts_hint_on_boards!(
     /// assert_eq!(scene.object(found.primitive), 9);
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
-    // Hosts have the room; a ray that goes through memory is waited for.
+    // Hosts have enough memory for copies; passing a ray through memory would cost them time.
     pub fn closest_primitive<N: Number, A: Accel, C: Observer>(
         scene: &Scene<'_>,
         ray: &Ray<N>,
@@ -71,7 +70,7 @@ inline_on_hosts_hint_on_boards!(
 );
 
 /// The nearest primitive on a ray, or with `any` the first that is found.
-// For boards the compiler chooses by itself: less stack, and fewer instructions.
+// For boards the compiler chooses by itself, which needs less stack and fewer instructions.
 #[cfg_attr(all(feature = "wide", not(feature = "small")), inline(always))]
 #[cfg_attr(feature = "small", inline(never))]
 fn search<N: Number, A: Accel, C: Observer, const ANY: bool>(
@@ -81,7 +80,7 @@ fn search<N: Number, A: Accel, C: Observer, const ANY: bool>(
     count: &mut C,
     any: bool,
 ) -> Option<PrimitiveHit<N>> {
-    // Known when the code is compiled, unless one copy of it is to serve both.
+    // Known at compile time, unless one copy of the code serves both.
     let any = if A::ONE_COPY { any } else { ANY };
     if C::ENABLED {
         count.event(ray.query(any));
@@ -187,7 +186,7 @@ fn search_all<N: Number, A: Accel, C: Observer, const ANY: bool>(
     Some(hit)
 }
 
-/// The first hit of a ray in its interval: [`closest_primitive`] with its surface.
+/// Returns the first hit of a ray in its interval: [`closest_primitive`] with its surface.
 ///
 /// ```
 /// # static BLOB: &[u8] =
@@ -218,7 +217,7 @@ pub fn closest_hit<N: Number, A: Accel, C: Observer>(
 }
 
 inline_on_hosts!(
-    /// Whether a ray meets anything in its interval: whether [`closest_hit`] would find something.
+    /// Returns true if a ray hits anything in its interval, that is, if [`closest_hit`] returns a hit.
     ///
     /// ```
     /// # static BLOB: &[u8] =
@@ -232,7 +231,7 @@ inline_on_hosts!(
     /// assert!(counters.objects > 0);
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
-    // As above.
+    // See above.
     pub fn any_hit<N: Number, A: Accel, C: Observer>(
         scene: &Scene<'_>,
         ray: &Ray<N>,

@@ -1,4 +1,4 @@
-//! The search through instances: each ray is mapped into the parts that it can meet.
+//! The search through instances: each ray is mapped into the parts that it can hit.
 
 use crate::accel::{Number, StackView};
 use crate::instances::map::{Map, PlacedRay, beyond};
@@ -10,13 +10,13 @@ use crate::ray::Ray;
 use crate::scene::Scene;
 use crate::target::{InstancesOnly, inline_on_boards};
 
-/// A search through a part, by whatever structure.
+/// A search through a part, with any structure.
 pub(super) type SearchPart<'f, N, C> =
     &'f mut dyn FnMut(&Scene<'_>, &Ray<N>, &mut StackView, &mut C) -> Option<Candidate<N>>;
 
-/// What finds the hits in parts.
+/// The type that finds the hits in parts.
 pub(super) struct PartSearch<F> {
-    /// Whether the first hit will do.
+    /// True if the first hit is enough.
     pub(super) any: bool,
     pub(super) search: F,
 }
@@ -39,8 +39,8 @@ pub(super) fn choose_as<'p, 'a>(
 inline_on_boards!(
     /// The nearest hit, given that of the scene's own objects and a search through parts.
     ///
-    /// A part has no hit before a mapped begin of the ray's interval or behind its mapped end, whatever is rounded: so both
-    /// kinds of queries agree, and the t in the scene is limited to the interval.
+    /// A part has no hit before a mapped begin of the ray's interval or behind its mapped end, however they were
+    /// rounded. So both kinds of queries agree, and the t in the scene is limited to the interval.
     pub(super) fn nearest<N: Number, C: Observer>(
         scene: &Scene<'_>,
         ray: &Ray<N>,
@@ -124,8 +124,8 @@ pub(super) struct Entered<'p, 'a, N: Number> {
     pub(super) first_primitive: u32,
 }
 
-/// Calls `visit` with every instance that a ray can enter, given the t beyond which nothing counts, if there is one.
-/// `visit` returns it anew.
+/// Calls `visit` with every instance that a ray can enter, given the t beyond which hits are ignored, if there is one.
+/// `visit` returns its new value.
 #[inline(never)]
 pub(super) fn each<N: Number, C: Observer>(
     scene: &Scene<'_>,

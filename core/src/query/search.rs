@@ -1,4 +1,4 @@
-//! The search for hits: the primitives of one leaf after the other are tested, and the best hit is kept.
+//! The search for hits: it tests the primitives of one leaf after the other, and keeps the best hit.
 
 use crate::accel::clamp::accept_in_box;
 use crate::accel::cull::Culling;
@@ -21,15 +21,15 @@ use crate::ray::Ray;
 use crate::scene::Scene;
 use crate::target::{SMALL, WideOnly, inline_on_boards};
 
-/// The search for hits, one leaf at a time: for the best of them, or for whatever `F` collects.
+/// The search for hits, one leaf at a time: for the best of them, or for the hits that `F` collects.
 pub(super) struct Search<'s, 'a, N: Number, K, F> {
     pub(super) scene: &'s Scene<'a>,
     pub(super) ray: &'s Ray<N>,
     pub(super) cull: &'s K,
     pub(super) recip_norm2: N,
-    /// The ray as strips are tested with it.
+    /// The ray in the form in which strips are tested.
     pub(super) strip_ray: WideOnly<StripRay<N>>,
-    /// No hit beyond this counts.
+    /// No hit beyond this t counts.
     pub(super) tmax: N,
     pub(super) found: F,
 }
@@ -63,7 +63,7 @@ impl<'s, 'a, N: Number, K: Culling<N>, F: Collect<N>> Search<'s, 'a, N, K, F> {
         }
     }
 
-    /// Considers a crossing that may have been rounded out of the primitive's box.
+    /// Considers a crossing that rounding can have moved out of the primitive's box.
     #[cfg_attr(not(feature = "small"), inline(always))]
     #[cfg_attr(feature = "small", inline(never))]
     pub(super) fn consider_in_box(
@@ -80,15 +80,15 @@ impl<'s, 'a, N: Number, K: Culling<N>, F: Collect<N>> Search<'s, 'a, N, K, F> {
         }
     }
 
-    /// Considers such a crossing out of line, because few of the tested primitives come this far.
+    /// Considers such a crossing out of line, because few of the tested primitives need it.
     #[cfg_attr(not(feature = "small"), inline(never))]
     fn consider_out_of_line(&mut self, crossing: Crossing<N>, bounds: UnitBox, place: PrimitiveId) {
         self.consider_in_box(crossing, bounds, place);
     }
 
     inline_on_boards!(
-        /// Commits a hit in the interval that is left.
-        // Out of line on hosts, where many places come here and few rays.
+        /// Commits a hit in the remaining interval.
+        // Out of line on hosts, where many places call this and few rays need it.
         pub(super) fn commit(&mut self, hit: (N, Part), place: PrimitiveId) {
             if let Some(tmax) = self.found.commit(self.scene, hit, place) {
                 self.tmax = tmax;
@@ -96,7 +96,7 @@ impl<'s, 'a, N: Number, K: Culling<N>, F: Collect<N>> Search<'s, 'a, N, K, F> {
         }
     );
 
-    /// Reports a primitive after its test, and after it was considered if it was met.
+    /// Reports a primitive after its test, and after it was considered if it was hit.
     #[inline(always)]
     pub(super) fn observe<C: Observer>(
         &self,
@@ -114,7 +114,7 @@ impl<'s, 'a, N: Number, K: Culling<N>, F: Collect<N>> Search<'s, 'a, N, K, F> {
         }
     }
 
-    /// Tests the primitives of a leaf, or, where `ANY` hit will do, of a pack only until one is hit.
+    /// Tests the primitives of a leaf, or, if `ANY` hit is enough, of a pack only until one is hit.
     #[inline(always)]
     pub(super) fn leaf<A: Accel, C: Observer, const ANY: bool>(
         &mut self,
@@ -142,7 +142,7 @@ impl<'s, 'a, N: Number, K: Culling<N>, F: Collect<N>> Search<'s, 'a, N, K, F> {
                 )* }
             ) => {
                 match leaf.kind {
-                    // Code that was left out, and that no blob here leads to.
+                    // Code that this build lacks, and that no blob here needs.
                     kind if !kind.is_available() => (),
                     Kind::Triangle => self.indexed_triangles(leaf, count),
                     Kind::Sphere => match shapes.spheres {
@@ -153,7 +153,7 @@ impl<'s, 'a, N: Number, K: Culling<N>, F: Collect<N>> Search<'s, 'a, N, K, F> {
                     $(Kind::$kind if Kind::$kind.is_available() && Kind::$kind.is_bounded() => {
                         self.records(shapes.$field.get(slots), leaf, count)
                     })*
-                    // No structure leads to what has no bounds.
+                    // No structure holds shapes without bounds.
                     _ => (),
                 }
             };
@@ -207,7 +207,7 @@ impl<'s, 'a, N: Number, K: Culling<N>, F: Collect<N>> Search<'s, 'a, N, K, F> {
         );
     }
 
-    /// Tests records one after the other, and takes those that are met.
+    /// Tests records one after the other, and considers those that the ray hits.
     #[inline(always)]
     fn solids<T, C: Observer>(
         &mut self,
@@ -265,8 +265,8 @@ impl<'s, 'a, N: Number, K: Culling<N>, F: Collect<N>> Search<'s, 'a, N, K, F> {
 
     /// Tests the triangles of the slots before `end`.
     ///
-    /// Slots are counted only where a hit needs its number, and vertices are read through the borrowed slice, so that
-    /// few values stay in registers.
+    /// Slots are counted only where a hit needs its number, and vertices are read through the borrowed slice. So few
+    /// values stay in registers.
     // Out of line, the walk and the test each have more of the few registers of small cores.
     #[cfg_attr(not(feature = "wide"), inline(never))]
     fn triangles_along<const MAJOR: usize, V: Vertex, I: Corners, C: Observer>(
@@ -293,9 +293,9 @@ impl<'s, 'a, N: Number, K: Culling<N>, F: Collect<N>> Search<'s, 'a, N, K, F> {
         }
     }
 
-    /// Takes a triangle of its own record that the ray meets somewhere on its line.
+    /// Considers a triangle with a record of its own that the line of the ray hits.
     ///
-    /// Its corners are read again: handed on, they would take up memory for those that are not met.
+    /// Its corners are read again, because passing them on would use memory for triangles that the ray misses.
     #[inline(never)]
     fn triangle_in_slot<V: Vertex, I: Corners, C: Observer>(
         &mut self,
@@ -312,7 +312,7 @@ impl<'s, 'a, N: Number, K: Culling<N>, F: Collect<N>> Search<'s, 'a, N, K, F> {
         }
     }
 
-    /// Takes a triangle that the ray meets somewhere on its line.
+    /// Considers a triangle that the line of the ray hits.
     #[inline(always)]
     pub(super) fn triangle<C: Observer>(
         &mut self,
@@ -336,8 +336,8 @@ impl<'s, 'a, N: Number, K: Culling<N>, F: Collect<N>> Search<'s, 'a, N, K, F> {
     }
 }
 
-/// The best hit among the primitives of a structure and those that were found before, or whatever `F` collects.
-// With instances it is searched for in several places: boards hold it once.
+/// The best hit among the primitives of a structure and those that were found before, or the hits that `F` collects.
+// With instances several places search for it: boards hold it once.
 #[cfg_attr(feature = "wide", inline(always))]
 #[cfg_attr(all(feature = "instances", not(feature = "wide")), inline(never))]
 pub(super) fn search_structure<N: Number, A: Accel, C: Observer, F: Collect<N>, const ANY: bool>(

@@ -9,8 +9,8 @@ use crate::query::hit::{Hit, find};
 use crate::scene::Scene;
 
 impl<N: Number> Hit<N> {
-    /// Returns the normal that surfaces are shaded with, of length 1, on the side from which the ray came. `scene` is
-    /// that of the query. That is the [geometric normal](Hit::normal) or its opposite, except in meshes with [smooth
+    /// Returns the normal for shading, of length 1, on the side from which the ray came. `scene` is that of the query.
+    /// It is the [geometric normal](Hit::normal) or its opposite, except in meshes with [smooth
     /// normals](crate::geometry::smooth).
     ///
     /// ```
@@ -40,7 +40,8 @@ impl<N: Number> Hit<N> {
         }
     }
 
-    /// The smooth normal on the side of `facing`, the geometric normal or its opposite; `None` where there is none.
+    /// Returns the smooth normal on the side of `facing`, the geometric normal or its opposite; `None` if there is
+    /// none.
     #[inline(always)]
     pub(crate) fn smooth_normal(&self, scene: &Scene<'_>, facing: [N; 3]) -> Option<[N; 3]> {
         if !SMOOTH {
@@ -54,8 +55,8 @@ impl<N: Number> Hit<N> {
         triangle.normal(self.point, facing)
     }
 
-    /// The way from the point to the curved surface that a smooth triangle stands for, on the side of `facing`: see
-    /// [`SmoothTriangle::lift`]. `None` of what is not smooth.
+    /// Returns the way from the point to the curved surface that a smooth triangle approximates, on the side of
+    /// `facing`: see [`SmoothTriangle::lift`]. `None` if the triangle is not smooth.
     #[cold]
     pub(crate) fn lift(&self, scene: &Scene<'_>, facing: [N; 3]) -> Option<[N; 3]> {
         if self.instance().is_none() {
@@ -93,7 +94,7 @@ impl<N: Number> Hit<N> {
         Some((map, triangle, there))
     }
 
-    /// The slot of a triangle that has one.
+    /// The slot of a triangle with smooth normals.
     #[inline(always)]
     pub(super) fn triangle_slot(&self) -> Option<usize> {
         let leaf = Leaf::from_word(self.place)?;

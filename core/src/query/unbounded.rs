@@ -1,4 +1,4 @@
-//! Shapes without bounds, which lie in no structure: every query tests all of them before it walks one.
+//! Shapes without bounds, which lie in no structure: every query tests all of them before it walks a structure.
 
 use crate::accel::Number;
 use crate::format::Kind;

@@ -1,9 +1,10 @@
-//! Why a ray is rejected.
+//! Errors of invalid rays.
 
 use core::fmt;
 
-/// Why something is not a ray.
-// As wide as a number in single precision: what shares its place in a `Result` is then loaded as it was stored.
+/// The reason why a ray is invalid.
+// As wide as a number in single precision. So a value with which it shares its place in a `Result` is loaded as it was
+// stored.
 #[repr(u32)]
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]

@@ -1,11 +1,11 @@
-//! A ray as its caller gave it, before it is moved to the scene's box: for shapes without bounds, which a ray can
-//! meet anywhere.
+//! A ray as its caller gave it, before it is moved to the scene's box. Shapes without bounds need it, because a ray can
+//! hit them anywhere.
 
 use crate::format::limits::{FARTHEST_HIT, UNBOUNDED};
 use crate::number::Arithmetic;
 use crate::target::InSomeBuilds;
 
-/// A ray before it is moved to the scene's box: one, or none in builds without shapes that need it.
+/// A ray before it is moved to the scene's box. It is absent in builds without shapes that need it.
 pub(crate) type Given<N> = InSomeBuilds<GivenRay<N>, { UNBOUNDED as usize }>;
 
 /// A ray's origin and interval before the ray is moved to the scene's box.
@@ -13,7 +13,7 @@ pub(crate) type Given<N> = InSomeBuilds<GivenRay<N>, { UNBOUNDED as usize }>;
 pub(crate) struct GivenRay<N: Arithmetic> {
     origin: [N::Wide; 3],
     pub(super) interval: [N::Wide; 2],
-    /// Whether the ray's start is a point of the ray. It is not where the ray passes the scene far away.
+    /// True if the ray's start is a point of the ray. It is false where the ray passes the scene far away.
     pub(super) holds_start: bool,
 }
 
@@ -23,7 +23,7 @@ pub(super) type RayPoint<N> = (
     <N as crate::number::Scalar>::Wide,
 );
 
-/// Where a ray meets a shape without bounds, counted from a place on the ray that is not far away.
+/// The place where a ray hits a shape without bounds, counted from a place on the ray that is not far away.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct FarPoint<N: Arithmetic> {
     reference: [N::Wide; 3],
@@ -33,7 +33,7 @@ pub(crate) struct FarPoint<N: Arithmetic> {
     pub(super) rest: N::Wide,
 }
 
-/// Asks for the origin only where it is kept.
+/// Computes the origin only where it is kept.
 #[inline(always)]
 pub(super) fn given<N: Arithmetic>(
     origin: impl Fn() -> [N::Wide; 3],
@@ -48,7 +48,7 @@ pub(super) fn given<N: Arithmetic>(
 }
 
 impl<N: Arithmetic> GivenRay<N> {
-    /// The ray's start if that is a place on it, and else its origin.
+    /// Returns the ray's start if that is a point of the ray, and else its origin.
     pub(super) fn reference_point(&self, start: RayPoint<N>) -> RayPoint<N> {
         if self.holds_start {
             start
@@ -57,10 +57,10 @@ impl<N: Arithmetic> GivenRay<N> {
         }
     }
 
-    /// Where a surface is crossed, given how far from a place on the ray that is.
+    /// Returns where a ray crosses a surface, given the distance of the crossing from a place on the ray.
     ///
-    /// The place is the origin or the start, whichever is nearer to the crossing: so numbers are fine where the
-    /// crossing is, and a ray that begins beside a surface stays beside it.
+    /// The place is the origin or the start, whichever is nearer to the crossing. So numbers are precise where the
+    /// crossing is, and a ray that begins outside a surface stays outside.
     pub(super) fn meet(
         &self,
         start: RayPoint<N>,

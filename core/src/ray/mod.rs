@@ -1,4 +1,4 @@
-//! Rays, in the one form that every kernel uses.
+//! Rays, in the form that all kernels use.
 
 mod error;
 mod given;
@@ -22,29 +22,26 @@ use start::{
 
 /// A half-line with an interval, ready to be traced through one scene.
 ///
-/// A ray is parametrized along the *major axis* of its direction, the one with the largest
-/// component: `point = origin + t * slope`, where the slope of the major axis is 1 or -1 and the
-/// others lie between. `t` is therefore a length in units (see [`Number`](crate::Number)), never
-/// overflows, and needs no normalized direction. For a direction `d` of any length, the parameter
-/// in multiples of `d` is `t / |d[major]|`.
+/// A ray is parametrized along the *major axis* of its direction, the one with the largest component:
+/// `point = origin + t * slope`. The slope of the major axis is 1 or -1 and the others lie between. `t` is therefore a
+/// length in units (see [`Number`](crate::Number)), never overflows, and needs no normalized direction. For a direction
+/// `d` of any length, the parameter in multiples of `d` is `t / |d[major]|`.
 ///
-/// An origin before the scene's box is moved along the ray to the plane in which the box begins,
-/// and `t` is counted from there inside the kernels; [`Hit::t`](crate::Hit) is counted from the
-/// origin that was given.
+/// An origin before the scene's box is moved along the ray to the plane in which the box begins. Inside the kernels `t`
+/// is counted from there. [`Hit::t`](crate::Hit) is counted from the caller's origin.
 ///
 /// # Limits
-/// - **Origin:** each coordinate is at most 2^37 units ([`FARTHEST`](crate::format::limits::FARTHEST)), or the ray is rejected with
-///   [`RayError::Distance`]. A scene's box is at most 2^16 units wide, so rays from 2^20 times its width
-///   are answered. The origin is moved in twice the format's precision, by the direction as it is given
-///   and not by its rounded slopes: from any distance the ray starts where it comes to the box, within two
-///   roundings of the largest coordinate there (in `f32`: of the largest coordinate of a scene, 2^15
-///   units).
+/// - **Origin:** each coordinate is at most 2^37 units ([`FARTHEST`](crate::format::limits::FARTHEST)), or the ray is
+///   rejected with [`RayError::Distance`]. A scene's box is at most 2^16 units wide, so rays from 2^20 times its width
+///   are supported. The origin is moved in twice the format's precision, by the caller's direction and not by its
+///   rounded slopes. So from any distance the ray starts where it reaches the box, within two roundings of the largest
+///   coordinate there. In `f32` that is the largest coordinate of a scene, 2^15 units.
 /// - **Direction:** any finite length but 0, down to the smallest denormal number and up to the largest
 ///   finite one.
 /// - **`tmin`, `tmax`:** anything but NaN; infinite ones are endless.
-/// - **`t` of a hit** is rounded to the format: in `f32` it is off by up to 2^-24 of itself, in `f64` by
-///   2^-53, and in `fixed` by a sub-step, 2^-13 of a unit. [`Hit::point`](crate::Hit::point) is not taken
-///   from it, and is as good as that of a ray from near by.
+/// - **`t` of a hit** is rounded to the format. It is off by up to 2^-24 of itself in `f32`, by 2^-53 in `f64`, and by
+///   a sub-step, 2^-13 of a unit, in `fixed`. [`Hit::point`](crate::Hit::point) is not computed from it, and is as
+///   precise as that of a ray from near by.
 #[derive(Clone, Copy, Debug)]
 pub struct Ray<N: Arithmetic> {
     pub(crate) origin: [N; 3],
@@ -61,8 +58,8 @@ impl<N: Arithmetic> Ray<N> {
     inline_on_hosts_hint_on_boards!(
         /// A ray through a scene whose box is `bounds` (see [`Scene::bounds`](crate::Scene::bounds)).
         ///
-        /// Origin and interval are lengths in units; the direction is of any length but 0. Hits are
-        /// reported for `tmin <= t <= tmax`, in lengths along the major axis; `tmin` may be negative.
+        /// Origin and interval are lengths in units; the direction is of any length but 0. Hits are reported for
+        /// `tmin <= t <= tmax`, in lengths along the major axis; `tmin` can be negative.
         ///
         /// ```
         /// # static BLOB: &[u8] =
@@ -78,9 +75,10 @@ impl<N: Arithmetic> Ray<N> {
         /// ```
         ///
         /// # Errors
-        /// If the direction is zero, or anything is NaN, or the origin or direction infinite, or the origin
-        /// farther than [`FARTHEST`](crate::format::limits::FARTHEST) along an axis, or `tmin > tmax`: see the limits of [`Ray`].
-        // Hosts have the room; through memory a ray would cost as much again.
+        /// If the direction is zero, anything is NaN, the origin or direction is infinite, or `tmin > tmax`. Also if
+        /// the origin is farther than [`FARTHEST`](crate::format::limits::FARTHEST) along an axis: see the limits of
+        /// [`Ray`].
+        // Hosts have enough memory for copies; passing a ray through memory would double its cost.
         pub fn new(
             bounds: &UnitBox,
             origin: [N::Wide; 3],
@@ -115,8 +113,8 @@ impl<N: Arithmetic> Ray<N> {
     );
 
     inline_on_hosts_hint_on_boards!(
-        /// A ray from a place in the scene, as hits give places, with all `t` up to `tmax` but 0, where it
-        /// meets what it starts on. `None` if the direction is zero.
+        /// Returns a ray from a place in the scene, in the form in which hits give places. It has all `t` up to `tmax`
+        /// except 0, where it touches the surface on which it starts. `None` if the direction is zero.
         pub(crate) fn from_inside(
             bounds: &UnitBox,
             origin: [N; 3],
@@ -125,7 +123,7 @@ impl<N: Arithmetic> Ray<N> {
         ) -> Option<Self> {
             let (slope, major) = N::slopes(direction)?;
             let forward = pick(slope, major) > N::ZERO;
-            // A place beside the box at most: always near.
+            // The place lies at most an error bound outside the box, so it is always near.
             let from = pick(origin, major).widen();
             let zero = N::Wide::default();
             let start_t = distance_to_box::<N>(bounds, from, (major, forward), zero);
@@ -142,8 +140,8 @@ impl<N: Arithmetic> Ray<N> {
         }
     );
 
-    /// Where the ray enters a solid. One that starts where the scene's box begins enters nothing before its start: a cap
-    /// in that plane may be rounded there.
+    /// Returns where the ray enters a solid. A ray that starts where the scene's box begins enters nothing before its
+    /// start, because a cap in that plane can be rounded to there.
     #[inline(always)]
     pub(crate) fn ahead<P>(&self, (t, part): (N, P)) -> (N, P) {
         let starts_outside = self.tmin == N::ZERO && self.start_t > N::Wide::default();
@@ -154,7 +152,7 @@ impl<N: Arithmetic> Ray<N> {
         }
     }
 
-    /// [`from_inside`](Self::from_inside) of a place that can lie far outside of the scene's box, on a shape without
+    /// [`from_inside`](Self::from_inside) for a place that can lie far outside the scene's box, on a shape without
     /// bounds.
     #[cold]
     pub(crate) fn from_anywhere(
@@ -169,8 +167,8 @@ impl<N: Arithmetic> Ray<N> {
     }
 
     inline_on_hosts!(
-        /// A ray given in double precision, rounded to this format only after its origin was moved to
-        /// the scene: what hosts use, and tests.
+        /// Returns a ray given in double precision, rounded to this format only after its origin was moved to the
+        /// scene. For hosts and tests.
         ///
         /// ```
         /// # static BLOB: &[u8] =
@@ -186,7 +184,7 @@ impl<N: Arithmetic> Ray<N> {
         /// ```
         ///
         /// # Errors
-        /// As [`Ray::new`].
+        /// The errors of [`Ray::new`].
         pub fn from_f64(
             bounds: &UnitBox,
             origin: [f64; 3],
@@ -239,8 +237,7 @@ impl<N: Arithmetic> Ray<N> {
         self.slope
     }
 
-    /// The ray's start inside of the kernels, in units: its origin, or the point where it comes to the
-    /// scene's box.
+    /// Returns the ray's start inside the kernels, in units: its origin, or the point where it reaches the scene's box.
     ///
     /// ```
     /// # static BLOB: &[u8] =
@@ -265,15 +262,15 @@ impl<N: Arithmetic> Ray<N> {
         [self.tmin, self.tmax]
     }
 
-    /// The interval as the caller gave it, counted from the origin: it can begin before [`start`](Self::start). Hits of
-    /// unbounded shapes are reported in it; it is empty in builds without them.
+    /// Returns the interval as the caller gave it, counted from the origin: it can begin before [`start`](Self::start).
+    /// Hits of unbounded shapes are reported in it; it is empty in builds without them.
     pub fn given_interval(&self) -> [N::Wide; 2] {
         let none = [N::far(1), N::Wide::default()];
         self.given.get().map_or(none, |ray| ray.interval)
     }
 
-    /// A point of the ray, and its t as the caller counts it: the ray's [`start`](Self::start), or its origin where
-    /// it passes the scene so far away that it has no start.
+    /// Returns a point of the ray, and its t as the caller counts it. The point is the ray's [`start`](Self::start).
+    /// Where the ray passes the scene so far away that it has no start, the point is its origin.
     pub fn reference_point(&self) -> ([N::Wide; 3], N::Wide) {
         let start = self.start_point();
         self.given
@@ -281,7 +278,7 @@ impl<N: Arithmetic> Ray<N> {
             .map_or(start, |ray| ray.reference_point(start))
     }
 
-    /// Whether the start is a point of the ray.
+    /// Returns true if the start is a point of the ray.
     fn holds_start(&self) -> bool {
         self.given.get().is_none_or(|ray| ray.holds_start)
     }
@@ -290,7 +287,8 @@ impl<N: Arithmetic> Ray<N> {
         (self.origin.map(N::widen), self.start_t)
     }
 
-    /// Where the ray crosses a surface without bounds, given how far from a place on the ray that is.
+    /// Returns where the ray crosses a surface without bounds, given the distance of the crossing from a place on the
+    /// ray.
     pub(crate) fn meet_far(
         &self,
         cross: impl Fn([N::Wide; 3]) -> Option<N::Wide>,

@@ -10,20 +10,20 @@ use crate::ray::start::{
     check_origin, distance_to_box, far_start, far_start_along, is_near, near_start,
 };
 
-/// All rays without end from one point: what they share is computed once.
+/// All rays without end from one point. Their common set-up is computed once.
 ///
-/// Gives the same rays as [`Ray::new`], bit for bit, for half of its cost or less where the point
-/// is not much farther from the scene's box than the box is wide.
+/// Returns the same rays as [`Ray::new`], bit for bit. They cost half as much or less if the point is not much farther
+/// from the scene's box than the box is wide.
 #[derive(Clone, Copy, Debug)]
 pub struct Pencil<N: Arithmetic>(Origin<N>);
 
-/// Where the rays of a pencil begin.
+/// The origin of a pencil's rays.
 #[derive(Clone, Copy, Debug)]
 enum Origin<N: Arithmetic> {
-    /// [Near](is_near) the scene, whichever way a ray is moved.
+    /// [Near](is_near) the scene, in whichever direction a ray is moved.
     Near {
         origin: [N; 3],
-        /// How far rays are moved to the box: `[axis][0 down it, 1 up it]`.
+        /// The lengths by which rays are moved to the box: `[axis][0 down it, 1 up it]`.
         start_t: [[N; 2]; 3],
     },
     Far {
@@ -116,7 +116,7 @@ impl<N: Arithmetic> Pencil<N> {
         self.ray_from(slope, major, along)
     }
 
-    /// The ray along slopes, from a start that is found by a function where it is far.
+    /// Returns the ray along slopes; a function finds the start if it is far.
     #[inline(always)]
     fn ray_from(
         &self,

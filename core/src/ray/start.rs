@@ -1,4 +1,4 @@
-//! Where a ray starts: an origin before the scene's box is moved along the ray to the box.
+//! The start of a ray: an origin before the scene's box is moved along the ray to the box.
 
 use crate::axis::pick;
 use crate::format::limits::FARTHEST;
@@ -9,8 +9,8 @@ use crate::target::{SMALL, inline_unless_small};
 use core::cmp::Ordering;
 
 inline_unless_small!(
-    /// How far rays are moved that run up or down one axis, from a coordinate on it: to the plane in which the scene's
-    /// box begins, or towards it for hits behind the point.
+    /// The lengths by which rays are moved that run up or down one axis, from a coordinate on it. They are moved to the
+    /// plane in which the scene's box begins, or towards it for hits behind the point.
     pub(super) fn distance_to_box<N: Arithmetic>(
         bounds: &UnitBox,
         origin: N::Wide,
@@ -19,7 +19,7 @@ inline_unless_small!(
     ) -> N::Wide {
         let zero = N::Wide::default();
         let [first, last] = pick(bounds.0, axis);
-        // Of what is too far away it may be anything.
+        // For a place that is too far away, any value is allowed.
         let to_box = if forward {
             N::difference(N::from_unit(first).widen(), origin)
         } else {
@@ -35,7 +35,7 @@ inline_unless_small!(
     }
 );
 
-/// An interval counted from where a ray was moved to.
+/// An interval counted from the moved origin of a ray.
 #[inline(always)]
 pub(super) fn interval<N: Arithmetic>(tmin: N::Wide, tmax: N::Wide, start_t: N::Wide) -> [N; 2] {
     let tmin = if tmin > start_t {
@@ -57,13 +57,13 @@ pub(super) fn end_after<N: Arithmetic>(tmax: N::Wide, start_t: N::Wide) -> N {
     }
 }
 
-/// How far from the lattice's middle a ray may start on any axis, with 13 fraction bits: on its way
-/// through the scene's box, which ends at 2^15 units, a ray rises by at most 2^16. Kernels keep their
-/// ranges up to here.
+/// The greatest distance of a ray's start from the lattice's middle on any axis, with 13 fraction bits. On its way
+/// through the scene's box, which ends at 2^15 units, a ray rises by at most 2^16. Kernels keep their ranges up to
+/// here.
 const REACH: i64 = (3 * i16::MAX as i64) << 13;
 
-/// Whether every ray that is moved so far along its major axis starts within [`REACH`]: slopes are at
-/// most 1, and along its major axis a ray moves to the box. Never for numbers that are saturated.
+/// Returns true if every ray that is moved by this length along its major axis starts within [`REACH`]. Slopes are at
+/// most 1, and along its major axis a ray moves to the box. Always false for saturated numbers.
 #[inline(always)]
 pub(super) fn is_near<N: Arithmetic>(origin: [N; 3], major: usize, start_t: N) -> bool {
     let (reach, start_t) = (N::narrow(N::far(REACH)), start_t.abs());
@@ -75,12 +75,12 @@ pub(super) fn is_near<N: Arithmetic>(origin: [N; 3], major: usize, start_t: N) -
         };
         origin[axis].abs() < reach
     };
-    // What is taken for far comes out the same, and needs less code. Twice the reach is a number; more
+    // A place that counts as far gives the same result, and needs less code. Twice the reach is a number; a larger one
     // need not be.
     !SMALL && start_t < reach && within(0) && within(1) && within(2)
 }
 
-/// Where a ray starts that is moved from an origin [near](is_near) the scene.
+/// Returns the start of a ray that is moved from an origin [near](is_near) the scene.
 #[inline(always)]
 pub(super) fn near_start<N: Arithmetic>(origin: [N; 3], start_t: N, slope: [N; 3]) -> [N; 3] {
     let start = |axis: usize| N::flush_tiny(origin[axis] + start_t * slope[axis]);
@@ -88,8 +88,8 @@ pub(super) fn near_start<N: Arithmetic>(origin: [N; 3], start_t: N, slope: [N; 3
 }
 
 inline_unless_small!(
-    /// Where a ray starts that is moved from an origin anywhere, how far that is, and whether it lies within
-    /// [`REACH`]: else it meets nothing. `EXACT` says that slopes and lengths are not rounded.
+    /// Returns the start of a ray that is moved from an origin anywhere, how far it is moved, and whether it lies
+    /// within [`REACH`]. Outside it the ray hits nothing. `EXACT` states that slopes and lengths are not rounded.
     pub(super) fn far_start<N: Arithmetic, const EXACT: bool>(
         bounds: &UnitBox,
         origin: [N::Wide; 3],
@@ -120,7 +120,7 @@ inline_unless_small!(
     }
 );
 
-/// [`far_start`] of a ray that is to run along its slopes as they are.
+/// [`far_start`] for a ray that runs along exactly its slopes.
 #[inline(always)]
 pub(super) fn far_start_along<N: Arithmetic>(
     bounds: &UnitBox,
@@ -136,14 +136,14 @@ pub(super) fn far_start_along<N: Arithmetic>(
     }
 }
 
-/// One coordinate of a start, in a register: through memory all three would burden near rays too.
+/// One coordinate of a start, in a register: all three would go through memory and cost near rays time, too.
 #[cold]
 #[inline(never)]
 fn far_coordinate<N: Arithmetic>(origin: N::Wide, start_t: N::Wide, slope: N) -> N {
     N::flush_tiny(N::narrow(origin + N::wide_scale(start_t, slope)))
 }
 
-/// An error unless every coordinate of an origin is a number of at most [`FARTHEST`].
+/// Returns an error unless every coordinate of an origin is a number of at most [`FARTHEST`].
 #[cold]
 #[inline(never)]
 pub(super) fn check_origin<N: Arithmetic>(
@@ -153,7 +153,7 @@ pub(super) fn check_origin<N: Arithmetic>(
 ) -> Result<(), RayError> {
     let most = N::far(FARTHEST);
     let origin = [x, y, z];
-    // Not so for NaN.
+    // False for NaN.
     if origin.iter().all(|&x| -most <= x && x <= most) {
         Ok(())
     } else if origin.into_iter().all(N::is_finite) {
@@ -163,7 +163,7 @@ pub(super) fn check_origin<N: Arithmetic>(
     }
 }
 
-/// An error unless an interval is one.
+/// Returns an error unless an interval is valid.
 #[inline(always)]
 pub(super) fn check_interval<W: Copy + PartialOrd>(tmin: W, tmax: W) -> Result<(), RayError> {
     if tmin.partial_cmp(&tmax).is_none_or(Ordering::is_gt) {

@@ -1,4 +1,4 @@
-//! That rays from one point are those that are made one by one, and the limits of rays.
+//! Rays of a pencil equal rays that are made one by one; and the limits of rays.
 
 use super::*;
 use crate::format::limits::FARTHEST;
@@ -12,7 +12,7 @@ fn same_ray<N: Arithmetic>(origin: [f64; 3], direction: [f64; 3]) {
     let endless = endless::<N>();
     let alone = Ray::<N>::new(&bounds, origin, direction, N::Wide::default(), endless);
     let shared = Pencil::new(&bounds, origin).and_then(|pencil| pencil.ray(direction));
-    // Debug tells every bit, those of -0.0 and NaN included. The order of checks may differ.
+    // Debug shows every bit, even of -0.0 and NaN. The order of checks can differ.
     let text = |ray: Result<Ray<N>, RayError>| ray.map(|ray| format!("{ray:?}"));
     let (alone, shared) = (text(alone), text(shared));
     assert_eq!(alone.is_ok(), shared.is_ok());
@@ -51,7 +51,7 @@ fn same_start<N: Arithmetic>(origin: [f64; 3], direction: [f64; 3], tmin: f64) {
     }
 }
 
-/// Three finite numbers may have a sum that is not.
+/// The sum of three finite numbers can be infinite.
 #[test]
 fn origins_are_rejected_with_the_reason() {
     fn origins<N: Arithmetic<Wide = N>>(largest: N, infinite: N) {
@@ -81,7 +81,7 @@ fn origins_are_rejected_with_the_reason() {
                 assert_eq!(with(wrong), Some(RayError::Origin));
             }
         }
-        // Nor does one that is not finite vanish beside its opposite.
+        // A coordinate that is not finite does not vanish next to its opposite either.
         assert_eq!(made([infinite, -infinite, zero]), Some(RayError::Origin));
     }
     origins::<f32>(f32::MAX, f32::INFINITY);

@@ -1,7 +1,7 @@
-//! Cameras that a program places while it runs.
+//! Cameras that a program places at run time.
 //!
-//! All in integers, and the same bits on every machine and in every number format: the compiler of blobs
-//! places the scene file's camera by the same functions.
+//! All arithmetic is in integers, with the same bits on every machine and in every number format. The compiler of blobs
+//! places the scene file's camera with the same functions.
 
 use crate::format::record::{Header, View};
 use crate::number::rotation::columns;
@@ -9,10 +9,10 @@ use crate::number::{Angle, Fixed, Products, Scalar, Vectors};
 use crate::scene::{Position, Scene};
 use core::fmt;
 
-/// A pinhole camera in scene coordinates, to be put in place of the blob's own.
+/// A pinhole camera in scene coordinates that replaces the blob's own.
 ///
-/// Costs one set-up per frame: placing the camera, its checks and the renderer together take 2,300 to 2,700
-/// instructions on Cortex-M3, Cortex-M4F and RV32, and 8,100 on Cortex-M0.
+/// Cost: one set-up per frame. Placing the camera, its checks and the renderer together take 2,300 to 2,700
+/// instructions on Cortex-M3, Cortex-M4F and RV32. On Cortex-M0 they take 8,100.
 ///
 /// ```
 /// # static BLOB: &[u8] =
@@ -38,12 +38,12 @@ use core::fmt;
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Camera {
     eye: Position,
-    /// To the middle of the picture, from there to its right by half of its height, and to its upper edge;
-    /// magnitudes of at most 2^28.
+    /// Vectors to the middle of the picture, from there to its right by half of its height, and to its upper edge.
+    /// Magnitudes are at most 2^28.
     frame: [[i32; 3]; 3],
 }
 
-/// Which axis of a scene points up.
+/// The axis of a scene that points up.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub enum Up {
@@ -54,7 +54,7 @@ pub enum Up {
     Z,
 }
 
-/// Why there is no such camera.
+/// The reason why a camera is invalid.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub enum CameraError {
@@ -62,7 +62,7 @@ pub enum CameraError {
     FieldOfView(Angle),
     /// Eye and target are the same place, or the direction or rotation has no length.
     NoDirection,
-    /// The camera looks along the direction that points up, so the picture could be turned any way.
+    /// The camera looks along the direction that points up, so the rotation of the picture is undefined.
     AlongUp,
     /// The eye lies beyond the range of scene coordinates.
     EyeOutOfRange,
@@ -84,11 +84,11 @@ impl fmt::Display for CameraError {
 impl core::error::Error for CameraError {}
 
 impl Camera {
-    /// A camera at `eye` with `target` in the middle of its picture and the direction `up` upwards; the
-    /// picture's height is seen under the angle `field_of_view`.
+    /// Returns a camera at `eye`, with `target` in the middle of its picture and the direction `up` upwards.
+    /// `field_of_view` is the angle of the picture's height.
     ///
     /// # Errors
-    /// If eye and target are the same place, the camera looks along `up`, or the field of view is 0 or half a
+    /// If eye and target are the same place, or the camera looks along `up`. Also if the field of view is 0 or half a
     /// turn or more.
     pub fn look_at(
         eye: Position,
@@ -103,7 +103,7 @@ impl Camera {
     /// A camera that looks in a direction of any length.
     ///
     /// # Errors
-    /// As [`look_at`](Self::look_at).
+    /// The errors of [`look_at`](Self::look_at).
     pub fn look_along(
         eye: Position,
         direction: [i32; 3],
@@ -146,13 +146,12 @@ impl Camera {
         Self::with_axes([forward, right, up], eye, field_of_view)
     }
 
-    /// A camera on a circle around `target`, for a dial: at a distance in coordinate steps, turned
-    /// by `azimuth` around the axis that points up, counterclockwise as seen from above, and raised
-    /// by `elevation`; it may pass over the pole.
+    /// Returns a camera on a circle around `target`, for example for a dial. `azimuth` turns it around the axis that
+    /// points up, counterclockwise as seen from above. `elevation` raises it; it can pass over the pole. The distance
+    /// is in coordinate steps.
     ///
     /// # Errors
-    /// If the distance is 0, the eye leaves the range of coordinates, or the field of view is 0 or half a
-    /// turn or more.
+    /// If the distance is 0, the eye leaves the range of coordinates, or the field of view is 0 or half a turn or more.
     pub fn orbit(
         up: Up,
         target: Position,
@@ -219,7 +218,7 @@ impl Camera {
         self.eye
     }
 
-    /// The scene's view with this camera in place of its own, for [`Scene::with_view`].
+    /// Returns the scene's view with this camera in place of its own, for [`Scene::with_view`].
     pub fn view(&self, scene: &Scene<'_>) -> View {
         self.replace_in(scene.view(), scene.header())
     }
@@ -316,7 +315,7 @@ mod tests {
         }
     }
 
-    /// What a camera must be, in doubles.
+    /// The exact camera, in doubles.
     fn exact(direction: Vector, up: Vector, field: Angle) -> [Vector; 3] {
         let half = f64::from(field.0) / 4_294_967_296.0 * core::f64::consts::PI;
         let forward = normalized(direction);
@@ -426,7 +425,7 @@ mod tests {
             let axis = |k: usize| f64::from(middle.0[k] - camera.eye.0[k]);
             let [sine, cosine] = elevation.sin_cos().map(|x| f64::from(x) / f64::from(1 << 30));
             prop_assume!(cosine.abs() > 0.01);
-            // Beyond the pole the camera stands on its head.
+            // Beyond the pole the camera is upside down.
             let above = up.turn([Fixed(0), Fixed(1), Fixed(0)]).map(|x| f64::from(x.0) * cosine);
             let expected = exact([axis(0), axis(1), axis(2)], above, FIELD);
             assert_near(axes(&camera), expected, BOUND / cosine.abs());

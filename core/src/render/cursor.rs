@@ -1,5 +1,5 @@
-//! The state of rendering: the sample of a pixel, the pixel of a rectangle. Rendering can stop after any ray and go
-//! on later, so a call takes a bounded time, and the picture is the same bit for bit.
+//! The state of rendering: the sample of a pixel, the pixel of a rectangle. Rendering can stop after any ray and
+//! continue later. So a call takes a bounded time, and the picture is the same bit for bit.
 
 use crate::accel::{Accel, Number};
 use crate::observe::count::Observer;
@@ -11,22 +11,22 @@ use crate::render::workspace::WorkspaceView;
 
 /// A rectangle of a picture that is rendered a few rays at a time, for firmware with deadlines.
 ///
-/// `step` traces so many rays and returns; the next call goes on exactly where it
-/// stopped, and every pixel is handed out as soon as its last ray was traced. Pixels have the bits
-/// that [`Renderer::row`] gives them, whatever the steps and the order.
+/// `step` traces a number of rays and returns. The next call continues exactly where it stopped, and every pixel is
+/// handed out as soon as its last ray was traced. Pixels have the bits of [`Renderer::row`], whatever the steps and the
+/// order.
 ///
 /// The order of the pixels is `O`: [`Renderer::cursor`] goes row by row, [`Renderer::coarse_to_fine`] shows
 /// the whole rectangle in blocks first, and refines them.
 ///
-/// Between two steps the rays that wait stay in the workspace, which is therefore borrowed as long
-/// as the cursor lives; a cursor that is dropped may leave its picture unfinished. It takes 60
-/// bytes in `f32` and `fixed` and at most 88 in `f64` on a 32-bit board; from coarse to fine, up to 8 more.
+/// Between two steps the waiting rays stay in the workspace, so the cursor borrows the workspace as long as it lives.
+/// The picture of a dropped cursor can be unfinished. On a 32-bit board the cursor takes 60 bytes in `f32` and `fixed`
+/// and at most 88 in `f64`. From coarse to fine, it takes up to 8 more.
 ///
 /// # What a ray costs
-/// A step counts the rays from the camera, off mirrors and through glass. Each of them costs one
-/// closest hit, and if it meets a surface, each light that shines on that surface one shadow ray:
-/// any hit in a scene without glass, else up to 64 closest hits, one for every surface of glass on
-/// the way. Nothing else takes time that depends on the scene.
+/// A step counts the rays from the camera, off mirrors and through glass. Each ray costs one closest hit. If it hits a
+/// surface, each light that shines on that surface costs one shadow ray. A shadow ray costs an any-hit query in a scene
+/// without glass. Else it costs up to 64 closest hits, one for every surface of glass on the way. No other step depends
+/// on the scene.
 #[derive(Debug)]
 pub struct Cursor<'r, 's, 'a, N: Number, A: Accel, const EFFECTS: u32, O = Rows> {
     renderer: &'r Renderer<'s, 'a, N, A, EFFECTS>,
@@ -50,7 +50,7 @@ impl<'r, 's, 'a, N: Number, A: Accel, const EFFECTS: u32, O> Cursor<'r, 's, 'a, 
         }
     }
 
-    /// Traces one ray of a pixel; the pixel, if that was its last.
+    /// Traces one ray of a pixel. Returns the pixel if that was its last ray.
     #[inline(always)]
     fn trace<P: Pixel, C: Observer>(&mut self, pixel: [u16; 2], count: &mut C) -> Option<P> {
         let linear = self
@@ -63,13 +63,13 @@ impl<'r, 's, 'a, N: Number, A: Accel, const EFFECTS: u32, O> Cursor<'r, 's, 'a, 
 }
 
 impl<N: Number, A: Accel, const EFFECTS: u32> Cursor<'_, '_, '_, N, A, EFFECTS> {
-    /// Whether all pixels were handed out.
+    /// Returns true if all pixels were handed out.
     pub fn is_done(&self) -> bool {
         self.order.is_done()
     }
 
-    /// Traces at most so many rays, and hands out the pixels that they complete, row by row from
-    /// the upper left corner.
+    /// Traces at most this many rays, and hands out the pixels that they complete, row by row from the upper left
+    /// corner.
     pub fn step<P: Pixel, C: Observer>(
         &mut self,
         rays: u32,
@@ -91,13 +91,13 @@ impl<N: Number, A: Accel, const EFFECTS: u32> Cursor<'_, '_, '_, N, A, EFFECTS> 
 }
 
 impl<N: Number, A: Accel, const EFFECTS: u32> Cursor<'_, '_, '_, N, A, EFFECTS, CoarseToFine> {
-    /// Whether all pixels were handed out.
+    /// Returns true if all pixels were handed out.
     pub fn is_done(&self) -> bool {
         self.order.side() == 0
     }
 
-    /// Traces at most so many rays, and hands out the pixels that they complete, each with the block that it
-    /// stands for until finer ones are there: fill the whole block with it.
+    /// Traces at most this many rays, and hands out the pixels that they complete. Each comes with a block of pixels:
+    /// fill the whole block with its color, until finer pixels replace it.
     pub fn step<P: Pixel, C: Observer>(
         &mut self,
         rays: u32,
@@ -181,7 +181,7 @@ impl<'s, 'a, N: Number, A: Accel, const EFFECTS: u32> Renderer<'s, 'a, N, A, EFF
     }
 }
 
-/// The size that the documentation states, on boards.
+/// The size that the documentation states for boards.
 #[cfg(target_pointer_width = "32")]
 const _: () = {
     use crate::Fixed;

@@ -8,8 +8,8 @@ use crate::render::workspace::Workspace;
 use crate::scene::Scene;
 
 impl<'s, 'a> Renderer<'s, 'a, f32, DynAccel, { Effects::AVAILABLE.0 }> {
-    /// A renderer of the picture that the scene file states, in `f32`, through the fastest structure of the
-    /// blob. [`with_settings`](Renderer::with_settings) is the form for everything else.
+    /// Returns a renderer of the picture that the scene file states, in `f32`, through the fastest structure of the
+    /// blob. [`with_settings`](Renderer::with_settings) is the form for all other cases.
     ///
     /// ```
     /// # static BLOB: &[u8] =
@@ -26,7 +26,7 @@ impl<'s, 'a> Renderer<'s, 'a, f32, DynAccel, { Effects::AVAILABLE.0 }> {
     /// ```
     ///
     /// # Errors
-    /// As [`with_settings`](Renderer::with_settings).
+    /// The errors of [`with_settings`](Renderer::with_settings).
     pub fn new(scene: &'s Scene<'a>) -> Result<Self, RenderError> {
         Self::with_settings(scene, Settings::of(scene))
     }

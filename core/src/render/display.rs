@@ -1,4 +1,4 @@
-//! Pictures on displays that `embedded-graphics` drives, whatever their colors.
+//! Pictures on displays that `embedded-graphics` drives, in all of its colors.
 //!
 //! [`Renderer::draw`] streams a rectangle to the display without a buffer. With a
 //! [`Cursor`](crate::render::Cursor), pixels go there as they become ready, a bounded number of rays at a
@@ -17,7 +17,7 @@ use embedded_graphics_core::pixelcolor::{
 use embedded_graphics_core::prelude::{DrawTarget, GrayColor, PixelColor};
 use embedded_graphics_core::primitives::Rectangle;
 
-/// Colors of three channels, in whatever order and width.
+/// Colors of three channels, in any order and width.
 macro_rules! pixels_of_rgb {
     ($($color:ident),*) => {$(
         impl Pixel for $color {
@@ -51,7 +51,7 @@ macro_rules! pixels_of_gray {
 
 pixels_of_gray!(Gray2, Gray4, Gray8);
 
-/// On where a gray is nearer to white; use it with dithering.
+/// On if white is nearer than black; use it with dithering.
 impl Pixel for BinaryColor {
     fn encode(linear: [u16; 3], dither: Option<[u16; 2]>) -> Self {
         Self::from(quantize(luminance(linear), 1, dither) > 0)
@@ -59,9 +59,8 @@ impl Pixel for BinaryColor {
 }
 
 impl<N: Number, A: Accel, const EFFECTS: u32> Renderer<'_, '_, N, A, EFFECTS> {
-    /// Draws a rectangle of the picture at the same place of a display, row by row and without a
-    /// buffer; what lies outside of the picture or of the display is not traced. To draw
-    /// elsewhere, give a translated display.
+    /// Draws a rectangle of the picture at the same place of a display, row by row and without a buffer. Pixels outside
+    /// the picture or the display are not traced. To draw elsewhere, pass a translated display.
     ///
     /// ```
     /// # static BLOB: &[u8] =
@@ -101,7 +100,7 @@ impl<N: Number, A: Accel, const EFFECTS: u32> Renderer<'_, '_, N, A, EFFECTS> {
     /// ```
     ///
     /// # Errors
-    /// Those of the display.
+    /// The errors of the display.
     pub fn draw<D, C>(
         &self,
         area: &Rectangle,
@@ -132,7 +131,7 @@ mod tests {
     use super::*;
     use embedded_graphics_core::pixelcolor::raw::RawU16;
 
-    /// The display's own type holds the bits that this crate's type holds.
+    /// The display's own type holds the same bits as this crate's type.
     #[test]
     fn colors_are_those_of_plain_pixels() {
         for step in 0..=1000_u32 {
@@ -154,7 +153,7 @@ mod tests {
         }
     }
 
-    /// Gray stays gray, and half of a dithered surface of middle gray is on.
+    /// Gray stays gray, and half of the pixels of a dithered surface of middle gray are on.
     #[test]
     fn grays_go_by_luminance() {
         for linear in (0..=u16::MAX).step_by(7) {

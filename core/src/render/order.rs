@@ -7,7 +7,7 @@ pub struct Rows {
     pub(super) pixel: [u16; 2],
     /// The first column and the last.
     columns: [u16; 2],
-    /// Rows that are not done.
+    /// Rows that remain.
     rows: u16,
 }
 
@@ -45,8 +45,8 @@ impl Rows {
     }
 }
 
-/// The pixel in the upper left corner of a block, and the size of the block that it stands for until finer
-/// pixels are there. Blocks end where the rectangle ends.
+/// The pixel in the upper left corner of a block, and the size of the block that shows its color until finer pixels
+/// follow. Blocks end where the rectangle ends.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Block {
     /// The pixel's column.
@@ -59,12 +59,12 @@ pub struct Block {
     pub height: u16,
 }
 
-/// The pixels of a rectangle from coarse to fine: one in 64, for blocks of 8 x 8, then the others of one in 16,
-/// for blocks of 4 x 4, and so on to single pixels. Every pixel comes once.
+/// The pixels of a rectangle from coarse to fine. First comes one pixel in 64, for blocks of 8 x 8. Then come the
+/// others of one in 16, for blocks of 4 x 4, and so on to single pixels. Every pixel comes once.
 ///
-/// Filling the blocks in this order draws the whole rectangle 64 times as fast as all pixels do, and refines
-/// it in place: no block covers a pixel that came before, except its own. The next block takes some 20
-/// instructions and no memory beside these 14 bytes.
+/// The blocks in this order draw the whole rectangle 64 times as fast as all pixels do, and refine it in place. No
+/// block covers an earlier pixel, except its own. The next block takes some 20 instructions and no memory except these
+/// 14 bytes.
 ///
 /// ```
 /// use gridel_core::render::{Block, CoarseToFine};
@@ -84,7 +84,7 @@ pub struct CoarseToFine {
     size: [u16; 2],
     /// The next pixel, from the corner.
     next: [u16; 2],
-    /// The side of its block: 8, 4, 2 or 1; 0 when all pixels came.
+    /// The side of its block: 8, 4, 2 or 1; 0 after all pixels.
     side: u16,
 }
 
@@ -106,12 +106,12 @@ impl CoarseToFine {
         }
     }
 
-    /// The side of the next blocks: 8, 4, 2 or 1, and 0 when all pixels came.
+    /// The side of the next blocks: 8, 4, 2 or 1, and 0 after all pixels.
     pub fn side(&self) -> u16 {
         self.side
     }
 
-    /// The next block; `None` when all pixels came.
+    /// Returns the next block; `None` after all pixels.
     #[inline]
     pub(super) fn block(&self) -> Option<Block> {
         if self.side == 0 {
@@ -126,21 +126,21 @@ impl CoarseToFine {
         })
     }
 
-    /// Goes on to the next block.
+    /// Moves on to the next block.
     #[inline]
     pub(super) fn advance(&mut self) {
         let [width, height] = self.size;
         let [x, y] = self.next;
         let mut side = self.side;
-        // Where rows of coarser blocks begin, every second pixel came with them.
+        // Where rows of coarser blocks begin, every second pixel came with those blocks.
         let holds_coarser = |y: u16, side: u16| side < COARSEST && y & side == 0;
         let stride = side << u32::from(holds_coarser(y, side));
         let mut place = match x.checked_add(stride) {
             Some(x) => [x, y],
             None => [width, y],
         };
-        // A row that holds coarser pixels alone is passed over, and so are passes of such rows: at most two
-        // steps for each side of blocks.
+        // Rows that hold only coarser pixels are skipped, and so are passes of such rows. That is at most two steps for
+        // each side of blocks.
         while place[0] >= width {
             let y = match place[1].checked_add(side).filter(|&y| y < height) {
                 Some(y) => y,
@@ -186,7 +186,7 @@ mod tests {
                     covered[at(x, y)..at(width.min(x + wide), y)].fill(true);
                 }
             };
-            // What came before stays in its own block.
+            // Earlier pixels stay in their own blocks.
             for place in (0..width * height).filter(|&it| came[it]) {
                 fill(place % width, place / width);
             }

@@ -1,6 +1,7 @@
-//! From linear radiance to what a display takes: sRGB, 8 bits or 5-6-5, dithered on demand.
+//! The conversion of linear radiance to the pixels of a display: sRGB, 8 bits or 5-6-5, dithered on
+//! demand.
 //!
-//! All in integers, so that every number format shares it.
+//! All arithmetic is in integers, so that all number formats share it.
 
 /// Linear radiance with 16 bits per channel: 65535 is display white.
 pub(crate) type Linear = [u16; 3];
@@ -50,7 +51,7 @@ impl Pixel for Rgb565 {
     }
 }
 
-/// How bright a color looks (IEC 61966-2-1's weights, which add up to 1 here).
+/// Returns the perceived brightness of a color (IEC 61966-2-1's weights, which add up to 1 here).
 #[cfg(feature = "embedded-graphics-core")]
 pub(crate) fn luminance([red, green, blue]: Linear) -> u16 {
     let weighted = 13_933 * u32::from(red) + 46_871 * u32::from(green) + 4_732 * u32::from(blue);
@@ -149,7 +150,7 @@ mod tests {
         }
     }
 
-    /// Every code comes back from its linear value, and codes never fall as light grows.
+    /// Every code is recovered from its linear value, and codes never fall as light grows.
     #[test]
     fn encoding_inverts_the_table_and_is_monotone() {
         for (code, &linear) in LINEAR_OF_SRGB.iter().enumerate() {

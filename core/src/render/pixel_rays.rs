@@ -1,8 +1,8 @@
 //! The rays of a pinhole camera through the pixels of pictures of one size.
 //!
-//! In `fixed`, directions have 62 bits while they are added up and 30 when their slopes are taken. So
-//! in square pictures of up to 90 degrees a slope is off by less than 2^-26; in wider ones by more,
-//! but by less than a thousandth of the distance of two pixels.
+//! In `fixed`, directions have 62 bits while they are added up, and 30 when their slopes are computed. So in square
+//! pictures of up to 90 degrees a slope is off by less than 2^-26. In wider ones the error is larger, but below a
+//! thousandth of the distance of two pixels.
 
 use crate::accel::Number;
 use crate::axis::pick;
@@ -11,9 +11,9 @@ use crate::number::Format;
 use crate::ray::{Pencil, Ray, RayError};
 use crate::render::sample::SUBPIXELS;
 
-/// Whether a format distinguishes the directions of neighboring pixels, each to an eighth of their distance
-/// or better. Other directions would be drawn than those that are asked for, through a lens as long as
-/// only a very distant eye needs it.
+/// Returns true if a format distinguishes the directions of neighboring pixels, each to an eighth of their distance or
+/// better. It does not for a lens so long that only a very distant eye needs it. The picture would then show other
+/// directions than the requested ones.
 pub(crate) fn resolves<N: Number>(view: &View, height: u16) -> bool {
     // Components of directions have 24 bits in `f32`, and 30 or those of the blob's vectors elsewhere.
     let bits = if N::FORMAT == Format::F32 { 21 } else { 26 };
@@ -21,11 +21,11 @@ pub(crate) fn resolves<N: Number>(view: &View, height: u16) -> bool {
         let [x, y, z] = [x, y, z].map(i32::unsigned_abs);
         u64::from(x.max(y).max(z))
     };
-    // Up reaches over half of the height. All are below 2^56.
+    // The vector up covers half of the height. All are below 2^56.
     largest(view.up) << (bits + 1) >= largest(view.forward) * u64::from(height)
 }
 
-/// Makes directions for the pixels of a picture.
+/// Computes the directions of the pixels of a picture.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct PixelRays<N: Number> {
     eye: Pencil<N>,
@@ -45,8 +45,7 @@ pub(crate) struct Row<N: Number>([N::Wide; 3]);
 
 impl<N: Number> PixelRays<N> {
     pub(crate) fn new(bounds: &UnitBox, view: &View, width: u16, height: u16) -> Self {
-        // The largest component of any pixel's direction gets 62 bits, of which its ray takes the
-        // upper half.
+        // The largest component of any pixel's direction gets 62 bits, of which its ray uses the upper half.
         let aspect = width.div_ceil(height.max(1));
         let reach = |k: usize| {
             let size = |v: [i32; 3]| u64::from(pick(v, k).unsigned_abs());

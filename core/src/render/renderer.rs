@@ -1,4 +1,4 @@
-//! The renderer: pixels of one scene at one size, wherever and in whatever order they are wanted.
+//! The renderer: pixels of one scene at one size, at any place and in any order.
 
 use crate::accel::{Accel, Number};
 use crate::format::limits::{DISPLAY_VALUES, MAX_RAY_DEPTH, MAX_SAMPLES};
@@ -27,12 +27,12 @@ pub struct Settings {
     pub width: u16,
     /// Pixels from top to bottom, above 0. The field of view is vertical.
     pub height: u16,
-    /// Samples a pixel, 1 to 4,096; powers of two are spread best. Beyond 256 they share places within the pixel, and
-    /// differ in what effects draw.
+    /// Samples per pixel, 1 to 4,096; powers of two are spread best. Beyond 256 they share places within the pixel, but
+    /// effects draw different random points.
     pub samples: u16,
-    /// How often a ray may be reflected or refracted, 0 to 16, or to 32 with the feature `indirect`.
+    /// Maximum number of reflections and refractions of a ray, 0 to 16, or to 32 with the feature `indirect`.
     pub depth: u8,
-    /// Whether pixels are dithered.
+    /// True if pixels are dithered.
     pub dither: bool,
 }
 
@@ -59,7 +59,7 @@ impl Settings {
     }
 }
 
-/// Why there is no picture of this scene with these settings.
+/// The reason why a scene has no picture with these settings.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub enum RenderError {
@@ -72,10 +72,10 @@ pub enum RenderError {
     },
     /// Not 1 to 4,096 samples.
     Samples(u16),
-    /// A shutter is open over no moment, over more than there are samples per pixel, or over moments with different
+    /// A shutter is open over no moment, over more moments than samples per pixel, or over moments with different
     /// settings.
     Moments {
-        /// How many moments.
+        /// Number of moments.
         found: usize,
         /// Samples per pixel.
         samples: u16,
@@ -86,16 +86,16 @@ pub enum RenderError {
     Structure(Structure),
     /// The scene requires effects that the renderer was not compiled for.
     Effects(Effects),
-    /// The pixels are too narrow for the number format to tell their directions apart. (Code of the
-    /// feature `small` is without this check.)
+    /// The pixels are too narrow for the number format to distinguish their directions. (The feature `small` removes
+    /// this check.)
     Resolution(Format),
     /// The workspace has fewer entries or places than it needs.
     Workspace {
-        /// The memory that is short: the stack, or the work list.
+        /// The memory that is too small: the stack, or the work list.
         what: &'static str,
         /// Its size.
         found: usize,
-        /// The size that it must have.
+        /// The size that it needs.
         needed: usize,
     },
 }
@@ -153,12 +153,12 @@ impl fmt::Display for RenderError {
 
 impl core::error::Error for RenderError {}
 
-/// Renders pixels of a scene in the number format `N`, through the structure `A`, compiled for the
-/// effects in `EFFECTS` (an [`Effects`] as its bits; those of the scene must be among them).
+/// Renders pixels of a scene in the number format `N`, through the structure `A`. It is compiled for the effects in
+/// `EFFECTS` (an [`Effects`] as its bits), which must include those of the scene.
 ///
-/// Holds the camera for one picture size, some 200 bytes; everything that changes lies in the
-/// caller's [`Workspace`](crate::render::Workspace). Pixels do not depend on each other, so any number of
-/// renderers can share a picture.
+/// Holds the camera for one picture size, some 200 bytes. Everything that changes lies in the caller's
+/// [`Workspace`](crate::render::Workspace). Pixels do not depend on each other, so any number of renderers can share a
+/// picture.
 #[derive(Clone, Copy, Debug)]
 pub struct Renderer<'s, 'a, N: Number, A: Accel, const EFFECTS: u32> {
     scene: &'s Scene<'a>,
@@ -169,8 +169,8 @@ pub struct Renderer<'s, 'a, N: Number, A: Accel, const EFFECTS: u32> {
 }
 
 impl<'s, 'a, N: Number, A: Accel, const EFFECTS: u32> Renderer<'s, 'a, N, A, EFFECTS> {
-    /// A renderer for one scene and picture size, in a number format and through a structure, with the code
-    /// of some effects: the form for firmware, which holds nothing else then.
+    /// Returns a renderer for one scene and picture size, in a number format and through a structure, with the code of
+    /// some effects. Use it in firmware, because the program then holds no other code.
     ///
     /// ```
     /// # static BLOB: &[u8] =
@@ -187,8 +187,8 @@ impl<'s, 'a, N: Number, A: Accel, const EFFECTS: u32> Renderer<'s, 'a, N, A, EFF
     /// ```
     ///
     /// # Errors
-    /// If a setting is out of its range, the blob lacks the structure, the scene requires an effect that
-    /// is not in `EFFECTS`, or the number format cannot tell the pixels' directions apart.
+    /// If a setting is out of its range, or the blob lacks the structure. Also if the scene requires an effect that is
+    /// not in `EFFECTS`, or the number format cannot distinguish the pixels' directions.
     pub fn with_settings(scene: &'s Scene<'a>, settings: Settings) -> Result<Self, RenderError> {
         let Settings {
             width,
@@ -242,7 +242,7 @@ impl<'s, 'a, N: Number, A: Accel, const EFFECTS: u32> Renderer<'s, 'a, N, A, EFF
         self.settings
     }
 
-    /// Whether a workspace is large enough.
+    /// Checks that a workspace is large enough.
     ///
     /// ```
     /// # static BLOB: &[u8] =
@@ -258,8 +258,8 @@ impl<'s, 'a, N: Number, A: Accel, const EFFECTS: u32> Renderer<'s, 'a, N, A, EFF
     /// ```
     ///
     /// # Errors
-    /// If it is too small, with the missing size. Rendering with it is safe, but rays without room
-    /// bring no light.
+    /// If the workspace is too small, with the missing size. Rendering with it is safe, but rays without room bring no
+    /// light.
     pub fn check_workspace(&self, space: &WorkspaceView<'_, N>) -> Result<(), RenderError> {
         let rooms = [
             ("stack", space.stack.capacity(), self.scene.stack_depth()),
@@ -303,7 +303,7 @@ impl<'s, 'a, N: Number, A: Accel, const EFFECTS: u32> Renderer<'s, 'a, N, A, EFF
         self.rays.ray(&self.rays.row(middle(y)), middle(x))
     }
 
-    /// What makes the rays of pixels.
+    /// The source of the pixels' rays.
     #[inline(always)]
     pub(super) fn rays(&self) -> &PixelRays<N> {
         &self.rays

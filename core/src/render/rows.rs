@@ -13,7 +13,7 @@ use crate::shade::Color;
 use crate::shade::sampler::Sampler;
 
 impl<N: Number, A: Accel, const EFFECTS: u32> Renderer<'_, '_, N, A, EFFECTS> {
-    /// One pixel, linear, 65535 being white. Outside of the picture pixels go on.
+    /// Returns one pixel, linear, 65535 being white. The picture continues outside of its edges.
     ///
     /// ```
     /// # static BLOB: &[u8] =
@@ -43,7 +43,7 @@ impl<N: Number, A: Accel, const EFFECTS: u32> Renderer<'_, '_, N, A, EFFECTS> {
         }
     }
 
-    /// Returns the color along a ray of the caller's own, linear; 65535 is white. It passes no lens, and effects draw
+    /// Returns the color along a ray of the caller's own, linear; 65535 is white. No lens acts on it, and effects draw
     /// the random points of the first sample of the first pixel.
     ///
     /// ```

@@ -1,6 +1,6 @@
-//! Where in a pixel its samples lie: a fixed low-discrepancy pattern.
+//! The places of a pixel's samples: a fixed low-discrepancy pattern.
 
-/// Steps a pixel is divided into on each axis.
+/// Steps per axis into which a pixel is divided.
 pub(crate) const SUBPIXELS: i32 = 256;
 
 /// The place of sample `index` of `count` of a pixel, in subpixels from the picture's upper left
@@ -16,7 +16,7 @@ pub(crate) fn place(pixel: [u16; 2], index: u16, count: u16) -> [i32; 2] {
 /// The place of sample `index` of `count` in its pixel, in subpixels from its upper left corner.
 ///
 /// The first two dimensions of Sobol's sequence, which fill every binary division of the pixel
-/// evenly, moved to the middle of their cells; a single sample lies in the pixel's middle.
+/// evenly, moved to the middle of their cells. A single sample lies in the pixel's middle.
 fn within(index: u16, count: u16) -> [i32; 2] {
     if count == 1 {
         return [SUBPIXELS / 2; 2];
@@ -43,7 +43,7 @@ fn within(index: u16, count: u16) -> [i32; 2] {
 mod tests {
     use super::*;
 
-    /// Every power of two of samples puts one into each column and one into each row.
+    /// Every power of two of samples has one sample in each column and one in each row.
     #[test]
     fn samples_are_stratified() {
         for bits in 1..=8 {

@@ -10,7 +10,7 @@ use crate::render::{Renderer, WorkspaceView};
 use crate::shade::Color;
 use crate::shade::sampler::Sampler;
 
-/// A pixel that is being rendered: the number of its sample, and what was seen so far.
+/// A pixel that is being rendered: the number of its sample, and its radiance so far.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Samples<N: Number> {
     index: u16,
@@ -29,13 +29,13 @@ impl<N: Number> Samples<N> {
         }
     }
 
-    /// The number of the sample that is being taken.
+    /// The number of the current sample.
     pub(super) fn index(&self) -> u16 {
         self.index
     }
 
-    /// Traces one ray; the pixel, linear, if that was its last. The work list holds rays of the
-    /// pixel's current sample, and is empty when a sample begins.
+    /// Traces one ray. Returns the pixel, linear, if that was its last ray. The work list holds rays of the pixel's
+    /// current sample, and is empty when a sample begins.
     #[inline(always)]
     pub(super) fn step<A: Accel, C: Observer, const EFFECTS: u32>(
         &mut self,
@@ -86,7 +86,7 @@ impl<N: Number> Samples<N> {
     }
 }
 
-/// A sample's radiance, limited to what is added up: to display white, unless effects act on what is brighter.
+/// Returns a sample's radiance, limited before it is added up: to display white, unless effects act on brighter values.
 #[inline(always)]
 pub(super) fn limited<N: Number>(radiance: Color<N>, develops: bool) -> Color<N> {
     if develops {
@@ -96,10 +96,11 @@ pub(super) fn limited<N: Number>(radiance: Color<N>, develops: bool) -> Color<N>
     }
 }
 
-/// The most of a sample's radiance that counts where effects act on the mean, 1 being display white.
+/// The limit of a sample's radiance where effects act on the mean, 1 being display white.
 const BRIGHTEST: i32 = 16;
 
-/// The most samples whose sum is in the range of `fixed`, and by how many bits those of more samples are shifted.
+/// The most samples whose sum is in the range of `fixed`, and the number of bits by which those of more samples are
+/// shifted.
 #[inline(always)]
 pub(super) const fn room_for_samples(develops: bool) -> (u16, u32) {
     if develops { (64, 6) } else { (1024, 2) }

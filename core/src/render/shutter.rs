@@ -5,15 +5,16 @@ use crate::observe::count::Observer;
 use crate::render::samples::Samples;
 use crate::render::{Pixel, RenderError, Renderer, Settings, WorkspaceView};
 
-/// A picture of a scene that moves while a shutter is open, from a renderer for each of some moments.
+/// A picture of a scene that moves while a shutter is open. It has a renderer for each of some moments.
 ///
 /// Each moment is exact, and has its own camera, lights, materials and poses. The samples of a pixel are spread over
-/// the moments in order: of `n` samples and `k` moments, sample `i` is taken at moment `i * k / n`, rounded down. Such
-/// a run of samples fills the pixel evenly, and so does what effects draw. (Every `k`-th sample would not: the
-/// points of every second sample lie in one half of the pixel.) Colors are averaged as those of other samples are.
+/// the moments in order. Of `n` samples and `k` moments, sample `i` is rendered at moment `i * k / n`, rounded down.
+/// Such a run of samples fills the pixel evenly, and so do the random points of effects. (Every `k`-th sample would
+/// not: the points of every second sample lie in one half of the pixel.) Colors are averaged as those of other samples
+/// are.
 ///
-/// With one moment, pixels have the bits of its renderer. Several cost a multiplication and a division per ray, and the
-/// memory of their renderers and of what these borrow.
+/// With one moment, pixels have the bits of its renderer. Several moments cost a multiplication and a division per ray,
+/// and the memory of their renderers and of the data that these borrow.
 #[derive(Clone, Copy, Debug)]
 pub struct Shutter<'r, 's, 'a, N: Number, A: Accel, const EFFECTS: u32> {
     first: &'r Renderer<'s, 'a, N, A, EFFECTS>,

@@ -1,4 +1,5 @@
-//! The ray with which a sample begins. A type, and no function of the caller's, so that all callers share the ray loop.
+//! The ray with which a sample begins. It is a type and not a function of the caller's, so that all callers share the
+//! ray loop.
 
 use crate::accel::Number;
 use crate::ray::Ray;
@@ -8,9 +9,9 @@ use core::hint::black_box;
 
 /// The ray with which a sample begins.
 pub(super) enum Start<'r, N: Number> {
-    /// That of the camera for a sample of a pixel: the number of the sample, and of how many.
+    /// The camera's ray for a sample of a pixel: the number of the sample, and the number of samples.
     Camera(&'r PixelRays<N>, [u16; 2], [u16; 2]),
-    /// One of the caller's own.
+    /// A ray of the caller's own.
     Own(&'r Ray<N>),
 }
 
@@ -20,7 +21,7 @@ impl<N: Number> Start<'_, N> {
         match self {
             Self::Camera(rays, pixel, [sample, samples]) => {
                 let [x, y] = place(pixel, sample, samples);
-                // Moved out of the loops around this, its fields would go to the stack and come back.
+                // If this moved out of the loops around it, its fields would be stored to the stack and loaded again.
                 let rays = black_box(rays);
                 rays.ray(&rays.row(y), x).ok()
             }

@@ -1,13 +1,12 @@
 //! The ray loop: traces a ray from the camera and all secondary rays.
 //!
-//! There is no recursion. Rays wait in a work list that the caller owns. Each step takes one ray and adds at
-//! most two, one generation deeper, so `depth + 1` entries are enough. A ray is added only if the scene's depth
-//! allows it and its weight is above the scene's cutoff.
+//! There is no recursion. Rays wait in a work list that the caller owns. Each step removes one ray and adds at most
+//! two, one generation deeper, so `depth + 1` entries are enough. A ray is added only if the scene's depth allows it
+//! and its weight is above the scene's cutoff.
 //!
-//! Secondary rays start beside the surface, on the side to which they go, at the distance of the
-//! hit's own error bound (see [`Hit::error`]): close enough to lose no contact, and too far to meet
-//! the surface again.
-//! A ray that goes on inside of a solid starts beneath all of its faces (see [`Hit::inside`]).
+//! Secondary rays start outside the surface, on the side to which they go, at the distance of the hit's own error bound
+//! (see [`Hit::error`]). That is close enough to lose no contact, and too far to hit the surface again. A ray that
+//! continues inside a solid starts beneath all of its faces (see [`Hit::inside`]).
 //!
 //! The loop is compiled for a set of effects; others cost neither code nor time. It names no effect, and calls the
 //! list of effects at the places that `shade` lists.
@@ -36,7 +35,7 @@ use core::marker::PhantomData;
 pub(super) struct Loop<'s, 'a> {
     pub(super) scene: &'s Scene<'a>,
     pub(super) depth: u8,
-    /// Whether rays come from the camera, so that effects of its lens act on them; not so those of the caller's own.
+    /// True if rays come from the camera, so that effects of its lens act on them. False for rays of the caller's own.
     pub(super) from_camera: bool,
     /// See [`Tracer::spread`].
     pub(super) spread: Spread,
@@ -44,8 +43,8 @@ pub(super) struct Loop<'s, 'a> {
 
 impl Loop<'_, '_> {
     inline_on_boards!(
-        /// Traces one ray of a sample and the shadow rays of its hit: the last ray that waits, or else the first. Returns
-        /// whether no ray waits any more.
+        /// Traces one ray of a sample and the shadow rays of its hit: the last waiting ray, or else the first ray.
+        /// Returns true if no ray waits any more.
         pub(super) fn step<N: Number, A: Accel, C: Observer, const EFFECTS: u32>(
             &self,
             sampler: Sampler,
@@ -110,14 +109,14 @@ impl Loop<'_, '_> {
 }
 
 impl Loop<'_, '_> {
-    /// Whether effects of the scene act on the mean of a pixel's samples.
+    /// Returns true if effects of the scene act on the mean of a pixel's samples.
     #[inline(always)]
     pub(super) fn develops<const EFFECTS: u32>(&self) -> bool {
         let with_code = const { EFFECTS & All::DEVELOPING };
         with_code != 0 && self.scene.effects().0 & with_code != 0
     }
 
-    /// What is shown of the mean of a pixel's samples.
+    /// The displayed value of the mean of a pixel's samples.
     #[inline(always)]
     pub(super) fn developed<N: Number, A: Accel, C: Observer, const EFFECTS: u32>(
         &self,
@@ -144,15 +143,15 @@ impl Loop<'_, '_> {
     }
 }
 
-/// One ray that is followed.
+/// The ray that the loop traces.
 struct Tracing<'t, 'w, 's, N: Number, A, C, const EFFECTS: u32> {
     scene: &'s Scene<'s>,
     /// The largest ray depth.
     most: u8,
-    /// How many reflections and refractions led to the ray.
+    /// Number of reflections and refractions that led to the ray.
     depth: u8,
     kind: RayKind,
-    /// Whose points effects draw.
+    /// The source of the random points that effects draw.
     sampler: Sampler,
     spread: Spread,
     state: State<N>,
@@ -162,7 +161,7 @@ struct Tracing<'t, 'w, 's, N: Number, A, C, const EFFECTS: u32> {
 }
 
 impl<N: Number, A: Accel, C: Observer, const EFFECTS: u32> Tracing<'_, '_, '_, N, A, C, EFFECTS> {
-    /// Adds what one ray brings, and puts the rays that it causes on the work list.
+    /// Adds the radiance of one ray, and puts the rays that it causes on the work list.
     #[inline(always)]
     fn add(&mut self, ray: &Ray<N>, weight: Color<N>, radiance: &mut Color<N>) {
         let (scene, mut state) = (self.scene, self.state);
@@ -208,7 +207,7 @@ impl<N: Number, A: Accel, C: Observer, const EFFECTS: u32> Tracing<'_, '_, '_, N
         let mut number = 0_u32;
         for light in scene.lights {
             let lit = self.lit(number, light, &surface);
-            // Light on its way may change it.
+            // Light can change it on its way.
             self.state = state;
             local = local.plus(lit);
             if C::ENABLED {
@@ -260,7 +259,7 @@ impl<N: Number, A: Accel, C: Observer, const EFFECTS: u32> Tracing<'_, '_, '_, N
     /// Adds radiance to the sample.
     #[inline(always)]
     fn bring(&mut self, source: Source, brought: Color<N>, radiance: &mut Color<N>) {
-        // Without effects because of which rays wait, one ray brings all.
+        // Without effects that cause waiting rays, one ray brings all the light.
         *radiance = if const { EFFECTS & All::CASTING != 0 } {
             radiance.plus(brought)
         } else {
@@ -408,7 +407,7 @@ impl<'s, N: Number, A: Accel, C: Observer, const EFFECTS: u32> Tracer<'s, N>
         let peak = weight.peak();
         if peak > N::ZERO && peak * N::radiance(1 << 20) > N::radiance(self.scene.view.cutoff) {
             let origin = depart(self.scene, hit, outward, false);
-            // The list is as long as the depth asks for, so there is a place.
+            // The list is as long as the depth requires, so there is a place.
             let _ = self.space.work.push(Pending {
                 origin,
                 direction,

@@ -1,4 +1,4 @@
-//! The memory that rendering writes to beside the pixels: a traversal stack, and the rays that wait.
+//! The memory of rendering, without the pixels: a traversal stack, and the rays that wait.
 
 use crate::accel::Number;
 use crate::accel::stack::{Stack, StackView};
@@ -11,7 +11,7 @@ use heapless::{Vec, VecView};
 /// The state that effects add to a ray.
 pub(super) type State<N> = <All as EffectList>::State<N>;
 
-/// A ray that waits for its turn.
+/// A waiting ray.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Pending<N: Number> {
     pub(super) origin: [N; 3],
@@ -22,7 +22,7 @@ pub(super) struct Pending<N: Number> {
     pub(super) state: State<N>,
 }
 
-/// Bytes of a ray that waits, in a build whose effects are these.
+/// Bytes of a waiting ray, in a build with these effects.
 pub fn bytes_per_ray<N: Number>(effects: Effects) -> usize {
     let numbers = size_of::<([N; 3], [N; 3], Color<N>)>();
     let bytes = size_of::<(u8, RayKind)>().wrapping_add(All::state_bytes::<N>(effects));
@@ -31,12 +31,12 @@ pub fn bytes_per_ray<N: Number>(effects: Effects) -> usize {
         .next_multiple_of(align_of::<N>())
 }
 
-/// Everything that rendering writes to beside the pixels: the caller owns it, and it is used again
-/// for every pixel.
+/// All memory to which rendering writes. The caller owns it, and it is used again for every pixel.
 ///
 /// `STACK` must be at least the blob's [stack depth](crate::Scene::stack_depth), `WORK` at least
-/// [`work_depth`](crate::format::limits::work_depth) of the ray depth. It takes 12 bytes per entry of the stack and, in `f32` and
-/// `fixed`, 40 bytes a place for a ray, up to 48 in builds with the effects `nested`, `texture-levels` and `indirect`.
+/// [`work_depth`](crate::format::limits::work_depth) of the ray depth. The workspace takes 12 bytes per entry of the
+/// stack. In `f32` and `fixed` it takes 40 bytes per place for a ray, up to 48 in builds with the effects `nested`,
+/// `texture-levels` and `indirect`.
 #[derive(Debug)]
 pub struct Workspace<N: Number, const STACK: usize, const WORK: usize> {
     stack: Stack<STACK>,
@@ -60,7 +60,7 @@ impl<N: Number, const STACK: usize, const WORK: usize> Workspace<N, STACK, WORK>
         }
     }
 
-    /// The workspace as renderers take it.
+    /// The workspace in the form that renderers use.
     pub fn as_view(&mut self) -> WorkspaceView<'_, N> {
         WorkspaceView {
             stack: self.stack.as_view(),

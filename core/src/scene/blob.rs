@@ -18,8 +18,8 @@ use crate::target::{
 
 /// A checked view of a blob: a few hundred bytes that borrow from it.
 ///
-/// Once it exists, no blob can make a query panic, run forever or leave its arrays: that was proved
-/// by [`Scene::from_bytes`], which proves that the answers are right as well, or by [`Prevalidated`](crate::Prevalidated).
+/// Once it exists, no blob can make a query panic, run forever or leave its arrays. [`Scene::from_bytes`] proves that,
+/// and that the answers are right as well; or [`Prevalidated`](crate::Prevalidated) proves it.
 #[derive(Clone, Copy, Debug)]
 pub struct Scene<'a> {
     /// The scene's box, primitives and leaves.
@@ -38,7 +38,7 @@ pub struct Scene<'a> {
     pub(in crate::scene) object_material: Indices<'a>,
     pub(in crate::scene) order: Indices<'a>,
     pub(in crate::scene) effects: Effects,
-    /// What its rough materials are.
+    /// The roughness of its materials.
     pub(crate) rough: GlossyOnly<Rough<'a>>,
     /// Its textures.
     pub(crate) textures: TextureOnly<Textures<'a>>,
@@ -46,9 +46,9 @@ pub struct Scene<'a> {
     pub(crate) environment: EnvironmentOnly<EnvironmentMap<'a>>,
     /// Its instances and parts.
     pub(crate) placed: InstancesOnly<Placed<'a, Scene<'a>>>,
-    /// Whether any primitive's test needs the norm of the ray's direction.
+    /// True if any primitive's test needs the norm of the ray's direction.
     pub(crate) needs_norm: bool,
-    /// Whether any primitive is in no structure because it has no box.
+    /// True if any primitive is in no structure because it has no box.
     pub(crate) has_unbounded: bool,
 }
 
@@ -57,7 +57,7 @@ pub struct Scene<'a> {
 pub(crate) struct Rough<'a> {
     /// The α of the first materials.
     pub(crate) alphas: &'a [i32],
-    /// For each of the first forms of lights, 1 where rays meet a surface that shines so.
+    /// For each of the first forms of lights, 1 where rays hit a surface that emits its light.
     pub(crate) shown_forms: &'a [u8],
 }
 
@@ -106,12 +106,12 @@ impl<'a> Scene<'a> {
         self.light_forms.get().copied().unwrap_or_default()
     }
 
-    /// For each of the first materials, the light that it sends out; none where no material glows.
+    /// For each of the first materials, the light that it emits; none where no material glows.
     pub fn emissions(&self) -> &'a [Emission] {
         self.emissions.get().copied().unwrap_or_default()
     }
 
-    /// The light that an object sends out.
+    /// The light that an object emits.
     #[inline(always)]
     pub fn emission(&self, object: u32) -> Option<&'a Emission> {
         let number = self.material_number(object);
@@ -124,7 +124,7 @@ impl<'a> Scene<'a> {
         self.lens.get()?.first()
     }
 
-    /// How often light may be reflected diffusely between the eye and a light; 0 where surfaces do not light each other.
+    /// Maximum number of diffuse reflections between the eye and a light; 0 where surfaces do not light each other.
     #[inline(always)]
     pub fn bounces(&self) -> u8 {
         self.bounces.get().copied().unwrap_or(0)
@@ -142,13 +142,13 @@ impl<'a> Scene<'a> {
         let number = self.material_number(object);
         let mut media = self.media().iter().take(MAX_MEDIA);
         let place = media.position(|&medium| medium == number)?;
-        // A program may have put a material that is not glass in its place.
+        // A program can have replaced it with a material that is not glass.
         let material = self.materials.get(number as usize)?;
         (material.transmit != [0; 3]).then_some(place as u8)
     }
 
-    /// For each of the first materials, the α of its facets' distribution, with 30 fraction bits, 0 for a smooth one; none
-    /// where no material is rough.
+    /// For each of the first materials, the α of its facets' distribution, with 30 fraction bits. It is 0 for a smooth
+    /// material; the array is empty where no material is rough.
     pub fn roughnesses(&self) -> &'a [i32] {
         self.rough.get().map_or(&[], |rough| rough.alphas)
     }
@@ -162,7 +162,7 @@ impl<'a> Scene<'a> {
         alpha.filter(|&alpha| alpha != 0)
     }
 
-    /// Whether rays meet a surface that shines as a light does. It is known where materials are rough.
+    /// Returns true if rays hit a surface that emits a light. It is known where materials are rough.
     #[inline(always)]
     pub fn is_shown(&self, light: &Light) -> bool {
         let mark = || self.rough.get()?.shown_forms.get(light.form()? as usize);
@@ -213,7 +213,7 @@ impl<'a> Scene<'a> {
         self.space.header.stack_depth.into()
     }
 
-    /// Whether the blob holds a structure.
+    /// Returns true if the blob holds a structure.
     ///
     /// ```
     /// # static BLOB: &[u8] =
@@ -297,8 +297,8 @@ impl<'a> Scene<'a> {
         self.space.shapes.triangle(slot)
     }
 
-    /// The normals of a triangle's corners as they are stored (see [`smooth`](crate::geometry::smooth)), given by the
-    /// triangle's slot; `None` of what is not smooth.
+    /// The stored normals of a triangle's corners (see [`smooth`](crate::geometry::smooth)), given by the triangle's
+    /// slot; `None` if the triangle is not smooth.
     pub fn corner_normals(&self, slot: usize) -> Option<[[i16; 2]; 3]> {
         Some(self.space.shapes.smooth_triangle(slot)?.normals)
     }
@@ -320,20 +320,20 @@ impl<'a> Scene<'a> {
         self.space.shapes.coordinates().corners(vertices)
     }
 
-    /// A primitive as it lies on the lattice, given by its kind and its slot among those of that kind.
+    /// A primitive in lattice coordinates, given by its kind and its slot among those of that kind.
     pub fn geometry(&self, kind: Kind, slot: usize) -> Option<Geometry> {
         self.space.shapes.geometry(kind, slot)
     }
 
-    /// The number, in scene-file order, of a primitive given by kind and slot. Below the number of
-    /// primitives. Several slots have one number where a triangle was cut into pieces.
+    /// The number, in scene-file order, of a primitive given by kind and slot. It is below the number of primitives.
+    /// Several slots have one number where a triangle was cut into pieces.
     #[inline]
     pub fn primitive(&self, kind: Kind, slot: u32) -> u32 {
         self.primitive_at(self.space.shapes.place(kind, slot))
     }
 
     inline_on_hosts_hint_on_boards!(
-        /// The number, in scene-file order, of a primitive that lies somewhere.
+        /// The number, in scene-file order, of a primitive at a location.
         pub(crate) fn primitive_at(&self, place: PrimitiveId) -> u32 {
             self.key(place).0
         }

@@ -1,8 +1,7 @@
-//! What a program may put in place of the blob's own values: camera, lights and materials.
+//! Changes of the blob's own values by a program: camera, lights and materials.
 //!
-//! Nothing of a blob is written to. A changed scene borrows the new values beside the blob, each proved in
-//! constant time by the checks that [`Scene::from_bytes`] makes. A program that changes nothing holds no
-//! code for it.
+//! Nothing is written to the blob. A changed scene borrows the new values in addition to the blob. The checks of
+//! [`Scene::from_bytes`] prove each of them in constant time. A program that changes nothing holds no code for it.
 
 use crate::format::record::{Light, Material, View};
 use crate::format::{BlobError, Effects, SectionKind};
@@ -11,10 +10,10 @@ use crate::scene::check::{check_light, check_material};
 use crate::scene::read::{check_lens, check_view};
 
 impl<'a> Scene<'a> {
-    /// The scene seen by another camera, in other surroundings or with other defaults for pictures.
+    /// Returns the scene seen by another camera, in other surroundings or with other defaults for pictures.
     ///
-    /// A view is a copy of the blob's with what is to change; [`Camera::view`](crate::Camera::view) makes one
-    /// with another camera.
+    /// A view is a copy of the blob's view with changes; [`Camera::view`](crate::Camera::view) makes one with another
+    /// camera.
     ///
     /// ```
     /// # static BLOB: &[u8] =
@@ -32,7 +31,7 @@ impl<'a> Scene<'a> {
     /// ```
     ///
     /// # Errors
-    /// If a number is out of its range, or this build lacks what the view calls for.
+    /// If a number is out of its range, or this build lacks a feature that the view requires.
     pub fn with_view(&self, view: &'a View) -> Result<Self, BlobError> {
         check_view(view)?;
         check_lens(self.lens(), view)?;
@@ -43,10 +42,10 @@ impl<'a> Scene<'a> {
         })
     }
 
-    /// The scene under other lights, of which there may be more or fewer than before.
+    /// Returns the scene with other lights, of which there can be more or fewer than before.
     ///
-    /// They cast shadows where this scene's do; in a scene without lights they call for [`Effects::SHADOW`]. So
-    /// call this on the scene as it was loaded, also for the lights of each further frame.
+    /// They cast shadows where this scene's do; in a scene without lights they require [`Effects::SHADOW`]. So call
+    /// this on the scene as it was loaded, also for the lights of each further frame.
     ///
     /// ```
     /// # static BLOB: &[u8] =
@@ -63,7 +62,7 @@ impl<'a> Scene<'a> {
     /// ```
     ///
     /// # Errors
-    /// If a number is out of its range, or this build lacks an effect that a light calls for.
+    /// If a number is out of its range, or this build lacks an effect that a light requires.
     pub fn with_lights(&self, lights: &'a [Light]) -> Result<Self, BlobError> {
         let mut effects = self.effects;
         for (index, light) in lights.iter().enumerate() {
@@ -80,10 +79,10 @@ impl<'a> Scene<'a> {
         })
     }
 
-    /// The scene with other materials in place of the blob's, one for each and in their order.
+    /// Returns the scene with other materials in place of the blob's, one for each and in their order.
     ///
-    /// An effect that a material calls for becomes one of the [scene's](Self::effects): a renderer that was
-    /// not compiled for it is rejected with its name.
+    /// An effect that a material requires becomes one of the [scene's](Self::effects). A renderer that was not compiled
+    /// for it is rejected with the effect's name.
     ///
     /// ```
     /// # static BLOB: &[u8] =
@@ -100,8 +99,8 @@ impl<'a> Scene<'a> {
     /// ```
     ///
     /// # Errors
-    /// If there are more or fewer than the blob has, a number is out of its range, or this build lacks an
-    /// effect that a material calls for.
+    /// If there are more or fewer than the blob has, or a number is out of its range. Also if this build lacks an
+    /// effect that a material requires.
     pub fn with_materials(&self, materials: &'a [Material]) -> Result<Self, BlobError> {
         if materials.len() != self.materials.len() {
             return Err(BlobError::Count {
@@ -124,7 +123,7 @@ impl<'a> Scene<'a> {
     }
 }
 
-/// An error if this build lacks an effect.
+/// Returns an error if this build lacks an effect.
 fn check_available(effects: Effects) -> Result<(), BlobError> {
     let missing = effects.without(Effects::AVAILABLE);
     if missing == Effects::NONE {

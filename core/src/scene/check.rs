@@ -25,7 +25,7 @@ pub(crate) fn check_sum(blob: &[u8], header: &Header) -> Result<(), BlobError> {
     Ok(())
 }
 
-/// Proves all that is in the records of a scene; see [`Scene::from_bytes`].
+/// Proves all records of a scene; see [`Scene::from_bytes`].
 pub(crate) fn check<'a>(scene: &Scene<'a>, sections: &Sections<'a>) -> Result<(), BlobError> {
     check_lights(scene)?;
     check_materials(scene)?;
@@ -101,7 +101,7 @@ fn check_materials(scene: &Scene<'_>) -> Result<(), BlobError> {
     required = required.with(check_smooth(scene)?);
     required = required.with(check_vertex_colors(scene)?);
     required = required.with(check_glow(scene)?);
-    // One by one, so that nothing is left of those whose code is not there.
+    // One by one, so that effects without code in this build leave no code here.
     let lens = Effects::DEPTH_OF_FIELD.only_if(scene.lens().is_some());
     required = required.with(check_called(scene, SectionKind::Lens, lens)?);
     let bounces = Effects::INDIRECT.only_if(scene.bounces() > 0);
@@ -123,7 +123,7 @@ fn check_materials(scene: &Scene<'_>) -> Result<(), BlobError> {
     Location::Header.ensure(unneeded == Effects::NONE, Reason::UnneededEffects)
 }
 
-/// The effects that a section requires; an error where the header does not require them.
+/// Returns the effects that a section requires; an error where the header does not require them.
 #[inline(always)]
 fn check_called(
     scene: &Scene<'_>,
@@ -135,7 +135,8 @@ fn check_called(
     Ok(required)
 }
 
-/// What the normals of vertices require, of the scene and of its parts; an error where the header does not require it.
+/// Returns the effects that the normals of vertices require, of the scene and of its parts; an error where the header
+/// does not require them.
 fn check_smooth(scene: &Scene<'_>) -> Result<Effects, BlobError> {
     let own = !scene.space.shapes.normals().is_empty();
     let mut parts = scene.parts().iter();
@@ -149,8 +150,8 @@ fn check_smooth(scene: &Scene<'_>) -> Result<Effects, BlobError> {
     check_called(scene, section, required)
 }
 
-/// What the light that materials send out requires; an error where it is out of its range, or the header does not
-/// require it.
+/// Returns the effects that emitting materials require; an error where their light is out of its range, or the header
+/// does not require the effects.
 fn check_glow(scene: &Scene<'_>) -> Result<Effects, BlobError> {
     let section = SectionKind::Emissions;
     for (index, emission) in (0..scene.emissions().len()).zip(scene.emissions()) {
@@ -160,7 +161,8 @@ fn check_glow(scene: &Scene<'_>) -> Result<Effects, BlobError> {
     check_called(scene, section, required)
 }
 
-/// What rough materials require; an error where a roughness is out of its range, or the header does not require it.
+/// Returns the effects that rough materials require; an error where a roughness is out of its range, or the header does
+/// not require them.
 fn check_roughness(scene: &Scene<'_>) -> Result<Effects, BlobError> {
     let Some(rough) = scene.rough.get() else {
         return Ok(Effects::NONE);
@@ -178,7 +180,8 @@ fn check_roughness(scene: &Scene<'_>) -> Result<Effects, BlobError> {
     check_called(scene, section, required)
 }
 
-/// What nested dielectrics require; an error where one is no glass, comes twice, or the header does not require it.
+/// Returns the effects that nested dielectrics require; an error where one is no glass, comes twice, or the header does
+/// not require them.
 fn check_media(scene: &Scene<'_>) -> Result<Effects, BlobError> {
     let section = SectionKind::Media;
     let media = scene.media();
@@ -203,7 +206,7 @@ fn check_media(scene: &Scene<'_>) -> Result<Effects, BlobError> {
     check_called(scene, section, required)
 }
 
-/// What the colors of vertices require: see [`check_smooth`].
+/// Returns the effects that the colors of vertices require: see [`check_smooth`].
 fn check_vertex_colors(scene: &Scene<'_>) -> Result<Effects, BlobError> {
     let own = !scene.space.shapes.colors().is_empty();
     let mut parts = scene.parts().iter();
@@ -293,7 +296,7 @@ fn check_objects(scene: &Scene<'_>) -> Result<(), BlobError> {
     Ok(())
 }
 
-/// Proves that no slot of a scene with parts claims a primitive of theirs. Those of clusters have been read now.
+/// Proves that no slot of a scene with parts claims a primitive of the parts. Those of clusters are already read.
 fn check_own_primitives(scene: &Scene<'_>) -> Result<(), BlobError> {
     if scene.parts().is_empty() {
         return Ok(());
@@ -325,8 +328,8 @@ fn check_structures<'a>(scene: &Scene<'a>, sections: &Sections<'a>) -> Result<()
     Ok(())
 }
 
-/// Proves that every primitive lies in exactly one leaf, and returns the longest leaf's count:
-/// leaves take the slots of each kind in order.
+/// Proves that every primitive lies in exactly one leaf, and returns the longest leaf's count. Leaves hold the slots of
+/// each kind in order.
 fn check_leaves(scene: &Scene<'_>, hierarchies: bool) -> Result<u32, BlobError> {
     let section = SectionKind::Leaves;
     if !hierarchies && !scene.space.leaves.is_empty() {
@@ -366,7 +369,7 @@ fn check_leaves(scene: &Scene<'_>, hierarchies: bool) -> Result<u32, BlobError> 
     }
     if hierarchies {
         for kind in Kind::ALL.into_iter().filter(|kind| kind.is_bounded()) {
-            // Those that lie in clusters alone would be missing.
+            // Primitives that only clusters hold would be missing.
             let (found, expected) = (next[kind as usize] as usize, scene.space.shapes.count(kind));
             if found != expected {
                 return Err(BlobError::Count {
@@ -380,5 +383,5 @@ fn check_leaves(scene: &Scene<'_>, hierarchies: bool) -> Result<u32, BlobError> 
     Ok(longest)
 }
 
-// The checks above hold coordinates to what a `Fixed` length can be.
+// The checks above limit coordinates to the range of a `Fixed` length.
 const _: () = assert!((i16::MAX as i64) << 13 < Fixed::FAR.0 as i64);

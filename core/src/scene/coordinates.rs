@@ -1,4 +1,4 @@
-//! Scene coordinates as integers: from those of the scene file to those of the lattice.
+//! Scene coordinates as integers, and their conversion from the scene file's coordinates to the lattice's.
 
 use crate::accel::Number;
 use crate::format::limits::{FARTHEST, MAX_COORDINATE_SHIFT};
@@ -9,10 +9,10 @@ use crate::scene::Scene;
 /// A place in scene coordinates, in multiples of the scene's step: 2 to the power of
 /// [`Scene::coordinate_exponent`] scene units.
 ///
-/// Coordinates are counted from the scene file's own origin, or from the
-/// [lattice's](crate::format::record::Header::origin) where a scene lies too far from its own for 32 bits;
-/// `gridel inspect` says so. They reach at least 4 times as far as the scene, its eye and its lights, or to
-/// [`FARTHEST`](crate::format::limits::FARTHEST) where that is nearer.
+/// Coordinates are counted from the scene file's own origin. Where a scene lies too far from it for 32 bits, they are
+/// counted from the [lattice's](crate::format::record::Header::origin); `gridel inspect` reports that. They reach at
+/// least 4 times as far as the scene, its eye and its lights, or to [`FARTHEST`](crate::format::limits::FARTHEST) where
+/// that is nearer.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Position(pub [i32; 3]);
@@ -35,15 +35,15 @@ impl Scene<'_> {
         self.header().coordinate_exponent()
     }
 
-    /// A place on the scene's lattice, in units with 13 fraction bits: what records hold, and
-    /// [`far`](crate::number::Products::far) takes. A place beyond
-    /// [`FARTHEST`](crate::format::limits::FARTHEST) is moved there.
+    /// Returns a place on the scene's lattice, in units with 13 fraction bits. Records hold this form, and
+    /// [`far`](crate::number::Products::far) reads it. A place beyond [`FARTHEST`](crate::format::limits::FARTHEST) is
+    /// moved there.
     pub fn on_lattice(&self, position: Position) -> [i64; 3] {
         self.header().on_lattice(position)
     }
 
-    /// The nearest place in scene coordinates to one on the lattice, in units with 13 fraction bits; one out of
-    /// their range is at its end.
+    /// Returns the nearest place in scene coordinates to one on the lattice, in units with 13 fraction bits. A place
+    /// out of their range is moved to its end.
     ///
     /// ```
     /// # static BLOB: &[u8] =
@@ -59,7 +59,7 @@ impl Scene<'_> {
         self.header().position(q13)
     }
 
-    /// The ray without end from a place in a direction of any length but 0. Its `t` are units along the
+    /// Returns the ray without end from a place in a direction of any length but 0. Its `t` are units along the
     /// direction's largest component: see [`Ray`].
     ///
     /// ```
@@ -113,7 +113,7 @@ impl Header {
         ]
     }
 
-    /// The lattice's origin as scene coordinates are counted, in units with 13 fraction bits.
+    /// The lattice's origin in scene coordinates, in units with 13 fraction bits.
     pub(in crate::scene) fn lattice_origin(&self) -> [i64; 3] {
         let [x, y, z] = self.origin;
         [
@@ -140,9 +140,9 @@ impl Header {
         ])
     }
 
-    /// A coordinate of the lattice's origin, a multiple of a step, as scene coordinates are counted: in units
-    /// with 13 fraction bits. Taken from its bits, so that no floating-point code is needed; at its end where
-    /// it is out of range.
+    /// A coordinate of the lattice's origin, a multiple of a step, in scene coordinates: in units with 13 fraction
+    /// bits. It is computed from the number's bits, so that no floating-point code is needed. Out of range, it is moved
+    /// to the range's end.
     fn origin_on_lattice(&self, origin: f64) -> i64 {
         if self.coordinate_origin == 0 {
             return 0;

@@ -1,7 +1,7 @@
-//! The map of the light around a scene: how it is looked up, and how its texels are drawn.
+//! The map of the light around a scene: how it is looked up, and how random texels are drawn.
 //!
-//! All is integer arithmetic, so texels and the places that are drawn in them are the same in every number format. A
-//! place in the map is two coordinates with 30 fraction bits, -1 to 1: see [`Environment`].
+//! All arithmetic is in integers, so texels and the random places in them are the same in every number format. A place
+//! in the map is two coordinates with 30 fraction bits, -1 to 1: see [`Environment`].
 
 use crate::format::environment::Environment;
 use crate::format::range::{At, Ranges};
@@ -11,8 +11,8 @@ use crate::format::{BlobError, Field, Location, Reason, SectionKind, Sections};
 /// The ratio 1.
 const ONE: i32 = 1 << 30;
 
-/// By what part of a texel, with 16 fraction bits, places that are drawn keep off its edges: more than any number format
-/// errs on the way from a place to a direction and back.
+/// The least distance of random places from a texel's edges, as a part of a texel with 16 fraction bits. It is more
+/// than the error of any number format on the way from a place to a direction and back.
 const MARGIN: u32 = 1 << 5;
 
 /// The map.
@@ -92,7 +92,7 @@ impl<'a> EnvironmentMap<'a> {
         adds_up(SectionKind::EnvironmentColumns, self.columns, side)
     }
 
-    /// Whether a light is the map or the sun.
+    /// Returns true if a light is the map or the sun.
     #[inline(always)]
     pub(crate) fn has(&self, light: &Light) -> bool {
         match light.directional {
@@ -102,7 +102,7 @@ impl<'a> EnvironmentMap<'a> {
         }
     }
 
-    /// A random place, drawn in proportion to the light of rows and texels. Of one that is 0 there is none.
+    /// Returns a random place, drawn in proportion to the light of rows and texels; none if that light is 0.
     #[inline(never)]
     pub(crate) fn draw(&self, record: &Environment, [u, v]: [u32; 2]) -> [i32; 2] {
         let bits = record.size_bits;
@@ -125,11 +125,12 @@ impl<'a> EnvironmentMap<'a> {
         })
     }
 
-    /// The radiance of the texel at a place over its density and π, with 20 fraction bits, given half the sum of the
-    /// magnitudes of its direction's components, with 30: what a light of that direction brings. At most the largest
-    /// number.
+    /// Returns the radiance of the texel at a place over its density and π, with 20 fraction bits. That is the
+    /// contribution of a light of that direction. Half the sum of the magnitudes of its direction's components is
+    /// given, with 30 fraction bits. The result is at most the largest number.
     ///
-    /// With p the probability of the texel, of n² in the map, and s the sum, the density of a direction is p n² / (4 s³).
+    /// Let p be the probability of the texel, of n² in the map, and s the sum. The density of a direction is p n² / (4
+    /// s³).
     #[inline(never)]
     pub(crate) fn sampled(&self, record: &Environment, place: [i32; 2], half_sum: i32) -> [i32; 3] {
         /// 4 / π with 62 fraction bits.
@@ -190,7 +191,7 @@ impl<'a> EnvironmentMap<'a> {
         ] {
             let place = beside(bits, [column.wrapping_add(x), row.wrapping_add(y)]);
             for (sum, channel) in sum.iter_mut().zip(self.texel(bits, place)) {
-                // In all below 2^47.
+                // The sum is below 2^47.
                 *sum = sum.wrapping_add(u64::from(channel).wrapping_mul(weight.into()));
             }
         }
@@ -215,7 +216,8 @@ impl<'a> EnvironmentMap<'a> {
         all.get(..side as usize).unwrap_or_default()
     }
 
-    /// What part of the light comes from before a row, and from it, with 32 fraction bits; a part of all is 1 less.
+    /// Returns the part of the light before a row, and the part from it, with 32 fraction bits; the whole is stored as
+    /// 1 less.
     #[inline(always)]
     fn row(&self, row: u32) -> [u32; 2] {
         let at = |row: u32| self.rows.get(row as usize).copied();
@@ -228,7 +230,7 @@ impl<'a> EnvironmentMap<'a> {
     }
 }
 
-/// Proves that each part of cumulative light begins with 0 and does not go down.
+/// Proves that each part of cumulative light begins with 0 and does not decrease.
 fn adds_up<T: Copy + Into<u32>>(
     section: SectionKind,
     all: &[T],
@@ -247,7 +249,7 @@ fn adds_up<T: Copy + Into<u32>>(
     Ok(())
 }
 
-/// The last of some numbers, which do not go down, that is at most another one.
+/// Returns the last of some numbers, which do not decrease, that is at most another one.
 #[inline(always)]
 fn last_at_most<T: Copy + PartialOrd>(all: &[T], most: T) -> usize {
     let (mut low, mut high) = (0_usize, all.len());
@@ -261,7 +263,7 @@ fn last_at_most<T: Copy + PartialOrd>(all: &[T], most: T) -> usize {
     low
 }
 
-/// What part of a row's light comes from before a texel, and from it, with 16 fraction bits.
+/// Returns the part of a row's light before a texel, and the part from it, with 16 fraction bits.
 #[inline(always)]
 fn span(columns: &[u16], column: u32) -> [u32; 2] {
     let at = |column: u32| columns.get(column as usize).copied().map(u32::from);
@@ -280,7 +282,8 @@ pub(crate) fn texel_at(bits: u32, place: [i32; 2]) -> [u32; 2] {
     })
 }
 
-/// The texel at a place that may lie one texel beyond the map: an edge of the map meets itself, turned about its middle.
+/// Returns the texel at a place that can lie one texel beyond the map. An edge of the map continues at itself, turned
+/// about its middle.
 #[inline(always)]
 fn beside(bits: u32, [mut column, mut row]: [i32; 2]) -> [u32; 2] {
     let last = 1_i32.wrapping_shl(bits).wrapping_sub(1);
@@ -295,7 +298,7 @@ fn beside(bits: u32, [mut column, mut row]: [i32; 2]) -> [u32; 2] {
     [column.cast_unsigned(), row.cast_unsigned()]
 }
 
-/// A place on the map from that on the octahedron, and back: on the lower half, where it is turned outwards.
+/// Converts a place of the octahedron to one on the map, and back: on the lower half it is turned outwards.
 #[inline(always)]
 pub(crate) fn turned([x, y]: [i32; 2]) -> [i32; 2] {
     let rest = |of: i32, sign: i32| {

@@ -8,12 +8,15 @@ use crate::scene::{check, read};
 impl<'a> Scene<'a> {
     /// Checks a blob and returns a view of it.
     ///
-    /// Proves alignment, size, version, byte order and checksum; that every section lies in the
-    /// blob and every field in its range; that every index leads to a record; that every hierarchy
-    /// is a tree in breadth-first order whose depth is what the header says, with boxes inside
-    /// their parents' and primitives inside their leaves', each primitive in one leaf. After that
-    /// a walk through any structure ends, and through a hierarchy it gives the same hits as testing
-    /// every primitive (see [`Structure::is_proved`](crate::Structure::is_proved) for the others).
+    /// Proves these facts:
+    ///
+    /// - The alignment, size, version, byte order and checksum are valid.
+    /// - Every section lies in the blob, every field lies in its range, and every index leads to a record.
+    /// - Every hierarchy is a tree in breadth-first order whose depth is that of the header.
+    /// - Boxes lie inside their parents', and primitives inside their leaves', each primitive in one leaf.
+    ///
+    /// So a walk through any structure ends. A walk through a hierarchy returns the same hits as a test of every
+    /// primitive (see [`Structure::is_proved`](crate::Structure::is_proved) for the others).
     ///
     /// Costs time linear in the blob's length and about 2 KiB of stack.
     ///
@@ -31,26 +34,26 @@ impl<'a> Scene<'a> {
     /// ```
     ///
     /// # Errors
-    /// If anything of this fails to hold, or the scene requires an effect, or holds a kind of
-    /// primitive, that this build was compiled without, or the blob has parts: those are loaded by
-    /// [`Scene::with_parts`]. Shortcomings of the scene itself (no lights, no objects) are no errors.
+    /// If a proof fails, or the scene requires an effect or holds a kind of primitive that this build was compiled
+    /// without. Also if the blob has parts: [`Scene::with_parts`] loads those. A scene without lights or objects is
+    /// valid.
     pub fn from_bytes(blob: &'a [u8]) -> Result<Self, BlobError> {
         Self::with_parts(blob, &[])
     }
 
-    /// Checks a blob that has parts and returns a view of it. The parts are loaded before: by [`Parts`](crate::Parts), or one by one
-    /// from their [blobs](crate::scene::part_blobs).
+    /// Checks a blob that has parts and returns a view of it. The parts must be loaded before: by
+    /// [`Parts`](crate::Parts), or one by one from their [blobs](crate::scene::part_blobs).
     ///
-    /// Proves what [`Scene::from_bytes`] proves, and that every instance places a part by a rotation and a uniform
-    /// scale, that its box holds the placed part, and that the hierarchy above leads to every instance once.
+    /// Proves all that [`Scene::from_bytes`] proves. Proves also that every instance places a part by a rotation and a
+    /// uniform scale, and that its box holds the placed part. The hierarchy above leads to every instance once.
     ///
     /// # Errors
-    /// If anything of this fails to hold, or these are not all parts of this blob in their order.
+    /// If a proof fails, or these are not all parts of this blob in their order.
     pub fn with_parts(blob: &'a [u8], parts: &'a [Scene<'a>]) -> Result<Self, BlobError> {
         let header = read::header(blob)?;
         check::check_sum(blob, header)?;
         let sections = Sections::read(blob, header.section_count)?;
-        // Checked where it lies: boards have no stack for a copy.
+        // Checked in place, because boards have no stack for a copy.
         let scene = read::scene(header, &sections, parts);
         if let Ok(scene) = &scene {
             check::check(scene, &sections)?;
@@ -71,8 +74,8 @@ impl<'a> Scene<'a> {
     /// ```
     ///
     /// # Errors
-    /// If the slice is not aligned, or the header, the section table or the view is not as it must
-    /// be, or this build lacks what the scene requires.
+    /// If the slice is not aligned, or the header, the section table or the view is invalid. Also if this build lacks a
+    /// feature that the scene requires.
     pub fn prevalidated(blob: Prevalidated<'a>) -> Result<Self, BlobError> {
         let header = read::header(blob.blob)?;
         let sections = Sections::read(blob.blob, header.section_count)?;

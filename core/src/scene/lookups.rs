@@ -1,4 +1,4 @@
-//! What a blob defines by integers: images and the environment, looked up as the ray loop does.
+//! Look-ups that a blob defines by integers: images and the environment, as the ray loop looks them up.
 
 use crate::format::Effects;
 use crate::format::environment::Environment;
@@ -7,8 +7,8 @@ use crate::scene::Scene;
 use crate::scene::textures::Footprint;
 
 impl<'a> Scene<'a> {
-    /// The color of a material's texture at coordinates with 20 fraction bits: linear ratios with 30 fraction bits.
-    /// `None` of a material without a texture. Of one without levels the footprint means nothing.
+    /// Returns the color of a material's texture at coordinates with 20 fraction bits: linear ratios with 30 fraction
+    /// bits. `None` for a material without a texture. The footprint has no effect on a texture without levels.
     pub fn texture_color(
         &self,
         material: &Material,
@@ -24,8 +24,8 @@ impl<'a> Scene<'a> {
         Some(textures.lookup(texture, coordinates, footprint).color)
     }
 
-    /// The alpha of a material's texture at coordinates with 20 fraction bits: a ratio with 30 fraction bits. `None` of a
-    /// material that does not use it. Of a texture without levels the footprint means nothing.
+    /// Returns the alpha of a material's texture at coordinates with 20 fraction bits: a ratio with 30 fraction bits.
+    /// `None` for a material that does not use it. The footprint has no effect on a texture without levels.
     pub fn texture_alpha(
         &self,
         material: &Material,
@@ -39,9 +39,10 @@ impl<'a> Scene<'a> {
             .then(|| textures.alpha(texture, coordinates, footprint))
     }
 
-    /// The normal that a material's normal map holds at coordinates with 20 fraction bits, along u, against v and along the
-    /// surface's normal: ratios from -1 to 1 with 30 fraction bits, and the map, whose factors are not yet in them. `None`
-    /// of a material without one. Of one without levels the footprint means nothing.
+    /// Returns the normal in a material's normal map at coordinates with 20 fraction bits, and the map. The normal is
+    /// along u, against v and along the surface's normal: ratios from -1 to 1 with 30 fraction bits. The map's factors
+    /// are not yet applied. `None` for a material without a normal map. The footprint has no effect on a map without
+    /// levels.
     pub fn mapped_normal(
         &self,
         material: &Material,
@@ -57,7 +58,7 @@ impl<'a> Scene<'a> {
         Some((texel.color, map))
     }
 
-    /// The texture of a material and how its alpha is used; `None` of a material without one.
+    /// Returns the texture of a material and the use of its alpha; `None` for a material without one.
     pub fn surface_maps(&self, material: &Material) -> Option<&'a SurfaceMaps> {
         self.textures.get()?.maps_of(material)
     }
@@ -67,23 +68,23 @@ impl<'a> Scene<'a> {
         self.environment.get()?.record
     }
 
-    /// The radiance with 20 fraction bits, without that of the sun, that rays bring from a direction, given by the
-    /// direction's place in the octahedral map: see [`Environment`]. `None` without an environment.
+    /// Returns the radiance that rays bring from a direction, with 20 fraction bits, without that of the sun. The
+    /// direction is given by its place in the octahedral map: see [`Environment`]. `None` without an environment.
     pub fn environment_radiance(&self, place: [i32; 2]) -> Option<[i32; 3]> {
         let map = self.environment.get()?;
         Some(map.mixed(map.record?, place))
     }
 
-    /// A random place of the octahedral map, drawn in proportion to the light of its texels with a point of the unit square
-    /// that has 32 fraction bits; `None` without an environment.
+    /// Returns a random place of the octahedral map, drawn in proportion to the light of its texels. The argument is a
+    /// point of the unit square that has 32 fraction bits. `None` without an environment.
     pub fn environment_place(&self, point: [u32; 2]) -> Option<[i32; 2]> {
         let map = self.environment.get()?;
         Some(map.draw(map.record?, point))
     }
 
-    /// What the map brings as a light from a place that was drawn, over the density with which it is drawn and π, with
-    /// 20 fraction bits, given half the sum of the magnitudes of its direction's components, with 30. `None` without an
-    /// environment.
+    /// Returns the contribution of the map as a light from a random place, over the density of that place and π, with
+    /// 20 fraction bits. Half the sum of the magnitudes of its direction's components is given, with 30 fraction bits.
+    /// `None` without an environment.
     pub fn environment_light(&self, place: [i32; 2], half_sum: i32) -> Option<[i32; 3]> {
         let map = self.environment.get()?;
         Some(map.sampled(map.record?, place, half_sum))

@@ -1,6 +1,6 @@
 //! Scenes: a blob is checked once and then read in place.
 //!
-//! [`Scene::from_bytes`] has each layer prove its own part: the format its header and sections, the geometry its
+//! [`Scene::from_bytes`] calls each layer to prove its own part: the format its header and sections, the geometry its
 //! primitives, the structures their trees and lists.
 
 mod blob;

@@ -1,4 +1,4 @@
-//! Motions: how an instance is moved away from where the blob places it.
+//! Motions: they move an instance away from its place in the blob.
 
 use crate::format::instance::{Instance, MATRIX_BITS};
 use crate::format::limits::{MAX_COORDINATE_SHIFT, SCALES};
@@ -13,10 +13,11 @@ const OFFSET_BITS: u32 = 16;
 /// Fraction bits of scales.
 const SCALE_BITS: u32 = 24;
 
-/// A rotation, a uniform scale and a shift in scene coordinates: an instance's place at rest is led to its new one.
+/// A rotation, a uniform scale and a shift in scene coordinates. It moves an instance from its place at rest to its new
+/// one.
 ///
-/// In integers alone, the same bits in every number format and on every machine. Coordinates are multiples of
-/// the scene's step, as a [`Position`] has them. Each composition rounds the numbers of a rotation's matrix to 30 fraction bits.
+/// In integers only, with the same bits in every number format and on every machine. Coordinates are multiples of the
+/// scene's step, as in a [`Position`]. Each composition rounds the numbers of a rotation's matrix to 30 fraction bits.
 ///
 /// ```
 /// use gridel_core::{Angle, Motion, Position};
@@ -36,7 +37,7 @@ pub struct Motion {
     rotation: [[i32; 3]; 3],
     /// With [`SCALE_BITS`].
     scale: i32,
-    /// Where the origin is moved to: coordinate steps with [`OFFSET_BITS`].
+    /// The place to which the origin is moved: coordinate steps with [`OFFSET_BITS`].
     offset: [i64; 3],
 }
 
@@ -68,7 +69,7 @@ impl Motion {
         Some(turned.about(pivot))
     }
 
-    /// A shift by so many coordinate steps.
+    /// Returns a shift by this many coordinate steps.
     pub fn shift(steps: [i32; 3]) -> Self {
         Self {
             offset: steps.map(fine),
@@ -76,7 +77,8 @@ impl Motion {
         }
     }
 
-    /// A scale about a place, with 24 fraction bits; one that is out of [its range](Self::SCALES) is at its end.
+    /// Returns a scale about a place, with 24 fraction bits; a scale out of [its range](Self::SCALES) is moved to its
+    /// end.
     pub fn scale(pivot: Position, scale: i32) -> Self {
         let [least, greatest] = Self::SCALES;
         let scaled = Self {
@@ -86,7 +88,8 @@ impl Motion {
         scaled.about(pivot)
     }
 
-    /// This motion, and then another one. A scale that would leave [its range](Self::SCALES) stays at its end.
+    /// Returns this motion, followed by another one. A scale that would leave [its range](Self::SCALES) stays at its
+    /// end.
     pub fn then(&self, next: &Self) -> Self {
         let [x, y, z] = self.rotation;
         let column = |axis: usize| [x[axis], y[axis], z[axis]];
@@ -103,7 +106,7 @@ impl Motion {
         }
     }
 
-    /// Where a place is moved to; one out of the range of coordinates is at its end.
+    /// Returns a place, moved; a place out of the range of coordinates is moved to its end.
     pub fn position(&self, place: Position) -> Position {
         let coordinate = |fine: i64| {
             let steps = fine.wrapping_add(1 << (OFFSET_BITS - 1)) >> OFFSET_BITS;
@@ -112,12 +115,12 @@ impl Motion {
         Position(self.apply(place.0.map(fine)).map(coordinate))
     }
 
-    /// Where a direction is turned to, of the same length.
+    /// Returns a direction, turned, with the same length.
     pub fn direction(&self, direction: [i32; 3]) -> [i32; 3] {
         self.rotation.map(|row| product(direction, row))
     }
 
-    /// This rotation and scale about a place, which stays where it is.
+    /// Returns this rotation and scale about a place, which stays where it is.
     fn about(self, pivot: Position) -> Self {
         let pivot = pivot.0.map(fine);
         let moved = self.apply(pivot);
@@ -147,7 +150,7 @@ impl Motion {
         [moved(0), moved(1), moved(2)]
     }
 
-    /// An instance, moved; its numbers may be out of their range.
+    /// Returns an instance, moved; its numbers can be out of their range.
     pub(in crate::scene) fn place(&self, header: &Header, rest: &Instance) -> Instance {
         let (matrix, exponent) = self.matrix(&rest.matrix);
         let shift = header.coordinate_shift.min(MAX_COORDINATE_SHIFT);
@@ -175,10 +178,10 @@ impl Motion {
         }
     }
 
-    /// As [`place`](Self::place), with the matrix within its range: for what rounding takes out of it.
+    /// As [`place`](Self::place), with the matrix kept in its range, which rounding can leave.
     ///
-    /// That of compositions adds up, in chains of some twenty by so much. And rounded rows of the instance can be longer
-    /// than 1, which a turn along an axis shows.
+    /// The rounding of compositions adds up, and in chains of some twenty it leaves the range. Rounded rows of the
+    /// instance can also be longer than 1, which shows after a turn along an axis.
     #[cold]
     #[inline(never)]
     pub(in crate::scene) fn place_rounded(&self, header: &Header, rest: &Instance) -> Instance {
@@ -192,12 +195,13 @@ impl Motion {
         }
     }
 
-    /// This motion with the rotation next to its matrix: one step of Newton's method, which leaves the square of an error.
+    /// Returns this motion with the rotation nearest to its matrix: one step of Newton's method, which leaves the
+    /// square of an error.
     fn without_drift(&self) -> Self {
         let rows = self.rotation;
         let [x, y, z] = rows;
         let columns = [0, 1, 2].map(|axis: usize| [x[axis], y[axis], z[axis]]);
-        // What the matrix times its transpose lacks of 1, halved. The rotation's error is far below 2^-14.
+        // The difference of 1 and the matrix times its transpose, halved. The rotation's error is far below 2^-14.
         let lack = |i: usize, j: usize| {
             let one = i64::from(i == j) << 60;
             (one.wrapping_sub(dot(rows[i], rows[j])) >> 31) as i32
@@ -214,8 +218,7 @@ impl Motion {
         }
     }
 
-    /// The matrix from the scene to a part, behind the inverse of this rotation and scale, and the power of two that goes
-    /// with it.
+    /// Returns the matrix from the scene to a part, after the inverse of this rotation and scale, and its power of two.
     fn matrix(&self, rest: &[[i32; 3]; 3]) -> ([[i32; 3]; 3], i16) {
         // 53 fraction bits, rounded to 30.
         let entry = |row: [i32; 3], turned: [i32; 3]| product(row, turned);
@@ -242,7 +245,8 @@ impl Motion {
     }
 }
 
-/// The largest magnitude of a place that was moved: 64 times what coordinates reach, and as much as can be scaled.
+/// The largest magnitude of a moved place: 64 times the range of coordinates, which is also the limit of what can be
+/// scaled.
 const LARGEST_OFFSET: i64 = 1 << 54;
 
 /// A coordinate with [`OFFSET_BITS`].
@@ -263,14 +267,14 @@ fn product(vector: [i32; 3], ratios: [i32; 3]) -> i32 {
     (dot(vector, ratios).wrapping_add(1 << 29) >> 30) as i32
 }
 
-/// A number times a ratio with so many fraction bits, rounded to nearest.
+/// Multiplies a number by a ratio with this many fraction bits, rounded to nearest.
 fn times(number: i64, ratio: i32, fraction: u32) -> i64 {
     let high = (number >> fraction).wrapping_mul(ratio.into());
     let low = (number & ((1 << fraction) - 1)).wrapping_mul(ratio.into());
     high.wrapping_add(low.wrapping_add(1 << (fraction - 1)) >> fraction)
 }
 
-/// A number times a power of two, rounded to nearest and at the end of its range where it has no room.
+/// Multiplies a number by a power of two, rounded to nearest and limited to the range.
 fn shifted(number: i64, up: i32) -> i64 {
     if up >= 0 {
         number.saturating_mul(1 << up.min(62))

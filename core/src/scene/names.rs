@@ -7,9 +7,9 @@ use crate::scene::read::header;
 
 /// Names of the objects, materials and lights of a blob, read in place.
 ///
-/// [`Scene::from_bytes`](crate::Scene::from_bytes) passes over them, so that a program without names
-/// stores their bytes and runs no code for them. Names need not differ, and hold any
-/// characters. Whoever prints them escapes control characters.
+/// [`Scene::from_bytes`](crate::Scene::from_bytes) ignores them, so a program that does not use names costs only the
+/// bytes of their sections. Names need not differ, and hold any characters. Code that prints them must escape control
+/// characters.
 ///
 /// ```
 /// # fn print_hit(blob: &[u8], object: u32) -> Result<(), gridel_core::BlobError> {
@@ -37,8 +37,8 @@ impl<'a> Names<'a> {
     /// Cost: linear in the length of the names.
     ///
     /// # Errors
-    /// If the header or the section table is invalid, there are too few or too many names, a name is
-    /// longer than 255 bytes, or one is not UTF-8.
+    /// If the header or the section table is invalid, or there are too few or too many names. Also if a name is longer
+    /// than 255 bytes, or one is not UTF-8.
     pub fn from_bytes(blob: &'a [u8]) -> Result<Self, BlobError> {
         let header = header(blob)?;
         let sections = Sections::read(blob, header.section_count)?;
@@ -67,7 +67,7 @@ impl<'a> Names<'a> {
         })
     }
 
-    /// Whether the blob has no names.
+    /// Returns true if the blob has no names.
     pub fn is_empty(&self) -> bool {
         self.starts.is_empty()
     }
@@ -113,7 +113,7 @@ fn text(bytes: &[u8]) -> Result<&str, BlobError> {
     })
 }
 
-/// Proves that names follow each other, take the whole text, and are not too long.
+/// Proves that names follow each other, fill the whole text, and are not too long.
 fn check(starts: &Indices<'_>, text: &str) -> Result<(), BlobError> {
     let mut last = 0;
     for index in 0..starts.len() {
@@ -122,7 +122,7 @@ fn check(starts: &Indices<'_>, text: &str) -> Result<(), BlobError> {
         let start = i64::from(starts.get(index).unwrap_or_default());
         let is_last = starts.len() == index.saturating_add(1);
         let length = text.len() as i64;
-        // Of the first name 0, and of the end of the last one the length of the text.
+        // The start of the first name must be 0, and the end of the last one the length of the text.
         let low = if is_last { length } else { last };
         let longest = if index == 0 { 0 } else { MAX_NAME_BYTES as i64 };
         let high = length.min(last.saturating_add(longest));

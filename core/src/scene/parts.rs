@@ -41,7 +41,7 @@ impl<'a, const MOST: usize> Parts<'a, MOST> {
         Ok(Self(parts))
     }
 
-    /// Returns the parts with a changed one in the place of that with its number, such as one that
+    /// Returns the parts with one replaced by a changed view of it, such as one that
     /// [deforms](Scene::with_deformation). [`Scene::with_changed_parts`] takes them.
     ///
     /// # Errors
@@ -91,7 +91,7 @@ fn blob_of<'a>(part: &Part, bytes: &'a [u8]) -> &'a [u8] {
     let start = (part.start as usize).saturating_mul(ALIGNMENT);
     let end = start.saturating_add((part.length as usize).saturating_mul(ALIGNMENT));
     let padded = bytes.get(start..end).unwrap_or_default();
-    // A blob's own length is not a multiple of the alignment; what it says is what its checks rely on.
+    // A blob's own length is not a multiple of the alignment. The checks of a blob rely on the length that it states.
     let length =
         read::header_of_part(padded).map_or(padded.len(), |header| header.blob_bytes as usize);
     let needed = length.checked_next_multiple_of(ALIGNMENT);
@@ -147,7 +147,7 @@ pub(in crate::scene) fn check_placed<'a>(
         let same = scene.header().structures == header.structures;
         at.ensure(same, Reason::OtherStructures)?;
         at.ensure(!scene.has_unbounded, Reason::UnboundedPart)?;
-        // A part has no parts of its own, which a ray would pass by.
+        // A part has no parts of its own, because rays would miss them.
         at.ensure(scene.parts().is_empty(), Reason::OtherPart)?;
     }
     exactly(
@@ -158,7 +158,7 @@ pub(in crate::scene) fn check_placed<'a>(
     check_instances(placed, &header.bounds)
 }
 
-/// Proves instances and the hierarchy above them, in a scene of this box.
+/// Proves instances and the hierarchy above them, in a scene with this box.
 pub(in crate::scene) fn check_instances(
     placed: &Placed<'_, Scene<'_>>,
     bounds: &UnitBox,
@@ -178,7 +178,7 @@ pub(in crate::scene) fn check_instances(
 }
 
 impl<'a> Scene<'a> {
-    /// Number of primitives of the scene's own objects, to which structures lead.
+    /// Number of primitives of the scene's own objects, which structures hold.
     pub(in crate::scene) fn own_primitives(&self) -> i64 {
         let all = self.space.header.primitives;
         let own = self
@@ -194,14 +194,14 @@ impl<'a> Scene<'a> {
         depths.max().unwrap_or(0)
     }
 
-    /// Whether the scene has objects of its own.
+    /// Returns true if the scene has objects of its own.
     #[inline(always)]
     pub(crate) fn has_own(&self) -> bool {
         let parts = self.placed.get().map_or(&[][..], |placed| placed.directory);
         parts.first().is_none_or(|part| part.first_primitive > 0)
     }
 
-    /// Whether two scenes are views of one blob.
+    /// Returns true if two scenes are views of one blob.
     fn is_same_blob(&self, other: &Scene<'_>) -> bool {
         core::ptr::eq(self.header(), other.header())
     }

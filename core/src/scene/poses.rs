@@ -1,4 +1,4 @@
-//! Instances in RAM: where a program places them.
+//! Instances in RAM, which a program places.
 
 use crate::format::instance::Instance;
 use crate::format::range::Ranges;
@@ -12,7 +12,7 @@ use crate::scene::parts::check_instances;
 use crate::scene::{Motion, Scene};
 use crate::target::InstancesOnly;
 
-/// Room for the instances of a scene, of at most `MOST`, where a program moves them: 92 bytes each.
+/// Memory for the instances of a scene, of at most `MOST`, where a program moves them: 92 bytes each.
 ///
 /// ```
 /// # static BLOB: &[u8] =
@@ -46,7 +46,7 @@ pub struct Poses<const MOST: usize> {
 }
 
 impl<const MOST: usize> Poses<MOST> {
-    /// Room that holds nothing yet.
+    /// Memory that holds nothing yet.
     pub const fn new() -> Self {
         const INSTANCE: Instance = Instance {
             matrix: [[0; 3]; 3],
@@ -66,7 +66,7 @@ impl<const MOST: usize> Poses<MOST> {
         }
     }
 
-    /// The instances of a scene where it places them.
+    /// The instances of a scene at its own places.
     ///
     /// # Errors
     /// If the scene has more than `MOST`.
@@ -81,9 +81,9 @@ impl<const MOST: usize> Default for Poses<MOST> {
     }
 }
 
-/// The instances of a scene while a program moves them, in memory of the program's: see [`Poses`].
+/// The instances of a scene while a program moves them, in the program's memory: see [`Poses`].
 ///
-/// From slices directly where the number of instances is not known to the compiler.
+/// Built directly from slices where the number of instances is not known at compile time.
 #[derive(Debug)]
 pub struct PosesView<'p> {
     instances: &'p mut [Instance],
@@ -92,7 +92,7 @@ pub struct PosesView<'p> {
 }
 
 impl<'p> PosesView<'p> {
-    /// The instances of a scene where it places them, in slices of at least as many records.
+    /// The instances of a scene at its own places, in slices of at least as many records.
     ///
     /// # Errors
     /// If a slice is too short.
@@ -123,8 +123,8 @@ impl<'p> PosesView<'p> {
         })
     }
 
-    /// Places an instance, given by its number in scene-file order: a motion leads it away from where the scene, as it was
-    /// loaded, places it. Looks for the number among all instances.
+    /// Places an instance, given by its number in scene-file order. A motion moves it away from its place in the scene
+    /// as it was loaded. Searches for the number among all instances.
     ///
     /// # Errors
     /// If there is no such instance, or it is too far away, too large or too small for the scene's lattice.
@@ -144,7 +144,7 @@ impl<'p> PosesView<'p> {
     /// time.
     ///
     /// # Errors
-    /// As [`place`](Self::place).
+    /// The errors of [`place`](Self::place).
     pub fn place_at(
         &mut self,
         scene: &Scene<'_>,
@@ -172,7 +172,7 @@ impl<'p> PosesView<'p> {
     }
 }
 
-/// Proves that all of an instance is in range, and its matrix a rotation times a factor.
+/// Proves that all numbers of an instance are in range, and that its matrix is a rotation times a factor.
 #[inline(never)]
 fn check(instance: &Instance, location: Location) -> Result<(), BlobError> {
     instance.check_ranges(location)?;
@@ -180,13 +180,13 @@ fn check(instance: &Instance, location: Location) -> Result<(), BlobError> {
 }
 
 impl<'a> Scene<'a> {
-    /// The scene with its instances where a program places them; builds the hierarchy above them, in place.
+    /// Returns the scene with its instances at the program's places; builds the hierarchy above them, in place.
     ///
-    /// For `n` instances it takes at most `24 n` steps on each of `log2 n` levels. The blob's box is the room for
-    /// motion: a scene file's `room` widens it.
+    /// For `n` instances it takes at most `24 n` steps on each of `log2 n` levels. The blob's box limits motion: a
+    /// scene file's `room` widens it.
     ///
     /// # Errors
-    /// If these are not as many instances as the scene has, or one leaves the scene's box.
+    /// If the number of instances is not the scene's, or one leaves the scene's box.
     pub fn with_poses(&self, poses: PosesView<'a>) -> Result<Self, BlobError> {
         let PosesView {
             instances,
@@ -202,13 +202,14 @@ impl<'a> Scene<'a> {
         Ok(self.with_placed(Placed { top, ..*placed }))
     }
 
-    /// The scene with these instances and the hierarchy above them, which lie as in a blob: instances in the order of
-    /// their leaves. For poses that are built once and shared; see [`with_poses`](Self::with_poses) for others.
+    /// Returns the scene with these instances and the hierarchy above them. They lie as in a blob: instances in the
+    /// order of their leaves. Use it for poses that are built once and shared; see [`with_poses`](Self::with_poses) for
+    /// others.
     ///
-    /// Proves all that loading proves of instances, in time linear in their number.
+    /// Proves all that loading proves about instances, in time linear in their number.
     ///
     /// # Errors
-    /// If they are not as many as the scene has, or not in its box, or the hierarchy does not lead to all of them.
+    /// If their number is not the scene's, one is not in its box, or the hierarchy does not lead to all of them.
     pub fn with_instances(
         &self,
         instances: &'a [Instance],
@@ -221,7 +222,7 @@ impl<'a> Scene<'a> {
         Ok(self.with_placed(placed))
     }
 
-    /// The parts and instances, if these are so many instances.
+    /// The parts and instances, if the number of instances is right.
     fn placed_as_many(&self, found: usize) -> Result<&Placed<'a, Self>, BlobError> {
         let expected = self.instances().len();
         let placed = self.placed.get().filter(|_| found == expected);

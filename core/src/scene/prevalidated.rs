@@ -1,4 +1,4 @@
-//! Blobs that a program proves valid while it is compiled, so that loading need not.
+//! Blobs that a program proves valid at compile time, so that loading need not.
 
 use crate::accel::hierarchy::order::Order;
 use crate::format::limits::MAX_STACK_DEPTH;
@@ -7,11 +7,11 @@ use crate::format::word::{half, proved, word};
 use crate::format::{BlobError, Field, Location, Reason, SectionKind, Structure, checksum};
 use core::mem::offset_of;
 
-/// A blob that was verified when the program was compiled: loading it with [`Scene::prevalidated`](crate::scene::Scene::prevalidated)
-/// takes constant time.
+/// A blob that was verified at compile time: [`Scene::prevalidated`](crate::scene::Scene::prevalidated) loads it in
+/// constant time.
 ///
-/// [`Prevalidated::of`] is a `const fn`. Evaluated for a `static`, it runs in the compiler, and a program
-/// whose blob fails does not compile:
+/// [`Prevalidated::of`] is a `const fn`. Evaluated for a `static`, it runs in the compiler, and a program with an
+/// invalid blob does not compile:
 ///
 /// ```
 /// # macro_rules! scene { () => { concat!(env!("CARGO_MANIFEST_DIR"), "/../fixtures/blobs/dual-split.gridel") } }
@@ -27,19 +27,20 @@ use core::mem::offset_of;
 /// # Ok::<(), gridel_core::BlobError>(())
 /// ```
 ///
-/// **What is proved here**: the checksum, so the blob is what `gridel build` wrote, to the byte; and
-/// the order of the hierarchies whose code is compiled in, so that every walk visits each node once
-/// at most and finds room on a stack of the depth that the header states. **What loading proves**,
-/// in constant time: header, section table and view; that every section lies in the blob and has
-/// records of the right size; that this build has the effects and kinds of primitives that are called
-/// for. **What is not proved**: that boxes lie in their parents, that primitives lie in their leaves,
-/// and that numbers are in range. `gridel build` writes only such blobs. A blob that is forged there,
-/// with a checksum that fits, gives wrong answers. It cannot do more: whatever leads from one record
-/// to another is looked up with a check, arithmetic wraps or saturates, and no loop takes its end from
-/// a record but those that end with an array. Tests hold this to records of any content, with overflow
-/// checks on; and programs of such a blob hold no code that panics.
+/// **Proved at compile time.** The checksum proves that the blob is what `gridel build` wrote, to the byte. The order
+/// of the hierarchies whose code is compiled in proves that every walk visits each node at most once. So a walk needs
+/// no deeper stack than the header states.
 ///
-/// Blobs for boards can be prevalidated: those that hold no structures but [`Self::STRUCTURES`].
+/// **Proved at loading**, in constant time: header, section table and view. Every section lies in the blob and has
+/// records of the right size. This build has the required effects and kinds of primitives.
+///
+/// **Not proved**, because `gridel build` is responsible for it: boxes lie in their parents' and primitives in their
+/// leaves, and numbers are in their ranges. A blob that is forged there, with a valid checksum, gives wrong answers. It
+/// cannot do more. Every look-up from one record to another is checked, and arithmetic wraps or saturates. No loop
+/// takes its end from a record, except those that end with an array. Tests check this with records of any content, with
+/// overflow checks on. Programs of such a blob hold no code that panics.
+///
+/// Blobs for boards can be prevalidated if they hold no structures except [`Self::STRUCTURES`].
 #[derive(Clone, Copy, Debug)]
 pub struct Prevalidated<'a> {
     pub(in crate::scene) blob: &'a [u8],
@@ -65,13 +66,11 @@ impl<'a> Prevalidated<'a> {
         bits
     };
 
-    /// Proves a blob. Linear in its length; of constant time in a program that has the compiler
-    /// evaluate it.
+    /// Proves a blob. Linear in its length; constant time in a program that evaluates it at compile time.
     ///
     /// # Errors
-    /// If the checksum does not fit, a hierarchy is not in breadth-first order or deeper than the
-    /// header says, or the header names, or there are sections of, structures that cannot be
-    /// prevalidated.
+    /// If the checksum is wrong, or a hierarchy is not in breadth-first order or deeper than the header states. Also if
+    /// the header names structures that cannot be prevalidated, or there are sections of such structures.
     pub const fn of(blob: &'a [u8]) -> Result<Self, BlobError> {
         let expected = proved!(word(blob, offset_of!(Header, checksum)));
         let found = checksum(blob);
@@ -88,7 +87,7 @@ impl<'a> Prevalidated<'a> {
         while index < sections {
             let entry = size_of::<Header>() + index * size_of::<SectionEntry>();
             let kind = proved!(half(blob, entry + offset_of!(SectionEntry, kind)));
-            // What lies between is that of other structures.
+            // The sections between belong to other structures.
             let is_other =
                 kind > SectionKind::DualNodes as u16 && kind <= SectionKind::Radii as u16;
             if is_other

@@ -1,4 +1,5 @@
-//! The part of loading that takes constant time: it reads the header, the table, the view, and where everything lies.
+//! The part of loading that takes constant time: it reads the header, the table, the view, and the location of every
+//! section.
 
 use crate::accel::StructureViews;
 use crate::accel::space::Space;
@@ -25,9 +26,9 @@ use crate::target::{
 };
 use core::mem::size_of;
 
-/// The header of what is a blob of this version and byte order, and as long as it says.
+/// Returns the header of a blob of this version and byte order, and of the stated length.
 pub(crate) fn header(blob: &[u8]) -> Result<&Header, BlobError> {
-    // What it is comes before how long it is, so that a foreign file is called one.
+    // The kind of file is checked before its length, so that a foreign file is reported as one.
     if blob.is_empty() || blob.iter().zip(&MAGIC).any(|(found, magic)| found != magic) {
         return Err(BlobError::Magic);
     }
@@ -59,7 +60,7 @@ pub(crate) fn header(blob: &[u8]) -> Result<&Header, BlobError> {
     Ok(header)
 }
 
-/// Instances and parts, of which there are as many as the blob has. Proves nothing else.
+/// Returns instances and parts, of which there are as many as the blob has. Proves nothing else.
 fn placed<'a>(
     sections: &Sections<'a>,
     parts: &'a [Scene<'a>],
@@ -91,13 +92,13 @@ fn placed<'a>(
     Ok(InstancesOnly::new(|| placed))
 }
 
-/// The header of a part, of which nothing is proved.
+/// Returns the header of a part, of which nothing is proved.
 pub(in crate::scene) fn header_of_part(blob: &[u8]) -> Option<&Header> {
     bytemuck::try_from_bytes(blob.get(..size_of::<Header>())?).ok()
 }
 
-/// The view of a blob. Of its records only the one of the camera is read; that all others lie in the
-/// blob is proved, and nothing of what is in them.
+/// Returns the view of a blob. It reads only one record, that of the camera. It proves that all others lie in the blob,
+/// but not their content.
 pub(crate) fn scene<'a>(
     header: &'a Header,
     sections: &Sections<'a>,
@@ -172,7 +173,7 @@ pub(crate) fn scene<'a>(
     })
 }
 
-/// Proves the ranges of the header's fields, and that this build has what the scene requires.
+/// Proves the ranges of the header's fields, and that this build has everything that the scene requires.
 fn check_limits(header: &Header) -> Result<(), BlobError> {
     let header_has = |holds, reason| Location::Header.ensure(holds, reason);
     let unknown = header.effects & !Effects::ALL.0;
@@ -235,7 +236,7 @@ fn the_lens<'a>(sections: &Sections<'a>, view: &View) -> Result<&'a [Lens], Blob
     Ok(lenses)
 }
 
-/// Proves that rays may start from all of a lens where a view has its eye.
+/// Proves that rays can start from all of a lens where a view has its eye.
 pub(super) fn check_lens(lens: Option<&Lens>, view: &View) -> Result<(), BlobError> {
     let Some(lens) = lens else {
         return Ok(());
@@ -247,7 +248,7 @@ pub(super) fn check_lens(lens: Option<&Lens>, view: &View) -> Result<(), BlobErr
     at.all_within(Field::Eye, &view.eye, -most, most)
 }
 
-/// How often light is reflected diffusely.
+/// The number of diffuse reflections of light.
 fn the_bounces(sections: &Sections<'_>) -> Result<u8, BlobError> {
     let section = SectionKind::Indirect;
     let bounces: &[u32] = sections.records(section)?;
@@ -266,7 +267,7 @@ fn the_bounces(sections: &Sections<'_>) -> Result<u8, BlobError> {
     }
 }
 
-/// Proves the ranges of a view, and that this build has what it calls for.
+/// Proves the ranges of a view, and that this build has everything that it requires.
 pub(super) fn check_view(view: &View) -> Result<(), BlobError> {
     let section = SectionKind::View;
     let at = At { section, index: 0 };

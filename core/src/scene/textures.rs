@@ -1,7 +1,7 @@
-//! Textures: images, and how they are looked up.
+//! Textures: images, and their look-up.
 //!
-//! Everything is integer arithmetic, so a texel and its weight are the same in every number format. Bilinear weights
-//! have 8 bits along each axis. Colors are stored as square roots and mixed as linear light.
+//! All arithmetic is in integers, so a texel and its weight are the same in every number format. Bilinear weights have
+//! 8 bits along each axis. Colors are stored as square roots and mixed as linear light.
 
 mod levels;
 
@@ -41,7 +41,7 @@ pub(crate) struct Textures<'a> {
     texels: &'a [u8],
 }
 
-/// A texture, looked up.
+/// The result of a texture look-up.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Texel {
     /// Ratios with 30 fraction bits: of linear light, or of a normal's length.
@@ -147,8 +147,8 @@ impl<'a> Textures<'a> {
     }
 
     inline_on_boards!(
-        /// The normal that a texture holds at coordinates with [`COORDINATE_BITS`] fraction bits: ratios from -1 to 1 with 30
-        /// fraction bits. Texels are mixed as they are, and the mean has any length up to the square root of 3.
+        /// Returns the normal in a texture at coordinates with [`COORDINATE_BITS`] fraction bits: ratios from -1 to 1
+        /// with 30 fraction bits. Texels are mixed as they are, and the mean has any length up to the square root of 3.
         pub(crate) fn normal(
             &self,
             texture: &Texture,
@@ -172,7 +172,7 @@ impl<'a> Textures<'a> {
         ratio(sum)
     }
 
-    /// Means of what texels hold at coordinates, with 16 fraction bits, and the place of the first texel.
+    /// Returns means of texels at coordinates, with 16 fraction bits, and the place of the first texel.
     #[inline(always)]
     fn mixed<const COUNT: usize>(
         &self,
@@ -198,7 +198,7 @@ impl<'a> Textures<'a> {
         (sums, place.unwrap_or_default())
     }
 
-    /// The same in one level.
+    /// The means of one level.
     #[inline(always)]
     fn mixed_in<const COUNT: usize>(
         &self,
@@ -216,7 +216,7 @@ impl<'a> Textures<'a> {
                 let mut sums = [0_u32; COUNT];
                 for (texel, weight) in self.fetched(texture, indices).into_iter().zip(weights) {
                     for (sum, it) in sums.iter_mut().zip(held(texel)) {
-                        // In all at most 255^2 2^16, which has 32 bits.
+                        // At most 255^2 2^16 in all, which has 32 bits.
                         *sum = sum.wrapping_add(it.wrapping_mul(weight));
                     }
                 }
@@ -225,7 +225,7 @@ impl<'a> Textures<'a> {
         }
     }
 
-    /// Texels of a texture; loading proves that they are there.
+    /// Returns texels of a texture; loading proves that they exist.
     #[inline(always)]
     fn fetched<const COUNT: usize>(
         &self,
@@ -266,7 +266,8 @@ impl<'a> Textures<'a> {
     }
 }
 
-/// Fetches texels one by one. `array::map` is a function of its own on some targets, with a frame without bound.
+/// Fetches texels one by one, because `array::map` is a function of its own on some targets, with a frame of unknown
+/// size.
 #[inline(always)]
 fn each<const COUNT: usize>(
     indices: [u32; COUNT],
@@ -279,13 +280,13 @@ fn each<const COUNT: usize>(
     texels
 }
 
-/// An element that is known to be there.
+/// Returns an element that is known to exist.
 #[inline(always)]
 fn element<const BYTES: usize>(all: &[[u8; BYTES]], index: u32) -> [u8; BYTES] {
     all.get(index as usize).copied().unwrap_or([0; BYTES])
 }
 
-/// Red, green, blue and alpha from the lowest byte on, the colors as roots.
+/// Red, green, blue and alpha, from the lowest byte up; the colors are roots.
 #[derive(Clone, Copy)]
 struct Packed(u32);
 
@@ -316,8 +317,8 @@ impl Packed {
     }
 }
 
-/// What of a texture is looked up at coordinates: places of texels, their weights with 16 fraction bits, and column and
-/// row of the first.
+/// The texels of a look-up at coordinates: their places, their weights with 16 fraction bits, and column and row of the
+/// first.
 enum Taps {
     Nearest(u32, [u32; 2]),
     Mixed([u32; 4], [u32; 4], [u32; 2]),
@@ -358,7 +359,7 @@ fn taps(texture: &Texture, level: &Level, [u, v]: [i32; 2]) -> Taps {
     Taps::Mixed(places, weights, [left, upper])
 }
 
-/// A ratio with 30 fraction bits from a number of 8 bits, of which 255 stands for 1, with 16 fraction bits.
+/// Returns a ratio with 30 fraction bits from a number of 8 bits, of which 255 means 1, with 16 fraction bits.
 #[inline(always)]
 pub(crate) fn ratio(number_q16: u32) -> i32 {
     // 2^62 / (255 2^16), rounded up, so that 255 is 1 exactly.
@@ -371,14 +372,14 @@ fn square(root: u32) -> u32 {
     root.wrapping_mul(root)
 }
 
-/// A texture coordinate inside of the image, by the way in which that goes on: 0 up to 1.
+/// Moves a texture coordinate into the image, by the rule by which the image continues: 0 up to 1.
 #[inline(always)]
 fn wrapped(coordinate: i32, wrap: u8) -> u32 {
     const ONE: i32 = 1 << COORDINATE_BITS;
     let inside = match wrap {
         0 => coordinate & (ONE - 1),
         1 => {
-            // Every second image is mirrored: all bits of the fraction are turned.
+            // Every second image is mirrored: all bits of the fraction are inverted.
             let turned = (coordinate << (31 - COORDINATE_BITS)) >> 31;
             (coordinate ^ turned) & (ONE - 1)
         }
@@ -387,7 +388,8 @@ fn wrapped(coordinate: i32, wrap: u8) -> u32 {
     inside.cast_unsigned()
 }
 
-/// The two texels between whose middles a coordinate lies, of so many, and the weight of the second in 1/256.
+/// Returns the two texels, of this many, between whose middles a coordinate lies, and the weight of the second in
+/// 1/256.
 #[inline(always)]
 fn neighbors(inside: u32, count: u32, repeats: bool) -> ([u32; 2], u32) {
     // With 8 fraction bits, half a texel back.

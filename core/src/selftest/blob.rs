@@ -1,4 +1,4 @@
-//! `from_bytes` reads what was written and rejects what was damaged.
+//! `from_bytes` reads a blob as it was written and rejects a damaged one.
 
 use crate::format::checksum;
 use crate::format::record::Header;
@@ -18,7 +18,7 @@ pub(super) fn reads(checks: &mut Checks<'_>) {
         checks.equal(
             format_args!("number of primitives of kind {}", kind.name()),
             scene.count(kind),
-            // What has no bounds would be in every picture.
+            // Shapes without bounds would be in every picture.
             usize::from(kind.is_bounded()),
         );
     }
@@ -69,7 +69,7 @@ pub(super) fn explains(checks: &mut Checks<'_>) {
         blob.bytes_mut()[place..place + 4].copy_from_slice(&sum);
         let mut text = Text::default();
         if let Err(error) = Scene::from_bytes(blob.bytes()) {
-            // A text that is too long is cut, and then does not match.
+            // A text that is too long is cut, and then differs.
             let _ = write!(text, "{error}");
         }
         checks.equal(format_args!("the error"), text.as_str(), sentence);

@@ -1,4 +1,4 @@
-//! Checks that print what fails, and what tests compute alike.
+//! Checks that print failures, and computations that tests share.
 
 use crate::accel::Number;
 use core::ffi::CStr;
@@ -8,14 +8,14 @@ use core::fmt;
 pub trait Host {
     /// Prints a line.
     fn print(&mut self, line: fmt::Arguments<'_>);
-    /// Keeps bytes under a name, where a person can look at them. May do nothing.
+    /// Saves bytes under a name, where a person can look at them. An implementation can do nothing.
     fn save(&mut self, name: &CStr, bytes: &[u8]);
 }
 
 /// Failures of one test that are printed in full.
 const SHOWN: u32 = 5;
 
-/// Checks of one test: a failure is printed, and the test goes on.
+/// Checks of one test: a failure is printed, and the test continues.
 pub(super) struct Checks<'h> {
     pub(super) host: &'h mut dyn Host,
     name: &'static str,
@@ -62,7 +62,7 @@ impl<'h> Checks<'h> {
         );
     }
 
-    /// Checks a condition; `why` is what else is the case.
+    /// Checks a condition; `why` describes the failure.
     pub(super) fn that(&mut self, what: fmt::Arguments<'_>, holds: bool, why: fmt::Arguments<'_>) {
         if holds {
             return;
@@ -75,7 +75,7 @@ impl<'h> Checks<'h> {
     }
 }
 
-/// Numbers that look random and are the same on every machine (Marsaglia, "Xorshift RNGs", 2003).
+/// Pseudo-random numbers, the same on every machine (Marsaglia, "Xorshift RNGs", 2003).
 pub(super) struct Random(pub(super) u64);
 
 impl Random {
@@ -86,7 +86,8 @@ impl Random {
         self.0
     }
 
-    /// An integer of at most `bits` bits and a sign; every magnitude is about as likely.
+    /// Returns an integer of at most `bits` bits and a sign; every magnitude is about equally
+    /// likely.
     pub(super) fn integer(&mut self, bits: u32) -> i64 {
         let width = self.next() % u64::from(bits) + 1;
         let magnitude = (self.next() >> (64 - width)) as i64;
@@ -98,10 +99,10 @@ impl Random {
     }
 }
 
-/// Where the hash of no bytes stands.
+/// The hash of no bytes.
 pub(super) const FNV_START: u32 = 0x811c_9dc5;
 
-/// FNV-1a over more bytes.
+/// Adds bytes to an FNV-1a hash.
 pub(super) fn hash(start: u32, bytes: impl IntoIterator<Item = u8>) -> u32 {
     bytes.into_iter().fold(start, |state, byte| {
         (state ^ u32::from(byte)).wrapping_mul(0x0100_0193)

@@ -130,9 +130,9 @@ const RAYS: [Expected; 15] = [
     },
 ];
 
-/// Lengths may be off by this much, which is more than any format's error bound here.
+/// Tolerance of lengths, which is more than any format's error bound here.
 const LENGTH: f64 = 1.0 / 512.0;
-/// Normals may be off by this much.
+/// Tolerance of normals.
 const RATIO: f64 = 1.0 / 65_536.0;
 
 pub(super) fn every_shape<N: Number>(checks: &mut Checks<'_>) {
@@ -183,7 +183,7 @@ fn compare<N: Number>(checks: &mut Checks<'_>, ray: &Expected, found: Option<Hit
     checks.equal(format_args!("object: {what}"), found.object, object);
     checks.equal(format_args!("front: {what}"), found.front, front);
     // A far t has no more than the 24 binary digits of `f32`, so rounding moves it by half of the
-    // last; the point must be right all the same.
+    // last. The point must still be right.
     let tolerance = LENGTH.max(t / 16_777_216.0);
     checks.near(
         format_args!("t in {}: {what}", name::<N>()),

@@ -1,5 +1,5 @@
-//! The core's tests that run everywhere: on a host by `cargo test`, on a board through whatever
-//! it can print with. Needs the feature `selftest`.
+//! The core's tests that run everywhere: on a host by `cargo test`, on a board with any output that it has. Needs the
+//! feature `selftest`.
 //!
 //! A test does not depend on the machine that it runs on. A [`Host`] prints for it; the feature `std` has one, and
 //! firmware supplies its own.
@@ -51,7 +51,7 @@ const CASES: [Case; 16] = [
     ("f64: picture", picture::matches::<f64>),
 ];
 
-/// Runs all tests, prints a line for each, and returns how many failed.
+/// Runs all tests, prints a line for each, and returns the number of failed tests.
 pub fn run(host: &mut dyn Host) -> usize {
     let mut failed = 0;
     for (name, case) in CASES {

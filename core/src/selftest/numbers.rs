@@ -1,4 +1,4 @@
-//! Arithmetic against wider integers, in which it is exact.
+//! Arithmetic, compared with exact arithmetic in wider integers.
 
 use crate::accel::Number;
 use crate::geometry::Project;
@@ -69,7 +69,7 @@ pub(super) fn products(checks: &mut Checks<'_>) {
     checks.equal(format_args!("0 over 0"), Fixed(0).div(Fixed(0)), Fixed(0));
 }
 
-/// Names for what `Fixed` calls its products.
+/// Names for the products of `Fixed`.
 trait Exact {
     fn far_of(value: i64) -> Self;
     fn value(self) -> i64;
@@ -131,7 +131,7 @@ fn nearly_parallel(random: &mut Random, bits: u32) -> ([i64; 2], [i64; 2]) {
     ([x * p + jitter[0], y * p], [x * q, y * q + jitter[1]])
 }
 
-/// A triangle of integers, one of whose edges leads past the origin closely, or through it.
+/// A triangle of integers. One of its edges leads closely past the origin, or through it.
 fn triangle(random: &mut Random, bits: u32) -> [[i64; 2]; 3] {
     let (a, b) = nearly_parallel(random, bits);
     let c = [0, 1].map(|k| -(a[k] / 2) - b[k] / 2);
@@ -231,7 +231,7 @@ fn vectors_in<N: Number>(checks: &mut Checks<'_>, ulp: f64) {
     checks.equal(format_args!("zero vector has no slopes"), zero, true);
 }
 
-/// Long chains of every operation: one other bit anywhere, and the hash is another.
+/// Long chains of every operation: if one bit differs anywhere, the hash differs.
 pub(super) fn bits(checks: &mut Checks<'_>) {
     checks.equal(format_args!("f32"), chain::<f32>(), 1_029_389_503);
     checks.equal(format_args!("f64"), chain::<f64>(), 2_651_187_688);
@@ -259,7 +259,7 @@ fn chain<N: Number>() -> u32 {
         ]
     });
     let values = results.take(ROUNDS / 4).flatten();
-    // Zeros may differ in their sign, which nothing depends on.
+    // Zeros can differ in their sign, on which nothing depends.
     hash(
         FNV_START,
         values.flat_map(|value| (value + 0.0).to_bits().to_le_bytes()),

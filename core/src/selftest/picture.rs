@@ -40,7 +40,7 @@ const ROW: usize = 3 * TinyBlob::SIZE[0] as usize;
 /// Bytes of the picture.
 const PICTURE: usize = ROW * TinyBlob::SIZE[1] as usize;
 
-/// The hash of the picture's 16-bit channels, as every machine must render it.
+/// The hash of the picture's 16-bit channels on every machine.
 const fn expected(format: Format) -> u32 {
     match format {
         Format::Fixed => 3_703_514_865,

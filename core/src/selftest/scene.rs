@@ -1,4 +1,4 @@
-//! One shape of each kind with known answers, as a blob that is put together here.
+//! One shape of each kind with known answers, as a blob that is assembled here.
 
 use crate::format::record::{
     ALIGNMENT, ENDIANNESS, Header, Light, MAGIC, Material, SectionEntry, Sphere16, UnitBox,
@@ -21,7 +21,7 @@ pub(crate) const REQUIRED: Effects = Effects::SHADOW
 
 /// Sections of the blob.
 const SECTIONS: usize = 12;
-/// Room for the blob.
+/// Memory for the blob.
 const ROOM: usize = 1376;
 /// The ratio 1.
 const ONE: i32 = 1 << 30;
@@ -37,7 +37,7 @@ pub(crate) struct TinyBlob {
 }
 
 impl TinyBlob {
-    /// Pictures are this large.
+    /// The size of the pictures.
     pub(super) const SIZE: [u16; 2] = [16, 12];
 
     /// Six objects, each one primitive: triangle, sphere, box, disc, cone and torus. Lengths in units:
@@ -155,7 +155,7 @@ impl TinyBlob {
     }
 }
 
-/// A camera before the scene, 300 units from its middle, that sees 240 units of height there.
+/// A camera before the scene, 300 units from its middle, where it sees 240 units of height.
 fn view() -> View {
     let half = 2 * (ONE / 20);
     View {
@@ -198,7 +198,7 @@ fn materials() -> [Material; 3] {
     let glass = Material {
         transmit: [ONE / 10 * 9; 3],
         inverse_ior: ONE / 3 * 2,
-        // 0.1, 0.02 and 0.01 a unit.
+        // 0.1, 0.02 and 0.01 per unit.
         absorption: [429_496_729, 85_899_345, 42_949_672],
         checker_size: 0,
         ..plain

@@ -52,7 +52,7 @@ impl Effect for Absorption {
         ray: &Ray<N>,
         filter: &mut Filter<'s, '_, N>,
     ) {
-        // Whether anything passes is not known yet: alpha decides after this.
+        // It is not yet known whether any light passes: alpha decides after this.
         let is_behind = Glass::is_required_by_material(filter.material) && !filter.hit.front;
         if let Some(medium) = filter.medium.or(is_behind.then_some(filter.material)) {
             filter.left = filter.left.times(left(ray, filter.hit, medium));
@@ -60,18 +60,18 @@ impl Effect for Absorption {
     }
 }
 
-/// The part of light that is left after glass up to a hit.
+/// The part of light that remains after glass up to a hit.
 ///
 /// Out of line, because copies of it take more code than the calls.
 #[inline(never)]
 fn left<N: Number>(ray: &Ray<N>, hit: &Hit<N>, material: &Material) -> Color<N> {
     // |slope| lies between 1 and the square root of 3.
     let (_, norm) = N::normalize(ray.slope);
-    // From far away it is longer than a length can be.
+    // The way from far away can be longer than a length can be.
     absorb(material, N::from_wide(N::narrow(hit.t).wide(norm)))
 }
 
-/// The part of light that is left after a length of glass.
+/// The part of light that remains after a length of glass.
 pub(super) fn absorb<N: Number>(material: &Material, length: N) -> Color<N> {
     let coefficients = material.absorption;
     Color(coefficients.map(|coefficient| length.exp_neg(coefficient)))

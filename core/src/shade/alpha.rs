@@ -1,7 +1,8 @@
-//! Alpha: where a texture is not there, or not wholly, rays and light go straight on.
+//! Alpha: rays and light go straight through the transparent parts of a texture.
 //!
-//! A hit brings what its surface does, weighted by alpha, and sends one more ray straight on with the rest. That ray
-//! counts as a bounce. Glass ignores alpha: it lets light through by itself. Cost: beside the ray, one texel or four.
+//! A hit brings the light of its surface, weighted by alpha, and sends one more ray straight on with the rest. That ray
+//! counts as a bounce. Glass ignores alpha, because it transmits light by itself. Cost: one texel or four, in addition
+//! to the ray.
 
 use crate::accel::Number;
 use crate::format::Effects;
@@ -77,7 +78,7 @@ impl Effect for Alpha {
     }
 }
 
-/// How much of a surface is there: 1 where it has no texture coordinates.
+/// The opaque part of a surface: 1 where it has no texture coordinates.
 #[inline(always)]
 fn alpha<N: Number>(
     scene: &Scene<'_>,
@@ -98,7 +99,7 @@ fn alpha<N: Number>(
     if maps.cutoff == 0 {
         return N::ratio(alpha) * N::ratio(ratio(u32::from(maps.opacity) << 16));
     }
-    // In integers, so that all number formats decide alike.
+    // In integers, so that all number formats make the same decision.
     if alpha >= ratio(u32::from(maps.cutoff) << 16) {
         N::ONE
     } else {

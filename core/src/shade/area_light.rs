@@ -1,10 +1,10 @@
 //! Lights with an area: every sample of a pixel sees one point of each.
 //!
-//! - **Sphere**: a direction of the cone in which it is seen, all alike (Shirley, Wang and Zimmerman, "Monte Carlo
-//!   Techniques for Direct Lighting Calculations", 1996). Nothing is drawn that the surface does not see.
-//! - **Rectangle, triangle and disc**: a point of the area, all alike, whose brightness the [falloff](super::falloff) weighs by
-//!   distance and angle. Sampling the solid angle of a rectangle (Ureña, Fajardo and King, 2013) takes arc cosines,
-//!   which `fixed` does not have, and all formats must draw the same points.
+//! - **Sphere**: a uniformly distributed direction of the cone in which it is seen. All drawn points face the surface.
+//!   (Shirley, Wang and Zimmerman, "Monte Carlo Techniques for Direct Lighting Calculations", 1996.)
+//! - **Rectangle, triangle and disc**: a uniformly distributed point of the area, whose brightness the
+//!   [falloff](super::falloff) weighs by distance and angle. Sampling the solid angle of a rectangle (Ureña, Fajardo
+//!   and King, 2013) needs arc cosines. `fixed` does not have them, and all formats must draw the same points.
 
 use crate::accel::Number;
 use crate::format::Effects;
@@ -69,7 +69,7 @@ impl Effect for AreaLight {
     }
 }
 
-/// The way to a random point of a light, given that to its position.
+/// Returns the way to a random point of a light, given the way to its position.
 #[inline(never)]
 fn at<N: Number>(form: &LightForm, aim: &Aim<N>, [u, v]: [u32; 2]) -> Aim<N> {
     let ratio = |point: u32| N::ratio((point >> 2) as i32);
@@ -77,7 +77,7 @@ fn at<N: Number>(form: &LightForm, aim: &Aim<N>, [u, v]: [u32; 2]) -> Aim<N> {
     let [along, across] = match form.shape {
         LightForm::SPHERE => return on_sphere(form, aim, ratio(u), turn()),
         LightForm::RECTANGLE => [ratio(u), ratio(v)],
-        // The half of a parallelogram beyond the third side is turned onto the other half.
+        // The half of a parallelogram beyond the third side is folded onto the other half.
         LightForm::TRIANGLE if (u >> 2) + (v >> 2) > 1 << 30 => {
             [N::ONE - ratio(u), N::ONE - ratio(v)]
         }
@@ -101,7 +101,7 @@ fn at<N: Number>(form: &LightForm, aim: &Aim<N>, [u, v]: [u32; 2]) -> Aim<N> {
     }
 }
 
-/// The way to where a random direction meets a sphere; no way from inside of it.
+/// Returns the way to where a random direction hits a sphere; no way from inside the sphere.
 fn on_sphere<N: Number>(form: &LightForm, aim: &Aim<N>, u: N, [sine, cosine]: [N; 2]) -> Aim<N> {
     let hidden = Aim {
         way: [N::Wide::default(); 3],

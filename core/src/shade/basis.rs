@@ -2,8 +2,8 @@
 
 use crate::accel::Number;
 
-/// Two directions that are perpendicular to one of length 1 and to each other (Duff, Burgess, Christensen, Hery, Kensler,
-/// Liani and Villemin, "Building an Orthonormal Basis, Revisited", 2017).
+/// Returns two directions that are perpendicular to one of length 1 and to each other. (Duff, Burgess, Christensen,
+/// Hery, Kensler, Liani and Villemin, "Building an Orthonormal Basis, Revisited", 2017.)
 pub(super) fn beside<N: Number>([x, y, z]: [N; 3]) -> [[N; 3]; 2] {
     let one = N::ONE.half();
     let signed = |value: N| if z < N::ZERO { -value } else { value };

@@ -23,9 +23,8 @@ impl Effect for Checker {
         material.checker_size > 0
     }
 
-    /// A checkerboard is a solid texture. It is looked up beneath the surface by the hit's error
-    /// bound, so that a face that lies exactly between two layers of cells has the colors of the
-    /// layer inside, and no noise.
+    /// A checkerboard is a solid texture. It is looked up beneath the surface by the hit's error bound. So a face that
+    /// lies exactly between two layers of cells has the colors of the layer inside, and no noise.
     #[inline(always)]
     fn surface<'s, N: Number, X: Tracer<'s, N>>(
         _: &mut X,
@@ -59,8 +58,7 @@ impl Effect for Checker {
     }
 }
 
-/// Where a hit lies in the pattern on one axis, without whole repetitions: also where it is farther than lengths
-/// reach.
+/// Returns the place of a hit in the pattern on one axis, without whole repetitions, even beyond the range of lengths.
 #[cold]
 #[inline(never)]
 fn far_point<N: Number>(ray: &Ray<N>, hit: &Hit<N>, axis: usize, origin: N, size: N) -> N {

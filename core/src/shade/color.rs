@@ -1,4 +1,4 @@
-//! Three channels of radiance, or of the ratios that it is weighted with.
+//! Three channels of radiance, or of ratios that weigh it.
 
 use crate::accel::Number;
 use crate::target::inline_unless_small;

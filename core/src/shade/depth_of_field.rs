@@ -1,9 +1,10 @@
-//! Depth of field: rays from the camera start from random points of a thin lens, and meet those of the other samples
-//! where the picture is sharp.
+//! Depth of field. Rays from the camera start from random points of a thin lens. They meet the rays of the other
+//! samples where the picture is sharp.
 //!
-//! The lens is a disc around the eye, parallel to the picture. A point in front of it at a depth *z* (along the camera's
-//! axis) is seen as a circle: on the plane of focus, at the depth *f*, with the diameter *d* |z - f| / z, where *d* is
-//! the lens's own (Potmesil and Chakravarty, "A Lens and Aperture Camera Model for Synthetic Image Generation", 1981).
+//! The lens is a disc around the eye, parallel to the picture. A point in front of it at a depth *z* (along the
+//! camera's axis) appears as a circle. On the plane of focus, at the depth *f*, its diameter is *d* |z - f| / z. *d* is
+//! the lens's own diameter. (Potmesil and Chakravarty, "A Lens and Aperture Camera Model for Synthetic Image
+//! Generation", 1981.)
 
 use crate::accel::Number;
 use crate::format::Effects;
@@ -47,7 +48,7 @@ impl Effect for DepthOfField {
         let direction = toward_focus(lens, axes[0], ray.slope, offset);
         let zero = N::Wide::default();
         let bounds = tracer.scene().bounds();
-        // Loading proves that the lens is no farther away than rays may start.
+        // Loading proves that the lens is no farther away than rays can start.
         if let Ok(refracted) = Ray::new(bounds, origin, direction, zero, N::far(i64::MAX)) {
             *ray = refracted;
         }
@@ -71,14 +72,14 @@ fn offset<N: Number>(lens: &Lens, [_, right, up]: [[N; 3]; 3], [u, v]: [u32; 2])
     [axis(0), axis(1), axis(2)]
 }
 
-/// The direction from a point of the lens to where the ray from the eye meets the plane of focus, of any length.
+/// Returns the direction from a point of the lens to where the ray from the eye hits the plane of focus, of any length.
 fn toward_focus<N: Number>(
     lens: &Lens,
     forward: [N; 3],
     slope: [N; 3],
     offset: [N::Wide; 3],
 ) -> [N::Wide; 3] {
-    // The ray from the eye is there after focus / cosine; both are multiplied with the cosine, which is above 0.
+    // The ray from the eye is there after focus / cosine. Both are multiplied by the cosine, which is above 0.
     let cosine = N::from_wide(N::dot(forward, slope));
     let focus = N::far(lens.focus);
     let axis = |k: usize| N::wide_scale(focus, slope[k]) - N::wide_scale(offset[k], cosine);

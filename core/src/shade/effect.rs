@@ -1,8 +1,8 @@
-//! Where effects attach to the ray loop, and what they may ask of it.
+//! The interface between effects and the ray loop.
 //!
-//! An effect is a type without values that implements [`Effect`]: at every place it may do something,
-//! and by default does nothing. The list of effects has the same places, and calls those of the effects
-//! in use, one after the other. All of it is inlined, so what is not in use costs no instruction.
+//! An effect is a type without values that implements [`Effect`]: it can act at every place, and by default does
+//! nothing. The list of effects has the same places, and calls those of the effects in use, one after the other. All of
+//! it is inlined, so effects that are not in use cost no instruction.
 
 use crate::accel::Number;
 use crate::format::Effects;
@@ -16,30 +16,30 @@ use crate::shade::Color;
 use crate::shade::surface::{Aim, Arrival, Bounce, Filter, Lighting, Secondary, Surface};
 use core::fmt::Debug;
 
-/// The ray loop, as effects see it.
+/// The ray loop, as effects use it.
 pub(crate) trait Tracer<'s, N: Number> {
     /// Receives counts and events.
     type Observer: Observer;
 
-    /// Whether light may pass a surface on its way to another one.
+    /// True if light can pass a surface on its way to another one.
     const FILTERS: bool;
 
-    /// Whether surfaces may send rays on.
+    /// True if surfaces can send secondary rays.
     const SENDS: bool;
 
     fn scene(&self) -> &'s Scene<'s>;
 
     fn count(&mut self) -> &mut Self::Observer;
 
-    /// The purpose of the ray that is followed.
+    /// The purpose of the current ray.
     fn kind(&self) -> RayKind;
 
-    /// A random point of the unit square, with 32 fraction bits, for the ray that is followed: see
-    /// [`Sampler::point`](crate::shade::sampler::Sampler::point), which says what a dimension is.
+    /// A random point of the unit square, with 32 fraction bits, for the current ray. See
+    /// [`Sampler::point`](crate::shade::sampler::Sampler::point), which explains dimensions.
     fn point(&self, dimension: u16) -> [u32; 2];
 
-    /// The binary logarithm of the distance between the rays of neighboring samples, per distance from the eye, with
-    /// [`LOG2_BITS`](crate::number::log2::LOG2_BITS) fraction bits; `None` of rays of the caller's own.
+    /// The binary logarithm of the distance between the rays of neighboring samples, per distance from the eye. It has
+    /// [`LOG2_BITS`](crate::number::log2::LOG2_BITS) fraction bits. `None` for rays of the caller's own.
     fn spread(&self) -> Option<i32>;
 
     fn any_hit(&mut self, ray: &Ray<N>) -> bool;
@@ -49,13 +49,13 @@ pub(crate) trait Tracer<'s, N: Number> {
     /// Lets the effects in use pass light through a surface.
     fn filter(&mut self, ray: &Ray<N>, filter: &mut Filter<'s, '_, N>);
 
-    /// Puts a ray that leaves a surface on the work list, unless it would bring too little.
+    /// Puts a ray that leaves a surface on the work list, unless its weight is too small.
     fn send(&mut self, hit: &Hit<N>, secondary: Secondary<N>);
 }
 
 /// Declares the places once for an effect and for the list of effects.
 ///
-/// Each takes the ray loop and what the effect has added to the state of the ray that is followed.
+/// The arguments of each are the ray loop, and the state that the effect adds to the current ray.
 macro_rules! places {
     ($(
         $(#[doc = $doc:literal])*

@@ -1,7 +1,7 @@
-//! Surfaces that send out light of their own, such as lamps that are seen.
+//! Surfaces that emit light, such as visible lamps.
 //!
-//! Light leaves the front of a surface, the side to which its normal points. That it lights other surfaces is a matter
-//! of the lights of the scene: the compiler makes lights with an area of surfaces that glow.
+//! Light leaves the front of a surface, the side to which its normal points. The lights of the scene light other
+//! surfaces with it: the compiler makes lights with an area from surfaces that glow.
 
 use crate::accel::Number;
 use crate::format::Effects;
@@ -25,10 +25,10 @@ impl Effect for Emission {
         surface: &Surface<'_, N>,
         local: &mut Color<N>,
     ) {
-        // No material says so, as with other effects: a section of the blob does.
+        // No material states it, unlike for other effects: a section of the blob does.
         let emission = tracer.scene().emission(surface.hit.object);
         if let Some(emission) = emission.filter(|_| surface.hit.front) {
-            // The surface that sent such a ray has been lit by it, or has reflected it by the formula.
+            // The surface that sent such a ray is already lit by it, or has reflected it by the formula.
             let is_counted = matches!(tracer.kind(), RayKind::Diffuse | RayKind::Glossy);
             if emission.lights != 0 && is_counted {
                 if X::Observer::ENABLED {

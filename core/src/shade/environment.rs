@@ -1,9 +1,10 @@
 //! The light around a scene: a picture of a sky or a room, and a sun in it.
 //!
-//! Rays that hit nothing bring it, and surfaces are lit by it through at most two of the scene's lights. Of the map each
-//! sample sees one direction, drawn in proportion to the brightness of texels; of the sun one, all alike. The map is an
-//! octahedral one (Praun and Hoppe, "Spherical Parametrization and Remeshing", 2003), whose lookup takes one division and
-//! no sines. Rays see it bilinear, lights see its texels: both have the same light, but for what is mixed across edges.
+//! Rays that hit nothing bring it, and surfaces are lit by it through at most two of the scene's lights. Each sample
+//! sees one direction of the map, drawn in proportion to the brightness of texels, and one direction of the sun,
+//! uniformly distributed. The map is an octahedral one (Praun and Hoppe, "Spherical Parametrization and Remeshing",
+//! 2003), whose look-up takes one division and no sines. Rays use bilinear look-up, lights use single texels. Both have
+//! the same light, except for the mixing across edges.
 
 use super::basis::beside;
 use crate::accel::Number;
@@ -24,8 +25,8 @@ pub(crate) struct Environment;
 /// The dimension of random points for the map.
 const DIMENSION: u16 = 0x1020;
 
-/// Whether rays of a kind bring the map, and whether they bring the sun. Those whose light a surface has from a light of
-/// the scene must not bring it again.
+/// Returns whether rays of a kind bring the map, and whether they bring the sun. Where a surface has this light from a
+/// light of the scene, its rays must not bring it again.
 const fn is_seen_by(kind: RayKind) -> [bool; 2] {
     match kind {
         RayKind::Primary | RayKind::Reflected | RayKind::Refracted => [true; 2],
@@ -39,7 +40,8 @@ impl Effect for Environment {
 
     const EFFECT: Effects = Effects::ENVIRONMENT;
 
-    /// Half of all directions light no surface, and the others bring more for it than a display shows: the mean counts.
+    /// Half of all directions light no surface, and the others bring more than a display shows: the mean of the samples
+    /// counts.
     const DEVELOPS: bool = true;
 
     fn is_required_by_light(light: &Light) -> bool {
@@ -147,8 +149,8 @@ impl Effect for Environment {
     }
 }
 
-/// The place of a direction on the map, and half the sum of the magnitudes of its components, which are at most 1 and the
-/// largest at least 1/2.
+/// Returns the place of a direction on the map, and half the sum of the magnitudes of its components. The magnitudes
+/// are at most 1, and the largest is at least 1/2.
 #[inline(never)]
 fn place_of<N: Number>(direction: [N; 3]) -> ([i32; 2], N) {
     let [x, y, z] = direction;
@@ -160,7 +162,7 @@ fn place_of<N: Number>(direction: [N; 3]) -> ([i32; 2], N) {
     (if is_below { turned(place) } else { place }, sum)
 }
 
-/// Whether a direction, of any length, leads to the sun.
+/// Returns true if a direction, of any length, hits the sun.
 #[inline(never)]
 fn is_in_sun<N: Number>(record: &Record, direction: [N; 3]) -> bool {
     if record.sun_radius == 0 {
@@ -173,7 +175,8 @@ fn is_in_sun<N: Number>(record: &Record, direction: [N; 3]) -> bool {
     N::dot(off, off) <= radius.wide(radius)
 }
 
-/// A random direction of the sun: the squares of lengths from its middle, on a sphere, are all alike.
+/// Returns a random direction of the sun: the squares of lengths from its middle, on a sphere, are uniformly
+/// distributed.
 #[inline(never)]
 fn in_sun<N: Number>(record: &Record, [u, v]: [u32; 2]) -> [N::Wide; 3] {
     let half = N::ratio(record.sun_radius).half() * N::ratio((u >> 2) as i32).sqrt();

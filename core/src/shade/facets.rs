@@ -1,11 +1,11 @@
 //! Rough surfaces: facets that are mirrors or glass, with the distribution GGX of their normals.
 //!
-//! - **Distribution and shadowing**: Walter, Marschner, Li and Torrance, "Microfacet Models for Refraction through Rough
-//!   Surfaces", 2007. What is reflected is masked on its two ways by one height (Heitz, "Understanding the
-//!   Masking-Shadowing Function in Microfacet-Based BRDFs", 2014), what is refracted on each way alone.
+//! - **Distribution and shadowing**: Walter, Marschner, Li and Torrance, "Microfacet Models for Refraction through
+//!   Rough Surfaces", 2007. For reflection, one height masks both ways (Heitz, "Understanding the Masking-Shadowing
+//!   Function in Microfacet-Based BRDFs", 2014). For refraction, each way is masked on its own.
 //! - **Visible normals**: a facet is drawn as the ray sees it (Heitz, "Sampling the GGX Distribution of Visible
-//!   Normals", 2018), by a cap of the sphere (Dupuy and Benyoub, "Sampling Visible GGX Normals with Spherical Caps",
-//!   2023).
+//!   Normals", 2018). The method is a cap of the sphere (Dupuy and Benyoub, "Sampling Visible GGX Normals with
+//!   Spherical Caps", 2023).
 //!
 //! Light that bounces between facets is lost, as is usual.
 
@@ -22,9 +22,9 @@ pub(crate) struct Facets<N> {
     normal: [N; 3],
     alpha: N,
     square: N,
-    /// The cosine between the normal and the way back to where the ray came from, 0 to 1.
+    /// The cosine between the normal and the way back to the ray's origin, 0 to 1.
     cos_in: N,
-    /// [`slant`](Self::slant) of that.
+    /// The [`slant`](Self::slant) of that cosine.
     slant_in: N,
 }
 
@@ -32,7 +32,7 @@ impl<N: Number> Facets<N> {
     /// With an α of 30 fraction bits.
     #[inline(always)]
     pub(crate) fn new(alpha: i32, normal: [N; 3], cos_in: N) -> Self {
-        // In the range also in a blob that nobody proved.
+        // Limited to the range for blobs that are not proved.
         let alpha = N::ratio(alpha.clamp(LEAST_ROUGHNESS, 1 << 30));
         let mut facets = Self {
             normal,
@@ -45,7 +45,8 @@ impl<N: Number> Facets<N> {
         facets
     }
 
-    /// The root of α² + (1 - α²) cos², from α to 1: a way with this cosine is masked by 1 - 2 cos / (cos + slant).
+    /// Returns the root of α² + (1 - α²) cos², from α to 1. A way with this cosine is masked by 1 - 2 cos / (cos +
+    /// slant).
     #[inline(always)]
     fn slant(&self, cos: N) -> N {
         (self.square + (N::ONE - self.square) * cos * cos).sqrt()
@@ -66,13 +67,13 @@ impl<N: Number> Facets<N> {
         if length <= N::ZERO {
             return self.normal;
         }
-        // A point of the cap above -z, all alike; 1 less its height.
+        // A uniformly distributed point of the cap above -z; 1 less its height.
         let part = N::ratio((u >> 2) as i32);
         let sag = part + part * z;
         let across = sag * (N::ONE - sag.half());
         let across = (across + across).max(N::ZERO).min(N::ONE).sqrt();
         let [sine, cosine] = Angle(v).sin_cos().map(N::ratio);
-        // Halfway between it and the ray, as a mirror of the hemisphere lies.
+        // Halfway between it and the ray, like the normal of a mirror on the hemisphere.
         let x = (across * cosine).half() + x.half();
         let y = (across * sine).half() + y.half();
         let z = N::ONE.half() - sag.half() + z.half();
@@ -86,8 +87,8 @@ impl<N: Number> Facets<N> {
         [axis(0), axis(1), axis(2)]
     }
 
-    /// The part of a ray's weight with which it leaves by a drawn facet, because no other one is in its way: 0 where it leads
-    /// to the wrong side of the surface. `outward` is the side of the geometric normal.
+    /// Returns the part of a ray's weight that leaves by a drawn facet, because no other facet is in its way. It is 0
+    /// for a ray to the wrong side of the surface. `outward` is the side of the geometric normal.
     #[inline(never)]
     pub(crate) fn unmasked(&self, hit: &Hit<N>, direction: [N; 3], outward: bool) -> N {
         let (out, _) = N::normalize(direction);
@@ -106,7 +107,7 @@ impl<N: Number> Facets<N> {
         }
     }
 
-    /// The part of what visible facets reflect that leaves with this cosine above 0.
+    /// Returns the part of the light reflected by visible facets that leaves with this cosine above 0.
     #[inline(always)]
     fn unmasked_reflection(&self, cos_out: N) -> N {
         let seen = cos_out * (self.cos_in.half() + self.slant_in.half());
@@ -120,9 +121,10 @@ impl<N: Number> Facets<N> {
         (cos_out * self.slant_in).half() + (self.cos_in * slant_out).half()
     }
 
-    /// What the facets reflect of a light in a direction that is `cos_out` above 0 over the surface, if each reflects all:
-    /// π times their part of all reflected light times `cos_out`, as a ratio and a power of two. `halfway` is the normal of
-    /// the facets that mirror the light to where the ray came from.
+    /// Returns the part of a light that the facets reflect, if each reflects all light, as a ratio and a power of two.
+    /// The light's direction is `cos_out` above 0 over the surface. The result is π times the facets' part of all
+    /// reflected light times `cos_out`. `halfway` is the normal of the facets that mirror the light to the ray's
+    /// origin.
     #[inline(never)]
     pub(crate) fn reflect(&self, cos_out: N, halfway: [N; 3]) -> (N, u32) {
         // The sine is precise where the angle is small, and 1 - cos² is not.
@@ -140,7 +142,7 @@ impl<N: Number> Facets<N> {
         let ratio = cos_out.half().half().div(masking_part);
         let mut ratio = (self.square.div(spread) * ratio).div(spread_part);
         let mut power = spread_power.wrapping_add(masking_power);
-        // The power is the least, as other ratios lose digits by it.
+        // The power is the least possible, because it costs other ratios digits.
         while ratio < N::ONE.half() && power > 0 {
             ratio = ratio + ratio;
             power = power.wrapping_sub(1);
@@ -149,7 +151,7 @@ impl<N: Number> Facets<N> {
     }
 }
 
-/// A ratio above 0 as one of at least 1/2, over a power of two.
+/// Returns a ratio above 0 as a ratio of at least 1/2, over a power of two.
 #[inline(always)]
 fn scaled_up<N: Number>(mut ratio: N) -> (N, u32) {
     let half = N::ONE.half();

@@ -1,7 +1,7 @@
 //! Light that falls off with the square of the distance, spots, and the brightness of areas.
 //!
 //! A light's form states the distance at which the light has its color. So one radiance of 20 fraction bits serves for
-//! every distance: `fixed` holds what arrives up to 2048 times display white, and beyond that saturates.
+//! every distance: `fixed` holds arriving light up to 2048 times display white, and beyond that saturates.
 
 use crate::accel::Number;
 use crate::format::Effects;
@@ -68,7 +68,7 @@ fn cosine<N: Number>(form: &LightForm, to_light: [N; 3]) -> N {
     cos.max(-N::ONE).min(N::ONE)
 }
 
-/// Whether a light shines towards a surface.
+/// Returns true if a light shines towards a surface.
 fn shines<N: Number>(form: &LightForm, to_light: [N; 3]) -> bool {
     match form.shape {
         LightForm::SPHERE => true,
@@ -79,7 +79,7 @@ fn shines<N: Number>(form: &LightForm, to_light: [N; 3]) -> bool {
     }
 }
 
-/// Whether a light's range reaches a surface.
+/// Returns true if a light's range reaches a surface.
 #[inline(always)]
 fn is_in_range<N: Number>(form: &LightForm, lighting: &Lighting<'_, N>) -> bool {
     form.range == 0
@@ -92,7 +92,7 @@ fn has_cone(form: &LightForm) -> bool {
     form.cone_cosine > -(1 << 30)
 }
 
-/// What arrives of a light's color.
+/// Returns the arriving part of a light's color.
 #[inline(never)]
 fn falling<N: Number>(form: &LightForm, lighting: &Lighting<'_, N>, color: Color<N>) -> Color<N> {
     let middle = lighting.cone.map(|cone| cone.half_distance);
@@ -131,10 +131,11 @@ fn falling<N: Number>(form: &LightForm, lighting: &Lighting<'_, N>, color: Color
     }
 }
 
-/// How often a distance is doubled at most until it is no shorter than another.
+/// Maximum number of times that a distance is doubled until it is no shorter than another.
 const DOUBLINGS: u32 = 32;
 
-/// A color at a reference distance, at another one; both are given by their halves. A reference of 0 is none.
+/// Returns a color that is given at a reference distance, at another distance; both are given by their halves. A
+/// reference of 0 means none.
 fn fallen<N: Number>(color: Color<N>, reference: N, distance: N) -> Color<N> {
     if reference <= N::ZERO {
         return color;
@@ -142,7 +143,7 @@ fn fallen<N: Number>(color: Color<N>, reference: N, distance: N) -> Color<N> {
     if distance <= N::ZERO {
         return Color::BLACK;
     }
-    // No ratio is above 1, which not every format could hold.
+    // No ratio is above 1, because not every format can hold such a ratio.
     let (mut far, mut doublings) = (distance, 0);
     while far < reference && doublings < DOUBLINGS {
         far = far + far;

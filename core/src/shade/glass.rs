@@ -1,7 +1,7 @@
 //! Glass: Snell's law, Fresnel's equations. One or two more rays per hit, and shadows through it.
 //!
-//! The index of refraction is kept as its inverse `k`, at most 1, and the refracted direction may
-//! have any length, so that every number here lies between -2 and 2.
+//! The index of refraction is stored as its inverse `k`, at most 1, and the refracted direction can
+//! have any length. So every number here lies between -2 and 2.
 
 use crate::accel::Number;
 use crate::format::Effects;
@@ -106,8 +106,8 @@ fn fresnel<N: Number>(k: N, cos_in: N, cos_out: N) -> N {
     sum.min(N::ONE)
 }
 
-/// Splits a ray of direction `d` (of length 1) at a surface. `normal` points to where the ray came
-/// from, `cos_in` is the cosine between them.
+/// Splits a ray of direction `d` (of length 1) at a surface. `normal` points to the ray's origin,
+/// `cos_in` is the cosine between them.
 pub(super) fn split<N: Number>(
     Interface { k, to_denser }: Interface<N>,
     d: [N; 3],
@@ -142,8 +142,8 @@ pub(super) fn split<N: Number>(
     }
 }
 
-/// The part of light that passes a surface straight on, as shadows do: what Fresnel's equations
-/// leave at the ray's angle, taken from outside whichever way it goes.
+/// Returns the part of light that passes a surface straight on, as for shadows. It is the part that
+/// Fresnel's equations transmit at the ray's angle, as seen from outside, for either direction.
 fn straight_through<N: Number>(k: N, cos_in: N) -> N {
     if k == N::ONE {
         return N::ONE;

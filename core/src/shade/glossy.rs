@@ -1,14 +1,14 @@
 //! Rough mirrors and rough glass: rays leave by random facets of the surface, and lights are reflected in all of them.
 //!
-//! One facet is drawn per hit, at which mirrors and glass send the rays that they send at a smooth surface. Lights that are
+//! One facet is drawn per hit. At it, mirrors and glass send the same rays as at a smooth surface. Lights that are
 //! surfaces, too, count once:
 //!
-//! - Below a roughness of 0.3 rays meet them, as in smooth mirrors. Random points of them would rarely lie where facets
-//!   mirror, and then be brighter than a sample can be.
-//! - From there on they are reflected by the formula, as are lights that no ray meets, and a ray that leaves by a facet
-//!   brings nothing of them.
+//! - Below a roughness of 0.3 rays hit them, as in smooth mirrors. Random points of them would rarely lie where facets
+//!   mirror, and would then be brighter than a sample can be.
+//! - From a roughness of 0.3 on the formula reflects them, and lights that no ray hits. A ray that leaves by a facet
+//!   then does not bring their light.
 //!
-//! The same holds for the sun of an environment. Its map is always met by rays.
+//! The same rules apply to the sun of an environment. Rays always bring its map.
 
 use crate::accel::Number;
 use crate::format::Effects;
@@ -24,10 +24,10 @@ use crate::shade::surface::{Bounce, Lighting, Secondary, Surface};
 
 pub(crate) struct Glossy;
 
-/// The α from which lights that are surfaces are reflected by the formula: that of a roughness of 0.3.
+/// The α from which the formula reflects lights that are surfaces: that of a roughness of 0.3.
 const WIDE: i32 = 96_636_764;
 
-/// What the point of a facet is drawn by.
+/// The dimension of the point that draws a facet.
 const FACET: u16 = 0x1010;
 
 impl Effect for Glossy {
@@ -45,7 +45,7 @@ impl Effect for Glossy {
         reflected: &mut Color<N>,
         gain: &mut u32,
     ) {
-        // No material says so, as with other effects: a section of the blob does.
+        // No material states it, unlike for other effects: a section of the blob does.
         let scene = tracer.scene();
         let Some(alpha) = scene.roughness(surface.hit.object) else {
             return;
@@ -97,7 +97,7 @@ impl Effect for Glossy {
                 .scene()
                 .roughness(hit.object)
                 .is_some_and(|alpha| alpha >= WIDE),
-            // Lights shine through glass and what is not there.
+            // Lights shine through glass and through transparent parts.
             RayKind::Refracted => tracer.kind() == RayKind::Glossy,
             _ => false,
         };
@@ -107,7 +107,7 @@ impl Effect for Glossy {
     }
 }
 
-/// Adds what facets mirror of a light to what is reflected of it, 2 to the power of the second number times as much.
+/// Adds the part of a light that facets mirror to its reflected part, times 2 to the power of the second number.
 #[inline(never)]
 fn mirrored<N: Number>(
     alpha: i32,
@@ -117,7 +117,7 @@ fn mirrored<N: Number>(
 ) -> (Color<N>, u32) {
     let Surface { material, .. } = *surface;
     let (normal, direction) = (surface.shading_normal, surface.direction);
-    // Halfway between the light and where the ray came from.
+    // Halfway between the light and the ray's origin.
     let axis = |k: usize| to_light[k].half() - direction[k].half();
     let (halfway, _) = N::normalize([axis(0), axis(1), axis(2)]);
     let cos_in = -N::from_wide(N::dot(direction, normal));

@@ -33,7 +33,7 @@ impl Effect for Highlight {
         if !surface.required.contains(Self::EFFECT) {
             return;
         }
-        // Halfway between the light and where the ray came from.
+        // Halfway between the light and the ray's origin.
         let axis = |k: usize| lighting.to_light[k].half() - surface.direction[k].half();
         let (halfway, _) = N::normalize([axis(0), axis(1), axis(2)]);
         let cos = N::from_wide(N::dot(surface.shading_normal, halfway))

@@ -1,8 +1,8 @@
-//! Indirect light: a surface is lit by what it sees, along one random direction for each hit.
+//! Indirect light: the surroundings of a surface light it, along one random direction per hit.
 //!
-//! Directions are drawn in proportion to the cosine to the normal, so a diffuse surface returns its color times the mean of
-//! what they bring (Kajiya, "The Rendering Equation", 1986; Malley's method: points of a disc raised to the hemisphere).
-//! What lights bring is left to the rays to them: a diffuse ray does not bring it again.
+//! Directions are drawn in proportion to the cosine to the normal, by Malley's method: points of a disc raised to the
+//! hemisphere. So a diffuse surface returns its color times the mean of the light from these directions (Kajiya, "The
+//! Rendering Equation", 1986). Rays to the lights bring the light of lights; a diffuse ray does not bring it again.
 
 use crate::accel::Number;
 use crate::format::Effects;
@@ -21,12 +21,12 @@ pub(crate) struct Indirect;
 const DIRECTION: u16 = 0x1030;
 
 impl Effect for Indirect {
-    /// How many diffuse reflections led to the surface.
+    /// Number of diffuse reflections that led to the surface.
     type State<N: Number> = [u8; INDIRECT as usize];
 
     const EFFECT: Effects = Effects::INDIRECT;
 
-    /// What a random direction brings may be brighter than a display shows: the mean counts.
+    /// The light from a random direction can be brighter than a display shows: the mean of the samples counts.
     const DEVELOPS: bool = true;
 
     #[inline(always)]
@@ -70,7 +70,7 @@ impl Effect for Indirect {
         _: &Hit<N>,
         secondary: &mut Secondary<N>,
     ) {
-        // Lights shine through glass and what is not there, too.
+        // Lights shine through glass and through transparent parts, too.
         if secondary.kind == RayKind::Refracted && tracer.kind() == RayKind::Diffuse {
             secondary.kind = RayKind::Diffuse;
         }

@@ -1,4 +1,4 @@
-//! Lights: where they are from a point, and what of them arrives.
+//! Lights: the way to them from a point, and their arriving light.
 
 use crate::accel::Number;
 use crate::format::record::Light;
@@ -45,13 +45,13 @@ pub(crate) fn length<N: Number>(q13: i32) -> N {
 pub(crate) struct Reach<N> {
     /// The direction, of length 1.
     pub(crate) unit: [N; 3],
-    /// Half the way's length, for which every format has room; at most half of
-    /// [`FAR`](crate::number::Scalar::FAR) along the largest component.
+    /// Half the way's length, which fits every format; at most half of [`FAR`](crate::number::Scalar::FAR) along the
+    /// largest component.
     pub(crate) half_length: N,
 }
 
 impl<N: Number> Reach<N> {
-    /// Of a way and its length along its largest component; `None` where it leads nowhere, or has no end.
+    /// From a way and its length along its largest component; `None` if it has no length, or no end.
     pub(crate) fn of(way: [N::Wide; 3], distance: Option<N::Wide>) -> Option<Self> {
         let (slopes, _) = N::slopes(way)?;
         let (unit, norm) = N::normalize(slopes);

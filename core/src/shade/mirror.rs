@@ -27,7 +27,7 @@ impl Effect for Mirror {
         surface: &Surface<'_, N>,
         bounce: &mut Bounce<N>,
     ) {
-        // Of a material without a mirror this is black, and no ray is sent.
+        // For a material without a mirror this is black, and no ray is sent.
         bounce.mirror(Color::ratios(surface.material.mirror));
     }
 }

@@ -53,7 +53,7 @@ macro_rules! list {
 effects!(list);
 
 impl Effects {
-    /// The effects that act on light that comes through surfaces. Without them a shadow ray stops at any hit.
+    /// The effects that act on light through surfaces. Without them a shadow ray stops at any hit.
     pub const FILTERING: Effects = Effects(<EffectsThen<()> as EffectList>::FILTERING);
 }
 

@@ -1,15 +1,15 @@
-//! Nested dielectrics: glass that overlaps other glass, such as a drink in a tumbler, of which the medium with the highest
-//! priority fills what both take.
+//! Nested dielectrics: glass that overlaps other glass, such as a drink in a tumbler. The medium with the highest
+//! priority fills the space that both occupy.
 //!
-//! Surfaces of the others are not there within it: a ray goes straight on, which counts as a bounce, and so does light. At
-//! what is left a ray is refracted from the medium on one side to that on the other. So a drink may reach into the wall
-//! of its tumbler, and there is neither a gap between them nor a face that both claim. Source: Schmidt and Budge, "Simple
-//! Nested Dielectrics in Ray Traced Images", 2002.
+//! Surfaces of the other media are ignored within it: a ray goes straight on, which counts as a bounce, and so does
+//! light. At the remaining surfaces a ray is refracted from the medium on one side to that on the other. So a drink can
+//! reach into the wall of its tumbler, without a gap between them and without a face that both claim. Source: Schmidt
+//! and Budge, "Simple Nested Dielectrics in Ray Traced Images", 2002.
 //!
-//! Rays from the camera, and those of the caller's own, begin outside of all media; a face that one meets from within says
-//! that it was inside. Glass without a priority is as it is elsewhere: relative to what surrounds it.
+//! Rays from the camera, and those of the caller's own, begin outside all media. If such a ray hits a face from within,
+//! it was inside that medium. Glass without a priority behaves as elsewhere: relative to its surroundings.
 //!
-//! A ray that waits carries four bytes more: how often it is inside of each medium. Functions are out of line, because copies
+//! A waiting ray needs four more bytes: how often it is inside each medium. Functions are out of line, because copies
 //! of them take more code than the calls.
 
 use crate::accel::Number;
@@ -104,7 +104,7 @@ impl Effect for Nested {
     }
 }
 
-/// The material of the medium that a ray came through to a face.
+/// The material of the medium that a ray passed on its way to a face.
 #[inline(never)]
 fn passed<'s>(
     scene: &'s Scene<'s>,
@@ -119,7 +119,7 @@ fn passed<'s>(
     medium(scene, place)
 }
 
-/// The medium before a face of what is no medium: within other glass it is that glass.
+/// The medium before a face that belongs to no medium: within other glass it is that glass.
 #[inline(always)]
 fn around(scene: &Scene<'_>, inside: Inside, object: u32, enters: bool) -> Option<u8> {
     let material = scene.material(object);
@@ -130,19 +130,19 @@ fn around(scene: &Scene<'_>, inside: Inside, object: u32, enters: bool) -> Optio
     inside.highest()
 }
 
-/// What a ray is inside of behind a face that it crosses.
+/// The media that a ray is inside of behind a face that it crosses.
 #[inline(never)]
 fn beyond(scene: &Scene<'_>, inside: Inside, object: u32, enters: bool) -> Inside {
     let boundary = Boundary::at(scene, inside, object, enters);
     boundary.map_or(inside, |boundary| boundary.beyond)
 }
 
-/// A face that a ray meets.
+/// A face that a ray hits.
 enum Face<N> {
-    /// Of what is no medium.
+    /// A face that belongs to no medium.
     Other,
     There(Interface<N>),
-    /// Within a medium with a higher priority.
+    /// A face within a medium with a higher priority.
     Hidden,
 }
 
@@ -155,7 +155,7 @@ fn met<N: Number>(scene: &Scene<'_>, inside: Inside, object: u32, enters: bool) 
     }
 }
 
-/// Takes light through a surface.
+/// Passes light through a surface.
 #[inline(never)]
 fn pass<'s, N: Number>(scene: &'s Scene<'s>, inside: &mut Inside, filter: &mut Filter<'s, '_, N>) {
     let (object, enters) = (filter.hit.object, filter.hit.front);
@@ -173,7 +173,7 @@ fn pass<'s, N: Number>(scene: &'s Scene<'s>, inside: &mut Inside, filter: &mut F
     *inside = boundary.beyond;
 }
 
-/// What a surface is that lies within a medium of a higher priority.
+/// The surface that replaces one within a medium of a higher priority.
 static NOTHING: Material = Material {
     diffuse: [0; 3],
     odd: [0; 3],
@@ -188,8 +188,8 @@ static NOTHING: Material = Material {
     maps: 0,
 };
 
-/// How often a ray is inside of each medium, up to 15 times: four bits each, from the highest priority on. Bytes, so that
-/// they fill gaps beside other states.
+/// How often a ray is inside each medium, up to 15 times: four bits each, from the highest priority on. Bytes, so that
+/// they fill gaps next to other states.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Inside([u8; 4 * NESTED as usize]);
 
@@ -205,14 +205,14 @@ impl Inside {
         u32::from_le_bytes(bytes)
     }
 
-    /// The medium that fills the place: the one with the highest priority of those that the ray is inside of.
+    /// The medium that fills the place: the one with the highest priority among those that the ray is inside of.
     #[inline(always)]
     fn highest(self) -> Option<u8> {
         let counts = self.counts();
         (counts != 0).then(|| (counts.trailing_zeros() / 4) as u8)
     }
 
-    /// Once more inside of a medium, or as often as it can be.
+    /// Counts an entry into a medium, up to the maximum.
     fn entered(self, place: u8) -> Self {
         self.with(place, |count| {
             if count < 15 {
@@ -223,7 +223,7 @@ impl Inside {
         })
     }
 
-    /// Once less inside of a medium; a ray that is not has begun in it.
+    /// Counts an exit from a medium. A ray that was not inside it has begun in it.
     fn left(self, place: u8) -> Self {
         self.with(place, |count| count.saturating_sub(1))
     }
@@ -246,12 +246,12 @@ struct Boundary {
     from: Option<u8>,
     /// That of the far side.
     to: Option<u8>,
-    /// What a ray on the far side is inside of.
+    /// The media that a ray on the far side is inside of.
     beyond: Inside,
 }
 
 impl Boundary {
-    /// The one of an object; `None` of what is no medium.
+    /// The medium of an object; `None` if it is no medium.
     #[inline(always)]
     fn at(scene: &Scene<'_>, inside: Inside, object: u32, enters: bool) -> Option<Self> {
         let place = scene.place_among_media(object)?;
@@ -272,7 +272,7 @@ impl Boundary {
         }
     }
 
-    /// Whether the media differ.
+    /// Returns true if the media differ.
     #[inline(always)]
     fn is_there(&self) -> bool {
         self.from != self.to
@@ -281,7 +281,7 @@ impl Boundary {
     #[inline(always)]
     fn interface<N: Number>(&self, scene: &Scene<'_>) -> Interface<N> {
         let [from, to] = [self.from, self.to].map(|place| {
-            // In the range also in a blob that nobody proved.
+            // Limited to the range for blobs that are not proved.
             let inverse = medium(scene, place).map_or(1 << 30, |medium| medium.inverse_ior);
             inverse.clamp(1 << 28, 1 << 30)
         });

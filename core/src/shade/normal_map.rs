@@ -1,10 +1,11 @@
-//! Normal maps: meshes are shaded by normals of an image, which stand for bumps.
+//! Normal maps: meshes are shaded by the normals of an image, which show bumps.
 //!
-//! The image is looked up as textures are. Its axes on a triangle are those in which its texture coordinates grow, made
-//! square to the normal that the triangle is shaded with otherwise: the smooth one, if it has one.
+//! The image is looked up in the same way as textures. Its axes on a triangle are the directions in which its texture
+//! coordinates grow. They are made perpendicular to the normal that shades the triangle otherwise: the smooth one, if
+//! it has one.
 //!
-//! The surface itself stays as it is. So, as with [smooth normals](super::smooth), light from behind a triangle does not
-//! reach its front, and rays that would go to the wrong side of it are turned into its plane.
+//! The surface itself is unchanged. So, as with [smooth normals](super::smooth), light from behind a triangle does not
+//! reach its front. Rays to the wrong side of it are turned into its plane.
 
 use crate::accel::Number;
 use crate::format::Effects;
@@ -107,8 +108,8 @@ impl Effect for NormalMap {
     }
 }
 
-/// The normal of a bump, given along u, against v and along the normal of a surface, on the side of that normal, which is
-/// the front's if `is_front`. `None` where it has no length.
+/// Returns the normal of a bump, given along u, against v and along the normal of a surface. It lies on the side of
+/// that normal, which is the front's if `is_front`. `None` if it has no length.
 ///
 /// Out of line, because copies of it took more of the call stack than the call.
 #[inline(never)]
@@ -118,7 +119,7 @@ fn bumped<N: Number>(
     normal: [N; 3],
     is_front: bool,
 ) -> Option<[N; 3]> {
-    // Where the back is seen, all of it is as it is from the front, and turned around.
+    // Where the back is seen, everything is computed as seen from the front, and then turned around.
     let front = if is_front { normal } else { normal.map(|x| -x) };
     let along = N::from_wide(N::dot(tangent.direction, front));
     let level = |k: usize| tangent.direction[k] - along * front[k];
@@ -131,7 +132,7 @@ fn bumped<N: Number>(
         |i: usize, j: usize| N::from_wide(front[i].wide(right[j]) - front[j].wide(right[i]));
     let up = [product(1, 2), product(2, 0), product(0, 1)];
     let y = if tangent.is_mirrored { -y } else { y };
-    // Halves, whose squares have room.
+    // Halves, whose squares fit.
     let part = |k: usize| (x * right[k]).half() + (y * up[k]).half() + (z * front[k]).half();
     let (bumped, length) = N::normalize([part(0), part(1), part(2)]);
     let turned = |normal: [N; 3]| if is_front { normal } else { normal.map(|x| -x) };

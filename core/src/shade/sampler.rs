@@ -1,4 +1,4 @@
-//! Random points that repeat, for the effects that draw some.
+//! Repeatable random points, for the effects that draw some.
 //!
 //! An effect asks the ray loop for a point of the unit square, at any of its places:
 //!
@@ -8,10 +8,10 @@
 //! let [sine, cosine] = Angle(v).sin_cos(); // a turn
 //! ```
 //!
-//! The point follows from five numbers, and from nothing else: column and row of the pixel, sample, bounce, and
-//! dimension. Pixel and sample are those of all rays that wait, and the ray loop knows the bounce by the ray's depth
-//! and kind, so a ray that waits carries nothing for it. The dimension tells apart what one ray draws points for. Two
-//! effects with one dimension would draw the same point, so each has numbers of its own:
+//! The point follows from only five numbers: column and row of the pixel, sample, bounce, and dimension. All waiting
+//! rays have the same pixel and sample, and the ray loop knows the bounce by the ray's depth and kind. So a waiting ray
+//! stores nothing for it. The dimension separates the points that one ray draws for different purposes. Two effects
+//! with one dimension would draw the same point, so each has numbers of its own:
 //!
 //! | dimension | what for | drawn at |
 //! |---|---|---|
@@ -22,15 +22,15 @@
 //! | 0x1020 | the environment as a light | `aim` |
 //! | 0x1030, 0x1031 | the direction of indirect light, and whether there is any | `bounce` |
 //!
-//! A point is one of Sobol's first two dimensions, which put one of the first 2^k points into every elementary
-//! interval of area 2^-k. Every pixel, bounce and dimension has a shuffle of the points and a scramble of each axis of
-//! its own, which keep that (Owen, "Randomly Permuted (t,m,s)-Nets and (t,s)-Sequences", 1995). Both are hashes that
-//! change no bit because of a lower one (Laine and Karras, "Stratified Sampling for Stochastic Transparency", 2011;
-//! Burley, "Practical Hash-based Owen Scrambling", 2020). So the samples of a pixel are spread evenly in each
+//! A point is one of Sobol's first two dimensions, which put one of the first 2^k points into every elementary interval
+//! of area 2^-k. Every pixel, bounce and dimension has its own shuffle of the points and its own scramble of each axis.
+//! They keep that property (Owen, "Randomly Permuted (t,m,s)-Nets and (t,s)-Sequences", 1995). Both are hashes that
+//! change no bit because of a lower one. (Laine and Karras, "Stratified Sampling for Stochastic Transparency", 2011;
+//! Burley, "Practical Hash-based Owen Scrambling", 2020.) So the samples of a pixel are spread evenly in each
 //! dimension, and independently of those of other dimensions, bounces and pixels.
 //!
-//! All is integers of 32 bits, without a table: every number format and machine draws the same points. A picture of
-//! 2^k samples is better than one of as many that are not a power of two.
+//! All arithmetic is in integers of 32 bits, without a table, so every number format and machine draws the same points.
+//! A picture of 2^k samples is better than one of a similar number that is not a power of two.
 
 /// The points of one sample of a pixel.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -54,8 +54,8 @@ impl Sampler {
 
     /// A point of the unit square, with 32 fraction bits.
     ///
-    /// `bounce` tells rays of a sample apart; `dimension` tells apart what is drawn for one ray: two effects, or two
-    /// lights, with the same number would draw the same point. Both may be any number.
+    /// `bounce` separates the rays of a sample. `dimension` separates the draws of one ray: two effects, or two lights,
+    /// with the same number would draw the same point. Both can be any number.
     ///
     /// ```
     /// use gridel_core::RayKind;
@@ -85,8 +85,8 @@ fn scrambled_point(index: u32, seed: u32) -> [u32; 2] {
     [first, second]
 }
 
-/// The second dimension of Sobol's sequence with its bits mirrored. Its generator matrix is Pascal's triangle modulo 2:
-/// a bit is the sum of those of the index whose numbers have all the bits of its own number (Lucas' theorem).
+/// The second dimension of Sobol's sequence with its bits mirrored. Its generator matrix is Pascal's triangle modulo 2.
+/// A bit is the sum of those bits of the index whose numbers have all the bits of its own number (Lucas' theorem).
 fn mirrored_second_dimension(index: u32) -> u32 {
     let mut x = index;
     x ^= x >> 1 & 0x5555_5555;
@@ -96,12 +96,12 @@ fn mirrored_second_dimension(index: u32) -> u32 {
     x ^ x >> 16
 }
 
-/// A value, scrambled: whether a bit changes depends on the seed and the higher bits.
+/// Returns a value, scrambled: the seed and the higher bits decide whether a bit changes.
 fn scrambled(value: u32, seed: u32) -> u32 {
     mirrored_scramble(value.reverse_bits(), seed)
 }
 
-/// The same for a value whose bits are mirrored; the result's are not.
+/// Scrambles a value whose bits are mirrored; the result's bits are not mirrored.
 ///
 /// Multiplication and addition carry upwards only. The constants are from Vegdahl, "Building a Better LK Hash", 2021.
 fn mirrored_scramble(mirrored: u32, seed: u32) -> u32 {
@@ -126,7 +126,7 @@ fn mixed(value: u32) -> u32 {
 mod tests {
     use super::*;
 
-    /// Samples that a pixel has at most.
+    /// Maximum number of samples per pixel.
     const MOST: u32 = 4096;
 
     fn unit(point: [u32; 2]) -> [f64; 2] {
@@ -164,7 +164,7 @@ mod tests {
 
     #[test]
     fn pixels_bounces_and_dimensions_are_independent() {
-        // The first points of many sequences, beside those of a neighbor: 3 / sqrt(n) is three standard errors.
+        // The first points of many sequences, and those of a neighbor: 3 / sqrt(n) is three standard errors.
         let side = 64_u16;
         let series = |axis: usize, of: &dyn Fn(u16, u16) -> [u32; 2]| -> Vec<f64> {
             let places = (0..side).flat_map(|y| (0..side).map(move |x| (x, y)));
@@ -234,7 +234,7 @@ mod tests {
         assert_eq!(points, POINTS, "{points:#x?}");
     }
 
-    /// Recorded: a change is a change of every picture with random effects.
+    /// Recorded: a change here changes every picture with random effects.
     const POINTS: [[u32; 2]; 3] = [
         [0x7b37_707d, 0x62db_3d6d],
         [0xba3c_0f94, 0x9b0e_e456],

@@ -11,7 +11,7 @@ use crate::shade::Color;
 use crate::shade::effect::{Effect, Tracer};
 use crate::shade::surface::{Filter, Lighting, Surface, depart, secondary_ray};
 
-/// How many surfaces a shadow ray passes; light that has to pass more does not arrive.
+/// Maximum number of surfaces that a shadow ray passes; light behind more surfaces does not arrive.
 const SURFACES: usize = 4 * MAX_RAY_DEPTH;
 
 pub(crate) struct Shadow;
@@ -33,7 +33,7 @@ impl Effect for Shadow {
         lighting: &Lighting<'_, N>,
         arriving: &mut Color<N>,
     ) {
-        // No material says so, as with other effects: the scene itself may do without shadows.
+        // No material states it, unlike for other effects: the scene itself can turn shadows off.
         if tracer.scene().effects().contains(Self::EFFECT) {
             *arriving = arriving.times(through(tracer, lighting));
         }
@@ -42,8 +42,8 @@ impl Effect for Shadow {
 
 /// The part of a light that arrives at a surface.
 ///
-/// Opaque objects let no light through. Light goes straight on through the others, and their effects reduce it at
-/// every surface.
+/// Opaque objects block all light. Light goes straight through the others, and their effects reduce it at every
+/// surface.
 fn through<'s, N: Number, X: Tracer<'s, N>>(
     tracer: &mut X,
     lighting: &Lighting<'_, N>,
@@ -59,7 +59,7 @@ fn through<'s, N: Number, X: Tracer<'s, N>>(
     } = *lighting;
     let mut left = Color::WHITE;
     for _ in 0..SURFACES {
-        // The light itself, and what touches it, casts no shadow.
+        // The light itself, and objects that touch it, cast no shadow.
         let end = distance.map(|distance| {
             let magnitude = extent(origin).max(N::narrow(distance));
             distance - N::error_bound(magnitude).widen()
@@ -101,8 +101,8 @@ fn through<'s, N: Number, X: Tracer<'s, N>>(
             return Color::BLACK;
         }
         origin = depart(scene, &hit, !hit.front, false);
-        // The way goes on along the same slopes, so its largest component stays the measure. It starts beside the
-        // surface: what lies at its end, such as the light itself, may be nearer by as much.
+        // The way continues along the same slopes, so its largest component stays the measure. It starts outside the
+        // surface. So objects at its end, such as the light itself, can be nearer by that distance.
         let beside = (hit.error + hit.error).widen();
         distance = distance.map(|distance| distance - hit.t - beside);
         if distance.is_some_and(|rest| rest <= zero) {

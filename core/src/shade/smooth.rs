@@ -1,14 +1,14 @@
 //! Smooth normals: meshes are shaded by the normals of their vertices.
 //!
-//! Which side is met, where rays start and what is inside stay matters of the triangle. So a ray that leaves must not
+//! The triangle determines the side that a ray hits, where rays start and what is inside. So a ray that leaves must not
 //! go to the wrong side of it:
 //!
-//! - **Lights** that the smooth normal faces and the triangle does not: the shadow ray starts from the curved
-//!   surface (see [`geometry::smooth`](crate::geometry::smooth)), or, where that lies beneath the triangle, the light
-//!   does not reach it.
-//! - **Mirrored and refracted rays** that would go to the wrong side are turned into the triangle's plane, as local
-//!   shading normals are adapted by Keller, Wächter, Raab, Seibert, van Antwerpen, Korndörfer and Kettner, "The Iray
-//!   Light Transport Simulation and Rendering System", 2017.
+//! - **Lights** that the smooth normal faces and the triangle does not: the shadow ray starts from the curved surface
+//!   (see [`geometry::smooth`](crate::geometry::smooth)). Where that surface lies beneath the triangle, the light does
+//!   not reach it.
+//! - **Mirrored and refracted rays** to the wrong side are turned into the triangle's plane. Local shading normals are
+//!   adapted in this way in "The Iray Light Transport Simulation and Rendering System", 2017. Its authors are Keller,
+//!   Wächter, Raab, Seibert, van Antwerpen, Korndörfer and Kettner.
 
 use crate::accel::Number;
 use crate::format::Effects;
@@ -37,7 +37,7 @@ impl Effect for Smooth {
         _: &Ray<N>,
         surface: &mut Surface<'_, N>,
     ) {
-        // No material says so, as with other effects: a mesh does.
+        // No material states it, unlike for other effects: a mesh does.
         if !tracer.scene().effects().contains(Self::EFFECT) {
             return;
         }
@@ -93,7 +93,7 @@ impl Effect for Smooth {
     }
 }
 
-/// Whether a light is on the other side of a surface than the ray that met it.
+/// Returns true if a light is on the other side of a surface than the origin of the ray that hit it.
 #[inline(always)]
 pub(super) fn is_behind<N: Number>(hit: &Hit<N>, to_light: [N; 3]) -> bool {
     let cos = N::dot(hit.normal, to_light);
@@ -101,7 +101,7 @@ pub(super) fn is_behind<N: Number>(hit: &Hit<N>, to_light: [N; 3]) -> bool {
     if hit.front { cos <= zero } else { cos >= zero }
 }
 
-/// Turns a ray that would go to the wrong side of a surface into its plane.
+/// Turns a ray to the wrong side of a surface into its plane.
 #[inline(always)]
 pub(super) fn keep_on_its_side<N: Number>(hit: &Hit<N>, secondary: &mut Secondary<N>) {
     let normal = if secondary.outward {
@@ -119,7 +119,7 @@ pub(super) fn keep_on_its_side<N: Number>(hit: &Hit<N>, secondary: &mut Secondar
     }
 }
 
-/// The normal, turned until it is level with a ray of length 1 that meets it from behind.
+/// Returns the normal, turned until it is level with a ray of length 1 that hits it from behind.
 #[inline(always)]
 pub(super) fn turned_to_ray<N: Number>(normal: [N; 3], direction: [N; 3]) -> [N; 3] {
     let along = N::from_wide(N::dot(normal, direction));
@@ -131,7 +131,7 @@ pub(super) fn turned_to_ray<N: Number>(normal: [N; 3], direction: [N; 3]) -> [N;
     if length > N::ZERO { level } else { normal }
 }
 
-/// Moves the start of the way to a light to the curved surface. Returns whether that lies above the triangle, farther
+/// Moves the start of the way to a light to the curved surface. Returns true if that lies above the triangle, farther
 /// than the error bound.
 #[cold]
 #[inline(never)]
@@ -150,7 +150,7 @@ fn lift<'s, N: Number, X: Tracer<'s, N>>(
     }
     let from = lighting.origin;
     lighting.origin = moved(from, way);
-    // Only a point is seen in another direction from there: of the others one was drawn, or they are far away.
+    // Only a point light has another direction from there: of the others one was drawn, or they are far away.
     if lighting.light.directional == 0 {
         (lighting.way, lighting.distance) = lighting.light.seen_from(lighting.origin);
     }

@@ -1,4 +1,4 @@
-//! The surface that a ray hits, as effects see it.
+//! The surface that a ray hits, as effects use it.
 
 use crate::accel::Number;
 use crate::format::Effects;
@@ -16,10 +16,10 @@ use crate::shade::facets::Facets;
 pub(crate) struct Surface<'h, N: Number> {
     pub(crate) hit: &'h Hit<N>,
     pub(crate) material: &'h Material,
-    /// The effects that the material requires, asked once per hit.
+    /// The effects that the material requires, looked up once per hit.
     pub(crate) required: Effects,
-    /// The normal that lights and secondary rays are computed with, on the side that the ray came from: the geometric
-    /// normal of `hit`, unless an effect changes it.
+    /// The normal for lights and secondary rays, on the side that the ray came from: the geometric normal of `hit`,
+    /// unless an effect changes it.
     pub(crate) shading_normal: [N; 3],
     /// The ray's direction, with length 1 if an effect in use needs that.
     pub(crate) direction: [N; 3],
@@ -28,17 +28,17 @@ pub(crate) struct Surface<'h, N: Number> {
     pub(crate) weight: Color<N>,
     /// The ratio of the light from behind that passes the surface straight on.
     pub(crate) passing: Color<N>,
-    /// What meets there; `None` for the material and the surroundings.
+    /// The media that meet there; `None` for the material and the surroundings.
     pub(crate) interface: Option<Interface<N>>,
-    /// How much of the texture coordinates the sample sees; a point, unless an effect knows better.
+    /// The area of texture coordinates that the sample covers; a point, unless an effect computes it.
     pub(crate) footprint: Footprint,
 }
 
-/// A ray that has come to a hit.
+/// A ray that reached a hit.
 pub(crate) struct Arrival<'s, 'h, N: Number> {
     pub(crate) hit: &'h Hit<N>,
     pub(crate) material: &'h Material,
-    /// What the ray came through, if an effect knows it.
+    /// The material that the ray passed, if an effect knows it.
     pub(crate) medium: Option<&'s Material>,
     /// The ratio of the light from there that arrives at the eye.
     pub(crate) weight: Color<N>,
@@ -49,12 +49,12 @@ pub(crate) struct Arrival<'s, 'h, N: Number> {
 pub(crate) struct Interface<N> {
     /// The lower index of refraction over the higher one, 0.25 to 1.
     pub(crate) k: N,
-    /// Whether the ray goes to the one with the higher index.
+    /// True if the ray goes to the one with the higher index.
     pub(crate) to_denser: bool,
 }
 
 impl<N: Number> Surface<'_, N> {
-    /// What meets there.
+    /// The media that meet there.
     #[inline(always)]
     pub(crate) fn interface(&self) -> Interface<N> {
         let of_material = || Interface::of(self.hit, self.material);
@@ -76,22 +76,22 @@ impl<N: Number> Interface<N> {
 /// A light, seen from a surface.
 pub(crate) struct Lighting<'l, N: Number> {
     pub(crate) light: &'l Light,
-    /// Where the way to the light starts.
+    /// The start of the way to the light.
     pub(crate) origin: [N; 3],
     /// The way to the light, of any length.
     pub(crate) way: [N::Wide; 3],
-    /// How far the light is along the largest component of `way`; `None` for infinitely far.
+    /// The distance of the light along the largest component of `way`; `None` for infinitely far.
     pub(crate) distance: Option<N::Wide>,
     /// The direction of the light, with length 1.
     pub(crate) to_light: [N; 3],
     /// The length of `way`, of whose largest component this is a multiple: 1 to the square root of 3.
     pub(crate) norm: N,
-    /// Where the light is a sphere, how it is seen.
+    /// The cone of the light, if the light is a sphere.
     pub(crate) cone: Option<Cone<N>>,
 }
 
 impl<N: Number> Lighting<'_, N> {
-    /// Half the distance of the light, for which every format has room; `None` for infinitely far.
+    /// Half the distance of the light, which fits every format; `None` for infinitely far.
     #[inline(always)]
     pub(crate) fn half_distance(&self) -> Option<N> {
         Some(N::narrow(self.distance?).half() * self.norm)
@@ -112,37 +112,37 @@ pub(crate) struct Cone<N> {
 pub(crate) struct Aim<N: Number> {
     /// The way, of any length.
     pub(crate) way: [N::Wide; 3],
-    /// How far the light is along the largest component of `way`; `None` for infinitely far.
+    /// The distance of the light along the largest component of `way`; `None` for infinitely far.
     pub(crate) distance: Option<N::Wide>,
-    /// Where the light is a sphere, how it is seen.
+    /// The cone of the light, if the light is a sphere.
     pub(crate) cone: Option<Cone<N>>,
 }
 
-/// A surface in the way of light to another one.
+/// A surface between a light and another surface.
 pub(crate) struct Filter<'s, 'h, N: Number> {
     pub(crate) hit: &'h Hit<N>,
     pub(crate) material: &'h Material,
     /// The direction of the light, with length 1.
     pub(crate) to_light: [N; 3],
-    /// The ratio of the light that is left.
+    /// The ratio of the light that remains.
     pub(crate) left: Color<N>,
-    /// What the light came through, if an effect knows it.
+    /// The material that the light passed, if an effect knows it.
     pub(crate) medium: Option<&'s Material>,
-    /// What meets there; `None` for the material and the surroundings.
+    /// The media that meet there; `None` for the material and the surroundings.
     pub(crate) interface: Option<Interface<N>>,
-    /// Whether anything passes: no surface lets light through unless an effect says so.
+    /// True if any light passes: no surface transmits light unless an effect says so.
     pub(crate) passes: bool,
 }
 
-/// A surface that may send rays on.
+/// A surface that can send secondary rays.
 pub(crate) struct Bounce<N: Number> {
     /// The normal at which the ray is mirrored and refracted: that for shading, unless an effect draws a facet.
     pub(crate) normal: [N; 3],
-    /// The cosine between that normal and the way back to where the ray came from.
+    /// The cosine between that normal and the way back to the ray's origin.
     pub(crate) cos_in: N,
     /// The ratio that is mirrored, `None` if no effect mirrors. All effects share one mirrored ray.
     pub(crate) mirrored: Option<Color<N>>,
-    /// The facets of which the normal is one; `None` for a smooth surface.
+    /// The facets to which the normal belongs; `None` for a smooth surface.
     pub(crate) facets: Option<Facets<N>>,
 }
 
@@ -156,7 +156,7 @@ impl<N: Number> Bounce<N> {
         });
     }
 
-    /// The weight of a ray that leaves, without what facets keep.
+    /// The weight of a ray that leaves, without the part that facets absorb.
     #[inline(always)]
     pub(crate) fn leaving(&self, hit: &Hit<N>, secondary: Secondary<N>) -> Secondary<N> {
         match &self.facets {
@@ -182,8 +182,8 @@ pub(crate) struct Secondary<N: Number> {
     pub(crate) weight: Color<N>,
 }
 
-/// Where a ray starts that leaves a hit. On its way to a light it may start on the surface itself, because it is
-/// known to lead away from it; what is mirrored may be rounded into the surface.
+/// Returns the start of a ray that leaves a hit. On its way to a light the ray can start on the surface itself, because
+/// it certainly leads away from it. A mirrored ray can be rounded into the surface.
 ///
 /// Out of line, because copies of it took more of the call stack than the call.
 #[inline(never)]
@@ -200,8 +200,8 @@ pub(crate) fn depart<N: Number>(
     }
 }
 
-/// A ray from a hit, with all `t` up to an end, or without one. Only in scenes with shapes without bounds it can start,
-/// and end, far from the scene's box.
+/// Returns a ray from a hit, with all `t` up to an end, or without one. Only in scenes with shapes without bounds it
+/// can start, and end, far from the scene's box.
 #[inline(always)]
 pub(crate) fn secondary_ray<N: Number>(
     scene: &Scene<'_>,

@@ -1,5 +1,5 @@
-//! Mock effects, one at each place where effects attach: each is seen to act. That they do nothing where
-//! they are not in use the self-tests show, whose pictures have their hashes with these effects listed.
+//! Mock effects, one at each place where effects attach, which test that each effect acts. The self-tests show that
+//! they do nothing where they are not in use, because their pictures keep their hashes with these effects listed.
 
 mod mocks;
 
@@ -74,7 +74,7 @@ fn background() -> [u16; 3] {
     picture::<f32, TRUE>(0).0[0]
 }
 
-/// Whether each channel of a pixel is a part of another's, rounding apart.
+/// Returns true if each channel of a pixel is a part of another's, except for rounding.
 fn is_part(part: u32, [whole, found]: [[u16; 3]; 2]) -> bool {
     whole
         .into_iter()
@@ -218,7 +218,7 @@ fn pixel_mock_quarters_radiance_before_it_is_limited() {
 
 #[test]
 fn state_mock_is_inherited_by_the_rays_that_wait() {
-    // Each ray goes straight on, and through glass nothing else does.
+    // Each ray goes straight on, and through glass only that ray does.
     const MOCK: u32 = TRUE | Pane::BITS | Trail::BITS | Matt::BITS | Tint::BITS;
     let white = |parts: i32| (65_535 * parts / Trail::PARTS) as u16;
     let (alone, _) = picture::<f32, { TRUE | Trail::BITS }>(0);

@@ -1,7 +1,8 @@
 //! Textures: the diffuse color of a mesh is weighted by that of an image.
 //!
 //! The image is looked up at the interpolated texture coordinates of the triangle's vertices: see
-//! [`attributes`](crate::geometry::attributes). Cost: beside the interpolation, one texel or four.
+//! [`attributes`](crate::geometry::attributes). Cost: one texel or four, in addition to the
+//! interpolation.
 
 use crate::accel::Number;
 use crate::format::Effects;

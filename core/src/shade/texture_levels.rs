@@ -1,15 +1,18 @@
-//! Texture levels: what is far away shows smaller copies of a texture, whose texels are as large as what a sample sees of it.
+//! Texture levels: distant surfaces show smaller copies of a texture, whose texels are as large as the area that a
+//! sample covers.
 //!
-//! A sample is seen as a cone: one around the ray of a pinhole camera, as wide as the distance to the samples beside it.
-//! Where it meets a surface after a path of any number of rays, the area that it covers is compared with that of texels,
-//! and textures and normal maps are mixed from the two levels next to that. This is the method of T. Akenine-Möller and
-//! others, "Texture Level of Detail Strategies for Real-Time Ray Tracing" (*Ray Tracing Gems*, 2019), but for the area:
-//! they take its longer axis, which blurs too much where several samples share a pixel. With more samples per pixel cones
-//! are narrower, so pictures become sharper and converge to what they are without levels.
+//! A sample is treated as a cone around the ray of a pinhole camera, as wide as the distance to the neighboring
+//! samples. It can hit a surface after a path of any number of rays. There the area that it covers is compared with
+//! that of texels, and textures and normal maps are mixed from the two nearest levels.
 //!
-//! Curved mirrors and lenses change no cone, nor do rough and matt surfaces, which draw the directions of rays at random.
-//! Shadow rays, and rays of the caller's own, see whole images. All of it is integer arithmetic on logarithms, and a ray
-//! that waits holds two bytes more.
+//! This is the method of T. Akenine-Möller and others, "Texture Level of Detail Strategies for Real-Time Ray Tracing"
+//! (*Ray Tracing Gems*, 2019), with one difference, the area. They use its longer axis, which blurs too much where
+//! several samples share a pixel. With more samples per pixel cones are narrower, so pictures become sharper and
+//! converge to those without levels.
+//!
+//! Curved mirrors and lenses do not change cones. Rough and matt surfaces, which draw the directions of rays at random,
+//! do not change them either. Shadow rays, and rays of the caller's own, see whole images. All arithmetic is in
+//! integers, on logarithms, and a waiting ray holds two more bytes.
 
 use crate::accel::Number;
 use crate::format::Effects;
@@ -69,20 +72,20 @@ fn log2_of_ratio<N: Number>(ratio: N) -> i32 {
     log2(u64::from(ratio.to_q30().unsigned_abs())).wrapping_sub(log2_of_power(30))
 }
 
-/// How long the rays are that led to a hit, all together: the binary logarithm of that length in 2^-13 units, plus 1; 0
-/// where no ray has been followed yet. Bytes, so that they fill gaps beside other states.
+/// The total length of the rays that led to a hit. It is the binary logarithm of that length in 2^-13 units, plus 1; 0
+/// before the first ray. Bytes, so that they fill gaps next to other states.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct PathLength([u8; 2]);
 
 impl PathLength {
-    /// The sum with a length of which the logarithm is given.
+    /// Returns the sum with a length, given its logarithm.
     #[inline(always)]
     fn longer_by(self, log2_steps: i32) -> Self {
         let longer = match u16::from_le_bytes(self.0).checked_sub(1) {
             Some(length) => log2_of_sum(length.into(), log2_steps),
             None => log2_steps,
         };
-        // Less than 2^65 steps, so far below what there is room for.
+        // Less than 2^65 steps, far below the limit.
         Self((longer.max(0) as u16).wrapping_add(1).to_le_bytes())
     }
 

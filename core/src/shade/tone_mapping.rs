@@ -4,8 +4,8 @@
 //!
 //! - **Reinhard**: x / (1 + x) (Reinhard, Stark, Shirley and Ferwerda, "Photographic Tone Reproduction for Digital
 //!   Images", 2002);
-//! - **ACES-like**: x (2.51 x + 0.03) / (x (2.43 x + 0.59) + 0.14), at most 1, a curve near that of the Academy Color
-//!   Encoding System (Narkowicz, "ACES Filmic Tone Mapping Curve", 2015).
+//! - **ACES-like**: x (2.51 x + 0.03) / (x (2.43 x + 0.59) + 0.14), at most 1. The curve is near that of the Academy
+//!   Color Encoding System (Narkowicz, "ACES Filmic Tone Mapping Curve", 2015).
 //!
 //! Both are computed from r = x / (1 + x), a ratio in every number format.
 

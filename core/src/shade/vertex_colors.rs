@@ -23,7 +23,7 @@ impl Effect for VertexColors {
         _: &Ray<N>,
         surface: &mut Surface<'_, N>,
     ) {
-        // No material says so, as with other effects: a mesh does.
+        // No material states it, unlike for other effects: a mesh does.
         if !tracer.scene().effects().contains(Self::EFFECT) {
             return;
         }

@@ -59,7 +59,7 @@ impl Simd for Portable {
 /// The signed bytes of words as numbers, the low ones in the first four lanes; exact.
 #[inline(always)]
 fn from_signed_bytes(words: &[u16; 4]) -> Vec4x2 {
-    // In terms that the compiler finds lanes in.
+    // In a form in which the compiler finds lanes.
     let low = words.map(|word| f32::from((word & 0xff) ^ 0x80));
     let high = words.map(|word| f32::from(word as i16 >> 8));
     Vec4x2([

@@ -1,10 +1,10 @@
 //! Eight numbers of single precision at once, with the instructions that the processor has.
 //!
-//! Additions, subtractions and products are those of IEEE 754 in every lane, never fused, so a
-//! kernel gives the same bits here as one number at a time, and the same bits with any instructions.
+//! Additions, subtractions and products are those of IEEE 754 in every lane, never fused. So a kernel gives the same
+//! bits here as one number at a time, and the same bits with any instructions.
 //!
-//! A kernel is generic over [`Simd`], whose values prove that the processor has the instructions, and
-//! [`Simd::call`] compiles it for them: every function that the kernel calls must be inlined into it.
+//! A kernel is generic over [`Simd`], whose values prove that the processor has the instructions. [`Simd::call`]
+//! compiles it for them: every function that the kernel calls must be inlined into it.
 
 #[cfg(all(feature = "avx2", target_arch = "x86_64"))]
 #[path = "f32x8_avx2.rs"]
@@ -23,7 +23,7 @@ use core::ops::{Add, Mul, Sub};
 /// them.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum SimdLevel {
-    /// Those that the program is built for, four lanes at a time.
+    /// The instructions that the program is built for, four lanes at a time.
     #[default]
     Portable,
     /// AVX2, eight lanes at a time; only in builds for x86-64 with the feature `avx2`.
@@ -80,11 +80,11 @@ pub trait Simd: Copy {
     fn of_u16(self, lanes: &[u16; 8]) -> Self::F32x8;
     /// Integers as numbers; exact below 2^24.
     fn of_i32(self, lanes: &[i32; 8]) -> Self::F32x8;
-    /// Integers of 24 bits as numbers, given by their low 16 bits, and by their high 8 as the bytes of
-    /// words, the low ones in the first four lanes; exact.
+    /// Converts integers of 24 bits to numbers, exactly. Their low 16 bits are given, and their high 8 as the bytes of
+    /// words, the low ones in the first four lanes.
     fn of_i24(self, low: &[u16; 8], high: &[u16; 4]) -> Self::F32x8;
-    /// Calls a function, out of line, that is compiled for these instructions. Arguments are handed
-    /// over one by one, so that they stay in registers.
+    /// Calls a function, out of line, that is compiled for these instructions. Arguments are passed one by one, so that
+    /// they stay in registers.
     fn call<A, B, C, D, E, R>(
         self,
         function: impl FnOnce(Self, A, B, C, D, E) -> R,
@@ -104,11 +104,11 @@ pub trait F32x8: Copy + Add<Output = Self> + Sub<Output = Self> + Mul<Output = S
     fn abs(self) -> Self;
     /// Every lane's neighbor above; the last stays.
     fn next(self) -> Self;
-    /// A bit for each lane that is at most the other's.
+    /// One bit for each lane that is at most the other's.
     fn at_most(self, other: Self) -> u32;
-    /// A bit for each lane whose sign is minus.
+    /// One bit for each lane whose sign is minus.
     fn signs(self) -> u32;
-    /// A bit for each lane that is zero.
+    /// One bit for each lane that is zero.
     fn zero(self) -> u32;
 }
 

@@ -1,4 +1,4 @@
-//! AVX2 in builds that cannot use it: a proof that no processor gives.
+//! AVX2 in builds that cannot use it: its proof has no value.
 
 use crate::simd::{Portable, Simd};
 

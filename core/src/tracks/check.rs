@@ -7,7 +7,7 @@ use crate::format::{BlobError, Field, Location, Reason, SectionKind};
 use crate::number::Angle;
 use crate::tracks::records::Records;
 
-/// Proves all that is in the tracks of a blob with these lights and so many materials.
+/// Proves all that is in the tracks of a blob with these lights and this many materials.
 pub(super) fn check(
     records: &Records<'_>,
     lights: &[Light],
@@ -55,7 +55,7 @@ pub(super) fn check(
     Location::Section(SectionKind::Tracks).ensure(is_whole(camera), Reason::CameraInPart)
 }
 
-/// Proves that joints hang on joints before them, and so many instances on joints.
+/// Proves that joints hang on earlier joints, and this many instances on joints.
 pub(super) fn check_joints(records: &Records<'_>, instances: usize) -> Result<(), BlobError> {
     let section = SectionKind::Joints;
     for (index, joint) in records.joints.iter().enumerate() {
@@ -80,7 +80,7 @@ pub(super) fn check_joints(records: &Records<'_>, instances: usize) -> Result<()
     Ok(())
 }
 
-/// Whether tracks of the camera, a bit for each, are none or all that one needs.
+/// Returns true if tracks of the camera, a bit for each, are either none or all that it needs.
 fn is_whole(camera: u32) -> bool {
     use TrackTarget::{
         CameraEye, CameraFieldOfView, CameraOrbit, CameraRotation, CameraTarget, CameraUp,
@@ -92,7 +92,7 @@ fn is_whole(camera: u32) -> bool {
     [0, aimed, aimed | bit(CameraOrbit), turned].contains(&camera)
 }
 
-/// Proves what a track says of itself; returns what it moves.
+/// Proves the numbers in a track; returns its target.
 fn check_track(
     at: At,
     track: &Track,
@@ -137,14 +137,14 @@ fn check_track(
     Ok(target)
 }
 
-/// Times and words that tracks have taken.
+/// Times and words that earlier tracks use.
 #[derive(Clone, Copy, Default)]
 struct Taken {
     times: usize,
     words: usize,
 }
 
-/// Proves the keys of a track, which come behind those of the tracks before.
+/// Proves the keys of a track, which follow those of the tracks before.
 fn check_keys(
     records: &Records<'_>,
     at: At,
@@ -159,7 +159,7 @@ fn check_keys(
     };
     exactly(Field::FirstTime, track.first_time, next.times)?;
     exactly(Field::FirstWord, track.first_word, next.words)?;
-    // Both behind each other, so the keys are fewer than the words.
+    // Both arrays are contiguous, so there are fewer keys than words.
     let left = records.times.len().saturating_sub(next.times);
     let words_left = records.words.len().saturating_sub(next.words);
     let most = left.min(words_left.checked_div(stride).unwrap_or(0));
@@ -194,7 +194,7 @@ fn check_value(
 ) -> Result<(), BlobError> {
     let section = SectionKind::TrackWords;
     let components = kind.components();
-    // The changes of a spline may be any.
+    // The changes of a spline can be any number.
     let before = match interpolation {
         Interpolation::Cubic => components,
         _ => 0,

@@ -4,12 +4,12 @@ use crate::format::track::{Interpolation, Track, ValueKind};
 use crate::number::Angle;
 use crate::tracks::Tracks;
 
-/// A value of so many components.
+/// A value with this many components.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Sample<const N: usize> {
-    /// That of a key.
+    /// The value of a key.
     Key([i32; N]),
-    /// One between two keys, and that of the earlier one.
+    /// A value between two keys, and that of the earlier one.
     Between([i32; N], [i32; N]),
 }
 
@@ -21,14 +21,14 @@ impl<const N: usize> Sample<N> {
     }
 }
 
-/// How much of the time between two keys has passed; neither none nor all of it.
+/// The part of the time between two keys that has passed; neither none nor all of it.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Part {
     elapsed: u32,
     duration: u32,
 }
 
-/// The key at or before a time, or else the first, and how far the time is towards the next one.
+/// Returns the key at or before a time, or else the first, and how far the time is towards the next one.
 fn locate(times: &[i32], time: i32) -> (usize, Option<Part>) {
     let after = times.partition_point(|&key| key <= time);
     let key = after.saturating_sub(1);
@@ -59,7 +59,7 @@ impl Tracks<'_> {
         let words = self.0.words.get(track.first_word as usize..)?;
         let words = words.get(key.wrapping_mul(stride)..)?;
         let take = |start: usize| words.get(start..)?.first_chunk::<N>().copied();
-        // Of a spline the value stands between the two changes.
+        // A spline has the value between its two changes.
         let spline = interpolation == Interpolation::Cubic;
         let value = take(if spline { N } else { 0 })?;
         let Some(part) = part.filter(|_| interpolation != Interpolation::Step) else {
@@ -83,7 +83,7 @@ impl Tracks<'_> {
                 _ => each([value, next], |[from, to]| linear(from, to, part)),
             }
         };
-        // A spline may lead beyond; what is made as long as 1 keeps its way.
+        // A spline can leave the range; a direction that is scaled to length 1 keeps its course.
         let [low, high] = match kind.has_length() {
             true => [i32::MIN, i32::MAX],
             false => kind.range(),
@@ -106,7 +106,7 @@ fn each<const N: usize, const M: usize>(
 }
 
 impl Part {
-    /// As a fraction with 32 bits, to nearest. It is below 1: the least that is left is more than 2^-32.
+    /// The part as a fraction with 32 bits, to nearest. It is below 1: the remaining part is at least 2^-32.
     fn fraction(self) -> u32 {
         let Self { elapsed, duration } = self;
         let half = u64::from(duration / 2);
@@ -115,7 +115,7 @@ impl Part {
     }
 }
 
-/// The nearest number on the way from one to another, and of two the later.
+/// Returns the nearest number on the way from one to another; of two, the later.
 fn linear(from: i32, to: i32, Part { elapsed, duration }: Part) -> i32 {
     let change = u64::from(to.abs_diff(from));
     // Below 2^64: both factors are below 2^32, and one is less by 2.
@@ -129,12 +129,12 @@ fn linear(from: i32, to: i32, Part { elapsed, duration }: Part) -> i32 {
     }
 }
 
-/// Fraction bits of what a spline adds up.
+/// Fraction bits of the sums of a spline.
 const GUARD_BITS: u32 = 16;
 
-/// The cubic Hermite spline through two values, with the changes per segment with which the first is left and the
-/// second entered. Within 1/2 + 2^-14 + slope * 2^-33 of the exact number, the slope being the steepest per segment;
-/// values beyond the range are at its end.
+/// Returns the cubic Hermite spline through two values. The changes per segment at the exit of the first and the entry
+/// of the second are given. The result is within 1/2 + 2^-14 + slope * 2^-33 of the exact number, the slope being the
+/// steepest per segment. Values beyond the range are moved to its end.
 fn cubic([from, leaving, entering, to]: [i32; 4], part: u32) -> i32 {
     let [from, leaving, entering, to] = [from, leaving, entering, to].map(i64::from);
     let change = to.wrapping_sub(from);
@@ -158,8 +158,9 @@ fn times(number: i64, fraction: u32) -> i64 {
     high.wrapping_add(low as i64)
 }
 
-/// The quaternion on the arc from one to another, between which lies an angle of at most a quarter of a turn; of any
-/// length. Turns evenly, as spherical interpolation does: at length 1 each component is within 2^-27 of its.
+/// Returns the quaternion on the arc from one to another, of any length. Between the two lies an angle of at most a
+/// quarter of a turn. Turns evenly, as spherical interpolation does: at length 1 each component is within 2^-27 of the
+/// exact one.
 fn turned<const N: usize>(from: [i32; N], to: [i32; N], angle: Angle, part: u32) -> [i32; N] {
     let passed = u64::from(angle.0).wrapping_mul(part.into());
     let passed = Angle((passed.wrapping_add(1 << 31) >> 32) as u32);
@@ -178,7 +179,7 @@ fn turned<const N: usize>(from: [i32; N], to: [i32; N], angle: Angle, part: u32)
         // They are the same rotation.
         return from;
     }
-    // The largest component takes 30 bits: small angles have small sines.
+    // The largest component gets 30 bits: small angles have small sines.
     let down = 34_u32.saturating_sub(all.leading_zeros());
     let up = all.leading_zeros().saturating_sub(34);
     sums.map(|sum| (sum.wrapping_shl(up) >> down) as i32)

@@ -6,12 +6,12 @@ use crate::scene::{Motion, PosesView, Position, Scene};
 use crate::tracks::Tracks;
 
 impl<'a> Tracks<'a> {
-    /// The joints that instances hang on; those that others hang on come before them.
+    /// The joints on which instances hang; a joint comes before those that hang on it.
     pub fn joints(&self) -> &'a [Joint] {
         self.0.joints
     }
 
-    /// The joint of an instance, given by its index among [`Scene::instances`]; `None` where it hangs on none.
+    /// The joint of an instance, given by its index among [`Scene::instances`]; `None` if it hangs on none.
     pub fn joint_of(&self, instance: usize) -> Option<usize> {
         let joint = self.0.instance_joints.get(instance).copied();
         joint
@@ -19,7 +19,7 @@ impl<'a> Tracks<'a> {
             .map(|joint| joint as usize)
     }
 
-    /// Writes the motions of all joints at a time, with those of what they hang on.
+    /// Writes the motions of all joints at a time. Each includes the motions of the joints on which it hangs.
     ///
     /// # Errors
     /// If there are more or fewer motions than joints.
@@ -31,7 +31,7 @@ impl<'a> Tracks<'a> {
         self.chain(motions)
     }
 
-    /// Adds to the motion of each joint, as it is by itself, that of what it hangs on: for a program that bends joints.
+    /// Adds to the own motion of each joint that of the joint on which it hangs. For a program that bends joints.
     ///
     /// ```
     /// # static BLOB: &[u8] =
@@ -67,7 +67,7 @@ impl<'a> Tracks<'a> {
     pub fn chain(&self, motions: &mut [Motion]) -> Result<(), BlobError> {
         self.check_count(motions)?;
         for (index, joint) in self.0.joints.iter().enumerate() {
-            // Those before are whole by now.
+            // Earlier joints are complete here.
             let parent = motions.get(joint.parent as usize).copied();
             if let (Some(parent), Some(motion)) = (parent, motions.get_mut(index)) {
                 *motion = motion.then(&parent);
@@ -76,11 +76,12 @@ impl<'a> Tracks<'a> {
         Ok(())
     }
 
-    /// Places the instances that hang on joints, given the joints' motions with those of what they hang on.
+    /// Places the instances that hang on joints, given the joints' motions, which include those of the joints on which
+    /// they hang.
     ///
     /// # Errors
-    /// If there are more or fewer motions than joints, or an instance would be too far away, too large or too small for the
-    /// scene's lattice.
+    /// If there are more or fewer motions than joints. Also if an instance would be too far away, too large or too
+    /// small for the scene's lattice.
     pub fn place(
         &self,
         scene: &Scene<'_>,
@@ -108,7 +109,7 @@ impl<'a> Tracks<'a> {
         })
     }
 
-    /// The motion of a joint by itself.
+    /// The own motion of a joint.
     fn own_motion(&self, number: u32, joint: &Joint, time: i32) -> Motion {
         let pivot = Position(joint.pivot);
         let mut own = Motion::REST;

@@ -1,9 +1,9 @@
-//! Tracks: how the camera, lights, materials and instances of a blob change with time.
+//! Tracks: changes of the camera, lights, materials and instances of a blob with time.
 //!
-//! A blob may hold tracks, each of which gives a property values at certain times. [`Tracks`] reads them in place, and
-//! computes the state at any time in integers: the same on every machine and in every number format. The state is
-//! borrowed by a changed scene as values of a program's own are: see [`Scene::with_view`](crate::Scene::with_view),
-//! [`with_lights`](crate::Scene::with_lights) [`with_materials`](crate::Scene::with_materials) and
+//! A blob can hold tracks, each of which gives a property values at certain times. [`Tracks`] reads them in place, and
+//! computes the state at any time in integers: the same on every machine and in every number format. A changed scene
+//! borrows the state in the same way as a program's own values. See [`Scene::with_view`](crate::Scene::with_view),
+//! [`with_lights`](crate::Scene::with_lights), [`with_materials`](crate::Scene::with_materials) and
 //! [`with_poses`](crate::Scene::with_poses).
 
 mod check;
@@ -21,9 +21,9 @@ use records::Records;
 
 /// The tracks of a blob, read in place.
 ///
-/// [`Scene::from_bytes`](crate::Scene::from_bytes) passes over them, so that a program that asks for no time stores
-/// their bytes and runs no code for them. [`Scene`](crate::Scene) and tracks are independent: a time changes
-/// nothing until a scene is given its state.
+/// [`Scene::from_bytes`](crate::Scene::from_bytes) ignores them, so a program that does not use tracks costs only the
+/// bytes of their sections. [`Scene`](crate::Scene) and tracks are independent: a time changes nothing until a scene is
+/// given its state.
 ///
 /// Times are ticks, [`ticks_per_second`](Self::ticks_per_second) of them in a second. Before the first key of a track
 /// its first value holds, and behind the last key the last one.
@@ -58,14 +58,14 @@ const STILL: Timeline = Timeline {
 };
 
 impl<'a> Tracks<'a> {
-    /// Checks the tracks of a blob and returns them. A blob without tracks has none, which is no error.
+    /// Checks the tracks of a blob and returns them. A blob without tracks is valid; the result is then empty.
     ///
-    /// Proves that tracks take all keys and words in their order, that times ascend, that every value is in its range,
-    /// that lights, materials and joints exist, that joints hang on those before them, and that a moving camera has all
-    /// that it needs. Costs time linear in the number of keys.
+    /// Proves that tracks use all keys and words in their order, that times ascend, and that every value is in its
+    /// range. Proves also that lights, materials and joints exist, and that joints hang on those before them. A moving
+    /// camera has all tracks that it needs. Costs time linear in the number of keys.
     ///
     /// # Errors
-    /// If anything of this fails to hold, or the header or the section table is invalid.
+    /// If a proof fails, or the header or the section table is invalid.
     pub fn from_bytes(blob: &'a [u8]) -> Result<Self, BlobError> {
         let header = header(blob)?;
         let sections = Sections::read(blob, header.section_count)?;
@@ -95,7 +95,7 @@ impl<'a> Tracks<'a> {
         Ok(Self(records))
     }
 
-    /// Whether the blob has no tracks: its scene is the same at all times.
+    /// Returns true if the blob has no tracks: its scene is the same at all times.
     pub fn is_empty(&self) -> bool {
         self.0.tracks.is_empty()
     }
@@ -115,8 +115,8 @@ impl<'a> Tracks<'a> {
         [self.0.timeline.first, self.0.timeline.last]
     }
 
-    /// The time of a picture, of which there are so many per second: the nearest tick to `number / per_second` seconds,
-    /// at most the last that there is. A rate of 0 counts as 1.
+    /// Returns the time of a picture, given the number of pictures per second: the nearest tick to
+    /// `number / per_second` seconds, at most the last possible one. A rate of 0 counts as 1.
     ///
     /// ```
     /// # static BLOB: &[u8] =

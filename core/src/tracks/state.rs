@@ -10,11 +10,11 @@ use crate::tracks::Tracks;
 use crate::tracks::interpolate::Sample;
 
 impl Tracks<'_> {
-    /// The camera at a time; `None` if the blob's stands still. [`Camera::view`] makes a view of it.
+    /// The camera at a time; `None` if the blob's camera does not move. [`Camera::view`] makes a view of it.
     ///
     /// # Errors
-    /// If on its way the camera comes to look nowhere or along the direction that points up, or an orbit leads beyond
-    /// the range of coordinates.
+    /// If the moving camera looks nowhere or along the direction that points up, or an orbit leads beyond the range of
+    /// coordinates.
     pub fn camera_at(&self, time: i32) -> Result<Option<Camera>, CameraError> {
         let eye = self.camera::<3>(TrackTarget::CameraEye, time);
         let field_of_view = self.camera::<1>(TrackTarget::CameraFieldOfView, time);
@@ -45,7 +45,7 @@ impl Tracks<'_> {
 
     /// Writes the lights of a scene at a time, for [`Scene::with_lights`](crate::Scene::with_lights).
     ///
-    /// Lights and properties without a track are as the scene has them.
+    /// Lights and properties without a track keep the scene's values.
     ///
     /// # Errors
     /// If there are more or fewer lights than the scene has.
@@ -65,7 +65,7 @@ impl Tracks<'_> {
             };
             let kind = target.kind();
             let value = || self.sample::<3>(track, kind, time);
-            // A program may have put a light of the other kind in its place.
+            // A program can have replaced it with a light of the other kind.
             match (target, light.directional) {
                 (TrackTarget::LightPosition, kind) if kind != 1 => {
                     if let Some(place) = value() {
@@ -90,8 +90,8 @@ impl Tracks<'_> {
 
     /// Writes the materials of a scene at a time, for [`Scene::with_materials`](crate::Scene::with_materials).
     ///
-    /// Materials and properties without a track are as the scene has them. A material whose mirror, highlight or glass
-    /// is 0 in the scene calls for an [effect](crate::Effects) where a track raises it.
+    /// Materials and properties without a track keep the scene's values. A material whose mirror, highlight or glass is
+    /// 0 in the scene requires an [effect](crate::Effects) where a track raises it.
     ///
     /// # Errors
     /// If there are more or fewer materials than the scene has.
@@ -131,7 +131,7 @@ impl Tracks<'_> {
     }
 }
 
-/// Copies records into a slice of as many.
+/// Copies records into a slice of the same length.
 fn copy<T: Copy>(section: SectionKind, from: &[T], to: &mut [T]) -> Result<(), BlobError> {
     if from.len() != to.len() {
         return Err(BlobError::Count {
@@ -146,7 +146,7 @@ fn copy<T: Copy>(section: SectionKind, from: &[T], to: &mut [T]) -> Result<(), B
     Ok(())
 }
 
-/// A direction at length 1, as that of a key is; the earlier key's where opposite directions cancel out.
+/// Returns a direction at length 1, like that of a key; the earlier key's where opposite directions cancel out.
 fn towards(sample: Sample<3>) -> [i32; 3] {
     match sample {
         Sample::Key(direction) => direction,
@@ -175,7 +175,7 @@ fn around(
     let [sine, cosine] = angle.sin_cos().map(i64::from);
     let [axis_x, axis_y, axis_z] = axis.map(|component| i64::from(component.0));
     let ([x, y, z], [from_x, from_y, from_z]) = (eye.0.map(i64::from), target.0.map(i64::from));
-    // Magnitudes of vectors stay below 2^33, of their products with ratios below 2^63; partial sums may wrap around.
+    // Magnitudes of vectors stay below 2^33, of their products with ratios below 2^63; partial sums can wrap around.
     let (x, y, z) = (
         x.wrapping_sub(from_x),
         y.wrapping_sub(from_y),

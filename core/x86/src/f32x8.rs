@@ -11,8 +11,8 @@ pub struct F32x8(__m256);
 /// One call of intrinsics.
 macro_rules! avx2 {
     ($call:expr) => {
-        // SAFETY: an `Avx2` or an `F32x8` is at hand, either of which proves that the processor has
-        // AVX2. What is loaded from is an array of the size that is loaded.
+        // SAFETY: an `Avx2` or an `F32x8` is available, either of which proves that the processor has AVX2. Loads read
+        // an array of the size that is loaded.
         unsafe { $call }
     };
 }
@@ -54,13 +54,13 @@ impl F32x8 {
         ))))
     }
 
-    /// Integers of 24 bits as numbers, given by their low 16 bits, and by their high 8 as the bytes of
-    /// words, the low ones in the first four lanes; exact.
+    /// Converts integers of 24 bits to numbers, exactly. Their low 16 bits are given, and their high 8 as the bytes of
+    /// words, the low ones in the first four lanes.
     #[inline(always)]
     pub fn from_i24(_: Avx2, low: &[u16; 8], high: &[u16; 4]) -> Self {
         Self(avx2!({
             let words = _mm_cvtepu16_epi32(_mm_loadl_epi64(high.as_ptr().cast()));
-            // The byte of each lane goes to the top, and back with its sign.
+            // The byte of each lane moves to the top, and back with its sign.
             let shift = _mm256_setr_epi32(24, 24, 24, 24, 16, 16, 16, 16);
             let top = _mm256_sllv_epi32(_mm256_broadcastsi128_si256(words), shift);
             let high = _mm256_slli_epi32::<16>(_mm256_srai_epi32::<24>(top));
@@ -102,20 +102,20 @@ impl F32x8 {
         Self(avx2!(_mm256_permutevar8x32_ps(self.0, above)))
     }
 
-    /// A bit for each lane that is at most the other's.
+    /// One bit for each lane that is at most the other's.
     #[inline(always)]
     pub fn at_most(self, other: Self) -> u32 {
         let at_most = avx2!(_mm256_cmp_ps::<_CMP_LE_OQ>(self.0, other.0));
         Self(at_most).signs()
     }
 
-    /// A bit for each lane whose sign is minus.
+    /// One bit for each lane whose sign is minus.
     #[inline(always)]
     pub fn signs(self) -> u32 {
         avx2!(_mm256_movemask_ps(self.0)) as u32
     }
 
-    /// A bit for each lane that is zero.
+    /// One bit for each lane that is zero.
     #[inline(always)]
     pub fn zero(self) -> u32 {
         let zero = avx2!(_mm256_cmp_ps::<_CMP_EQ_OQ>(self.0, _mm256_setzero_ps()));

@@ -1,9 +1,9 @@
 //! Instructions of x86-64 that gridel uses, as safe functions, in a program that is built for any
 //! x86-64 processor.
 //!
-//! [`Avx2`] proves that the processor has the instructions: only [`Avx2::detect`] makes one. Whoever
-//! has one can make [`F32x8`], and whoever has an [`F32x8`] can compute with it. So the functions here
-//! are safe to call, and `gridel-core` needs no `unsafe`.
+//! [`Avx2`] proves that the processor has the instructions: only [`Avx2::detect`] makes one. Code that has one can make
+//! [`F32x8`], and code that has an [`F32x8`] can compute with it. So the functions here are safe to call, and
+//! `gridel-core` needs no `unsafe`.
 //!
 //! The operations compile to single instructions only inside of [`Avx2::call`], whose function must be
 //! inlined into it. Anywhere else they are correct, but each is a call.
@@ -16,7 +16,7 @@ mod f32x8;
 use core::arch::x86_64::{_MM_HINT_ET0, _MM_HINT_T0, _mm_prefetch};
 pub use f32x8::F32x8;
 
-/// Starts to load the cache line where a value begins, and does not wait for it. No effect but on time.
+/// Starts to load the cache line where a value begins, and does not wait for it. Only affects time.
 #[inline(always)]
 pub fn prefetch<T>(value: &T) {
     // SAFETY: every x86-64 processor has the instruction, and it never faults.
@@ -35,7 +35,7 @@ pub fn prefetch_to_write<T>(value: &T) {
 pub struct Avx2(());
 
 impl Avx2 {
-    /// The proof, on processors that have the instructions. The processor is asked only once.
+    /// Returns the proof, on processors that have the instructions. The processor is queried only once.
     pub fn detect() -> Option<Self> {
         let has_all = is_x86_feature_detected!("avx2")
             && is_x86_feature_detected!("bmi1")
@@ -45,8 +45,8 @@ impl Avx2 {
         has_all.then_some(Self(()))
     }
 
-    /// Calls a function that is compiled with these instructions if it is inlined here. The call itself
-    /// is never inlined. Arguments are handed over one by one, so that they stay in registers.
+    /// Calls a function that is compiled with these instructions if it is inlined here. The call itself is never
+    /// inlined. Arguments are passed one by one, so that they stay in registers.
     #[inline(always)]
     pub fn call<A, B, C, D, E, R>(
         self,

@@ -1,43 +1,40 @@
 //! Lists for the rays of one point, an eye or a light, or of one direction, a light's far away.
 //!
-//! Where one of the cylinder cube's two gridels shrinks to a point, n^2 lists remain of n^4, and
-//! each is short. This is nearer to the light buffer of E. Haines and D. Greenberg ("The Light
-//! Buffer: A Shadow-Testing Accelerator", 1986) than to the paper, with a difference: it serves
-//! rays that start at the point as well as rays that end there.
+//! Where one of the cylinder cube's two gridels shrinks to a point, n^2 lists remain of n^4, and each is short. This
+//! structure is nearer to the light buffer of E. Haines and D. Greenberg ("The Light Buffer: A Shadow-Testing
+//! Accelerator", 1986) than to the paper. The difference: it serves rays that start at the point as well as rays that
+//! end there.
 //!
-//! Around each point, the *apex*, lies a cube of directions. A face of it, the directions with one
-//! major axis and sign, has a *window*: a rectangle of slopes cut into cells, each with a list of
-//! what the rays of the cell can meet, sorted by where on the way from the apex that may begin. A
-//! ray whose line passes an apex closely, and that only looks for hits on one side of it, takes its
-//! list from there: rays from the eye, shadow rays to a light. All others walk the hierarchy
-//! ([`Bvh`]). So pictures stay right when a program moves the camera; they only take longer.
+//! A cube of directions lies around each point, the *apex*. A face of the cube holds the directions with one major axis
+//! and sign. It has a *window*: a rectangle of slopes cut into cells. Each cell has a list of the primitives that its
+//! rays can hit. The list is sorted by where on the way from the apex each primitive can begin.
 //!
-//! A directional light is an apex infinitely far away. Its rays differ by where they pass a *plane*
-//! across their major axis that lies beyond the space, and its one window is a rectangle of that
-//! plane.
+//! A ray takes its list from an apex if its line passes closely and it only looks for hits on one side. Such rays are
+//! rays from the eye and shadow rays to a light. All others walk the hierarchy ([`Bvh`]). So pictures stay right when a
+//! program moves the camera; they only take longer.
 //!
-//! **No candidate is lost.** Let a line in integers pass the apex, in the plane across its major
-//! axis, within four units on each of the other two axes; the ray itself then passes within a
-//! little more.
-//! The ray's
-//! point at a hit lies in the primitive's box widened by 17 units (see
-//! `accel::candidates::gridels`), not more than a unit on the wrong side of that plane, and otherwise
-//! in the volume that a rectangle reaching [`Apex::REACH`] units around the apex sweeps when it moves
-//! along the major axis while its sides move by the least and the greatest slope of the cell. The
-//! builder lists what meets that volume.
+//! A directional light is an apex infinitely far away. Its rays differ by where they pass a *plane* across their major
+//! axis that lies beyond the space. Its one window is a rectangle of that plane.
 //!
-//! A line whose slopes lie within 2^-19 of a direction's moves away from it by less than an eighth
-//! of a unit between the plane and the scene's far end. So its points lie within a unit of the volume
-//! that the cell, a rectangle of the plane widened by [`Apex::REACH`], sweeps when it moves along the
-//! direction itself.
+//! **No candidate is lost.** Let a line in integers pass the apex, in the plane across its major axis, within four
+//! units on each of the other two axes. The ray itself then passes within a little more. The ray's point at a hit lies
+//! in the primitive's box widened by 17 units (see `accel::candidates::gridels`). The point either lies at most a unit
+//! on the wrong side of that plane, or in a swept volume. That volume is swept by a rectangle that reaches
+//! [`Apex::REACH`] units around the apex. The rectangle moves along the major axis, while its sides move by the least
+//! and the greatest slope of the cell. The builder lists the primitives that intersect that volume.
 //!
-//! **Lists may be cut.** Most primitives of a full list lie behind others and are rarely needed. A last entry that is
-//! no slot stands for all primitives that begin at its key or later: a ray that comes to it goes on in the
+//! A line whose slopes lie within 2^-19 of a direction's moves away from it by less than an eighth of a unit. That
+//! holds between the plane and the scene's far end. The cell, a rectangle of the plane widened by [`Apex::REACH`],
+//! sweeps a volume when it moves along the direction itself. So the line's points lie within a unit of that volume.
+//!
+//! **Lists can be cut.** Most primitives of a full list lie behind others and are rarely needed. A last entry that is
+//! no slot represents all primitives that begin at its key or later. A ray that reaches this entry continues in the
 //! hierarchy. So the place of the cut does not change an answer.
 //!
-//! Memory: 24 bytes per apex, 20 per direction, 32 per window, and the lists. Cost: three comparisons for
-//! each direction and two multiplications for each apex that is tried, two to four more for the
-//! cell, and one to four primitives.
+//! Memory: 24 bytes per apex, 20 per direction, 32 per window, and the lists.
+//!
+//! Cost: three comparisons per direction and two multiplications per apex that is tried. Two to four more find the
+//! cell, and one to four primitives are tested.
 
 use crate::accel::candidates::line::Line;
 use crate::accel::candidates::lists::{Candidates, ListSections, look_up};
@@ -63,17 +60,17 @@ pub enum Apex {}
 impl Apex {
     /// Units around an apex within which a line passes it closely, all rounding included.
     pub const REACH: f64 = 6.0;
-    /// Units from the lattice's zero to an apex on an axis, at the most.
+    /// Maximum units from the lattice's zero to an apex on an axis.
     pub const FARTHEST: f64 = 2_097_152.0;
-    /// Stands for the window of a face that has none.
+    /// Marks a face without a window.
     pub const NO_WINDOW: u16 = u16::MAX;
-    /// Most cells along a side of a window.
+    /// Maximum number of cells along a side of a window.
     pub const MOST_CELLS: u16 = ApexWindow::MOST_CELLS;
     /// The last of the levels that keys count.
     pub const LAST_LEVEL: u8 = u8::MAX;
-    /// Units that a line in integers may pass an apex by, with 8 fraction bits.
+    /// Maximum distance between a line in integers and its apex, in units with 8 fraction bits.
     const CLOSE: u32 = 4 << 8;
-    /// How far a line's slopes may lie from a direction's, with 30 fraction bits.
+    /// Maximum difference between a line's slopes and a direction's, with 30 fraction bits.
     const PARALLEL: u32 = 1 << 11;
 }
 
@@ -82,7 +79,7 @@ impl Traverse for Apex {
     type Views<'a> = Views<'a>;
     type Cull<N: Number> = NoBoxCulling;
 
-    // Once, and not for every set of effects that the ray loop is compiled for.
+    // Compiled once, and not for every set of effects of the ray loop.
     #[inline(never)]
     fn walk<N: Number, C: Observer>(
         space: &Space<'_>,
@@ -127,21 +124,21 @@ impl Traverse for Apex {
     }
 }
 
-/// How a ray lies to an apex.
+/// The relation between a ray and an apex.
 struct WindowLookup<'a> {
     window: &'a ApexWindow,
     cell: u32,
-    /// Whether the ray runs away from the apex.
+    /// True if the ray runs away from the apex.
     outward: bool,
     /// The ray's parameter at the apex, in culling steps.
     apex: i32,
 }
 
 impl WindowLookup<'_> {
-    /// A level that is not below that of a place on the ray.
+    /// Returns a level that is not below the level of a place on the ray.
     #[inline(always)]
     fn level(&self, step: i32) -> u8 {
-        /// Steps that rounding may move a place by.
+        /// Maximum steps that rounding moves a place.
         const SLACK: i32 = 4;
         let from_apex = if self.outward {
             step.saturating_sub(self.apex)
@@ -153,7 +150,7 @@ impl WindowLookup<'_> {
 }
 
 impl ApexWindow {
-    /// The level of a place along the major axis, in culling steps from the apex: 0 where the first
+    /// Returns the level of a place along the major axis, in culling steps from the apex. Level 0 is where the first
     /// candidate of the window can begin.
     #[inline(always)]
     pub fn level(&self, step: i32) -> u8 {
@@ -161,7 +158,7 @@ impl ApexWindow {
         ((way * u64::from(self.a_step)) >> 24).min(Apex::LAST_LEVEL.into()) as u8
     }
 
-    /// The column or row of a slope or place, by the side that it is counted along.
+    /// Returns the column or row of a slope or place, by the side along which it is counted.
     #[inline(always)]
     fn column(&self, side: usize, value: i32) -> Option<u32> {
         let low = self.low[side & 1];
@@ -173,7 +170,7 @@ impl ApexWindow {
         (column < self.cells[side & 1].into()).then_some(column)
     }
 
-    /// The cell of a ray by what it is sorted by; `None` beside the window.
+    /// Returns the cell of a ray by its slopes or its place on the plane; `None` outside the window.
     #[inline(always)]
     fn cell(&self, values: [i32; 2]) -> Option<u32> {
         let (column, row) = (self.column(0, values[0])?, self.column(1, values[1])?);
@@ -182,7 +179,8 @@ impl ApexWindow {
         Some(self.first_cell.wrapping_add(number))
     }
 
-    /// The first and the last slope or place of a column or row; exactly what rays are sorted by.
+    /// Returns the first and the last slope or place of a column or row. They are exactly those of the rays that are
+    /// sorted into it.
     pub fn extent(&self, side: usize, place: u32) -> [i64; 2] {
         let scale = u64::from(self.scale[side & 1]).max(1);
         let first = |place: u32| {
@@ -204,7 +202,7 @@ pub struct Views<'a> {
 }
 
 impl<'a> Views<'a> {
-    /// The apex that a ray starts from or runs to, if it has a list there.
+    /// Returns the apex that a ray starts from or runs to, if it has a list there.
     #[inline(always)]
     fn look_up_window<N: Number>(&self, ray: &Ray<N>) -> Option<WindowLookup<'a>> {
         let line = Line::of(ray);
@@ -244,8 +242,8 @@ impl<'a> Views<'a> {
         let rises = line.ascends(major);
         let (tmin, tmax) = (ray.tmin.to_cull(), ray.tmax.to_cull());
         for point in self.points {
-            // With 8 fraction bits, so that products fit with a point far away: both have less than
-            // 30 bits, and slopes at most 31.
+            // With 8 fraction bits, products with a far point fit: both factors have less than 30 bits, and slopes at
+            // most 31.
             let far = pick(point.at, major).wrapping_sub(pick(line.origin, major) >> 5);
             let t = if rises { far } else { far.wrapping_neg() };
             let passes = |axis: usize| {
@@ -312,8 +310,8 @@ impl<'a> Records<'a> for Views<'a> {
         })
     }
 
-    /// Proves that points and planes lie within reach, that windows follow each other in the table and
-    /// fill it, and the lists; and that the scene holds the hierarchy for all other rays.
+    /// Proves that points and planes are in range, that windows follow each other in the table and fill it, and that
+    /// lists are valid. Proves also that the scene holds the hierarchy for all other rays.
     fn check(&self, space: &Space<'a>) -> Result<usize, BlobError> {
         space.require(Structure::Bvh, Structure::Apex)?;
         let last = self.windows.len() as i64 - 1;
@@ -341,11 +339,11 @@ impl<'a> Records<'a> for Views<'a> {
             at.within(Field::FirstCell, window.first_cell.into(), first, first)?;
             window.check_ranges(at.location())?;
             let cells = u32::from(window.cells[0]) * u32::from(window.cells[1]);
-            // A table has fewer cells than a blob bytes.
+            // A table has fewer cells than a blob has bytes.
             next = next.saturating_add(cells);
         }
         let ascend = |before: u8, after: u8| before <= after;
-        // One more than there are slots, for where a list is cut.
+        // One more than there are slots, for the entry that cuts a list.
         let end = space.shapes.bounded().saturating_add(1);
         self.lists.check(&LISTS, next.into(), end, ascend)?;
         Ok(0)

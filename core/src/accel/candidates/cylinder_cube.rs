@@ -1,14 +1,14 @@
 //! The cylinder cube in the paper's form (section 3.1).
 //!
 //! Each of the six sides of the scene's box is cut into n by n gridels. The volume between two
-//! gridels of different sides is taken for a cylinder about the line through their midpoints, as
-//! wide as to hold all eight corners; its list holds the primitives whose bounding spheres reach
-//! into it, in no order that means anything. A ray tests the list of the two gridels by which it
-//! enters and leaves, all of it.
+//! gridels of different sides is approximated by a cylinder about the line through their midpoints.
+//! The cylinder is wide enough to hold all eight corners. Its list holds the primitives whose
+//! bounding spheres reach into it, in no particular order. A ray tests the whole list of the two
+//! gridels by which it enters and leaves.
 //!
-//! Memory: 15 n^4 cells, and a list for each. Cost: the whole list, which is why the paper's lost
-//! against a grid; [`CylinderCubeTight`](crate::accel::CylinderCubeTight) and
-//! [`CylinderCubeEntry`](crate::accel::CylinderCubeEntry) are what can be made of it.
+//! Memory: 15 n^4 cells, and a list for each. Cost: the whole list, which is why the paper's
+//! cylinder cube lost against a grid. [`CylinderCubeTight`](crate::accel::CylinderCubeTight) and
+//! [`CylinderCubeEntry`](crate::accel::CylinderCubeEntry) improve on it.
 
 use crate::accel::candidates::gridel_table::Table;
 use crate::accel::candidates::lists::{ListSections, look_up};
@@ -22,7 +22,8 @@ use crate::format::{BlobError, Leaf, SectionKind, Sections, Structure};
 use crate::observe::count::Observer;
 use crate::ray::Ray;
 
-/// The cylinder cube: lists of what cylinders between gridels meet; needs no stack.
+/// The cylinder cube: one list of primitives for each cylinder between two gridels. It needs no
+/// stack.
 #[derive(Clone, Copy, Debug)]
 pub enum CylinderCube {}
 
@@ -31,7 +32,7 @@ impl Traverse for CylinderCube {
     type Views<'a> = Views<'a>;
     type Cull<N: Number> = NoBoxCulling;
 
-    // Once, and not for every set of effects that the ray loop is compiled for.
+    // Compiled once, and not for every set of effects of the ray loop.
     #[inline(never)]
     fn walk<N: Number, C: Observer>(
         space: &Space<'_>,

@@ -1,11 +1,10 @@
-//! The cylinder cube with entry nodes: for every pair of gridels, a few nodes of the hierarchy that together contain
-//! every primitive that a ray between the two can meet.
+//! The cylinder cube with entry nodes. For every pair of gridels it holds a few nodes of the hierarchy. Together they
+//! contain every primitive that a ray between the two gridels can hit.
 //!
-//! A ray enters the hierarchy ([`Bvh`](crate::accel::Bvh)) at these nodes and skips the top of the tree;
-//! where nothing lies between two gridels it stops at once. The table's size depends little on the scene: a pair
-//! has at most [`CylinderCubeEntry::MOST_NODES`] nodes, most have one to four.
-//! Nodes are sorted along the way from one gridel to the other, as the primitives of the
-//! [tight cube](crate::accel::candidates::cylinder_cube_tight) are.
+//! A ray enters the hierarchy ([`Bvh`](crate::accel::Bvh)) at these nodes and skips the top of the tree. Where nothing
+//! lies between two gridels it stops at once. The table's size depends little on the scene: a pair has at most
+//! [`CylinderCubeEntry::MOST_NODES`] nodes, and most have one to four. Nodes are sorted along the way from one gridel
+//! to the other, like the primitives of the [tight cube](crate::accel::candidates::cylinder_cube_tight).
 
 use crate::accel::candidates::gridel_table::{Table, along};
 use crate::accel::candidates::lists::{ListSections, look_up};
@@ -27,7 +26,7 @@ use crate::ray::Ray;
 pub enum CylinderCubeEntry {}
 
 impl CylinderCubeEntry {
-    /// Most nodes of a pair of gridels.
+    /// Maximum number of nodes of a pair of gridels.
     pub const MOST_NODES: usize = 8;
 }
 
@@ -36,7 +35,7 @@ impl Traverse for CylinderCubeEntry {
     type Views<'a> = Views<'a>;
     type Cull<N: Number> = N::Cull;
 
-    // Once, and not for every set of effects that the ray loop is compiled for.
+    // Compiled once, and not for every set of effects of the ray loop.
     #[inline(never)]
     fn walk<N: Number, C: Observer>(
         space: &Space<'_>,

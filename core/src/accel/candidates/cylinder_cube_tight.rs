@@ -1,12 +1,12 @@
-//! The cylinder cube with tight lists: what can be done for the paper's idea without a hierarchy.
+//! The cylinder cube with tight lists: the best form of the paper's idea without a hierarchy.
 //!
-//! Instead of a cylinder each list stands for the convex hull of its two gridels, tested against
-//! the primitive itself instead of its bounding sphere. Lists are sorted along the way from one
-//! gridel to the other and walked from whichever end the ray enters; entries behind the ray's
-//! origin are passed over, and the walk ends when nothing later can beat the best hit (see `Levels`
-//! in `gridels.rs`).
+//! In place of a cylinder, each list covers the convex hull of its two gridels. The hull is tested
+//! against the primitive itself and not against its bounding sphere. Lists are sorted along the way
+//! from one gridel to the other. A ray walks a list from the end at which it enters. It skips
+//! entries behind its origin. The walk ends when no later entry can be nearer than the best hit
+//! (see `Levels` in `gridels.rs`).
 //!
-//! Memory: 15 n^4 cells, a list for each that differs from all others, and a byte more an entry
+//! Memory: 15 n^4 cells, a list for each that differs from all others, and a byte more per entry
 //! than in the paper's form.
 
 use crate::accel::candidates::gridel_table::{Table, along};
@@ -21,7 +21,7 @@ use crate::format::{BlobError, Leaf, SectionKind, Sections, Structure};
 use crate::observe::count::Observer;
 use crate::ray::Ray;
 
-/// The cylinder cube with tight, sorted lists; needs no stack.
+/// The cylinder cube with tight, sorted lists. It needs no stack.
 #[derive(Clone, Copy, Debug)]
 pub enum CylinderCubeTight {}
 
@@ -30,7 +30,7 @@ impl Traverse for CylinderCubeTight {
     type Views<'a> = Views<'a>;
     type Cull<N: Number> = NoBoxCulling;
 
-    // Once, and not for every set of effects that the ray loop is compiled for.
+    // Compiled once, and not for every set of effects of the ray loop.
     #[inline(never)]
     fn walk<N: Number, C: Observer>(
         space: &Space<'_>,

@@ -35,8 +35,8 @@ impl<'a> Table<'a> {
         })
     }
 
-    /// Proves the partition to be that of the scene's box, and the lists to be sound. That no
-    /// candidate is missing is the builder's to answer for.
+    /// Proves that the partition is that of the scene's box, and that the lists are valid. The builder is responsible
+    /// for complete lists.
     pub(in crate::accel) fn check(
         &self,
         space: &Space<'a>,
@@ -59,8 +59,8 @@ impl<'a> Table<'a> {
     }
 }
 
-/// Visits the entries of a sorted list in the order of a ray; `visit` returns the t beyond which
-/// nothing counts any more, or `None` to end the walk.
+/// Visits the entries of a sorted list in the order of a ray. `visit` returns the t beyond which hits are ignored, or
+/// `None` to end the walk.
 #[inline(always)]
 pub(in crate::accel) fn along<N: Number>(
     lists: &Candidates<'_>,

@@ -1,26 +1,27 @@
-//! Gridels: the rectangles of the partitioned scene box, and between which two of them a ray
-//! passes (the paper, section 3.1).
+//! Gridels: the rectangles of the partitioned scene box, and the two of them between which a ray passes (the paper,
+//! section 3.1).
 //!
-//! A pair of gridels of *different* faces is a cell of a table with 15 n^4 cells. The paper counts
-//! 3 n^4, which are the pairs of *opposite* faces: a ray that leaves by one of the four other faces
-//! has no list there. No ray enters and leaves by one face, because the box that is partitioned is
-//! the scene's box widened by [`Gridels::MARGIN`]: a ray in a side of the scene's box is a ray
-//! inside, a flat scene has gridels of some height, and corners and edges are like any other place.
+//! A pair of gridels of *different* faces is a cell of a table with 15 n^4 cells. The paper counts 3 n^4, which are the
+//! pairs of *opposite* faces. A ray that leaves by one of the four other faces has no list there. No ray enters and
+//! leaves by one face, because the partitioned box is the scene's box widened by [`Gridels::MARGIN`]. So a ray in a
+//! side of the scene's box is a ray inside, and a flat scene has gridels of some height. Corners and edges need no
+//! special case.
 //!
-//! **No candidate is lost.** Let a primitive be hit at `t`. Hits lie in the culling interval
-//! of the primitive's box (see [`cull`](crate::accel::cull)), so the ray's point at `t` lies in that box
-//! widened by 17 units: on an axis with a slope of at least 2^-12 by 1/4 unit and six steps of half a
-//! unit at the most, on one with less by 16 units more. That point lies at least 47 units inside the
-//! partitioned box, and so the line passes through the box, and enters and leaves it at least 47
-//! units away from the point, by different faces. [`Gridels::passage`] computes with the line in
-//! integers, which is off by less than 2^-11 unit. A line that enters by a face beside its major axis
-//! comes from outside of it and then goes 47 units deep, so its slope there is at least 2^-11 and
-//! the place of entry is off by less than one unit. Where two faces are reached so nearly together
-//! that the wrong one is taken, the line passes its plane less than two units beyond the face's
-//! edge. So the line passes the plane of each chosen face within
-//! [`Gridels::REACH`] of the chosen gridel, and the point at `t` lies in the convex hull of the two
-//! gridels, each widened by that. A list that holds all primitives whose boxes, widened by
-//! [`Gridels::SPARE`], meet that hull is complete, in every number format.
+//! **No candidate is lost.** Let a primitive be hit at `t`. Hits lie in the culling interval of the primitive's box
+//! (see [`cull`](crate::accel::cull)). So the ray's point at `t` lies in that box widened by 17 units. On an axis with
+//! a slope of at least 2^-12, 1/4 unit and at most six steps of half a unit suffice. An axis with a smaller slope adds
+//! 16 units. That point lies at least 47 units inside the partitioned box. So the line passes through the box. It
+//! enters and leaves by different faces, at least 47 units away from the point.
+//!
+//! [`Gridels::passage`] computes with the line in integers, which is off by less than 2^-11 unit. A line can enter by a
+//! face that is not across its major axis. It then comes from outside of the face and goes 47 units deep. So its slope
+//! there is at least 2^-11, and the place of entry is off by less than one unit. If the line reaches two faces nearly
+//! together, the wrong one can be chosen. The line then passes the plane of that face less than two units beyond the
+//! face's edge.
+//!
+//! So the line passes the plane of each chosen face within [`Gridels::REACH`] of the chosen gridel. The point at `t`
+//! lies in the convex hull of the two gridels, each widened by that. A list that holds all primitives whose boxes,
+//! widened by [`Gridels::SPARE`], intersect that hull is complete, in every number format.
 
 use crate::accel::candidates::line::{BoxCrossing, Line};
 use crate::accel::number::Number;
@@ -31,16 +32,16 @@ use crate::ray::Ray;
 impl Gridels {
     /// Units by which the partitioned box is larger than the scene's, on all sides.
     pub const MARGIN: i32 = 64;
-    /// Units by which gridels are widened in their plane to hold what rounding moves.
+    /// Units by which gridels are widened in their plane, so that they hold every rounded place.
     pub const REACH: f64 = 4.0;
     /// Units by which boxes of primitives are widened to hold their hits.
     pub const SPARE: f64 = 18.0;
-    /// Most gridels along a side.
+    /// Maximum number of gridels along a side.
     pub const MOST: u32 = 64;
     /// Pairs of faces.
     pub const FACE_PAIRS: u32 = 15;
 
-    /// The partition of a scene's box, `count` by `count` gridels a face.
+    /// Returns the partition of a scene's box, `count` by `count` gridels per face.
     pub fn new(bounds: &UnitBox, count: u32) -> Self {
         let side = |end: usize, outward: i32| {
             let axis = |k: usize| (i32::from(bounds.0[k][end]) + outward) << 13;
@@ -66,8 +67,8 @@ impl Gridels {
         Self::FACE_PAIRS as u64 * square * square
     }
 
-    /// The first and the last place along an axis that belong to a gridel, as lengths with 13
-    /// fraction bits; exactly those that rays are sent to it from.
+    /// Returns the first and the last place of a gridel along an axis, as lengths with 13 fraction bits. They are
+    /// exactly those of the rays that are assigned to it.
     pub fn extent(&self, axis: usize, column: u32) -> [i32; 2] {
         let scale = u64::from(pick(self.scale, axis)).max(1);
         let first = |column: u32| (u64::from(column) << 44).div_ceil(scale) as i32;
@@ -101,7 +102,7 @@ impl Gridels {
         (faces * square + from.1) * square + to.1
     }
 
-    /// Where a ray's line enters and leaves the partitioned box; `None` for one that passes it by.
+    /// Returns where a ray's line enters and leaves the partitioned box; `None` if it misses the box.
     ///
     /// Costs four multiplications and a division for each end that does not lie on a face across
     /// the major axis.
@@ -141,7 +142,7 @@ impl Gridels {
 pub struct Passage {
     /// The cell of the pair.
     pub cell: u32,
-    /// Whether the ray runs from the pair's second gridel to its first.
+    /// True if the ray runs from the pair's second gridel to its first.
     pub backward: bool,
     /// Where it enters and leaves, in lengths along the major axis with 13 fraction bits.
     enter: i32,
@@ -163,36 +164,37 @@ impl Passage {
 
 /// Sixteen equal parts of the way between two gridels, counted from the first of a pair.
 ///
-/// The hull of two gridels is swept by a rectangle that moves evenly from one to the other; a ray's
-/// point at a part of its way lies in the rectangle at that same part. So a primitive whose box the
-/// rectangle meets from level `a` to level `b` is hit between these levels. A key holds two of them:
-/// bits 4 to 7 the least `a` of this and all later entries, bits 0 to 3 the greatest `b` of this and
-/// all earlier ones. Both ascend, so a list can be walked from either end: what lies before the
-/// ray's start is passed over, and the first entry with nothing but later hits ends the walk.
+/// A rectangle that moves evenly from one gridel to the other sweeps the hull of the two. A ray's point at a part of
+/// its way lies in the rectangle at the same part. So a primitive whose box the rectangle meets from level `a` to level
+/// `b` is hit between these levels.
 ///
-/// A ray's t is rounded by less than a step of half a unit, its ends by two units and its length by
-/// four, which moves a place by less than [`Levels::SLACK`] steps.
+/// A key holds two levels. Bits 4 to 7 are the least `a` of this and all later entries. Bits 0 to 3 are the greatest
+/// `b` of this and all earlier ones. Both ascend, so a list can be walked from either end. Entries before the ray's
+/// start are skipped, and the first entry with nothing but later hits ends the walk.
+///
+/// Rounding moves a ray's t by less than a step of half a unit, its ends by two units and its length by four. Together
+/// these move a place by less than [`Levels::SLACK`] steps.
 #[derive(Clone, Copy, Debug)]
 pub(in crate::accel) struct Levels {
     /// The step at which the ray enters.
     enter: i32,
-    /// Levels a step, with 24 fraction bits, rounded down.
+    /// Levels per step, with 24 fraction bits, rounded down.
     a_step: u32,
 }
 
 impl Levels {
     /// Levels from one gridel to the other.
     pub(in crate::accel) const COUNT: u32 = 16;
-    /// Culling steps that a place may be off by.
+    /// Maximum error of a place, in culling steps.
     const SLACK: i32 = 16;
 
-    /// A level that is not above that of a step.
+    /// Returns a level that is not above that of a step.
     #[inline(always)]
     pub(in crate::accel) fn at_least(&self, step: i32) -> u32 {
         self.level(step.saturating_sub(Self::SLACK), self.a_step)
     }
 
-    /// A level that is not below that of a step.
+    /// Returns a level that is not below that of a step.
     #[inline(always)]
     pub(in crate::accel) fn at_most(&self, step: i32) -> u32 {
         self.level(step.saturating_add(Self::SLACK), self.a_step + 1)

@@ -1,14 +1,15 @@
-//! The line of a ray in integers: which cell of a table a ray belongs to does not depend on the
-//! number format.
+//! The line of a ray in integers. With it, the cell of a table that a ray belongs to does not
+//! depend on the number format.
 
 use crate::accel::number::Number;
 use crate::axis::pick;
 use crate::ray::Ray;
 
-/// A ray's line, its parameter a length along the major axis with 13 fraction bits.
+/// A ray's line. Its parameter is a length along the major axis with 13 fraction bits.
 ///
 /// Origins lie within 2^17 units. Rounding moves a point of the line by less than 2^-11 unit on
-/// each axis: 2^-13 by the origin, 2^-13 by the slope over 2^17 units, and 2^-13 by the product.
+/// each axis. The origin adds 2^-13, the slope over 2^17 units adds 2^-13, and the product adds
+/// 2^-13.
 #[derive(Clone, Copy, Debug)]
 pub(in crate::accel) struct Line {
     /// Lengths with 13 fraction bits.
@@ -35,7 +36,7 @@ impl Line {
         i64::from(pick(self.origin, axis)) + rise
     }
 
-    /// Whether the line runs up an axis.
+    /// Returns true if the line runs up an axis.
     #[inline(always)]
     pub(in crate::accel) fn ascends(&self, axis: usize) -> bool {
         pick(self.slope, axis) > 0
@@ -52,7 +53,8 @@ impl Line {
         }
     }
 
-    /// Where the line enters and leaves a box, given by two corners; `None` if it passes it by.
+    /// Returns where the line enters and leaves a box, given by two corners; `None` if it misses
+    /// the box.
     #[inline(always)]
     pub(in crate::accel) fn through(&self, low: [i32; 3], high: [i32; 3]) -> Option<BoxCrossing> {
         let major = self.major;
@@ -72,7 +74,8 @@ impl Line {
         for axis in [(major + 1) % 3, (major + 2) % 3] {
             let (low, high) = (i64::from(pick(low, axis)), i64::from(pick(high, axis)));
             let (before, after) = (self.at(axis, at_first), self.at(axis, at_last));
-            // How far outside the line is where it would enter and leave across the major axis.
+            // The distance from the line to the box, where it would enter and leave across the
+            // major axis.
             let (before, after) = if self.ascends(axis) {
                 (low - before, after - high)
             } else {
@@ -107,7 +110,8 @@ pub(in crate::accel) struct BoxCrossing {
     pub(in crate::accel) to: usize,
 }
 
-/// How far along the major axis a line moves by `aside`; `None` if that is more than `most`.
+/// Returns how far along the major axis a line moves by `aside`; `None` if that is more than
+/// `most`.
 #[inline(always)]
 fn advance(aside: i64, slope: i64, most: i32) -> Option<i32> {
     let scaled = aside << 30;

@@ -1,10 +1,8 @@
-//! Lists of candidates: for each cell of a table what a ray of that cell can meet, in one flat
-//! array.
+//! Lists of candidates: one flat array holds, for each cell of a table, the primitives that a ray of that cell can hit.
 //!
-//! Equal lists are stored once: a cell holds the number of its list, and the lists lie one behind
-//! the other. All three arrays are as narrow as their values allow. A list whose order means
-//! something has a *key* for every entry, which says where along the way of the ray it and its
-//! neighbors lie: see [`Levels`](crate::accel::candidates::gridels::Levels).
+//! Equal lists are stored once: a cell holds the number of its list, and the lists lie one behind the other. All three
+//! arrays are as narrow as their values allow. A sorted list has a *key* for every entry. The key says where along the
+//! way of the ray the entry and its neighbors lie: see [`Levels`](crate::accel::candidates::gridels::Levels).
 
 use crate::format::range::At;
 use crate::format::{BlobError, Field, Indices, Location, Reason, SectionKind, Sections};
@@ -24,7 +22,7 @@ pub(in crate::accel) struct ListSections {
     pub(in crate::accel) keys: Option<SectionKind>,
 }
 
-/// Counts and reports a cell whose list a ray goes through.
+/// Counts and reports a cell whose list a ray walks.
 #[inline(always)]
 pub(in crate::accel) fn look_up<C: Observer>(cell: u32, count: &mut C) {
     count.cells(1);
@@ -36,8 +34,8 @@ pub(in crate::accel) fn look_up<C: Observer>(cell: u32, count: &mut C) {
     }
 }
 
-/// Proves that lists follow each other without a gap and fill their array of entries: `starts` holds
-/// the first entry of each, and behind the last one the number of entries.
+/// Proves that lists follow each other without a gap and fill their array of entries. `starts` holds the first entry of
+/// each list, and behind the last one the number of entries.
 pub(in crate::accel) fn check_starts(
     starts: &Indices<'_>,
     section: SectionKind,
@@ -81,8 +79,8 @@ impl<'a> Candidates<'a> {
         })
     }
 
-    /// Proves that every cell has a list, every list its entries, every entry a key where there are
-    /// keys, and that entries lie below `end`. Linear in all of these.
+    /// Proves that every cell has a list, that every list has its entries, and that every entry lies below `end`.
+    /// Proves also that every entry has a key where there are keys. Linear in all of these.
     pub(in crate::accel) fn check(
         &self,
         kinds: &ListSections,
@@ -151,8 +149,8 @@ impl<'a> Candidates<'a> {
         }
     }
 
-    /// Visits the entries of a cell's list in order, as long as their keys, which ascend, lie at or
-    /// below an end. `visit` returns the end from then on, or `None` to end the walk.
+    /// Visits the entries of a cell's list in order, as long as their keys, which ascend, lie at or below an end.
+    /// `visit` returns the new end, or `None` to end the walk.
     #[inline(always)]
     pub(in crate::accel) fn ascend(
         &self,

@@ -1,4 +1,4 @@
-//! Candidate lists: a table leads from a ray to all primitives that it can meet.
+//! Candidate lists: a table gives, for a ray, all primitives that it can hit.
 //!
 //! | structure | a list for each |
 //! |---|---|
@@ -8,10 +8,10 @@
 //! | [`apex`] | cell of the directions from the eye or from a light |
 //! | [`ray_classes`] | class of rays by origin and direction (Arvo and Kirk 1987) |
 //!
-//! A look-up takes constant time, then every candidate of the list is tested. Tables take far more
-//! memory than hierarchies, so the compiler holds them to a budget. Loading cannot prove in linear
-//! time that a list is complete: see [`Structure::is_proved`](crate::Structure::is_proved). Use them for scenes of few
-//! primitives that many rays of one sort meet.
+//! A look-up takes constant time, then every candidate of the list is tested. Tables take far more memory than
+//! hierarchies, so the compiler limits them to a budget. Loading cannot prove in linear time that a list is complete:
+//! see [`Structure::is_proved`](crate::Structure::is_proved). Use them for scenes of few primitives and many similar
+//! rays.
 
 pub mod apex;
 pub mod cylinder_cube;

@@ -1,17 +1,17 @@
 //! Ray classification (J. Arvo and D. Kirk, "Fast Ray Tracing by Ray Classification", 1987), made
 //! offline.
 //!
-//! A ray is a point in five dimensions: where it begins, and its two slopes on one of the six faces
-//! of a cube of directions. A binary tree for each face halves that space, one dimension at a time,
-//! and is finer where the scene's own rays fall. Its leaves hold lists of what the rays of a class
-//! can meet, sorted by where on their way that may begin. Classes that were not worth a list, or for
-//! which the budget had no room, lead to the hierarchy ([`Bvh`]).
+//! A ray is a point in five dimensions. Three are the place where it begins, and two are its slopes on one of the six
+//! faces of a cube of directions. A binary tree per face halves that space, one dimension at a time, and is finer where
+//! the scene's own rays fall. Its leaves hold lists of the primitives that the rays of a class can hit. A list is
+//! sorted by where on the rays' way each primitive can begin. Some classes are not worth a list, or exceed the budget;
+//! they lead to the hierarchy ([`Bvh`]).
 //!
-//! **No candidate is lost.** A ray's place is its point at its start, or where it enters the scene's
-//! box made larger (see `accel::candidates::gridels`), which comes before every hit. In integers it
-//! is off by less than two units. So the points at which anything is hit lie in the volume that the
-//! class's box of places, widened by [`Gridels::REACH`], sweeps while it moves along the major axis
-//! and its sides move by the class's least and greatest slopes. The builder lists what meets that.
+//! **No candidate is lost.** A ray's place is its point at its start, or where it enters the enlarged box of the scene
+//! (see `accel::candidates::gridels`). That point comes before every hit. In integers it is off by less than two units.
+//! The class's box of places, widened by [`Gridels::REACH`], sweeps a volume. It moves along the major axis while its
+//! sides move by the class's least and greatest slopes. So every point at which the ray hits something lies in that
+//! volume. The builder lists the primitives that intersect it.
 //!
 //! Memory: four bytes per node, and the lists. Cost: a comparison per level, then the list.
 
@@ -36,8 +36,7 @@ use crate::ray::Ray;
 #[derive(Clone, Copy, Debug)]
 pub enum RayClasses {}
 
-/// A range of rays: for each dimension from where to where. Places are lengths with 13 fraction
-/// bits, slopes ratios with 30.
+/// A range of rays: the limits of each dimension. Places are lengths with 13 fraction bits, slopes ratios with 30.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct ClassRange(pub [[i64; 2]; ClassNode::DIMENSIONS]);
 
@@ -53,7 +52,7 @@ impl ClassRange {
         Self([side(0), side(1), side(2), SLOPES, SLOPES])
     }
 
-    /// Where a dimension is halved.
+    /// The value at which a dimension is halved.
     #[inline(always)]
     pub fn middle(&self, dimension: usize) -> i64 {
         let [low, high] = self.0.get(dimension).copied().unwrap_or_default();
@@ -70,7 +69,7 @@ impl ClassRange {
         self
     }
 
-    /// Levels of keys a culling step along an axis, with 24 fraction bits.
+    /// Levels of keys per culling step along an axis, with 24 fraction bits.
     #[inline(always)]
     pub fn levels_a_step(bounds: &UnitBox, axis: usize) -> u32 {
         let [low, high] = pick(bounds.0, axis).map(i32::from);
@@ -78,7 +77,7 @@ impl ClassRange {
         (u32::from(u8::MAX) << 24) / steps.max(1) as u32
     }
 
-    /// The key of a place, in culling steps from where a ray of the class begins.
+    /// Returns the key of a place, in culling steps from where a ray of the class begins.
     #[inline(always)]
     pub fn key(step: i32, levels_a_step: u32) -> u8 {
         let way = step.max(0) as u64;
@@ -91,14 +90,14 @@ impl ClassRange {
 pub struct ClassPoint {
     /// The face of the cube of directions: `2 k` down axis `k`, `2 k + 1` up it.
     pub face: usize,
-    /// As a [`ClassRange`] counts them.
+    /// The place and the slopes, in the units of [`ClassRange`].
     pub coordinates: [i64; ClassNode::DIMENSIONS],
     /// The parameter of the place, in culling steps.
     start: i32,
 }
 
 impl ClassPoint {
-    /// The point of a ray; `None` for one that passes the scene by.
+    /// Returns the point of a ray; `None` if the ray misses the scene.
     #[inline(always)]
     pub fn of<N: Number>(bounds: &UnitBox, ray: &Ray<N>) -> Option<Self> {
         let line = Line::of(ray);
@@ -129,7 +128,7 @@ impl Traverse for RayClasses {
     type Views<'a> = Views<'a>;
     type Cull<N: Number> = NoBoxCulling;
 
-    // Once, and not for every set of effects that the ray loop is compiled for.
+    // Compiled once, and not for every set of effects of the ray loop.
     #[inline(never)]
     fn walk<N: Number, C: Observer>(
         space: &Space<'_>,
@@ -140,7 +139,7 @@ impl Traverse for RayClasses {
         count: &mut C,
         mut leaf: impl FnMut(Leaf, &mut C) -> Option<N>,
     ) {
-        /// Culling steps that a place may be off by.
+        /// Maximum error of a place, in culling steps.
         const SLACK: i32 = 4;
         let Some(point) = ClassPoint::of(space.bounds(), ray) else {
             return;
@@ -178,7 +177,7 @@ pub struct Views<'a> {
 }
 
 impl Views<'_> {
-    /// The cell of a ray's class; `None` for one that has no list.
+    /// Returns the cell of a ray's class; `None` for a class without a list.
     #[inline(always)]
     fn cell(&self, point: &ClassPoint, bounds: &UnitBox) -> Option<u32> {
         let mut range = ClassRange::whole(bounds);
@@ -220,8 +219,8 @@ impl<'a> Records<'a> for Views<'a> {
         })
     }
 
-    /// Proves that there are six roots, that children come after their parents, so that every walk
-    /// ends, and that leaves take the cells in order.
+    /// Proves that there are six roots, that children come after their parents, so that every walk ends, and that
+    /// leaves use the cells in order.
     fn check(&self, space: &Space<'a>) -> Result<usize, BlobError> {
         space.require(Structure::Bvh, Structure::RayClasses)?;
         let section = SectionKind::ClassNodes;

@@ -1,22 +1,21 @@
-//! The regular grid, walked cell by cell (the paper's rival of the cylinder cube).
+//! The regular grid, walked cell by cell (the structure with which the paper compares the cylinder cube).
 //!
-//! On every axis the ray crosses plane `p` at the step at which culling lets it enter a box that
-//! begins there: `p * inverse + near` (see `accel::cull`). Which cell it is in at a step is
-//! therefore a matter of comparing integers that are computed anew for every plane, so no error
-//! accumulates, and no direction is special: along an axis that the ray does not move on, all planes
-//! lie behind it or before it for good. A walk has at most `x + y + z` cells.
+//! On every axis the ray crosses plane `p` at the step at which culling lets it enter a box that begins there:
+//! `p * inverse + near` (see `accel::cull`). So the cell at a step follows from comparisons of integers. These are
+//! computed anew for every plane, so no error accumulates. No direction is special: along an axis on which the ray does
+//! not move, all planes always lie behind it or always before it. A walk has at most `x + y + z` cells.
 //!
-//! **No primitive is passed over.** Let a hit be at step `t`, on a primitive whose box is
-//! \[`low`, `high`\] on some axis; the hit lies in the box's culling interval, so
-//! `step(low) + near <= t <= step(high) + far` where the ray rises along the axis. The walk's cell
-//! at step `t` is the last one whose lower plane `p` has `step(p) + near <= t`. Steps are monotone,
-//! so `low` does not lie beyond that cell; and `step(p) <= step(high) + far - near`. `far - near` is
-//! twice the margin of culling: a half unit and seven steps at the least steepness of two steps a
-//! unit, roundings included, which is less than 5 units; and for slopes below 2^-12 another 2^17
-//! steps at 2^13 a unit, 16 units. So `p < high + 17`. Falling along the axis, the same holds the
-//! other way round. A primitive is listed in every cell that its box reaches when it is widened by
-//! [`MARGIN`], so it is tested at the latest in the cell that the ray is in at the hit; the walk
-//! ends only where the next cell begins beyond the best hit.
+//! **No primitive is skipped.** Let a hit be at step `t`, on a primitive whose box is \[`low`, `high`\] on some axis.
+//! The hit lies in the box's culling interval, so `step(low) + near <= t <= step(high) + far` where the ray rises along
+//! the axis. The walk's cell at step `t` is the last one whose lower plane `p` has `step(p) + near <= t`. Steps are
+//! monotone, so `low` does not lie beyond that cell, and `step(p) <= step(high) + far - near`.
+//!
+//! `far - near` is twice the margin of culling. That is a half unit and seven steps, with roundings, at the least
+//! steepness of two steps per unit: less than 5 units. Slopes below 2^-12 add 2^17 steps at 2^13 per unit: 16 units. So
+//! `p < high + 17`. Where the ray falls along the axis, the proof is mirrored.
+//!
+//! A primitive is listed in every cell that its box reaches when it is widened by [`MARGIN`]. So it is tested at the
+//! latest in the cell that the ray is in at the hit. The walk ends only where the next cell begins beyond the best hit.
 
 use crate::accel::candidates::lists::look_up;
 use crate::accel::cells::lists::{Divisions, Lists, Tester, check_complete, divide, reach};
@@ -33,7 +32,7 @@ use crate::observe::count::Observer;
 use crate::observe::event::{Event, NodeId};
 use crate::ray::Ray;
 
-/// By how much primitives' boxes are widened before they are listed, in units.
+/// Units by which primitives' boxes are widened before they are listed.
 pub const MARGIN: i32 = 18;
 
 /// The regular grid; needs no stack.
@@ -109,7 +108,7 @@ struct Steps<'c> {
 }
 
 impl<'c> Steps<'c> {
-    /// Begins in the cell that the ray is in at a step.
+    /// Begins in the cell of the ray at a step.
     #[inline(always)]
     fn new(cull: &'c Cull, divisions: [Divisions; 3], start: i32) -> Self {
         let mut steps = Self {
@@ -121,7 +120,7 @@ impl<'c> Steps<'c> {
         for (axis, divisions) in divisions.iter().enumerate() {
             let descends = cull.descends(axis);
             steps.place[axis] = divisions.last(|plane| {
-                // Up to which plane the ray has come, or down to which it has not.
+                // The last plane that the ray has reached if it rises, or the first that it has not if it falls.
                 (cull.enters(axis, plane) <= start) != descends
             });
             steps.exit[axis] = steps.next(axis);
@@ -137,7 +136,7 @@ impl<'c> Steps<'c> {
         row.wrapping_mul(self.divisions[0].count()).wrapping_add(x)
     }
 
-    /// The step at which the ray leaves its cell along an axis; the last one where it never does.
+    /// Returns the step at which the ray leaves its cell along an axis; the last step if it never does.
     #[inline(always)]
     fn next(&self, axis: usize) -> i32 {
         let (place, divisions) = (self.place[axis], &self.divisions[axis]);
@@ -155,7 +154,7 @@ impl<'c> Steps<'c> {
         }
     }
 
-    /// Goes on to the next cell, if it begins no later than at a step.
+    /// Moves to the next cell, if it begins no later than at a step.
     #[inline(always)]
     fn advance(&mut self, end: i32) -> bool {
         let [x, y, z] = self.exit;
@@ -182,9 +181,8 @@ impl<'c> Steps<'c> {
 }
 
 impl Views<'_> {
-    /// Proves that every primitive is in the lists of all cells that it reaches into, and that there
-    /// are as many entries as that takes: so there are no others. A search that finds each entry of a
-    /// list proves that they ascend.
+    /// Proves that every primitive is in the lists of all cells that it reaches. The number of entries is then exact,
+    /// so there are no others. Each entry of a list is found by search, which proves that entries ascend.
     fn check_lists(&self, space: &Space<'_>, counts: [u32; 3]) -> Result<(), BlobError> {
         let slots = space.shapes.bounded();
         let reach = reach(space, divide(space.bounds(), counts), MARGIN);

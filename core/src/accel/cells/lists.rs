@@ -1,9 +1,8 @@
 //! The scene's box divided into cells, and the cells' lists, for the grid and the octree.
 //!
-//! On every axis the box has equal divisions, whose planes are computed anew from their numbers, so
-//! that no error accumulates: `plane(i) = lowest + floor(i * pitch / 2^16)`, where the pitch is the
-//! box's extent over the number of divisions, in 1/2^16 unit, rounded up. Where the box is flat
-//! there is one division.
+//! On every axis the box has equal divisions. Their planes are computed anew from their numbers, so no error
+//! accumulates: `plane(i) = lowest + floor(i * pitch / 2^16)`. The pitch is the box's extent over the number of
+//! divisions, in 1/2^16 unit, rounded up. Where the box is flat there is one division.
 
 use crate::accel::candidates::lists::check_starts;
 use crate::accel::space::Space;
@@ -25,10 +24,10 @@ pub struct Divisions {
 }
 
 impl Divisions {
-    /// Most divisions of an axis.
+    /// Maximum number of divisions of an axis.
     pub const MOST: u32 = 1 << 10;
 
-    /// Divides an axis of a box; `count` is taken to lie in 1 to [`MOST`](Self::MOST).
+    /// Divides an axis of a box; `count` is limited to 1 to [`MOST`](Self::MOST).
     #[inline]
     pub fn of([low, high]: [i16; 2], count: u32) -> Self {
         let (low, high) = (i32::from(low), i32::from(high));
@@ -49,15 +48,14 @@ impl Divisions {
         self.count
     }
 
-    /// The lower plane of a division, in units; beyond the last division the box's upper side.
+    /// Returns the lower plane of a division, in units; beyond the last division, the upper side of the box.
     #[inline(always)]
     pub fn plane(&self, division: u32) -> i16 {
         let rise = (u64::from(division) * u64::from(self.pitch)) >> 16;
         self.low.wrapping_add(rise as i32).min(self.high) as i16
     }
 
-    /// The last division whose lower plane satisfies a condition that holds up to some division,
-    /// or the first.
+    /// Returns the last division whose lower plane satisfies a condition that holds up to some division, or the first.
     #[inline(always)]
     pub(in crate::accel) fn last(&self, holds: impl Fn(i16) -> bool) -> u32 {
         let (mut low, mut high) = (0, self.count);
@@ -72,8 +70,8 @@ impl Divisions {
         low
     }
 
-    /// The divisions that a closed interval meets, ends included: those from the last that begins at
-    /// or below its lower end, to the last that begins at or below its upper end.
+    /// Returns the divisions that a closed interval meets, with its ends. The first is the last one that begins at or
+    /// below the interval's lower end. The last is the last one that begins at or below its upper end.
     pub fn met_by(&self, low: i32, high: i32) -> [u32; 2] {
         [low, high].map(|end| {
             if end < self.low {
@@ -142,7 +140,7 @@ impl<'a> Lists<'a> {
         self.slots.len()
     }
 
-    /// Whether a list, whose slots ascend, holds a slot.
+    /// Returns true if a list, whose slots ascend, holds a slot.
     pub(in crate::accel) fn holds(&self, list: usize, slot: u32) -> bool {
         self.slots.hold(self.range(list), slot)
     }
@@ -152,8 +150,8 @@ impl<'a> Lists<'a> {
         check_starts(&self.starts, section, self.slots.len())
     }
 
-    /// Proves a list: slots that exist, ascend, and hold primitives that reach into the list's cells.
-    /// Returns the number of pairs of a cell and a primitive that are listed.
+    /// Proves a list: its slots exist, ascend, and hold primitives that reach into the list's cells. Returns the number
+    /// of listed pairs of a cell and a primitive.
     pub(in crate::accel) fn check_list(
         &self,
         list: usize,
@@ -182,8 +180,8 @@ impl<'a> Lists<'a> {
     }
 }
 
-/// Proves that nothing is missing from the lists: as many pairs of a cell and a primitive are listed
-/// as there are. Lists hold no pair twice and none that does not exist, so then they hold all.
+/// Proves that lists are complete: the number of listed pairs of a cell and a primitive is the number of pairs that
+/// exist. Lists hold no pair twice and no invalid pair, so they then hold all.
 pub(in crate::accel) fn check_complete(
     listed: u64,
     slots: usize,
@@ -200,8 +198,8 @@ pub(in crate::accel) fn check_complete(
     Ok(())
 }
 
-/// The cells that a primitive is listed in, given its slot over all kinds: those that its box meets
-/// once it is widened by a margin.
+/// Returns the cells that list a primitive, given its slot over all kinds. These are the cells that its box meets,
+/// widened by a margin.
 pub(in crate::accel) fn reach(
     space: &Space<'_>,
     divisions: [Divisions; 3],
@@ -216,7 +214,7 @@ pub(in crate::accel) fn reach(
     }
 }
 
-/// The cells that a box meets once it is widened by a margin.
+/// Returns the cells that a box meets, widened by a margin.
 pub fn cells_of(divisions: &[Divisions; 3], bounds: &UnitBox, margin: i32) -> Range {
     [0, 1, 2].map(|k: usize| {
         let [low, high] = bounds.0[k].map(i32::from);
@@ -253,8 +251,8 @@ fn locate(ends: &[u32; Kind::ALL.len()], slot: u32) -> Option<Leaf> {
     None
 }
 
-/// Tests primitives of lists, but none twice in a row of cells: a primitive that reaches into many
-/// is remembered in a mailbox of eight places, 32 bytes, which slots share by their last digits.
+/// Tests primitives of lists, and avoids repeated tests in a row of cells. A mailbox of eight places, 32 bytes,
+/// remembers primitives that reach into many cells. Slots share its places by their last digits.
 pub(in crate::accel) struct Tester<'a, L> {
     lists: Lists<'a>,
     ends: [u32; Kind::ALL.len()],
@@ -273,8 +271,7 @@ impl<'a, L> Tester<'a, L> {
         }
     }
 
-    /// Tests a list. Returns the t beyond which nothing counts any more, if the list was not empty;
-    /// `Err` to end the walk.
+    /// Tests a list. Returns the t beyond which hits are ignored, if the list was not empty; `Err` to end the walk.
     #[inline(always)]
     pub(in crate::accel) fn list<N, C: Observer>(
         &mut self,
@@ -327,7 +324,7 @@ mod tests {
         }
     }
 
-    /// The quotient is what a search of all planes finds.
+    /// The quotient equals the result of a search of all planes.
     #[test]
     fn the_divisions_that_are_met_are_those_whose_planes_say_so() {
         for (sides, count) in [

@@ -1,14 +1,13 @@
 //! The octree, walked on integer coordinates.
 //!
-//! A node is a cube of the finest divisions of the scene's box: its place and its level are integers,
-//! and its planes are computed from them. A child is entered if its culling interval is not empty.
+//! A node is a cube of the finest divisions of the scene's box. Its place and its level are integers, and its planes
+//! are computed from them. The walk enters a child if its culling interval is not empty.
 //!
-//! **No primitive is passed over.** On each axis the finest divisions' culling intervals overlap,
-//! because a box is entered no later than it is left; so for a hit at step `t`, in the
-//! culling interval of its primitive's box, there is on every axis a division that the box meets and
-//! whose interval holds `t`. The cell of the three lies in a leaf that lists the primitive, and
-//! culling is monotone, so every node around that leaf is entered no later than at `t`. (See
-//! `accel::cull`. No direction is special, no interval is reflected.)
+//! **No primitive is skipped.** On each axis the culling intervals of the finest divisions overlap, because a box is
+//! entered no later than it is left. Let a hit be at step `t`, in the culling interval of its primitive's box. On every
+//! axis there is then a division that the box meets and whose interval holds `t`. The cell of the three divisions lies
+//! in a leaf that lists the primitive. Culling is monotone, so every node around that leaf is entered no later than at
+//! `t`. (See `accel::cull`. No direction is special, no interval is reflected.)
 
 use crate::accel::cells::lists::{Divisions, Lists, Range, Tester, check_complete, divide, reach};
 use crate::accel::cull::{Cull, Culling, PairCulling};
@@ -32,11 +31,11 @@ use heapless::Vec;
 #[derive(Clone, Copy, Debug)]
 pub enum Octree {}
 
-/// Most levels of inner nodes: each leaves at most seven children waiting.
+/// Maximum number of levels of inner nodes; each level leaves at most seven children waiting.
 pub const MOST_LEVELS: u32 = 6;
 
-/// Where a node lies: its first division on each axis, six bits each, and the level above the leaves
-/// of the finest division.
+/// The place of a node: its first division on each axis, six bits each, and the level above the leaves of the finest
+/// division.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 struct CellId(u32);
 
@@ -55,7 +54,7 @@ impl CellId {
         self.0 >> (6 * axis) & 63
     }
 
-    /// The child on some sides, whose place is half as large.
+    /// Returns the child on these sides, which is half as large.
     #[inline(always)]
     const fn child(self, sides: u32) -> Self {
         let half = self.level().saturating_sub(1);
@@ -278,7 +277,7 @@ impl<'a> Records<'a> for Views<'a> {
             let node = OctreeNode(self.nodes.get(number as usize).copied().unwrap_or(u32::MAX));
             if !node.is_leaf() {
                 for sides in 0..8 {
-                    // Seven wait at each of at most six levels.
+                    // Seven children wait at each of at most six levels.
                     let _ = waiting.push((node.0 + sides, place.child(sides)));
                 }
             } else if node != OctreeNode::EMPTY {

@@ -22,7 +22,7 @@ fn ray<N: Number>(origin: [f64; 3], point: [f64; 3]) -> Option<Ray<N>> {
 fn is_in_its_box<N: Number>(ray: &Ray<N>, crossing: Crossing<N>, bounds: UnitBox) {
     let cull = <Cull as Culling<N>>::new(ray);
     let mut tmax = N::FAR;
-    // What lies behind the first hit, and up to it alone.
+    // The crossings behind the first hit, and those up to it only.
     for _ in 0..2 {
         let free = accept(ray, crossing, tmax);
         let clamped = accept_in_box(ray, &cull, crossing, bounds, tmax);
@@ -70,7 +70,7 @@ fn coordinate() -> impl Strategy<Value = i32> {
     -8_388_352..=8_388_352_i32
 }
 
-/// A place between two sides: on one of them, beside one, or anywhere.
+/// A place between two sides: on one of them, outside one, or anywhere.
 fn share() -> impl Strategy<Value = f64> {
     prop_oneof![
         Just(0.0),
@@ -90,7 +90,7 @@ fn origin() -> impl Strategy<Value = [f64; 3]> {
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(100_000))]
 
-    /// Grazing rays above all: they aim at where a sphere is seen to end.
+    /// Mostly grazing rays: they aim at the outline of a sphere.
     #[test]
     fn spheres_are_met_in_their_boxes(
         center in [coordinate(), coordinate(), coordinate()],
@@ -99,7 +99,7 @@ proptest! {
         turn in [-1.0..1.0_f64, -1.0..1.0, -1.0..1.0],
         beside in prop_oneof![Just(1.0), 0.999_999..1.000_001_f64, 0.99..1.01_f64, 0.0..1.0_f64],
     ) {
-        // As large as the world has room for, or smaller.
+        // As large as the world allows, or smaller.
         let room = center.map(|x| 8_388_352 - x.abs()).into_iter().min().unwrap_or(0);
         prop_assume!(room > 0);
         let radius = (room >> shrink).max(1);
@@ -118,7 +118,7 @@ proptest! {
         sphere_is_in_its_box::<f64>(center, radius, origin, aim);
     }
 
-    /// Edges and corners above all, and faces that are seen from the side.
+    /// Mostly edges and corners, and faces seen from the side.
     #[test]
     fn boxes_are_met_in_their_boxes(
         corners in [[coordinate(), coordinate()], [coordinate(), coordinate()], [coordinate(), coordinate()]],

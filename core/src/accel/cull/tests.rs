@@ -62,7 +62,7 @@ fn holds_the_true_interval<N: Number>(
         let low = point.div_euclid(scale) - i128::from(below);
         let high = -(-point).div_euclid(scale) + i128::from(above);
         if low.abs() > 32_767 || high.abs() > 32_767 {
-            // Outside of every scene: three cases in four.
+            // Outside every scene: three cases in four.
             return Ok(());
         }
         bounds[k] = [low as i16, high as i16];
@@ -75,7 +75,7 @@ fn holds_the_true_interval<N: Number>(
     let around = UnitBox(bounds);
     let interval = <Cull as Culling<N>>::new(&ray).interval(&around);
     prop_assert!(interval.near <= interval.far);
-    // The form that this machine culls with takes the box, too.
+    // The culling form of this machine holds the box, too.
     let taken = PairCulling::root(&N::Cull::new(&ray), &around, N::Cull::limit(ray.tmax));
     prop_assert!(taken.near <= taken.far);
     for k in 0..3 {
@@ -96,11 +96,11 @@ fn holds_the_true_interval<N: Number>(
         } else {
             (second, first)
         };
-        // Before the origin, and beyond every space, nothing needs to be held.
+        // No interval needs to hold a t before the origin or beyond every space.
         let (zero, end) = (Fraction(0, 1), Fraction(2 * 65_536, 1));
         let near = Fraction(interval.near.into(), 1);
         let far = Fraction(interval.far.into(), 1);
-        // The interval is cut with those of the other axes, so it holds what all of them leave.
+        // The interval is cut with those of the other axes, so it holds their intersection.
         let entered_last = (0..3).all(|other| {
             other == k || slopes[other] == 0 || {
                 let near_other = bounds[other][usize::from(slopes[other] < 0)];
@@ -148,7 +148,7 @@ proptest! {
         holds_the_true_interval::<f64>(axes, major, down, place)?;
     }
 
-    /// Where planes are shifted rather than rotated, no more is culled, and hardly less.
+    /// Shifted planes cull no more than rotated ones, and hardly less.
     #[test]
     fn shifted_planes_are_around_rotated_ones(
         word: u32,
@@ -162,7 +162,7 @@ proptest! {
         prop_assert!(narrow.far <= wide.far && wide.far - narrow.far <= unit);
     }
 
-    /// A box inside another is culled no later: what makes all structures agree.
+    /// A box inside another is culled no later. So all structures agree.
     #[test]
     fn culling_is_monotone(
         outer in [any::<[i16; 2]>(), any::<[i16; 2]>(), any::<[i16; 2]>()],

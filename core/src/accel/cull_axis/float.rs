@@ -5,8 +5,8 @@ use crate::accel::cull_axis::CullAxis;
 /// The largest inverse slope in culling.
 const STEEPEST: f64 = 536_870_912.0;
 
-/// [`CullArithmetic::cull_axis`](crate::accel::cull_axis::CullArithmetic::cull_axis) of an axis along which the ray hardly moves, given what the steepest slope
-/// makes of the origin.
+/// [`CullArithmetic::cull_axis`](crate::accel::cull_axis::CullArithmetic::cull_axis) of an axis along which the ray
+/// hardly moves, given the origin times the steepest inverse slope.
 #[cold]
 fn parallel_axis(offset: i32, descending: bool) -> CullAxis {
     const INVERSE: i32 = STEEPEST as i32;

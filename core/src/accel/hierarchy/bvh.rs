@@ -40,8 +40,8 @@ impl Traverse for Bvh {
 }
 
 /// [`Bvh`]'s walk with any form of culling. Where floats cull in SIMD registers, the margins of
-/// [`Cull`](crate::accel::cull::Cull) are those of the flagged hierarchy: only with them are the two
-/// compared plane for plane.
+/// [`Cull`](crate::accel::cull::Cull) are those of the flagged hierarchy. Only equal margins allow a comparison of the
+/// two, plane for plane.
 #[doc(hidden)]
 #[expect(clippy::too_many_arguments, reason = "its arguments stay in registers")]
 #[inline]

@@ -6,11 +6,11 @@ use crate::format::link::Node;
 use crate::format::{BlobError, Leaf, Location, Reason, SectionKind};
 use heapless::Vec;
 
-/// A way down from the root: a word per node, which is twice its number, and 1 more where the way goes
-/// on with the second child.
+/// A way down from the root: a word per node. The word is twice the node's number, plus 1 if the way continues with the
+/// second child.
 pub(in crate::accel) type Path = [u32];
 
-/// A hierarchy of two children per node, as [`check_tree`] sees it.
+/// A hierarchy of two children per node, in the form that [`check_tree`] reads.
 pub(in crate::accel) trait Tree: Copy {
     /// The section of its nodes.
     const SECTION: SectionKind;
@@ -19,21 +19,21 @@ pub(in crate::accel) trait Tree: Copy {
     /// The volume around everything below a node.
     type Volume: Copy;
 
-    /// Proves that nodes lie in breadth-first order and reach so many leaves. Returns the number of
-    /// levels of nodes that have children.
+    /// Proves that nodes lie in breadth-first order and reach this many leaves. Returns the number of levels of nodes
+    /// that have children.
     fn order(self, leaves: usize) -> Result<usize, BlobError>;
 
     /// The first node.
     fn root(self) -> Node;
 
-    /// The number of the leaf that a node is; `None` for a node with children.
+    /// Returns the number of the leaf if a node is a leaf; `None` for a node with children.
     fn leaf(self, node: Node) -> Option<u32>;
 
     /// The first (0) or the second (1) child of a node that has children.
     fn child(self, number: u32, side: u32) -> Node;
 
-    /// Turns the volume of a node that has children into that of one of them, in place: boards copy
-    /// volumes by a call.
+    /// Turns the volume of a node that has children into that of one of them, in place, because boards copy volumes by
+    /// a call.
     fn enter_child(self, number: u32, side: u32, volume: &mut Self::Volume);
 
     /// Proves that the volumes of both children lie in their parent's, where a walk relies on that.
@@ -42,7 +42,7 @@ pub(in crate::accel) trait Tree: Copy {
         Ok(())
     }
 
-    /// Whether the volumes that lead to the leaf that a node is hold its primitives.
+    /// Returns true if the volumes above a leaf hold its primitives.
     fn contains_leaf(
         self,
         space: &Space<'_>,
@@ -53,12 +53,12 @@ pub(in crate::accel) trait Tree: Copy {
     ) -> bool;
 }
 
-/// Proves a hierarchy: nodes in breadth-first order, so that children come after their parents and
-/// every node and every leaf is reached once; volumes inside their parents'; primitives inside the
-/// volumes that lead to them. Returns the stack that a walk needs.
+/// Proves a hierarchy, and returns the stack that a walk needs. Nodes lie in breadth-first order, so children come
+/// after their parents, and every node and every leaf is reached once. Volumes lie inside their parents', and
+/// primitives inside all volumes above them.
 ///
-/// Costs the depth of each leaf, because volumes on the way are computed again, which takes less room
-/// than to keep them: [`MAX_LEVELS`] words of stack.
+/// The cost grows with the depth of each leaf, because volumes on the way are computed again. That uses less memory
+/// than to store them: [`MAX_LEVELS`] words of stack.
 #[inline(never)]
 pub(in crate::accel) fn check_tree<T: Tree>(
     tree: T,
@@ -78,7 +78,7 @@ pub(in crate::accel) fn check_tree<T: Tree>(
                 if let Err(reason) = tree.children_inside(number, &volume) {
                     return Err(Location::Record(T::SECTION, number as usize).invalid(reason));
                 }
-                // The depth was proved to fit.
+                // The depth was proved to be in range.
                 let _ = path.push(number << 1);
             }
             Some(leaf) => {
@@ -99,7 +99,7 @@ pub(in crate::accel) fn check_tree<T: Tree>(
                 }
             }
         }
-        // Down to the child that the way leads to.
+        // Down to the child on the way.
         let Some(&step) = path.last() else {
             return Ok(depth);
         };

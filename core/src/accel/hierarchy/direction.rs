@@ -7,7 +7,7 @@ use crate::accel::number::Number;
 pub struct Direction {
     /// Each -1, 0 or 1.
     pub signs: [i8; 3],
-    /// How often the sum of the coordinates is halved, so that it has 16 bits.
+    /// The number of times that the sum of the coordinates is halved, so that it fits 16 bits.
     pub halvings: u32,
 }
 

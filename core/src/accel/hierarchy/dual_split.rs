@@ -1,27 +1,26 @@
-//! Dual-split nodes. A node stores the two planes of its split, and the planes of its own box on up to two axes, chosen
-//! by the builder where they save the most tests.
+//! Dual-split nodes. A node stores the two planes of its split, and the planes of its own box on up to two axes. The
+//! builder chooses these axes where they save the most tests.
 //!
-//! A ray comes to a node with the interval in which it runs through the node's *region*: the box
-//! that the planes on the way down have left of the scene's box. A node narrows the region:
+//! A ray reaches a node with the interval in which it runs through the node's *region*. The region is the part of the
+//! scene's box that the planes on the way down have left. A node narrows the region:
 //!
-//! - up to two *carves* cut it, on one axis each, down to two planes;
-//! - a *split* gives one child all below one plane and the other all above another, on one axis. The
-//!   two may overlap, or leave a gap.
+//! - Up to two *carves* cut it, on one axis each, to the space between two planes.
+//! - A *split* gives one child all below one plane and the other all above another, on one axis. The two can overlap,
+//!   or leave a gap.
 //!
-//! The builder walks the hierarchy with the regions and chooses axes by what they save. What the
-//! children do not touch is cut off by the split, so most sides of a box are never tested at all.
-//! The sign of the ray's direction on the split's axis tells which child is nearer, so no intervals
-//! are compared.
+//! The builder walks the hierarchy with the regions and chooses axes by the tests that they save. The split cuts off
+//! the space that the children do not touch, so most sides of a box are never tested. The sign of the ray's direction
+//! on the split's axis determines the nearer child, so no intervals are compared.
 //!
-//! **Culling is conservative and monotone.** Where a ray crosses a plane is monotone in the plane's
-//! place (`accel::cull`), so the interval of a region is the intersection of those of the
-//! planes that made it, whatever was rounded, and a box in a region has its interval in the
-//! region's; all the more where a core culls with wider ones.
-//! [`Scene::from_bytes`](crate::Scene::from_bytes) proves that the box of each primitive lies in the
-//! region of its leaf. A hit's `t` lies in the interval of the primitive's own box, or is clamped to it,
-//! and between the ray's tmin and the best hit so far, both of which the walk's interval holds: so no
-//! node on the way to a hit is left out. A side that no plane bounds costs visits, not hits, and a region
-//! may even be empty, where there is nothing in it.
+//! **Culling is conservative and monotone.** The step at which a ray crosses a plane is monotone in the plane's place
+//! (`accel::cull`). So the interval of a region is the intersection of the intervals of its planes, whatever was
+//! rounded. A box in a region has its interval in the region's. A core that culls with wider intervals keeps this
+//! property.
+//!
+//! [`Scene::from_bytes`](crate::Scene::from_bytes) proves that the box of each primitive lies in the region of its
+//! leaf. A hit's `t` lies in the interval of the primitive's own box, or is clamped to it. It also lies between the
+//! ray's tmin and the best hit so far. The walk's interval holds both, so the walk visits every node on the way to a
+//! hit. A side that no plane bounds costs visits, not hits. A region without primitives can even be empty.
 
 use crate::accel::cull::{Cull, Culling, PairCulling};
 use crate::accel::cull_axis::{CullAxis, Interval};
@@ -43,7 +42,7 @@ use crate::ray::Ray;
 use crate::target::{NARROW_PRODUCTS, SMALL};
 use core::hint::black_box;
 
-/// Whether a ray's form stays in memory, hidden from the optimizer. Cores that load two words at once and have few
+/// True if a ray's form stays in memory, hidden from the optimizer. Cores that load two words at once and have few
 /// registers read the form of an axis faster from there.
 const FORM_IN_MEMORY: bool = cfg!(target_arch = "arm") && !NARROW_PRODUCTS;
 
@@ -82,7 +81,7 @@ impl Traverse for DualSplit {
         if interval.near > interval.far {
             return;
         }
-        // A full stack that is filled from the bottom is cheaper than one that grows.
+        // It is cheaper to fill a full stack from the bottom than to let a stack grow.
         if stack.len() < stack.capacity() {
             let _ = stack.resize_default(stack.capacity());
         }
@@ -171,7 +170,7 @@ fn sides(axis: usize, [lower, upper]: [Option<i16>; 2]) -> Sides {
     sides
 }
 
-/// Where a walk goes on from a node.
+/// The next step of a walk after a node.
 enum Next {
     Nothing,
     Leaf(u32),
@@ -179,10 +178,10 @@ enum Next {
     Both(u32, Entry),
 }
 
-/// Narrows a ray's interval to a node's and then to the child's where the walk goes on.
+/// Narrows a ray's interval to a node's and then to that of the next child.
 ///
-/// Compiled for each pair of a first carve's axis and a split's, so that neither is looked up, unless
-/// code shall be small.
+/// Compiled for each pair of a first carve's axis and a split's, so that neither is looked up, except where code is
+/// optimized for size.
 #[inline(always)]
 fn visit<C: Observer>(
     record: &DualNode,
@@ -212,7 +211,7 @@ fn visit<C: Observer>(
     }
 }
 
-/// Stands for an axis that is not known when the code is compiled.
+/// Marks an axis that is not known at compile time.
 const ANY: usize = 4;
 
 #[inline(always)]
@@ -249,7 +248,7 @@ fn visit_kind<const SPLIT: usize, const CARVE: usize, C: Observer>(
     }
 }
 
-/// Narrows a ray's interval to what a carve leaves.
+/// Narrows a ray's interval to the carve.
 #[inline(always)]
 fn carve_ray<C: Observer>(
     form: &CullAxis,
@@ -305,7 +304,7 @@ fn split<C: Observer>(
         }
     }
     if whole.near > leave {
-        // Between the two, or past the far one: its own planes may be of other axes, or none.
+        // Between the two planes, or past the far one: its own planes can be of other axes, or absent.
         interval.near = whole.near.max(enter);
         if interval.near > whole.far {
             return Next::Nothing;
@@ -354,7 +353,7 @@ impl Views<'_> {
 impl Tree for Views<'_> {
     const SECTION: SectionKind = SECTION;
     const OUTSIDE: Reason = Reason::PrimitiveOutsideRegion;
-    /// A region: what the planes on the way down have left of the scene's box.
+    /// A region: the part of the scene's box that the planes on the way down have left.
     type Volume = UnitBox;
 
     fn order(self, leaves: usize) -> Result<usize, BlobError> {
@@ -420,8 +419,8 @@ fn carve(region: &mut UnitBox, record: &DualNode) {
     }
 }
 
-/// Proves breadth-first order, and that all nodes and leaves are reached. Returns the number of
-/// levels that have a split.
+/// Proves breadth-first order, and that all nodes and leaves are reached. Returns the number of levels that have a
+/// split.
 fn check_order(nodes: &[DualNode], leaves: usize) -> Result<usize, BlobError> {
     let expected = leaves.saturating_mul(2).saturating_sub(1);
     if nodes.len() != expected {

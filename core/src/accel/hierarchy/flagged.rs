@@ -2,9 +2,9 @@
 //! stored nor tested.
 //!
 //! Two children have twelve sides. At least six of them coincide with their parent's, because at least one child
-//! touches each of the parent's six sides. The paper flags such sides and does not test them. A pair stores, for
-//! each side of the parent, the plane of the child that does *not* touch it, and one bit that says which child that
-//! is (its owner). A ray starts from its interval in the parent and narrows it by six planes instead of twelve.
+//! touches each of the parent's six sides. The paper flags such sides and does not test them. A pair stores one plane
+//! for each side of the parent: that of the child that does *not* touch it. One bit says which child that is (its
+//! owner). A ray starts from its interval in the parent and narrows it by six planes instead of twelve.
 
 use crate::accel::cull::{Cull, PairCulling};
 use crate::accel::cull_axis::Interval;
@@ -88,7 +88,7 @@ impl BoxPair for FlaggedPair {
 /// The children's intervals, given their parent's.
 #[inline(always)]
 fn narrow(pair: &FlaggedPair, parent: Interval, cull: &Cull) -> [Interval; 2] {
-    // Which child owns each near and each far plane, as seen by this ray.
+    // The child that owns each near and each far plane, as seen by this ray.
     let owners = Link(pair.link).owners();
     let swapped = (owners ^ owners >> 3) & cull.descending();
     let pattern = owners ^ swapped ^ swapped << 3;
@@ -99,11 +99,11 @@ fn narrow(pair: &FlaggedPair, parent: Interval, cull: &Cull) -> [Interval; 2] {
     }
 }
 
-/// Where a jump by the owners' pattern is cheap and a conditional move is not: in-order cores
-/// without branch prediction.
+/// True where a jump by the owners' pattern is cheap and a conditional move is not: in-order cores without branch
+/// prediction.
 const JUMPS: bool = cfg!(any(target_arch = "arm", target_arch = "riscv32"));
 
-/// Narrows by conditional moves, for cores that mispredict.
+/// Narrows by conditional moves, for cores with branch mispredictions.
 #[inline(always)]
 fn select(pair: &FlaggedPair, pattern: u32, parent: Interval, cull: &Cull) -> [Interval; 2] {
     let mut intervals = [parent; 2];
@@ -120,7 +120,7 @@ fn select(pair: &FlaggedPair, pattern: u32, parent: Interval, cull: &Cull) -> [I
     intervals
 }
 
-/// Narrows by the one of 64 pieces of code that fits the pattern, so that nothing is tested in vain.
+/// Narrows with one of 64 code paths, chosen by the pattern, so that no test is wasted.
 #[inline(always)]
 fn jump(pair: &FlaggedPair, pattern: u32, parent: Interval, cull: &Cull) -> [Interval; 2] {
     macro_rules! by_pattern {
@@ -138,7 +138,7 @@ fn jump(pair: &FlaggedPair, pattern: u32, parent: Interval, cull: &Cull) -> [Int
     )
 }
 
-/// Narrows for one pattern of owners, known when this is compiled.
+/// Narrows for one pattern of owners, known at compile time.
 #[inline(always)]
 fn narrow_by<const PATTERN: u32>(
     pair: &FlaggedPair,
@@ -162,7 +162,7 @@ mod tests {
     use crate::accel::cull::Culling;
     use crate::number::Fixed;
 
-    /// Both ways to narrow are the same function.
+    /// Both ways to narrow compute the same function.
     #[test]
     fn jumping_and_selecting_agree() {
         let bounds = UnitBox([[-1000, 1000]; 3]);

@@ -1,5 +1,5 @@
-//! Slabs without the planes that coincide with the parent's: what [`flagged`](crate::accel::hierarchy::flagged) is to
-//! boxes.
+//! Slabs without the planes that coincide with the parent's: [`flagged`](crate::accel::hierarchy::flagged) with slabs
+//! in place of boxes.
 
 use crate::accel::cull::Cull;
 use crate::accel::cull_axis::Interval;

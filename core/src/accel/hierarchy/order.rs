@@ -1,4 +1,4 @@
-//! Breadth-first order: what makes every walk through a hierarchy end.
+//! Breadth-first order, which guarantees that every walk through a hierarchy ends.
 
 use crate::format::NodeWord;
 use crate::format::limits::MAX_LEVELS;
@@ -8,7 +8,7 @@ use crate::format::record::{DualNode, FlaggedPair, Pair};
 use crate::format::{BlobError, Field, Location, Reason, SectionKind};
 use core::mem::offset_of;
 
-// What leads to children is at the end of a record: see `Order::record`.
+// The words that lead to children are at the end of a record: see `Order::record`.
 const _: () = {
     assert!(offset_of!(Pair, children) + 8 == size_of::<Pair>());
     assert!(offset_of!(FlaggedPair, link) + 4 == size_of::<FlaggedPair>());
@@ -16,29 +16,29 @@ const _: () = {
 };
 
 /// The proof that the nodes of a hierarchy lie breadth first, made node by node, with the children
-/// of each. Children then come after their parents, every node and every leaf is reached once, and
-/// a walk visits each of them once at most.
+/// of each. So children come after their parents, every node and every leaf is reached once, and a
+/// walk visits each at most once.
 ///
-/// It can be made while a program is compiled: see [`Prevalidated`](crate::Prevalidated).
+/// The proof can be made at compile time: see [`Prevalidated`](crate::Prevalidated).
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Order {
     section: SectionKind,
-    /// How many nodes there are.
+    /// Number of nodes.
     nodes: usize,
     /// The node whose children come next.
     index: usize,
     next_node: usize,
     next_leaf: usize,
-    /// Where the level of the current node ends.
+    /// The end of the current node's level.
     level_end: usize,
     /// Levels above the current one on which nodes have two children.
     levels: usize,
-    /// Whether one on the current level has, so far.
+    /// True if a node on the current level has two children, so far.
     branches: bool,
 }
 
 impl Order {
-    /// Begins with the root of so many nodes.
+    /// Begins with the root of this many nodes.
     pub(crate) const fn new(section: SectionKind, nodes: usize) -> Self {
         Self {
             section,
@@ -52,8 +52,8 @@ impl Order {
         }
     }
 
-    /// The size of the records of a section whose order can be proved with [`Self::record`]; `None`
-    /// for other sections, and where a structure's code is not here.
+    /// The size of the records of a section whose order [`Self::record`] can prove. `None` for
+    /// other sections, and for structures without code in this build.
     pub(crate) const fn record_size(section: SectionKind) -> Option<usize> {
         match section {
             SectionKind::Pairs if cfg!(feature = "bvh") => Some(size_of::<Pair>()),
@@ -65,7 +65,7 @@ impl Order {
         }
     }
 
-    /// Takes the current node whole, given the last two words of its record.
+    /// Processes the whole current node, given the last two words of its record.
     pub(crate) const fn record(&mut self, words: [u32; 2]) -> Result<(), BlobError> {
         match (self.section, words) {
             (SectionKind::Pairs, [left, right]) => self.pair([Node(left), Node(right)]),
@@ -78,7 +78,7 @@ impl Order {
         }
     }
 
-    /// Takes the current node, a pair.
+    /// Processes the current node, a pair.
     #[inline(always)]
     pub(crate) const fn pair(&mut self, [left, right]: [Node; 2]) -> Result<(), BlobError> {
         if let Err(error) = self.child(left.is_leaf(), left.number()) {
@@ -90,7 +90,7 @@ impl Order {
         self.end(true)
     }
 
-    /// Takes the current node, which has a split or is a leaf.
+    /// Processes the current node, which has a split or is a leaf.
     #[inline(always)]
     pub(in crate::accel) const fn dual(&mut self, word: NodeWord) -> Result<(), BlobError> {
         let is_leaf = word.split() == NodeWord::NONE as usize;
@@ -103,7 +103,7 @@ impl Order {
         self.end(!is_leaf)
     }
 
-    /// Takes a child of the current node, by its number among those of its sort.
+    /// Processes a child of the current node, by its number among those of its sort.
     #[inline(always)]
     const fn child(&mut self, is_leaf: bool, number: u32) -> Result<(), BlobError> {
         let next = if is_leaf {
@@ -122,7 +122,7 @@ impl Order {
         Err(node.out_of_range(field, number as i64, [expected as i64; 2]))
     }
 
-    /// Ends a node, which has two children or else is a leaf itself, and goes on to the next.
+    /// Ends a node, which has two children or is itself a leaf, and moves on to the next.
     #[inline(always)]
     const fn end(&mut self, branches: bool) -> Result<(), BlobError> {
         self.branches |= branches;

@@ -36,7 +36,8 @@ pub(in crate::accel) trait PairRecord: Copy {
     /// The left (0) or right (1) child of this record, whose number is given.
     fn child(&self, number: u32, side: u32) -> Node;
 
-    /// The planes that are tested for the left and the right child, as far as they are boxes'.
+    /// The planes that are tested for the left and the right child, as far as they are planes of
+    /// boxes.
     fn sides(&self) -> [Sides; 2] {
         [Sides::default(); 2]
     }
@@ -88,12 +89,12 @@ impl<P: BoxPair> PairRecord for &P {
 
 /// The pairs of a hierarchy, by number.
 pub(in crate::accel) trait PairArray: Copy {
-    /// One of them.
+    /// One of the pairs.
     type Pair: PairRecord;
     /// The volume around everything below a pair: see [`Tree`].
     type Volume: Copy;
 
-    /// How many there are.
+    /// Number of pairs.
     fn len(self) -> usize;
 
     /// One of them.
@@ -102,7 +103,7 @@ pub(in crate::accel) trait PairArray: Copy {
     /// The volumes of a pair's children, given the pair's own.
     fn volumes(self, pair: Self::Pair, parent: &Self::Volume) -> [Self::Volume; 2];
 
-    /// Whether a child's volume lies in its parent's, where a walk relies on that.
+    /// Returns true if a child's volume lies in its parent's, where a walk relies on that.
     fn child_inside(self, _child: &Self::Volume, _parent: &Self::Volume) -> bool {
         true
     }
@@ -157,7 +158,7 @@ impl<A: PairArray> Tree for A {
 
     fn child(self, number: u32, side: u32) -> Node {
         let pair = self.pair(number as usize);
-        // That it exists was proved.
+        // Its existence is proved.
         pair.map_or(Node::leaf(u32::MAX), |pair| pair.child(number, side))
     }
 
@@ -238,7 +239,7 @@ impl<'a, P: BoxPair> Records<'a> for Pairs<'a, P> {
     }
 }
 
-/// A walk through a hierarchy: what the ray brings to it.
+/// The part of a ray in a walk through a hierarchy.
 pub(in crate::accel) struct Walk<'w, 'a, A, R, F> {
     pub(in crate::accel) space: &'w Space<'a>,
     pub(in crate::accel) pairs: A,
@@ -250,7 +251,7 @@ pub(in crate::accel) struct Walk<'w, 'a, A, R, F> {
     pub(in crate::accel) narrow: F,
 }
 
-/// From where to where in units, as events report it.
+/// The first and the last place in units, as events report them.
 fn span<N: Number, K: Culling<N>>(interval: Interval) -> [f64; 2] {
     [interval.near, interval.far].map(K::units)
 }
@@ -261,7 +262,7 @@ where
     R: Fn(i32) -> Interval,
     F: Fn(A::Pair, Interval, i32) -> [Interval; 2],
 {
-    /// Visits the leaves whose boxes the ray can meet, the nearer child first. Intervals are those
+    /// Visits the leaves whose boxes the ray can hit, the nearer child first. Intervals are those
     /// of a culling form.
     #[inline(always)]
     pub(in crate::accel) fn run<N: Number, K: PairCulling<N>, C: Observer>(
@@ -287,8 +288,8 @@ where
         }
     }
 
-    /// Walks from a node on, whose box is not tested. For records whose children do not depend on
-    /// their parent's interval.
+    /// Walks from a node whose box is not tested. For records whose children do not depend on their
+    /// parent's interval.
     #[inline(always)]
     pub(in crate::accel) fn enter<N: Number, K: PairCulling<N>, C: Observer>(
         &self,

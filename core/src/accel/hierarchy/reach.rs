@@ -1,12 +1,13 @@
-//! How far a primitive reaches: the points at which a hit on it can be reported.
+//! The reach of a primitive: the points at which a hit on it can be reported.
 //!
-//! Volumes other than boxes must hold these, not only the primitive. A hit's t lies in the culling
-//! interval of the primitive's box, clamped to it if need be (see `accept_in_box` in `geometry`), and
-//! that interval is wider than the box: from the rule of [`cull`](crate::accel::cull) it follows that a hit lies within 4
-//! units of the box on an axis along which the ray's slope is 2^-12 or more, and within 16.3 on the
-//! others, of which there are at most two. A sphere's own test is sharper: where it meets, the point
-//! of the hit lies within a unit of the sphere, because what rounding does to the half chord it does
-//! to its square, along the ray, and a square's error counts by the radius.
+//! Volumes other than boxes must hold these points, not only the primitive. A hit's t lies in the culling interval of
+//! the primitive's box, clamped to it if needed (see `accept_in_box` in `geometry`). That interval is wider than the
+//! box. The rule of [`cull`](crate::accel::cull) limits the distance of a hit from the box on each axis. It is 4 units
+//! where the ray's slope is 2^-12 or more. On the others, of which there are at most two, it is 16.3 units.
+//!
+//! A sphere's own test is sharper: the point of a hit lies within a unit of the sphere. The reason is that rounding
+//! changes the half chord along the ray by its effect on the chord's square. The error of a square counts by the
+//! radius.
 
 use crate::accel::hierarchy::direction::Direction;
 use crate::format::Kind;
@@ -22,24 +23,24 @@ pub enum Reach {
     Box(UnitBox),
 }
 
-/// By how much a slab is wider than a sphere, in its own units.
+/// Units by which a slab is wider than a sphere, in the slab's own units.
 const SLAB_ABOUT_SPHERE: i64 = 1;
-/// By how much a slab is wider than a box: on the steepest directions two axes reach 16.3 units each
-/// and count by half.
+/// Units by which a slab is wider than a box. On the steepest directions two axes reach 16.3 units each and count by
+/// half.
 const SLAB_ABOUT_BOX: i64 = 17;
 /// The margin of a bounding sphere around its primitives: a unit for the hit and one for the sphere's test.
 const BALL_ABOUT_SPHERE: i64 = 2;
-/// The diagonal of 16.3, 16.3 and 4 units, and one for the sphere's test.
+/// The diagonal of 16.3, 16.3 and 4 units, and one unit for the sphere's test.
 const BALL_ABOUT_BOX: i64 = 25;
 
-/// The smallest integer whose square is at least this.
+/// Returns the smallest integer whose square is at least this.
 fn root_above(square: u64) -> i64 {
     let root = square.isqrt();
     (root + u64::from(root * root < square)) as i64
 }
 
 impl Reach {
-    /// That of a primitive in a blob.
+    /// Returns the reach of a primitive in a blob.
     pub(crate) fn of(shapes: &Shapes<'_>, kind: Kind, index: usize) -> Option<Self> {
         if kind == Kind::Sphere {
             let (center, radius) = shapes.spheres.get(index)?;
@@ -48,7 +49,7 @@ impl Reach {
         Some(Self::Box(shapes.bounds(kind, index)?))
     }
 
-    /// The smallest slab of a direction, in its units; on the axes the box's sides.
+    /// Returns the smallest slab of a direction, in its units; on the axes, the sides of the box.
     pub fn slab(&self, direction: Direction) -> [i16; 2] {
         // One unit of the slab in 1/256 unit.
         let unit = 256_i64 << direction.halvings;
@@ -79,7 +80,7 @@ impl Reach {
         ]
     }
 
-    /// Returns whether a sphere, given by center and radius in units, contains all of it.
+    /// Returns true if a sphere, given by center and radius in units, contains the whole reach.
     pub fn in_sphere(&self, center: [i16; 3], radius: u16) -> bool {
         let radius = i64::from(radius) << 8;
         let squared = |apart: [i64; 3]| apart.iter().map(|x| x * x).sum::<i64>();

@@ -1,12 +1,12 @@
-//! Boxes of a hierarchy whose leaves moved.
+//! Refit: the boxes of a hierarchy whose leaves moved.
 
 use crate::format::link::Node;
 use crate::format::record::{Pair, UnitBox};
 
 /// Computes the boxes of all pairs again, given those of leaves by their numbers.
 ///
-/// Nodes lie breadth first, so every pair comes after the one that leads to it: one pass from the last pair to the
-/// first needs neither a stack nor marks. A leaf without a box keeps the one that it has.
+/// Nodes lie breadth first, so every pair comes after its parent. So one pass from the last pair to the first needs
+/// neither a stack nor marks. A leaf without a box keeps the one that it has.
 pub(crate) fn refit(pairs: &mut [Pair], mut leaf: impl FnMut(u32) -> Option<UnitBox>) {
     for index in (0..pairs.len()).rev() {
         let Some(children) = pairs.get(index).map(|pair| pair.children) else {

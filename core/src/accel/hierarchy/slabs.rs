@@ -1,16 +1,14 @@
 //! Slabs: bounding volumes between parallel planes of fixed directions (Kay and Kajiya, "Ray Tracing
 //! Complex Scenes", 1986), plain and flagged.
 //!
-//! A volume has two planes for each of 3, 7 or 13 directions: the axes, the diagonals of the cube,
-//! the diagonals of its faces. Along a direction `n` a ray's coordinate is `y = n . x / 2^h`, where h
-//! keeps planes in 16 bits; it is a line like that of an axis, with slope and origin of its own, so
-//! slabs are culled by the very rule of boxes (see `accel::cull`), and what is proved there
-//! holds here: `y` errs by no more than the coordinates do. What volumes must hold is more than the
-//! primitives: see [`Reach`].
+//! A volume has two planes for each of 3, 7 or 13 directions: the axes, the diagonals of the cube, the diagonals of its
+//! faces. Along a direction `n` a ray's coordinate is `y = n . x / 2^h`, where h keeps planes in 16 bits. It is a line
+//! like that of an axis, with a slope and an origin of its own. So slabs are culled by the rule of boxes (see
+//! `accel::cull`). The proof of that rule holds here, because the error of `y` is no larger than that of the
+//! coordinates. Volumes must hold more than the primitives: see [`Reach`].
 //!
-//! Plain, all planes of both children are tested, four per direction. Flagged, those that coincide
-//! with the parent's are neither stored nor tested, exactly as with boxes: two per direction. See
-//! `flagged_slabs.rs`.
+//! Without flags, all planes of both children are tested, four per direction. With flags, planes that coincide with the
+//! parent's are neither stored nor tested, exactly as with boxes: two per direction. See `flagged_slabs.rs`.
 
 use crate::accel::cull::Cull;
 use crate::accel::cull_axis::{CullAxis, Interval};
@@ -29,7 +27,7 @@ use crate::observe::count::Observer;
 use crate::ray::Ray;
 use heapless::Vec;
 
-/// A volume: the lower and the upper plane of each direction, as many as there are.
+/// A volume: the lower and the upper plane of each of its directions.
 pub type Volume = [[i16; 2]; DIRECTIONS.len()];
 
 /// The hierarchy of slabs with all planes.
@@ -47,13 +45,13 @@ pub(in crate::accel) fn forms<N: Number>(ray: &Ray<N>, count: usize) -> Forms {
     DIRECTIONS.iter().take(count).map(form).collect()
 }
 
-/// Two planes of a direction, as a word holds them.
+/// Two planes of a direction, in one word.
 #[inline(always)]
 pub(in crate::accel) fn planes(word: u32) -> [i16; 2] {
     [word as i16, (word >> 16) as i16]
 }
 
-/// The planes that a ray comes to first, and those that it comes to last.
+/// Returns the planes that a ray reaches first, and those that it reaches last.
 #[inline(always)]
 pub(in crate::accel) fn in_order<T>(form: &CullAxis, lower: T, upper: T) -> (T, T) {
     if form.descends() {
@@ -83,7 +81,7 @@ pub(in crate::accel) fn root_interval(
     interval
 }
 
-/// The records of one hierarchy: so many words each.
+/// The records of one hierarchy, each with this many words.
 #[derive(Clone, Copy, Debug)]
 pub struct SlabPairs<'a, const FLAGGED: bool> {
     /// The root's volume, a word per direction.
@@ -91,13 +89,13 @@ pub struct SlabPairs<'a, const FLAGGED: bool> {
     words: &'a [u32],
 }
 
-/// One of them.
+/// One of the records.
 #[derive(Clone, Copy, Debug)]
 pub(in crate::accel) struct SlabPair<'a, const FLAGGED: bool>(&'a [u32]);
 
 impl<'a, const FLAGGED: bool> SlabPairs<'a, FLAGGED> {
-    /// Words of a record: for each direction the lower planes and the upper planes, or in flagged
-    /// pairs the inner lower and the inner upper plane; and two words behind them.
+    /// Words of a record. Each direction has a word of lower planes and a word of upper planes. In flagged pairs it has
+    /// one word, of the inner lower and the inner upper plane. Two words follow.
     fn width(&self) -> usize {
         let directions = self.root.len();
         2 + if FLAGGED { directions } else { 2 * directions }

@@ -1,13 +1,13 @@
 //! Bounding spheres.
 //!
-//! The interval of a bounding sphere is taken from the point of the ray that is nearest to its center, a radius
-//! back and forth: a little longer than the chord, and without a square root. It is empty where the ray passes the
-//! center farther away than the radius.
+//! The interval of a bounding sphere begins and ends a radius from the point of the ray that is nearest to its center.
+//! That is a little longer than the chord, and needs no square root. It is empty where the ray passes the center
+//! farther away than the radius.
 //!
-//! A child's sphere need not lie in its parent's: a tight sphere around primitives does not contain the tight
-//! spheres around parts of them. So a blob is proved to hold every primitive in the sphere of each node above it,
-//! with a margin (see [`Reach`]). Then a hit's point lies in all of these spheres, at most a radius from the ray's
-//! nearest point, and no node above it is skipped.
+//! A child's sphere need not lie in its parent's, because a tight sphere around primitives does not contain the tight
+//! spheres around parts of them. So loading proves that the sphere of each node holds every primitive below it, with a
+//! margin (see [`Reach`]). Then a hit's point lies in all of these spheres, at most a radius from the ray's nearest
+//! point. So no node above it is skipped.
 
 use crate::accel::cull::{Cull, PairCulling};
 use crate::accel::cull_axis::Interval;
@@ -25,7 +25,7 @@ use crate::format::{BlobError, Leaf, SectionKind, Sections, Structure};
 use crate::observe::count::Observer;
 use crate::ray::Ray;
 
-/// The hierarchy of bounding spheres; no plane is tested below the root, but two spheres per pair.
+/// The hierarchy of bounding spheres. Below the root no plane is tested, but two spheres per pair.
 #[derive(Clone, Copy, Debug)]
 pub enum Spheres {}
 
@@ -73,14 +73,14 @@ fn interval<N: Number>(ray: &Ray<N>, recip_norm2: N, sphere: BoundingSphere) -> 
     let axis = |k: usize| relative[k] - closest * ray.slope[k];
     let apart = [axis(0), axis(1), axis(2)];
     let radius = N::from_lattice(i32::from(sphere.radius) << 8);
-    // The box first, so that squares stay in range.
+    // The box is tested first, so that squares stay in range.
     if !(apart[0].abs() <= radius && apart[1].abs() <= radius && apart[2].abs() <= radius) {
         return NOWHERE;
     }
     if radius.wide(radius) < N::dot(apart, apart) {
         return NOWHERE;
     }
-    // Steps are half units; one for the rounding of each conversion.
+    // Steps are half units; one covers the rounding of each conversion.
     let (middle, reach) = (closest.to_cull(), 2 * i32::from(sphere.radius) + 1);
     Interval {
         near: middle - reach,
@@ -137,8 +137,8 @@ impl<'a> PairArray for &'a [SpherePair] {
         [(); 2]
     }
 
-    /// At most [`MAX_LEVELS`](crate::format::limits::MAX_LEVELS) spheres are asked about each primitive;
-    /// for the root the scene's box is tested.
+    /// At most [`MAX_LEVELS`](crate::format::limits::MAX_LEVELS) spheres are tested per primitive; for the root the
+    /// scene's box is tested.
     fn contains_leaf(self, space: &Space<'_>, leaf: Leaf, (): &(), path: &Path) -> bool {
         leaf.slots().into_iter().all(|index| {
             Reach::of(&space.shapes, leaf.kind, index).is_some_and(|reach| {

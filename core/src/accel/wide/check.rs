@@ -1,4 +1,4 @@
-//! The proof that a blob's eight-wide hierarchy is sound.
+//! The proof that a blob's eight-wide hierarchy is valid.
 
 use crate::accel::space::Space;
 use crate::format::cluster::{LANES, RADII};
@@ -9,9 +9,9 @@ use crate::format::{BlobError, Child, Field, Kind, Leaf, Location, Reason, Secti
 use crate::geometry::{Clusters, Packs, Packs24};
 use heapless::Vec;
 
-/// Proves that nodes and clusters are numbered breadth first, so that every one is reached once
-/// and every walk ends; that boxes lie inside their parents' and clusters inside their boxes; that
-/// all primitives are in it. Returns the stack that a walk needs.
+/// Proves the hierarchy, and returns the stack that a walk needs. Nodes and clusters are numbered
+/// breadth first, so each is reached once and every walk ends. Boxes lie inside their parents',
+/// clusters lie inside their boxes, and the hierarchy holds all primitives.
 ///
 /// Linear; uses [`MAX_STACK_DEPTH`] times 20 bytes of stack.
 pub(super) fn check(nodes: &[WideNode], space: &Space<'_>) -> Result<usize, BlobError> {
@@ -27,7 +27,7 @@ fn wrong(section: SectionKind, index: usize, reason: Reason) -> BlobError {
     Location::Record(section, index).invalid(reason)
 }
 
-/// Proves that a number of a record is that which must come next.
+/// Proves that a number of a record is the next in order.
 fn follows(
     section: SectionKind,
     index: usize,
@@ -38,7 +38,8 @@ fn follows(
     At { section, index }.within(field, found as i64, next as i64, next as i64)
 }
 
-/// Proves that members ascend from cluster to cluster, and that there are as many as primitives.
+/// Proves that members ascend from cluster to cluster, and that their number is the number of
+/// primitives.
 fn check_members(space: &Space<'_>) -> Result<(), BlobError> {
     let clusters = space.shapes.clusters();
     let mut next = 0;
@@ -96,7 +97,7 @@ fn check_members(space: &Space<'_>) -> Result<(), BlobError> {
             });
         }
     }
-    // Slot locations lead to members, where there are any.
+    // Slot locations lead to members, if there are any.
     let own = clusters.locations.is_empty();
     for index in 0..clusters.members.len() * usize::from(own) {
         let primitive = clusters.members.get(index).unwrap_or(u32::MAX).into();
@@ -141,8 +142,8 @@ fn check_radii(packs: &Packs<'_>) -> Result<(), BlobError> {
     Ok(())
 }
 
-/// Proves that triangles and spheres have records of their own: what any structure but the list and
-/// this one leads to.
+/// Proves that triangles and spheres have records of their own, which all structures except the
+/// list and this one use.
 pub(crate) fn check_records(space: &Space<'_>) -> Result<(), BlobError> {
     for (section, kind) in [
         (SectionKind::Triangles, Kind::Triangle),
@@ -165,12 +166,12 @@ fn check_order(nodes: &[WideNode], space: &Space<'_>) -> Result<(), BlobError> {
     let section = SectionKind::WideNodes;
     let Clusters { strips, packs, .. } = space.shapes.clusters();
     let (mut next_node, mut next_strip, mut next_pack) = (1, 0, 0);
-    // A pack that is not full comes last, wherever the hierarchy leads to it.
+    // A pack that is not full comes last, wherever the hierarchy refers to it.
     let full = (0..packs.len()).rposition(|pack| packs.lanes(pack as u32).count_ones() == 8);
     let full_packs = full.map_or(0, |last| last + 1);
     let mut next_sparse = full_packs;
     let mut others = [0; Kind::ALL.len()];
-    // Where other structures share the slots, these are in the order of theirs.
+    // Where other structures share the slots, the slots are in the order of those structures.
     let own_order = space.shapes.clusters().locations.is_empty();
     for (index, node) in nodes.iter().enumerate() {
         let mut ended = false;
@@ -256,14 +257,14 @@ fn check_order(nodes: &[WideNode], space: &Space<'_>) -> Result<(), BlobError> {
     Ok(())
 }
 
-/// Proves, where other structures share the primitives, that the hierarchy holds each of them once:
-/// every slot has a location that leads back to it, and there are as many locations as places.
+/// Proves, where other structures share the primitives, that the hierarchy holds each of them once.
+/// Every slot has a location that leads back to it, and there are as many locations as places.
 fn check_slot_locations(nodes: &[WideNode], space: &Space<'_>) -> Result<(), BlobError> {
     let section = SectionKind::SlotLocations;
     let (shapes, clusters) = (&space.shapes, space.shapes.clusters());
     let locations = clusters.locations;
     if locations.is_empty() {
-        // Then the clusters' are the only triangles and spheres.
+        // Then the clusters hold the only triangles and spheres.
         for (section, kind) in [
             (SectionKind::Triangles, Kind::Triangle),
             (SectionKind::Spheres, Kind::Sphere),
@@ -324,7 +325,8 @@ fn check_slot_locations(nodes: &[WideNode], space: &Space<'_>) -> Result<(), Blo
     Ok(())
 }
 
-/// Proves that boxes hold what is below them, and returns the most entries that a walk has waiting.
+/// Proves that boxes hold everything below them, and returns the maximum number of waiting entries
+/// of a walk.
 fn check_boxes(nodes: &[WideNode], space: &Space<'_>) -> Result<usize, BlobError> {
     let section = SectionKind::WideNodes;
     let clusters = space.shapes.clusters();
@@ -332,7 +334,7 @@ fn check_boxes(nodes: &[WideNode], space: &Space<'_>) -> Result<usize, BlobError
     if nodes.is_empty() {
         return Ok(0);
     }
-    // Children that wait, their boxes, and how many wait before they are reached.
+    // Waiting children, their boxes, and the number of entries that wait before they are reached.
     let mut waiting: Vec<(u32, UnitBox, u16), { MAX_STACK_DEPTH + 1 }> = Vec::new();
     let mut current = Some((0, *space.bounds(), 0));
     while let Some((number, parent, before)) = current {
@@ -354,7 +356,8 @@ fn check_boxes(nodes: &[WideNode], space: &Space<'_>) -> Result<usize, BlobError
                 let bounds = node.child_box(lane);
                 let within = match (child.as_node(), Leaf::from_word(child.0)) {
                     (Some(number), _) => {
-                        // It fits: no more wait here than in a walk, and that was proved above.
+                        // It fits: no more entries wait here than in a walk, which was proved
+                        // above.
                         let _ = waiting.push((number, bounds, after));
                         true
                     }

@@ -1,5 +1,5 @@
-//! Which of a node's eight children a ray can meet, in the ray's own arithmetic: lanes of single
-//! precision for floats, integers for [`Fixed`](crate::Fixed).
+//! Culling of a node's eight children, in the ray's own arithmetic: lanes of single precision for floats, integers for
+//! [`Fixed`](crate::Fixed).
 //!
 //! In lanes, rule and margins are those of `single.rs`.
 
@@ -17,12 +17,12 @@ use glam::Vec4;
 pub trait WideCulling<N: CullArithmetic>: Culling<N> {
     /// The limit for hits at or before a length.
     fn limit(t: N) -> i32;
-    /// From where to where the ray is in a box up to a limit, in units: what [`children`] goes by.
+    /// Returns the first and the last place of the ray in a box up to a limit, in units, by the test of [`children`].
     ///
     /// [`children`]: Self::children
     fn span(&self, bounds: &UnitBox, limit: i32) -> [f64; 2];
-    /// The children that the ray can meet up to a limit, a bit each, and where it enters them; what
-    /// compares with a limit.
+    /// Returns the children that the ray can hit up to a limit, one bit each, and the places where it enters them.
+    /// These compare with a limit.
     fn children<S: Simd>(&self, simd: S, node: &WideNode, limit: i32) -> (u32, [i32; LANES]);
 }
 
@@ -35,7 +35,7 @@ pub struct WideLanes {
     near: Vec4,
     /// The offsets from the far planes' products to t.
     far: Vec4,
-    /// A bit for each axis that the ray runs down: a node's upper row has the near planes there.
+    /// One bit per axis, set where the ray runs down it: a node's upper row has the near planes there.
     descends: u32,
 }
 
@@ -96,7 +96,7 @@ impl<N: CullArithmetic> WideCulling<N> for WideLanes {
         let Self {
             inverse, near, far, ..
         } = self;
-        // Each a function that is inlined for certain, as a closure is not.
+        // Each is a function, because a function is certainly inlined and a closure is not.
         let [x, y, z] = &node.planes;
         let (near_x, far_x) = between(simd, x, self.near_row(0), [inverse.x, near.x, far.x]);
         let (near_y, far_y) = between(simd, y, self.near_row(1), [inverse.y, near.y, far.y]);
@@ -113,8 +113,8 @@ impl<N: CullArithmetic> WideCulling<N> for WideLanes {
     }
 }
 
-/// Where a ray passes the near and the far planes of one axis, given the rows of its lower and upper
-/// planes, the number of the near row, and the ray's constants.
+/// Returns where a ray passes the near and the far planes of one axis. The arguments are the rows of its lower and
+/// upper planes, the number of the near row, and the ray's constants.
 #[inline(always)]
 fn between<S: Simd>(
     simd: S,

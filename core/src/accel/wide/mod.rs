@@ -1,15 +1,15 @@
 //! The eight-wide hierarchy, for hosts: nodes of eight children, leaves of one cluster.
 //!
-//! A node is 128 bytes: the children's planes on the box lattice in rows of eight
-//! ([`WideNode`]), so that one instruction of a machine with SIMD registers takes a side of eight
-//! (or four) children, and a word for each child. A leaf is one [cluster](crate::format::cluster),
-//! tested in eight lanes too, or a single primitive of the kinds that have no clusters.
+//! A node is 128 bytes. It holds the children's planes on the box lattice in rows of eight ([`WideNode`]), and a word
+//! for each child. So one instruction of a machine with SIMD registers tests a side of eight (or four) children. A leaf
+//! is one [cluster](crate::format::cluster), tested in eight lanes too, or a single primitive of the kinds that have no
+//! clusters.
 //!
-//! The answers are the list's, bit for bit: culling is conservative, lane by lane (see
-//! `cull`), and what a cluster's lanes do not reject goes through the same scalar
-//! code as everywhere else, or has been through its operations lane by lane. Children that are met
-//! are pushed in no order, but the nearest is taken at once: sorting costs more than it saves. Where
-//! any hit will do, children are taken as they lie, and those of a node wait in one entry.
+//! The answers are the list's, bit for bit. Culling is conservative, lane by lane (see `cull`). A primitive that a
+//! cluster's lanes do not reject is tested by the scalar code of all structures. Or the lanes have already made the
+//! operations of that code. Children that the ray hits are pushed in no order, but the nearest is visited at once,
+//! because sorting costs more than it saves. An any-hit query visits children in stored order, and those of a node wait
+//! in one entry.
 
 mod check;
 pub(crate) mod cull;
@@ -32,7 +32,7 @@ use crate::ray::Ray;
 use crate::simd::{Simd, SimdLevel, with_simd};
 use cull::WideCulling;
 
-/// The hierarchy of eight children a node, for machines with SIMD registers.
+/// The hierarchy of eight children per node, for machines with SIMD registers.
 #[derive(Clone, Copy, Debug)]
 pub enum Wide {}
 
@@ -157,7 +157,7 @@ impl Traverse for Wide {
     }
 }
 
-/// The level for rays of a format: integers have no lanes.
+/// Returns the level for rays of a format: integers have no lanes.
 #[inline(always)]
 fn level<N: Number>(space: &Space<'_>) -> SimdLevel {
     match N::FORMAT {
@@ -166,7 +166,7 @@ fn level<N: Number>(space: &Space<'_>) -> SimdLevel {
     }
 }
 
-/// The next child that waits and is entered before the limit.
+/// Returns the next waiting child that the ray enters before the limit.
 #[inline(always)]
 fn pop_closest<N: Number, C: Observer>(
     stack: &mut StackView,
@@ -179,18 +179,17 @@ fn pop_closest<N: Number, C: Observer>(
     Some(Child(entry.node))
 }
 
-/// The next child that waits, of those that wait together.
+/// Returns the next waiting child, of those that wait together.
 #[inline(always)]
 fn pop_any(nodes: &[WideNode], stack: &mut StackView) -> Option<Child> {
     let Entry { node, near, .. } = stack.pop()?;
     take(nodes.get(node as usize)?, node, near as u32, stack)
 }
 
-/// Goes down from a node, each time to the child that is met first, while the others are left to
-/// wait; where nothing is met, goes on with the next that waits. Ends at a leaf, or at none.
+/// Goes down from a node, each time to the child that the ray enters first, while the others wait. Where the ray hits
+/// no child, continues with the next that waits. Returns a leaf, or none.
 ///
-/// Called out of line, because the ray's constants for nodes and those for leaves do not fit the
-/// registers together.
+/// Out of line, because the ray's constants for nodes and those for leaves do not fit the registers together.
 #[inline(always)]
 fn descend<S: Simd, N: Number, C: Observer>(
     simd: S,
@@ -211,14 +210,14 @@ fn descend<S: Simd, N: Number, C: Observer>(
         };
         let first = take_lowest(&mut met);
         if met == 0 {
-            // Every other node: no need to wait for where it is entered.
+            // Every second node: no need to wait for its entry.
             current = node.child(first);
             continue;
         }
         let mut nearest = entered(first, &near);
         while met != 0 {
             let other = entered(take_lowest(&mut met), &near);
-            // No branches, which would be guessed wrong every other time.
+            // No branches, because they would be mispredicted half of the time.
             let later = nearest.max(other);
             nearest = nearest.min(other);
             let entry = Entry {
@@ -227,7 +226,7 @@ fn descend<S: Simd, N: Number, C: Observer>(
                 far: 0,
             };
             if stack.push(entry).is_err() {
-                // Only a forged blob is deeper than it says: the walk ends.
+                // Only a forged blob is deeper than it states: the walk ends.
                 stack.clear();
                 return Child::NONE;
             }
@@ -237,8 +236,8 @@ fn descend<S: Simd, N: Number, C: Observer>(
     current
 }
 
-/// Goes down from a node, each time to one of the children that are met, to a leaf or to none: what
-/// [`descend`] does where any order will do, for less.
+/// Goes down from a node, each time to any of the children that the ray hits, and returns a leaf or none. A cheaper
+/// [`descend`] for walks in any order.
 #[inline(always)]
 fn descend_any<S: Simd, N: Number, C: Observer>(
     simd: S,
@@ -258,7 +257,7 @@ fn descend_any<S: Simd, N: Number, C: Observer>(
             continue;
         };
         let Some(first) = take(node, number, met, stack) else {
-            // Only a forged blob is deeper than it says: the walk ends.
+            // Only a forged blob is deeper than it states: the walk ends.
             stack.clear();
             return Child::NONE;
         };
@@ -267,8 +266,8 @@ fn descend_any<S: Simd, N: Number, C: Observer>(
     current
 }
 
-/// Opens a node and [tests](WideCulling::children) its children: the node, which of them are met and
-/// where they are entered. `None` where none is met.
+/// Opens a node and [tests](WideCulling::children) its children. Returns the node, the children that the ray hits and
+/// where it enters them; `None` if it hits none.
 #[inline(always)]
 fn open<'n, S: Simd, N: Number, C: Observer>(
     simd: S,
@@ -290,8 +289,8 @@ fn open<'n, S: Simd, N: Number, C: Observer>(
     (met != 0).then_some((node, met, near))
 }
 
-/// One of the children of a node that are met, while the others are left to wait together: the node,
-/// with a bit for each of them. `None` if there is no room.
+/// Returns one of the children of a node that the ray hits, while the others wait together: the node, with one bit per
+/// child. Returns `None` if there is no room.
 #[inline(always)]
 fn take(node: &WideNode, number: u32, mut met: u32, stack: &mut StackView) -> Option<Child> {
     let first = take_lowest(&mut met);
@@ -328,7 +327,7 @@ fn observe_tested<N: Number, C: Observer>(
     }
 }
 
-/// The lowest lane of a set that is not empty, which is removed.
+/// Removes and returns the lowest lane of a set that is not empty.
 #[inline(always)]
 fn take_lowest(lanes: &mut u32) -> usize {
     let lowest = lanes.trailing_zeros();
@@ -336,7 +335,8 @@ fn take_lowest(lanes: &mut u32) -> usize {
     (lowest & 7) as usize
 }
 
-/// Where a lane is entered, which is not negative, in the high half, and its number in the low half.
+/// The place where the ray enters a lane, which is not negative, in the high half, and the lane's number in the low
+/// half.
 #[inline(always)]
 fn entered(lane: usize, near: &[i32; LANES]) -> u64 {
     (near[lane & 7] as u64) << 32 | lane as u64

@@ -1,4 +1,4 @@
-//! What the tables of lists of candidates belong to: gridels, apexes, directions and windows.
+//! Records to which tables of candidate lists belong: gridels, apexes, directions and windows.
 
 use crate::format::layout::records;
 use bytemuck::{Pod, Zeroable};
@@ -78,6 +78,6 @@ records! {
 }
 
 impl ApexWindow {
-    /// Most cells along a side.
+    /// Maximum number of cells along a side.
     pub const MOST_CELLS: u16 = 1024;
 }

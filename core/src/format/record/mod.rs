@@ -1,5 +1,5 @@
-//! The records of a blob, as the host writes them and the core reads them in place; but for those of
-//! [shapes](crate::geometry) and [clusters](crate::format::cluster).
+//! The records of a blob, as the host writes them and the core reads them in place. The records of
+//! [shapes](crate::geometry) and [clusters](crate::format::cluster) are elsewhere.
 //!
 //! Little-endian, naturally aligned, without padding. `FORMAT.md` shows every field: its tables come from the
 //! declarations here, see [`layout`](crate::format::layout).
@@ -20,9 +20,9 @@ pub use points::{Sphere16, Sphere24, UnitBox, Vertex16, Vertex24};
 pub use shading::{Emission, Light, Material, View};
 pub use texture::{NormalMap, SurfaceMaps, Texture};
 
-/// The first bytes of every blob. The last two betray a file that was mangled as text.
+/// The first bytes of every blob. The last two detect a file that was transferred as text.
 pub const MAGIC: [u8; 8] = *b"GRIDEL\x1a\n";
-/// Reads as this number only where the byte order of blob and machine agree.
+/// Has this value only if blob and machine have the same byte order.
 pub const ENDIANNESS: u32 = 0x0102_0304;
 /// The version of the format.
 pub const VERSION: u16 = 1;

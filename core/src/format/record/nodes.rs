@@ -93,8 +93,7 @@ records! {
 }
 
 impl WideNode {
-    /// The box of a missing child: no ray meets it, because it is inside out by more than the
-    /// margins of culling.
+    /// The box of a missing child. No ray hits it, because its sides are swapped by more than the margins of culling.
     pub const EMPTY: UnitBox = UnitBox([[i16::MAX, i16::MIN]; 3]);
 
     /// The box of a child.
@@ -120,7 +119,7 @@ impl GridShape {
     }
 }
 
-/// Two 16-bit planes as one word, the way pairs hold them.
+/// Two 16-bit planes as one word, in the form that pairs use.
 pub const fn plane_word(planes: [i16; 2]) -> u32 {
     planes[0] as u16 as u32 | (planes[1] as u16 as u32) << 16
 }

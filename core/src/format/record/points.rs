@@ -68,7 +68,7 @@ impl UnitBox {
         Self([axis(0), axis(1), axis(2)])
     }
 
-    /// Whether `other` lies in this box, faces included.
+    /// Returns true if `other` lies in this box, faces included.
     pub fn contains(&self, other: &Self) -> bool {
         self.0.iter().zip(&other.0).all(|(outer, inner)| {
             outer[0] <= inner[0] && inner[0] <= inner[1] && inner[1] <= outer[1]

@@ -12,9 +12,9 @@ const ONE: i64 = 1 << 30;
 impl View {
     /// The [encoding](Self::encoding) of display values.
     pub const DISPLAY_VALUES: u8 = 1;
-    /// The [encoding](Self::encoding) of tones that are mapped by the curve of Reinhard.
+    /// The [encoding](Self::encoding) of tones that the curve of Reinhard maps.
     pub const REINHARD: u8 = 2;
-    /// The [encoding](Self::encoding) of tones that are mapped by a curve like that of ACES.
+    /// The [encoding](Self::encoding) of tones that a curve like that of ACES maps.
     pub const ACES: u8 = 3;
 }
 

@@ -82,17 +82,17 @@ impl Texture {
     /// The bit of [`filter`](Self::filter) for levels.
     pub const LEVELS: u8 = 2;
 
-    /// Whether levels follow the texels, and are read in this build.
+    /// Returns true if levels follow the texels, and this build reads them.
     pub const fn has_levels(&self) -> bool {
         TEXTURE_LEVELS && self.filter & Self::LEVELS != 0
     }
 
-    /// Width and height of the level behind one of this size.
+    /// Width and height of the level after one of this size.
     pub const fn next_level([width, height]: [u32; 2]) -> [u32; 2] {
         [width.div_ceil(2), height.div_ceil(2)]
     }
 
-    /// Texels, those of levels too: less than 2^25.
+    /// Number of texels, with those of levels: less than 2^25.
     pub const fn texels(&self) -> usize {
         let mut size = [self.width as u32, self.height as u32];
         let mut texels = size[0].wrapping_mul(size[1]);

@@ -1,4 +1,4 @@
-//! Cones, frusta and cylinders of small integers and of any numbers, against the textbook's distance from
+//! Cones, frusta and cylinders of small integers and of arbitrary numbers, compared with the textbook's distance from
 //! their faces in double precision.
 
 use crate::format::record::UnitBox;
@@ -73,7 +73,7 @@ impl Exact {
         }
     }
 
-    /// By how much the solid would have to grow on all sides to reach a point.
+    /// The distance by which the solid would have to grow on all sides to reach a point.
     fn excess(&self, point: Vector) -> f64 {
         let q = along(point, -1.0, self.middle);
         let y = dot(q, self.axis);
@@ -97,7 +97,7 @@ impl Exact {
     }
 }
 
-/// By how many steps a crossing is off.
+/// The error of a crossing in steps.
 fn steps_off<N: Arithmetic>(cone: &Cone, origin: Vector, direction: Vector) -> Option<f64> {
     let ray = Ray::<N>::from_f64(&WORLD, origin, direction, 0.0, 1e9).ok()?;
     let (start, slope) = (
@@ -159,7 +159,7 @@ fn solid(random: &mut Random, sort: u64) -> Cone {
     }
 }
 
-/// Holds random solids and rays to the bound; the ends of each crossing, and what is missed.
+/// Tests random solids and rays against the bound: the ends of each crossing, and missed crossings.
 fn hold<N: Arithmetic>(sort: u64) {
     let full = std::env::var_os("GRIDEL_FULL").is_some_and(|value| value == "1");
     let mut random = Random(0xc09e);

@@ -14,8 +14,8 @@ use crate::number::fixed::wide::Product;
 use crate::target::{NARROW_PRODUCTS, SMALL, inline_unless_small};
 use core::cmp::Ordering;
 
-/// [`Project::surrounds_origin`](crate::geometry::Project::surrounds_origin) by the sides on which the edges leave the origin, where they differ: those that
-/// lead through it are on neither.
+/// [`Project::surrounds_origin`](crate::geometry::Project::surrounds_origin) by the sides on which the edges leave the
+/// origin, where they differ. Edges that lead through it are on neither side.
 fn surround_by_sides(sides: [i64; 3]) -> bool {
     let negative = sides.iter().any(|&side| side < 0);
     let positive = sides.iter().any(|&side| side > 0);
@@ -25,8 +25,8 @@ fn surround_by_sides(sides: [i64; 3]) -> bool {
 impl Project for Fixed {
     #[inline(always)]
     fn axis_projection(origin: Self, slope: Self, bits: u32) -> AxisProjection<Self> {
-        // All that is seen is counted in the direction in which the ray runs, so that what is rounded
-        // down is rounded alike in a mirrored scene.
+        // All projected values are counted in the direction of the ray. So values are rounded down alike in a mirrored
+        // scene.
         let turned = slope.0 >> 31;
         let turn = |x: i32| (x ^ turned).wrapping_sub(turned);
         AxisProjection {
@@ -59,7 +59,7 @@ impl Project for Fixed {
 
     #[inline(always)]
     fn shear_by(depth: Self, shear: Self) -> Self {
-        // The upper half of a product, which costs least.
+        // The upper half of a product, which is the cheapest to compute.
         Fixed((product(depth.0, shear.0) >> 32) as i32)
     }
 
@@ -70,7 +70,7 @@ impl Project for Fixed {
             }
             let cross = |a: [Self; 2], b: [Self; 2]| (a[0].wide(b[1]) - a[1].wide(b[0])).0;
             let (u, v) = (cross(b, c), cross(c, a));
-            // Few triangles come further. Where an upper half is not 0, neither is the whole.
+            // Few triangles reach this code. Where an upper half is not 0, the whole is not 0 either.
             let (upper_u, upper_v) = ((u >> 32) as i32, (v >> 32) as i32);
             if upper_u ^ upper_v < 0 && upper_u != 0 && upper_v != 0 {
                 return false;
@@ -95,7 +95,7 @@ impl Project for Fixed {
 
     #[inline(always)]
     fn is_steep(approach: Product) -> bool {
-        // 2^-8 with 60 fraction bits; the upper half decides. Small code has one way for all.
+        // 2^-8 with 60 fraction bits; the upper half decides. Code that is optimized for size has one path for all.
         const LEAST: i32 = 1 << (2 * RATIO_BITS - 8 - 32);
         let upper = (approach.0 >> 32) as i32;
         !SMALL && !(-LEAST..LEAST).contains(&upper)

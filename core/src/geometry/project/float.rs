@@ -5,17 +5,17 @@ use crate::geometry::project::AxisProjection;
 use crate::number::error_free::SPLITTER_F64;
 use crate::number::error_free::product_error;
 use core::cmp::Ordering;
-/// How `a b` compares to `c d`, exactly: products of `f32` fit `f64`.
+/// Compares `a b` to `c d`, exactly: products of `f32` fit `f64`.
 fn compare_products_f32(a: f32, b: f32, c: f32, d: f32) -> Ordering {
     let (left, right) = (f64::from(a) * f64::from(b), f64::from(c) * f64::from(d));
     left.partial_cmp(&right).unwrap_or(Ordering::Equal)
 }
 
-/// How `a b` compares to `c d`, exactly: where the rounded products are equal, by their errors.
+/// Compares `a b` to `c d`, exactly: where the rounded products are equal, by their errors.
 ///
-/// Dekker's product gives the rounding error of each (T. J. Dekker, "A floating-point technique
-/// for extending the available precision", 1971). Exact as long as nothing underflows, which the
-/// ray's set-up sees to: the origin's coordinates and the slopes are 0 or at least 2^-100.
+/// Dekker's product gives the rounding error of each (T. J. Dekker, "A floating-point technique for extending the
+/// available precision", 1971). It is exact as long as nothing underflows. The ray's set-up ensures that: the origin's
+/// coordinates and the slopes are 0 or at least 2^-100.
 fn compare_products_f64(a: f64, b: f64, c: f64, d: f64) -> Ordering {
     let rounded = (a * b).partial_cmp(&(c * d)).unwrap_or(Ordering::Equal);
     rounded.then_with(|| {
@@ -74,7 +74,7 @@ macro_rules! project {
                 // Two that differ in sign have a product below zero; one that is zero decides nothing.
                 let (u, v) = (cross(b, c), cross(c, a));
                 let first = u * v;
-                // Few triangles come further.
+                // Few triangles reach this code.
                 if first < 0.0 {
                     return false;
                 }

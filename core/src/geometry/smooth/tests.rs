@@ -49,7 +49,7 @@ fn any_stored_words_are_normals() {
     }
 }
 
-/// A triangle of a sphere around the origin, of so many units.
+/// A triangle of a sphere around the origin, with a radius of this many units.
 fn on_sphere(directions: [[f64; 3]; 3], radius: f64) -> SmoothTriangle {
     let corner = |v: [f64; 3]| unit(v).map(|x| (x * radius * 256.0).round() as i32);
     SmoothTriangle {
@@ -108,8 +108,8 @@ fn check_radial<N: Arithmetic>(scale: f64) {
     }
 }
 
-/// The plane of a triangle of a sphere has the sphere's own normals, because a corner is as far from the center as
-/// its normal is long.
+/// The plane of a triangle of a sphere has the sphere's own normals. A corner is as far from the center as its normal
+/// is long.
 #[test]
 fn normals_of_a_sphere_are_radial_in_all_formats() {
     for scale in [30.0, 2_000.0, 32_000.0] {

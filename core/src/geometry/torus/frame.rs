@@ -9,11 +9,11 @@ pub(super) struct Frame<N> {
 }
 
 impl<N: Arithmetic> Frame<N> {
-    /// The frame of an axis of any length but 0. It does not depend on any ray, so its angles are right
-    /// however little of a ray leads across.
+    /// The frame of an axis of any length but 0. It does not depend on any ray, so its angles are right even if a ray
+    /// moves hardly across the axis.
     ///
-    /// In single precision what rounds its lengths would be a third of all that is rounded; integers of
-    /// 30 bits lose next to nothing.
+    /// In single precision the rounding of its lengths would be a third of all rounding; integers of 30 bits lose next
+    /// to nothing.
     pub(super) fn new(axis: [i32; 3]) -> Self {
         if N::FORMAT != Format::F32 {
             return Self::rounded(axis);
@@ -61,8 +61,8 @@ impl<N: Arithmetic> Frame<N> {
     }
 }
 
-/// A vector scaled to length 1: in floats by quotients, which are rounded once where products with an
-/// inverse are rounded twice.
+/// Returns a vector scaled to length 1: in floats by quotients, which are rounded once, where products with an inverse
+/// are rounded twice.
 fn divided<N: Arithmetic>(v: [N; 3]) -> [N; 3] {
     let (unit, length) = N::normalize(v);
     if N::FORMAT == Format::Fixed {

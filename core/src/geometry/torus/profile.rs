@@ -1,45 +1,44 @@
-//! A line as it runs in the half planes of a torus's axis, and where it is inside.
+//! The profile of a line in the half planes of a torus's axis, and where it is inside.
 //!
 //! At a parameter `s` the line is at a height `y`, which is linear, and at a distance from the axis of
-//! `rho = sqrt(x^2 + gap^2)`, where `x` is linear and 0 where the line is closest to the axis. Inside
-//! is where `h = (rho - R)^2 + y^2 - r^2` is not positive.
+//! `rho = sqrt(x^2 + gap^2)`. `x` is linear and 0 where the line is closest to the axis. The line is inside where
+//! `h = (rho - R)^2 + y^2 - r^2` is not positive.
 //!
-//! **Isolation.** With `x = x0 + k s` and the slope's length `L`,
-//! `h'' / 2 = L^2 - R k^2 gap^2 / rho^3`. So `h` is concave where `rho^3 < R (k / L)^2 gap^2`, a stretch
-//! around `x = 0`, and convex on both sides of it: at most three pieces. In a convex piece the line
-//! is inside along one stretch at most; in the concave one it is outside along one stretch at most.
-//! Which of the two holds at a piece's ends is a sign of `h`, and with that its roots are counted.
+//! **Isolation.** With `x = x0 + k s` and the slope's length `L`, `h'' / 2 = L^2 - R k^2 gap^2 / rho^3`. So `h` is
+//! concave where `rho^3 < R (k / L)^2 gap^2`, an interval around `x = 0`, and convex on both sides of it: at most three
+//! pieces. In a convex piece the line is inside along at most one interval. In the concave one it is outside along at
+//! most one interval. The sign of `h` at a piece's ends decides which of the two holds, and with that its roots are
+//! counted.
 //!
-//! **Roots.** Where a convex function is positive, Newton's step never leads beyond its next root. So
-//! a walk from a piece's end comes to the root next to it, or to where the function no longer falls:
-//! then there is none. That is a proof as long as the slope is not taken for less steep than it is,
-//! so the slope is rounded to the steep side; a step that is too short costs another one.
+//! **Roots.** Where a convex function is positive, Newton's step never leads beyond its next root. So a walk from a
+//! piece's end reaches the root next to it. Or it reaches a place where the function no longer falls: then there is no
+//! root. That is a proof as long as the computed slope is not less steep than the real one. So the slope is rounded to
+//! the steep side; a step that is too short costs another one.
 //!
-//! **Signs.** `h` is formed from differences of lengths, so what is rounded moves the point at which
-//! it is taken by a few roundings of a length, and every sign is that of a point so near by. A step
-//! below the roundings of a length ends a walk.
+//! **Signs.** `h` comes from differences of lengths. So rounding moves the point at which it is evaluated by a few
+//! roundings of a length. Every sign is that of a point this near. A step below the roundings of a length ends a walk.
 
 use crate::geometry::torus::frame::{Frame, unit};
 use crate::number::{Arithmetic, extent};
 
-/// Steps of a walk, at most. A step from `f`, falling by `g`, to `f1`, falling by `g1`, has
-/// `f1 / f + g1 / g <= 1` because `f` is convex, so the product of both falls to a quarter. It begins below
+/// Maximum number of steps of a walk. Let a step lead from `f`, falling by `g`, to `f1`, falling by `g1`. Then
+/// `f1 / f + g1 / g <= 1` because `f` is convex, so the product of both falls to a quarter. The product begins below
 /// the third power of the reach, and ends before that of half a rounding, 3 times 54 bits lower.
 const STEPS: usize = 84;
 
-/// Where a line runs against a torus in the middle. All lengths are of one scale.
+/// The course of a line near a torus. All lengths are of one scale.
 pub(super) struct Profile<N: Arithmetic> {
-    /// Height along the axis, and what is added to it along the line.
+    /// Height along the axis, and its change along the line.
     y: N,
     rise: N,
-    /// Position along the part of the line across the axis, and what is added to it along the line.
+    /// Position along the part of the line across the axis, and its change along the line.
     x: N,
     run: N,
     /// The line's distance from the axis.
     gap: N,
     major: N,
     minor: N,
-    /// More than roundings move a position.
+    /// More than rounding moves a position.
     slack: N,
 }
 
@@ -64,7 +63,7 @@ impl<N: Arithmetic> Profile<N> {
     ) -> Self {
         let (y, [u, v]) = frame.parts(point);
         let (rise, across) = frame.parts(slope);
-        // The square of a slope that is less would underflow, and along it a line does not move.
+        // The square of a smaller slope would underflow, and the line does not move along it.
         let moves = extent([across[0], across[1], N::ZERO]) >= N::step_beside(N::ZERO);
         let across = if moves { across } else { [N::ZERO; 2] };
         let ([cos, sin], run) = unit(across, [N::ONE, N::ZERO]);
@@ -101,8 +100,8 @@ impl<N: Arithmetic> Profile<N> {
         self.height(&self.at(s)) <= N::Wide::default()
     }
 
-    /// Half of the slope of `h` at a point, down along the line, or with `turned` up: never less steep
-    /// than it is.
+    /// Half of the slope of `h` at a point, down along the line, or with `turned` up: never less steep than the real
+    /// one.
     fn descent(&self, point: &Point<N>, turned: bool) -> N::Wide {
         let turn = |x: N| if turned { -x } else { x };
         let (toward, down) = (turn(-point.beyond), turn(-point.y));
@@ -118,8 +117,8 @@ impl<N: Arithmetic> Profile<N> {
         toward.wide(lean) + down.wide(self.rise) + rounded
     }
 
-    /// The first place from `from` to `to` where `h` is 0, given a piece of one curvature, and that
-    /// `from` is outside in a convex one and inside in a concave one.
+    /// Returns the first place from `from` to `to` where `h` is 0, in a piece of one curvature. `from` must be outside
+    /// in a convex piece and inside in a concave one.
     #[inline(never)]
     fn walk(&self, from: N, to: N, is_convex: bool) -> Option<N> {
         let forward = from <= to;
@@ -176,7 +175,7 @@ impl<N: Arithmetic> Profile<N> {
         Some([first, cut(-x), cut(x), last])
     }
 
-    /// The first stretch inside whose end counts.
+    /// Returns the first interval inside whose end counts.
     pub(super) fn first_inside(
         &self,
         [first, concave, convex, last]: Cuts<N>,
@@ -189,7 +188,7 @@ impl<N: Arithmetic> Profile<N> {
                 continue;
             }
             let inside_after = self.is_inside(to);
-            // The walk from the end that lies on the side from which there is one way to the root.
+            // The walk starts at the end from which there is one way to the root.
             let near = inside != is_convex;
             let (start, end) = if near { (from, to) } else { (to, from) };
             if inside == inside_after {

@@ -1,4 +1,4 @@
-//! Tori of every size and rays of every sort, against the distance from the circle in double precision.
+//! Tori of every size and rays of every sort, compared with the distance from the circle in double precision.
 
 use crate::format::record::UnitBox;
 use crate::geometry::LEAVING;
@@ -97,7 +97,7 @@ impl Exact {
         largest(self.center) + self.major + self.minor
     }
 
-    /// How far a point is outside.
+    /// The distance of a point outside the solid.
     fn excess(&self, point: Vector) -> f64 {
         let q = along(point, -1.0, self.center);
         let y = dot(q, self.axis);
@@ -139,7 +139,7 @@ impl Exact {
     }
 }
 
-/// By how many steps an answer is off.
+/// The error of an answer in steps.
 fn steps_off<N: Arithmetic>(torus: &Torus, origin: Vector, direction: Vector) -> Option<f64> {
     let ray = Ray::<N>::from_f64(&WORLD, origin, direction, 0.0, 1e9).ok()?;
     let line = (
@@ -297,7 +297,7 @@ fn is_full() -> bool {
     std::env::var_os("GRIDEL_FULL").is_some_and(|value| value == "1")
 }
 
-/// Holds random tori and rays to the bound.
+/// Tests random tori and rays against the bound.
 fn hold<N: Arithmetic>(class: u64) {
     let mut random = Random(0x7045 + class);
     let (mut worst, mut about, mut rays) = (0.0, String::new(), 0);
@@ -363,19 +363,19 @@ fn tori_with_a_shallow_pit_are_met_within_the_bound() {
     hold::<f32>(5);
 }
 
-/// How many rays left a torus, went on inside of it, and could not because the tube is too thin.
+/// Number of rays that left a torus, continued inside of it, and could not because the tube is too thin.
 #[derive(Debug, Default)]
 struct Left {
     away: u32,
     through: u32,
     thin: u32,
-    /// The most that a surface was off, as a part of its error bound.
+    /// The largest error of a surface, as a part of its error bound.
     off: f64,
-    /// The least that a start was outside or inside, as a part of the error bound.
+    /// The least distance of a start outside or inside, as a part of the error bound.
     least: f64,
 }
 
-/// Lets rays leave a torus on both sides of where a ray meets it.
+/// Starts rays on both sides of the places where a ray hits a torus.
 fn leave<N: Arithmetic>(torus: &Torus, ray: &Ray<N>, random: &mut Random, left: &mut Left) {
     let exact = Exact::of(torus);
     let Some(crossing) = torus.cross(ray, N::recip_norm2(ray.slope)) else {
@@ -465,7 +465,7 @@ fn leave_all<N: Arithmetic>() {
     }
 }
 
-/// Along the axis into pits, on and beside it.
+/// Along the axis into pits, on the axis and next to it.
 #[test]
 fn rays_that_leave_a_torus_do_not_meet_it_from_inside() {
     leave_all::<Fixed>();
@@ -473,8 +473,8 @@ fn rays_that_leave_a_torus_do_not_meet_it_from_inside() {
     leave_all::<f64>();
 }
 
-/// A fault of `fixed` that is mended: a tangent to a thin ring along its inside, where the walk took a slope
-/// that rounding hardly touches for one that it may hide, and gave up half way.
+/// A fixed bug of `fixed`: a tangent to a thin ring along its inside. The walk mistook a slope that rounding hardly
+/// touches for one that rounding can hide, and gave up half way.
 #[test]
 fn a_tangent_along_the_inside_of_a_thin_ring_is_met() {
     let torus = Torus {

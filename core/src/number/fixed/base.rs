@@ -5,15 +5,14 @@ use core::ops::{Add, Neg, Sub};
 /// A number in fixed point. The place of its binary point depends on the quantity: a length
 /// has 13 fraction bits, a ratio 30, a radiance 20 (see [`Number`](crate::Number)).
 ///
-/// All operators wrap; none panics, whatever the build's overflow checks. Kernels stay within ranges
-/// that they document, and tests hold them to that with the feature `strict-ranges`.
+/// All operators wrap; none panics, whatever the build's overflow checks. Kernels stay within ranges that they
+/// document. Tests check these ranges with the feature `strict-ranges`.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[repr(transparent)]
 pub struct Fixed(pub i32);
 
-/// Nothing, or with the feature `strict-ranges` a panic where a kernel left the range that its
-/// documentation says it keeps.
+/// Does nothing, or with the feature `strict-ranges` panics where a kernel left its documented range.
 #[inline(always)]
 pub(crate) fn assert_in_range(in_range: impl FnOnce() -> bool) {
     #[cfg(feature = "strict-ranges")]
@@ -29,11 +28,11 @@ pub(crate) const RATIO_BITS: u32 = 30;
 /// Fraction bits of a radiance.
 pub(in crate::number) const RADIANCE_BITS: u32 = 20;
 
-/// A product's `bits` lowest bits, 1 to 31, rounded away: to nearest, ties away from zero, so that a
-/// mirrored scene gives mirrored numbers.
+/// Rounds away a product's `bits` lowest bits, 1 to 31: to nearest, ties away from zero, so that a mirrored scene gives
+/// mirrored numbers.
 #[inline(always)]
 pub(in crate::number) const fn round_off(product: i64, bits: u32) -> i64 {
-    // A half, less 1 where that turns a tie down: not negative, so that 64 bits are added up once.
+    // A half, less 1 where that turns a tie down. It is not negative, so that one addition of 64 bits is enough.
     let half = (1_u32 << (bits & 31) >> 1).wrapping_add((product >> 63) as u32);
     product.wrapping_add(half as i64) >> (bits & 31)
 }

@@ -1,5 +1,5 @@
-//! Products and quotients by halves, with the same bits: for the Cortex-M0, which multiplies 32 bits to
-//! 32, does not divide and does not count bits.
+//! Products and quotients by halves, with the same bits. The Cortex-M0 needs them: it multiplies 32 bits to 32, does
+//! not divide and does not count bits.
 
 use crate::number::fixed::base::Fixed;
 use crate::target::NARROW_PRODUCTS;
@@ -24,7 +24,7 @@ pub(super) const fn product_unsigned(a: u32, b: u32) -> u64 {
     }
 }
 
-/// Four products of halves, each of which fits 32 bits with what is carried into it.
+/// Four products of halves, each of which fits 32 bits together with its carry.
 #[inline(always)]
 pub(super) const fn product_of_halves(a: i32, b: i32) -> i64 {
     let (a_high, a_low) = (a >> 16, a & 0xffff);
@@ -64,7 +64,7 @@ pub(super) fn quotient(d: u32) -> u32 {
     }
 }
 
-/// How many bits are 0 above the highest that is 1. Of 0 all, or all but one.
+/// Returns the number of zero bits above the highest one bit. For 0 it returns all, or all but one.
 #[inline(always)]
 pub(crate) const fn leading_zeros(x: u32) -> u32 {
     if NARROW_PRODUCTS {
@@ -87,7 +87,7 @@ pub(super) const fn wide_leading_zeros(x: u64) -> u32 {
     }
 }
 
-/// Most numbers have few.
+/// Most numbers have few leading zeros.
 #[inline(always)]
 pub(super) const fn leading_zeros_by_shifts(x: u32) -> u32 {
     let (mut rest, mut zeros) = (x | 1, 0_u32);
@@ -110,7 +110,7 @@ pub(super) fn quotient_by_products(d: u32) -> u32 {
         let step = (rest >> 14).wrapping_mul(guess as i32) >> 18;
         guess = guess.wrapping_add(step as u32);
     }
-    // All steps were rounded down: what is left is too low by at most 2.
+    // All steps were rounded down, so the result is too low by at most 2.
     let mut rest = u32::MAX.wrapping_sub(d.wrapping_mul(guess));
     for _ in 0..2 {
         if rest >= d {
@@ -121,14 +121,14 @@ pub(super) fn quotient_by_products(d: u32) -> u32 {
 }
 
 /// [`Project::surrounds_origin`](crate::geometry::Project::surrounds_origin) by the upper 16 bits of all coordinates;
-/// `None` where those leave it open.
+/// `None` where those do not decide.
 pub(crate) fn surround(a: [Fixed; 2], b: [Fixed; 2], c: [Fixed; 2]) -> Option<bool> {
     let magnitude = |x: Fixed| x.0 ^ x.0 >> 31;
     let all = [a, b, c]
         .as_flattened()
         .iter()
         .fold(0, |all, &x| all | magnitude(x));
-    // Down to 15 bits and a sign; this core has no instruction that counts bits.
+    // Down to 15 bits and a sign, because this core has no instruction that counts bits.
     let mut shift = 0_i32;
     for (step, limit) in [(8, 1 << 21), (4, 1 << 17), (2, 1 << 15), (2, 1 << 15)] {
         if all >> (shift & 31) >= limit {
@@ -136,8 +136,7 @@ pub(crate) fn surround(a: [Fixed; 2], b: [Fixed; 2], c: [Fixed; 2]) -> Option<bo
         }
     }
     let [a, b, c] = [a, b, c].map(|point| point.map(|x| x.0 >> (shift & 31)));
-    // Each factor lacks less than 1, so each of the two products lacks less than its factors'
-    // magnitudes and 1.
+    // Each factor lacks less than 1. So each of the two products lacks less than its factors' magnitudes and 1.
     const OPEN: i32 = (4 << 15) + 2;
     let cross = |p: [i32; 2], q: [i32; 2]| {
         let cross = p[0]

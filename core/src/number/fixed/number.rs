@@ -218,7 +218,7 @@ impl Products for Fixed {
 
     #[inline(always)]
     fn difference_as_length(a: Product, b: Product) -> Self {
-        // Without a sign every difference has room.
+        // Without a sign, every difference fits.
         let difference = a.0.wrapping_sub(b.0) as u64;
         Fixed(difference.min(i32::MAX as u64) as i32)
     }
@@ -338,8 +338,8 @@ impl Powers for Fixed {
 impl ErrorBounds for Fixed {
     const RELATIVE_ERROR: Self = Fixed(0);
 
-    // Eight sub-steps: two from the slopes over the longest ray, one each from t, the point's three
-    // products and the plane's normal, and one to spare.
+    // Eight sub-steps: two from the slopes over the longest ray, one each from t, the point's three products and the
+    // plane's normal. One more is spare.
     const ABSOLUTE_ERROR: Self = Fixed(8);
 
     #[inline(always)]
@@ -347,11 +347,11 @@ impl ErrorBounds for Fixed {
         Fixed(1)
     }
 
-    // In sub-steps. A normal's components are cut off below 2^-30 of a vector whose length is at least 1/2,
-    // and once more when it is normalized: 3 parts in 2^30 of the way to `relative`'s point, which moves the
-    // point by .5 less than it should, and each coordinate is rounded by .5, so all three by .9. The start of
-    // a ray rounds by .9 more. The next test is exact but for the normal, the same one, and for t: it rounds
-    // to 0 what is within 1 of the plane. 3.3 in all, and 3 sum|r| / 2^30.
+    // In sub-steps. A normal's components are cut off below 2^-30 of a vector whose length is at least 1/2, and once
+    // more when it is normalized. That is 3 parts in 2^30 of the way to `relative`'s point. It moves the point by .5
+    // less than it should, and each coordinate is rounded by .5, so all three by .9. The start of a ray rounds by .9
+    // more. The next test has the same normal and is exact, except for t. It rounds t to 0 where the point is within 1
+    // of the plane. The sum is 3.3 and 3 sum|r| / 2^30.
     #[inline(always)]
     fn plane_error(_: [Self; 3], relative: [Self; 3], _: [Self; 3]) -> Self {
         let [x, y, z] = relative.map(|component| component.0.unsigned_abs());
@@ -359,9 +359,9 @@ impl ErrorBounds for Fixed {
         Fixed((x.wrapping_add(y).wrapping_add(z) >> 28).wrapping_add(4) as i32)
     }
 
-    // In sub-steps, for a sphere. The point is off by .8, 3 parts in 2^30 of a radius of up to 2^28, and by
-    // .9 for what rounds its coordinates; the start of a ray by .9 more. The next test's closest point is off
-    // by 1, half the chord by 1, and what lies across by .9. Together 5.5, and 1 for a t that is below 0.
+    // In sub-steps, for a sphere. The point is off by .8 and by 3 parts in 2^30 of a radius of up to 2^28. The rounding
+    // of its coordinates adds .9, and the start of a ray .9. The next test's closest point is off by 1, half the chord
+    // by 1, and the lateral vector by .9. The sum is 5.5, and 1 for a t that is below 0.
     #[inline(always)]
     fn curve_error(_: Self, _: [Self; 3], _: [Self; 3]) -> Self {
         Self::ABSOLUTE_ERROR

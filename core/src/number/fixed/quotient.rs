@@ -1,13 +1,12 @@
-//! Quotients that are compared before anything is divided: of the three times at which a ray enters a
-//! box's slabs, only the last is needed.
+//! Quotients that are compared before a division: of the three times at which a ray enters a box's slabs, only the last
+//! is needed.
 
 use crate::number::fixed::base::{Fixed, with_sign};
 use crate::number::fixed::halves::{product, product_unsigned};
 use crate::number::fixed::reciprocal::reciprocal;
 use core::cmp::Ordering;
 
-/// A number over another. The order is that of the exact quotients; where something is divided by 0,
-/// everything compares as equal.
+/// A number over another. The order is that of the exact quotients; a quotient by 0 compares as equal to everything.
 #[derive(Clone, Copy, Debug)]
 pub struct Quotient {
     numerator: i32,
@@ -29,9 +28,9 @@ impl Quotient {
         }
     }
 
-    /// To nearest, away from zero where two are; saturates.
+    /// Rounds to nearest, ties away from zero; saturates.
     ///
-    /// Cost: the quotient of 16 bits that [`reciprocal`] takes, and six products.
+    /// Cost: the quotient of 16 bits that [`reciprocal`] needs, and six products.
     pub(super) fn rounded(self) -> Fixed {
         let magnitude = self.numerator.unsigned_abs();
         let denominator = self.denominator.unsigned_abs();

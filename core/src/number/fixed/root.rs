@@ -27,8 +27,8 @@ pub(super) fn root(square: u64) -> u64 {
 /// The greatest integer whose square is at most `square`, which is 0 or at least 2^62.
 fn root_of_full(square: u64) -> u64 {
     let high = (square >> 32) as u32;
-    // 1 / sqrt(high / 2^32) with 30 fraction bits, by two steps of Newton's iteration from 7 bits to 26,
-    // or without a table by three from the line 2.13 - 1.216 x, which is off by a part in 11, to 24.
+    // 1 / sqrt(high / 2^32) with 30 fraction bits. Two steps of Newton's iteration lead from 7 bits to 26. Without a
+    // table, three steps lead from the line 2.13 - 1.216 x, which is off by a part in 11, to 24.
     let (mut inverse, steps) = if SMALL {
         let below = (product_unsigned(high, 1_305_670_058) >> 32) as u32;
         (2_287_074_672_u32.wrapping_sub(below), 3)
@@ -64,7 +64,7 @@ pub(super) fn nearest_root(square: u64) -> u64 {
     root.wrapping_add(u64::from(rest > root))
 }
 
-/// Square root as a mantissa of 32 bits and the power of two it is to be divided by.
+/// Square root as a mantissa of 32 bits and the power of two that divides it.
 pub(super) fn scaled_root(square: u64) -> (u64, u32) {
     let shift = square.leading_zeros() & 62;
     (root_of_full(square << shift), shift / 2)

@@ -135,7 +135,7 @@ proptest! {
         prop_assert!((found * norm2 - 1.0).abs() < f64::powi(2.0, -27), "{found} {norm2}");
     }
 
-    /// Whatever the shortcuts, and beside what lies on one side nothing is met.
+    /// Shortcuts change nothing, and a triangle that lies on one side of the origin is not hit.
     #[test]
     fn triangles_are_met_by_the_signs_of_their_edges(
         corners: [[i32; 2]; 3], shift in 2_u32..32, flat in 0..4_usize,
@@ -171,7 +171,7 @@ proptest! {
                 Fixed::shear(slope, major),
             );
             let across = Fixed::project(turn * vertex, &across) + stray;
-            // Without a slope there is no way in which the ray runs.
+            // Without a slope the ray has no direction.
             if slope.0 == 0 { across.0.abs() } else { across.0 }
         };
         let plain = project(1, 1);

@@ -1,4 +1,4 @@
-//! Vectors of any length, brought to the bits that there are: norms, directions and slopes.
+//! Vectors of any length, scaled to the available bits: norms, directions and slopes.
 
 use crate::number::Products;
 use crate::number::Scalar;
@@ -47,7 +47,7 @@ fn norm(v: [i32; 3]) -> u64 {
     nearest_root(square)
 }
 
-/// How far to shift down so that the largest magnitude keeps `bits` bits.
+/// Returns by how many bits to shift down so that the largest magnitude keeps `bits` bits.
 #[inline(always)]
 fn excess_bits(v: [i64; 3], bits: i32) -> i32 {
     let all = v[0].unsigned_abs() | v[1].unsigned_abs() | v[2].unsigned_abs();

@@ -1,4 +1,4 @@
-//! Wide numbers: products in 64 bits, and what they are multiplied with and divided by.
+//! Wide numbers: products in 64 bits, their multiplication and division.
 
 use crate::number::fixed::base::wrapping_sums;
 use crate::number::fixed::base::{Fixed, RATIO_BITS, assert_in_range, with_sign};
@@ -22,7 +22,7 @@ impl Product {
             return Self(self.0.wrapping_mul(factor as i64));
         }
         let low = product_unsigned(self.0 as u32, factor as u32);
-        // As a number with a sign, a negative factor is 2^32 less.
+        // As a signed number, a negative factor is 2^32 less.
         let correction = self.0 as i32 & factor >> 31;
         let high = ((self.0 >> 32) as i32)
             .wrapping_mul(factor)
@@ -30,7 +30,7 @@ impl Product {
         Self((low as i64).wrapping_add((high as i64) << 32))
     }
 
-    /// Times a ratio of at most 1, given as two products of one kind: exactly, then rounded to nearest.
+    /// Multiplies by a ratio of at most 1, given as two products of one kind: exactly, then rounded to nearest.
     pub(super) fn times_ratio(self, numerator: Self, denominator: Self) -> Self {
         let (step, stride) = (numerator.0.unsigned_abs(), denominator.0.unsigned_abs());
         // The magnitude bit by bit, as a quotient of strides and a rest below one.
@@ -65,12 +65,12 @@ impl Product {
     }
 
     /// [`Products::wide_over`](crate::number::Products::wide_over).
-    // Only cameras are set up with it.
+    // Only the set-up of cameras uses it.
     #[inline(never)]
     pub(super) fn div(self, divisor: i32) -> Self {
         assert_in_range(|| divisor > 0 && divisor < 1 << 24);
         let divisor = divisor.unsigned_abs();
-        // Byte by byte, in 32 bits: cores without a division in 64 would need a kilobyte for one.
+        // Byte by byte, in 32 bits, because a division in 64 bits would cost cores without one a kilobyte.
         let (mut quotient, mut rest) = (0_u64, 0_u32);
         let mut left = self.0.unsigned_abs();
         for _ in 0..8 {
@@ -103,7 +103,7 @@ impl Product {
         }
     );
 
-    /// The product times a power of two: up without a check, or down and rounded to nearest, away from zero at a tie.
+    /// Multiplies by a power of two: up without a check, or down and rounded to nearest, away from zero at a tie.
     pub(super) fn shifted(self, exponent: i32) -> Self {
         let bits = exponent.unsigned_abs() & 63;
         if exponent >= 0 {

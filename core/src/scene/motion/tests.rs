@@ -1,4 +1,4 @@
-//! Motions against floating point.
+//! Motions, compared with floating point.
 
 use super::*;
 use crate::format::Location;
@@ -173,8 +173,8 @@ proptest! {
         let placed = chain.place_rounded(&Header::zeroed(), &rest);
         prop_assert!(placed.check_ranges(Location::Header).is_ok(), "{:?}", placed.matrix);
         crate::instances::bounds::check_rotation(&placed.matrix).expect("a rotation");
-        // As far along as the angles' sum, but for what each turn and each composition rounds: errors of matrices add
-        // up, and as a vector's stretch an error of all nine entries is three times as large.
+        // Each turn goes as far as the angles' sum, except for the rounding of each turn and each composition. Errors
+        // of matrices add up. As a vector's stretch, an error of all nine entries is three times as large.
         let at_once = Motion::turn(Position([0; 3]), [x, y, z], Angle(angle.wrapping_mul(length as u32)));
         let at_once = at_once.expect("an axis").rotation.into_iter().flatten();
         for (found, expected) in straight.rotation.into_iter().flatten().zip(at_once) {

@@ -1,11 +1,11 @@
-//! Levels of textures: copies of an image, each of half the width and height of the one before, for surfaces that are seen
-//! from so far away that a sample covers many texels (L. Williams, "Pyramidal Parametrics", 1983).
+//! Levels of textures: copies of an image, each of half the width and height of the one before. They serve surfaces so
+//! far away that a sample covers many texels (L. Williams, "Pyramidal Parametrics", 1983).
 
 use crate::format::record::Texture;
 use crate::number::log2::{LOG2_BITS, log2, log2_of_power};
 use crate::target::TextureLevelsOnly;
 
-/// How much of texture coordinates a sample covers: the binary logarithm of the side of a square of the same area.
+/// The area of texture coordinates that a sample covers: the binary logarithm of the side of a square of the same area.
 #[derive(Clone, Copy, Debug)]
 pub struct Footprint(TextureLevelsOnly<i32>);
 
@@ -38,7 +38,7 @@ impl Level {
 }
 
 impl Footprint {
-    /// A point, which covers nothing.
+    /// A point, without an area.
     #[inline(always)]
     pub fn point() -> Self {
         Self(TextureLevelsOnly::new(|| i32::MIN))
@@ -50,8 +50,8 @@ impl Footprint {
         Self(TextureLevelsOnly::new(|| side))
     }
 
-    /// The level of a texture whose texels are as large as this, counted from 0 for the whole image, with
-    /// [`LOG2_BITS`] fraction bits; 0 where there are no levels.
+    /// Returns the level of a texture whose texels are as large as this, with [`LOG2_BITS`] fraction bits. It is
+    /// counted from 0 for the whole image, and 0 where there are no levels.
     #[inline(always)]
     pub(crate) fn level(self, texture: &Texture) -> u32 {
         let Some(side) = self.0.get().copied().filter(|_| texture.has_levels()) else {

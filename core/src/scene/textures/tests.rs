@@ -218,7 +218,7 @@ fn largest_texture_is_looked_up_at_its_last_texel() {
     assert_eq!(look_up(&texels, texture, [1.0, 1.0]), WHITE);
 }
 
-/// However many texels there are, the last one is there in every form.
+/// The last texel is there in every form, for every number of texels.
 #[test]
 fn last_texels_of_all_sizes_are_found() {
     for width in 1..=9_u16 {
@@ -281,7 +281,7 @@ fn alpha_is_that_of_palettes_and_wide_texels_alone() {
 
 #[test]
 fn normals_are_channels_from_minus_1_to_1() {
-    // 0, 255 and what lies in between, which is mixed as it is.
+    // 0, 255 and a value between, which is mixed as it is.
     let texels = [0, 255, 51, 255, 255, 153];
     for (filter, u, expected) in [
         (0, 0.25, [-1.0, 1.0, -0.6]),
@@ -356,7 +356,7 @@ const PYRAMID: Texture = Texture {
     wrap: [0; 2],
 };
 
-/// The number of texels that a footprint of this binary logarithm sees at a place, as they are weighted.
+/// The number that a footprint of this binary logarithm reads at a place: the weighted mean of texel numbers.
 fn number_seen(texture: Texture, texels: &[u8], at: [f64; 2], side: f64) -> f64 {
     let textures = Textures {
         textures: &[texture],
@@ -408,7 +408,7 @@ fn footprints_see_the_texels_of_the_two_levels_next_to_them() {
     };
     let found = number_seen(bilinear, &direct, [1.0 / 3.0, 0.5], whole + 1.0);
     assert!((found - 10.5).abs() < 0.06, "{found}");
-    // Without levels the image alone counts.
+    // Without levels only the image counts.
     let plain = Texture {
         filter: 0,
         ..PYRAMID

@@ -16,7 +16,7 @@ struct Owned {
     columns: Vec<u16>,
 }
 
-/// What part of a whole comes before each weight.
+/// The part of the whole that comes before each weight.
 fn starts(weights: &[f64], whole: f64) -> Vec<f64> {
     let sum: f64 = weights.iter().sum();
     let mut before = 0.0;
@@ -124,7 +124,7 @@ fn map_and_its_inverse_agree_in_every_format() {
     map_and_its_inverse_agree::<f64>(4e-9);
 }
 
-/// The mean of L / (π times density), which is 4 L for a map that is bright alike everywhere, however it is drawn.
+/// The mean of L / (π times density). It is 4 L for a uniformly bright map, however it is drawn.
 fn densities_integrate_to_one<N: Number>() {
     for weight in [&(|_, _| 1.0) as &dyn Fn(usize, usize) -> f64, &uneven] {
         let owned = map(weight);

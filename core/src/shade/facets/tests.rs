@@ -1,4 +1,4 @@
-//! GGX against formulas and quadrature in double precision.
+//! GGX, compared with formulas and quadrature in double precision.
 
 use super::*;
 use crate::number::{Fixed, Format};
@@ -41,27 +41,27 @@ fn lambda(alpha: f64, cos: f64) -> f64 {
     ((1.0 + alpha * alpha * tan2).sqrt() - 1.0) / 2.0
 }
 
-/// The BRDF of facets that reflect all, for directions over the normal z.
+/// The BRDF of facets that reflect all light, for directions over the normal z.
 fn brdf(alpha: f64, i: Vector, o: Vector) -> f64 {
     let half = unit([0, 1, 2].map(|k| i[k] + o[k]));
     let both = 1.0 / (1.0 + lambda(alpha, i[2]) + lambda(alpha, o[2]));
     distribution(alpha, half[2]) * both / (4.0 * i[2] * o[2])
 }
 
-/// A direction back to where a ray came from, whose cosine with z is given.
+/// A direction back to a ray's origin, given its cosine with z.
 fn over(cos: f64, turn: f64) -> Vector {
     let sin = (1.0 - cos * cos).sqrt();
     [sin * turn.cos(), sin * turn.sin(), cos]
 }
 
-/// A sum over the visible facets of a surface: cells of normals that are alike in the slopes' distribution. Returns the
-/// sum of weights, and of weights times values.
+/// A sum over the visible facets of a surface, in cells of normals that are equal in the slopes' distribution. Returns
+/// the sum of weights, and of weights times values.
 fn over_visible(alpha: f64, i: Vector, value: impl Fn(Vector) -> f64) -> (f64, f64) {
     const CELLS: usize = 400;
     let masked = 1.0 / (1.0 + lambda(alpha, i[2]));
     let (mut whole, mut sum) = (0.0, 0.0);
     for ring in 0..CELLS {
-        // D cos dω is spread evenly over a part from 0 to 1, of which this is what is left. The tail is long.
+        // D cos dω is spread evenly over a part from 0 to 1, of which this remains. The tail is long.
         let root = (ring as f64 + 0.5) / CELLS as f64;
         let (left, width) = (root.powi(4), 4.0 * root.powi(3));
         let tan2 = alpha * alpha * (1.0 - left) / left;
@@ -99,7 +99,7 @@ fn facets<N: Number>(roughness: f64, normal: Vector, i: Vector) -> Facets<N> {
     Facets::new(q30(roughness), normal.map(N::ratio_from_f64), cos)
 }
 
-/// Points as one pixel draws them, 16 times with other scrambles.
+/// Points in the order in which one pixel draws them, 16 times with other scrambles.
 fn each_scramble(samples: u16, mut visit: impl FnMut(usize, [u32; 2])) {
     for scramble in 0..16 {
         for sample in 0..samples {
@@ -172,7 +172,7 @@ fn drawn_normals_have_the_means_of_quadrature() {
     check_drawn::<f64>();
 }
 
-/// White facets under white light everywhere: nothing above 1, and what is missing is lost between facets.
+/// White facets under white light everywhere: no result is above 1, and the missing light is lost between facets.
 fn check_furnace<N: Number>() {
     const SAMPLES: u16 = 512;
     for roughness in ROUGHNESSES {
@@ -205,7 +205,7 @@ fn check_furnace<N: Number>() {
 
 #[test]
 fn white_furnace_loses_what_bounces_between_facets() {
-    // At a roughness of 1 seen from above, 1 - ln 2 is left.
+    // At a roughness of 1 seen from above, 1 - ln 2 remains.
     assert!((albedo(1.0, 1.0) - (1.0 - LN_2)).abs() < 1e-3);
     // Nearly nothing is lost at a mirror.
     assert!(albedo(alpha(0.05), 1.0) > 0.999);
@@ -256,7 +256,7 @@ fn lights_are_reflected_by_the_formula_and_reciprocally() {
     check_lights::<f64>();
 }
 
-/// At the edges of their ranges numbers stay in theirs.
+/// At the edges of their ranges numbers stay in range.
 fn check_edges<N: Number>() {
     for alpha in [i32::MIN, 0, 1, LEAST_ROUGHNESS, 1 << 30, i32::MAX] {
         for cos in [-1.0, 0.0, 1e-9, 1e-4, 1.0] {

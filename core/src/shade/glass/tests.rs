@@ -1,4 +1,5 @@
-//! Hard cases F6 to F9 and F11: glass against the laws in double precision, by other formulas.
+//! Hard cases F6 to F9 and F11: glass, compared with the laws in double precision, by other
+//! formulas.
 
 use super::*;
 use crate::number::{Fixed, Format};
@@ -29,7 +30,7 @@ fn reflected(k: f64, entering: bool, cos_in: f64) -> f64 {
     0.5 * (across * across + along * along)
 }
 
-/// Holds one split to the laws; the angle is in the plane of x and the normal z.
+/// Tests one split against the laws; the angle is in the plane of x and the normal z.
 fn judge<N: Number>(inverse_ior: i32, entering: bool, sin: f64) -> Result<(), TestCaseError> {
     let k = N::ratio(inverse_ior);
     let cos = ((1.0 - sin) * (1.0 + sin)).sqrt();
@@ -56,7 +57,7 @@ fn judge<N: Number>(inverse_ior: i32, entering: bool, sin: f64) -> Result<(), Te
     );
     let (k, cos) = (k.ratio_to_f64(), z.ratio_to_f64());
     let sin2 = 1.0 - cos * cos;
-    // How far from the angle at which all is reflected.
+    // The distance from the angle at which all light is reflected.
     let margin = if entering {
         1.0 - k * k * sin2
     } else {
@@ -67,8 +68,8 @@ fn judge<N: Number>(inverse_ior: i32, entering: bool, sin: f64) -> Result<(), Te
         return Ok(());
     }
     let exact = reflected(k, entering, cos);
-    // The other angle is as uncertain as the margin is small; where glass is almost like air, this
-    // angle may be as flat, and what is reflected depends on the ratio of the two.
+    // The other angle is uncertain where the margin is small. Where glass is almost like air, this
+    // angle can be as flat, and the reflected part depends on the ratio of the two.
     let flat = cos.max(1.0 - k);
     let bound = 256.0 * u::<N>() * (1.0 / (margin.abs().sqrt() * flat)).max(1.0);
     prop_assert!((found - exact).abs() <= bound, "{found} {exact} {margin}");
@@ -117,7 +118,7 @@ proptest! {
         judge::<f64>(k, entering, sin)?;
     }
 
-    /// Light that passes one piece of glass and then another passed both (F11).
+    /// Light that passes one piece of glass and then another passes both (F11).
     #[test]
     fn absorption_multiplies(coefficient: u32, a in 0.0..30_000.0_f64, b in 0.0..30_000.0_f64) {
         fn judge<N: Number>(coefficient: u32, a: f64, b: f64) -> Result<(), TestCaseError> {
@@ -126,13 +127,13 @@ proptest! {
             let left = |length: f64| absorb::<N>(&material, N::length_from_f64(length)).0;
             let (first, second, both) = (left(a), left(b), left(a + b));
             let product = first[0].ratio_to_f64() * second[0].ratio_to_f64();
-            // The lengths' own rounding counts as much as the exponent is long.
+            // The rounding of the lengths counts in proportion to the exponent.
             let exponent = f64::from(coefficient) / f64::powi(2.0, 32) * (a + b);
             let step = if N::FORMAT == Format::Fixed { f64::powi(2.0, -13) } else { 0.0 };
             let rounded = (exponent * u::<N>() + step * f64::from(coefficient) / f64::powi(2.0, 32)) * product;
             let bound = 8.0 * u::<N>() + 8.0 * rounded;
             prop_assert!((both[0].ratio_to_f64() - product).abs() <= bound, "{product} {both:?}");
-            // Clear glass takes nothing, to the last bit.
+            // Clear glass absorbs nothing, to the last bit.
             prop_assert_eq!(both[1], N::ONE);
             Ok(())
         }
@@ -142,7 +143,7 @@ proptest! {
     }
 }
 
-/// Straight on, all formulas have one value (F7); and glass like air is not there (F9).
+/// Straight on, all formulas have one value (F7); and glass like air is invisible (F9).
 #[test]
 fn normal_incidence_and_matched_indices() {
     fn judge<N: Number>() {

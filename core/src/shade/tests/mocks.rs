@@ -33,7 +33,7 @@ impl Effect for Shift {
     }
 }
 
-/// Takes half of the light on the way to a hit.
+/// Halves the light on the way to a hit.
 pub(crate) struct Fog;
 
 impl Effect for Fog {
@@ -108,7 +108,7 @@ impl Effect for Falloff {
     }
 }
 
-/// All surfaces let light for others through.
+/// All surfaces transmit light.
 pub(crate) struct Veil;
 
 impl Effect for Veil {
@@ -225,8 +225,8 @@ impl Effect for Trail {
     }
 }
 
-/// Paints surfaces green where their second texture coordinate is above 0, and black elsewhere, and takes the normal for
-/// shading away.
+/// Paints surfaces green where their second texture coordinate is above 0, and black elsewhere, and removes the normal
+/// for shading.
 pub(crate) struct Print;
 
 impl Effect for Print {

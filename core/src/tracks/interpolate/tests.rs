@@ -61,7 +61,7 @@ fn check_linear([from, to]: [i32; 2], [start, end]: [i32; 2], time: i32) {
     );
 }
 
-/// Holds a spline to its bound, in exact arithmetic; for durations of at most 30 bits.
+/// Tests a spline against its bound, in exact arithmetic; for durations of at most 30 bits.
 fn check_cubic(words: [i32; 4], [start, end]: [i32; 2], time: i32) {
     let [from, leaving, entering, to] = words;
     let keys = [0, from, leaving, entering, to, 0];
@@ -115,7 +115,7 @@ fn splines_are_within_their_bound_at_the_ends_of_their_range() {
             }
         }
     }
-    // A spline without changes passes the middle between its values.
+    // A spline without changes passes halfway between its values.
     let [start, end] = [i32::MIN, i32::MAX];
     let keys = [0, -1000, 0, 0, 2000, 0];
     assert_eq!(turns(Interpolation::Cubic, &[start, end], &keys, 0), 500);
@@ -189,7 +189,7 @@ fn splines_of_colors_and_angles_stay_in_their_range() {
         (TrackTarget::LightColor, [0, i32::MAX]),
         (TrackTarget::MaterialMirror, [0, one]),
         (TrackTarget::CameraFieldOfView, [2, i32::MAX]),
-        // A quaternion may be longer than 1 on its way.
+        // A quaternion can be longer than 1 on its way.
         (TrackTarget::CameraRotation, [i32::MIN, i32::MAX]),
         (TrackTarget::CameraEye, [i32::MIN, i32::MAX]),
     ] {

@@ -1,4 +1,4 @@
-//! Products of 16-bit halves against the machine's own.
+//! Products of 16-bit halves, compared with the machine's own.
 
 use crate::geometry::Project;
 use crate::number::Fixed;
@@ -29,7 +29,7 @@ proptest! {
         prop_assert_eq!(product_of_halves_unsigned(a, b), u64::from(a) * u64::from(b));
     }
 
-    /// Where 16 bits decide, they decide as all bits do.
+    /// Where 16 bits decide, they agree with all bits.
     #[test]
     fn coarse_triangles_are_the_triangles(corners: [[i32; 2]; 3], shift in 1_u32..32) {
         let [a, b, c] = corners.map(|corner| corner.map(|x| Fixed(x >> shift)));

@@ -1,4 +1,4 @@
-//! Quotients against long division.
+//! Quotients, compared with long division.
 
 use crate::number::Fixed;
 use crate::number::fixed::quotient::Quotient;
@@ -44,7 +44,7 @@ proptest! {
     }
 }
 
-/// Halves, and what lies a step beside them; divisors at both ends of their range.
+/// Halves, and numbers a step away from them; divisors at both ends of their range.
 #[test]
 fn halves_are_rounded_away_from_zero() {
     for b in [

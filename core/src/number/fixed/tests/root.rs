@@ -1,4 +1,4 @@
-//! Square roots against the standard library's.
+//! Square roots, compared with the standard library's.
 
 use crate::number::fixed::root::root;
 use proptest::prelude::*;
