@@ -83,7 +83,7 @@ enum gridel_status
   GRIDEL_STATUS_PICTURE_SIZE = 40,
   // The samples per pixel are not 1 to 4096.
   GRIDEL_STATUS_PICTURE_SAMPLES = 41,
-  // The ray depth is above 32.
+  // The ray depth is above 32, or above 16 in a library without the feature `indirect`.
   GRIDEL_STATUS_PICTURE_DEPTH = 42,
   // The format of the pixels is unknown.
   GRIDEL_STATUS_PICTURE_FORMAT = 43,
@@ -169,7 +169,7 @@ typedef struct gridel_circle {
   // The distance of the camera, in steps.
   uint32_t distance;
   // The angle by which it is turned around the axis that points up, counterclockwise as seen from above, in 2^-32
-// turn.
+  // turn.
   uint32_t azimuth;
   // The angle by which it is raised, in 2^-32 turn; it can pass over the pole.
   uint32_t elevation;
@@ -299,7 +299,7 @@ typedef struct gridel_picture {
   uint16_t height;
   // Samples per pixel, 1 to 4096.
   uint16_t samples;
-  // Maximum number of reflections and refractions of a ray, 0 to 32.
+  // How often a ray may be reflected or refracted, 0 to 32; to 16 in a library without the feature `indirect`.
   uint16_t depth;
   // 1 to dither, else 0.
   uint16_t dither;
