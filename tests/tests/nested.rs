@@ -351,7 +351,7 @@ fn priorities_are_checked() {
     for text in ["transmit = 1\npriority = 0", "transmit = 1\npriority = 101"] {
         assert!(error(text).contains("1 to 100"), "{}", error(text));
     }
-    assert!(error("priority = 1").contains("`priority` is that of glass"));
+    assert!(error("priority = 1").contains("`priority` needs `transmit`"));
 
     let media: Vec<Slab> = ["a", "b", "c", "d", "e", "f", "g", "h", "i"]
         .into_iter()

@@ -13,8 +13,8 @@ const LONGEST: f64 = (1 << 17) as f64;
 const LONGEST_EDGE: f64 = (1 << 16) as f64;
 /// The brightest color of a record.
 const BRIGHTEST: f64 = 2047.0;
-/// A range that takes no more than this part of any light needs no record.
-const UNSEEN: f64 = 1.0 / 1024.0;
+/// How far light may vary across the scene by a range that is too long for a record.
+const UNEVEN: f64 = 0.05;
 
 /// By how many steps of the lattice light starts above a surface of the scene: more than the lattice moves that, and
 /// than arithmetic errs.
@@ -41,14 +41,20 @@ pub fn lift(form: &LightForm, lattice: &Lattice) -> DVec3 {
     unit(normal) * lift_length(form, lattice)
 }
 
+/// The part of a light with a range that is left at a distance.
+fn left_within(range: f64, distance: f64) -> f64 {
+    let part = (distance / range).min(1.0);
+    1.0 - part * part * part * part
+}
+
 /// A light that has a form.
 pub struct FormedLight<'a> {
     pub form: &'a LightForm,
     pub color: Color,
     /// The light for messages.
     pub label: &'a str,
-    /// The distance to the farthest point of the scene.
-    pub farthest: f64,
+    /// The distances to the nearest and the farthest point of the scene's box.
+    pub distances: [f64; 2],
     pub has_color_track: bool,
 }
 
@@ -127,13 +133,21 @@ pub fn form_record(
         }
         limited("distance at which it has its color", reference, LONGEST)?;
     }
-    let takes = |range: f64| {
-        let part = light.farthest / range;
-        part * part * part * part
+    let range = match form.range {
+        Some(range) if units(range) > LONGEST => {
+            // It is nearly the same everywhere in the scene.
+            let [nearest, farthest] = light.distances.map(|it| left_within(range, it));
+            let mean = (nearest + farthest) / 2.0;
+            if nearest - farthest > UNEVEN * mean || light.has_color_track && mean < 1.0 - UNEVEN {
+                limited("range", range, LONGEST)?;
+            }
+            if !light.has_color_track {
+                color = color.map(|channel| channel * mean);
+            }
+            None
+        }
+        range => range,
     };
-    let range = form.range;
-    let range = range.filter(|&range| units(range) <= LONGEST || takes(range) > UNSEEN);
-    limited("range", range.unwrap_or(0.0), LONGEST)?;
     let q30 = |ratio: f64| (ratio * f64::from(1 << 30)).round() as i32;
     let cosine = |degrees: f64| degrees.to_radians().cos();
     let cone = form

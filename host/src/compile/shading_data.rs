@@ -191,13 +191,14 @@ impl ShadingData {
                 if !roughnesses.is_empty() {
                     shown_forms.push(u8::from(form.is_surface));
                 }
-                let corner = (highest - position).abs().max((lowest - position).abs());
+                let nearest = position.clamp(lowest, highest) - position;
+                let farthest = (highest - position).abs().max((lowest - position).abs());
                 let (form, color) = form_record(
                     &FormedLight {
                         form: &form,
                         color,
                         label: &light_label(scene, number),
-                        farthest: corner.length(),
+                        distances: [nearest.length(), farthest.length()],
                         has_color_track,
                     },
                     lattice,

@@ -92,7 +92,7 @@ fn an_import_brings_its_lens_and_lights_as_large_as_it_is() {
     assert_eq!(colors, [2.0 * 9.0, 5.0, 5.0]);
     assert_eq!(scene.light_forms[0].unwrap().range, Some(15.0));
     // Mirrored, they shine down as before.
-    for keys in ["scale = [-1, 1, 1]", "scale = [2, 2, -3]"] {
+    for keys in ["scale = [-1, 1, 1]", "scale = [2, 2, -2]"] {
         let scene = imported(keys);
         let LightShape::Rectangle { edges } = scene.light_forms[1].unwrap().shape else {
             panic!("no rectangle")

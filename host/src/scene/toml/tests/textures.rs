@@ -120,7 +120,7 @@ fn normal_maps_lie_as_the_texture_does() {
     let found = own.texture.transform.transform_point2(DVec2::ONE);
     assert_eq!(found, DVec2::splat(2.0));
     for (keys, expected) in [
-        ("normal_scale = 1", "there is none"),
+        ("normal_scale = 1", "needs `normal_map`"),
         ("normal_map = 'two.png'\nnormal_scale = -1", "0 to 16"),
         ("normal_map = 'none.png'", "none.png"),
         (
