@@ -9,8 +9,8 @@ use gridel_core::Scene;
 use gridel_core::format::record::{self, View};
 
 impl Camera {
-    /// The camera of a blob. Its target lies in the middle of the picture, as deep as the middle of the scene; up
-    /// is an axis, if the camera stands upright on it.
+    /// Returns the camera of a blob. The target lies in the middle of the picture, as deep as the middle of the scene.
+    /// Up is an axis if the camera stands upright on it.
     ///
     /// ```
     /// # use gridel_host::compile::{Options, compile};

@@ -234,8 +234,8 @@ impl FromStr for Rows {
     }
 }
 
-/// A hash of a picture: FNV-1a with 64 bits over its linear channels of 16 bits, the lower byte
-/// first, red before green before blue, row by row; in hexadecimal.
+/// Returns a hash of a picture in hexadecimal: 64-bit FNV-1a over its linear channels of 16 bits. The lower byte comes
+/// first, red before green before blue, row by row.
 ///
 /// ```
 /// use gridel_host::picture::hash;

@@ -1,7 +1,7 @@
 //! Renders pictures from a blob on all cores.
 //!
-//! Rows are spread over threads; a pixel depends on nothing but the blob, the number format and the
-//! settings, so a picture is the same bit for bit with any number of threads.
+//! Rows are spread over threads. A pixel depends only on the blob, the number format and the settings. So a picture is
+//! the same, bit for bit, with any number of threads.
 
 mod aov;
 mod first_hits;

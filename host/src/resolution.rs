@@ -1,12 +1,12 @@
 //! Which objects are so small, for where they lie and what they touch, that a number format can lose
 //! their contact shadows.
 //!
-//! A second surface at [`FACTOR`] error bounds' distance is met (see
-//! [`Hit::error`](gridel_core::Hit::error)); so an object whose smallest feature is less than that may not
-//! be distinguished from the surface that it touches.
+//! A ray hits a second surface if it is at least [`FACTOR`] error bounds away (see
+//! [`Hit::error`](gridel_core::Hit::error)). So an object whose smallest feature is smaller may not be distinguished
+//! from the surface that it touches.
 //!
-//! Objects of parts are looked at where instances place them, and their surfaces have the bounds that they have there:
-//! the maps of instances round as well.
+//! Objects of parts are examined where instances place them. Their surfaces have the error bounds that apply there,
+//! because the maps of instances round as well.
 
 mod bound;
 

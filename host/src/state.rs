@@ -116,7 +116,7 @@ impl State {
     /// The state of a scene at a time, in ticks of its tracks.
     ///
     /// # Errors
-    /// If the camera comes to look nowhere or along the direction that points up, an instance leaves the scene's box, or
+    /// If the camera would have no direction or would look along up, or if an instance leaves the scene's box. Also if
     /// the tracks are not those of the scene's blob.
     pub fn at(scene: &Scene<'_>, tracks: &Tracks<'_>, time: i32) -> Result<Self, StateError> {
         let seconds = f64::from(time) / f64::from(tracks.ticks_per_second());

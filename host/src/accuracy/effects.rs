@@ -48,8 +48,8 @@ pub const BOARD: &str = "mps2-an386";
 const LEAST_SAVING: f64 = 0.01;
 
 impl Worth {
-    /// The error that giving it up adds for each part of the rays and tests that it saves: the smaller, the sooner it
-    /// is to be given up.
+    /// The error that leaving the effect out adds, per part of the rays and tests that it saves. The effect with the
+    /// smallest price is left out first.
     fn price(&self, all: &Point) -> f64 {
         let pixels = all.cost.pixels.max(1) as f64;
         let work = (all.cost.rays + all.cost.tests) as f64 / pixels;
@@ -58,8 +58,8 @@ impl Worth {
     }
 }
 
-/// What every effect of a scene is worth, in the order in which to give them up: first those that change the picture
-/// least for the rays and tests that they save.
+/// Returns the worth of every effect of a scene, in the order in which to leave them out. First are those that change
+/// the picture least for the rays and tests that they save.
 ///
 /// # Errors
 /// If a setting cannot be built.

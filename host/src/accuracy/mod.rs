@@ -1,5 +1,5 @@
-//! The cost of accuracy in time: settings are swept, their pictures measured against a reference, and
-//! the results are printed as a table, as sentences and as plots.
+//! The cost of accuracy in time. Sweeps settings, measures their pictures against a reference, and prints the results
+//! as a table, as sentences and as plots.
 //!
 //! | file | what it does |
 //! |---|---|
@@ -78,8 +78,8 @@ pub fn frontier_by(points: &[Point], error: impl Fn(&Point) -> f64) -> Vec<bool>
 }
 
 impl Point {
-    /// Returns whether it surely costs less: by time where the repeats of both are distinct, else by rays and
-    /// tests, which repeat exactly and compare within a number format.
+    /// Returns whether the point certainly costs less: by time where the repeats of both are distinct. Otherwise rays
+    /// and tests decide, which repeat exactly and compare within a number format.
     fn is_cheaper(&self, other: &Self) -> bool {
         if self.cost.is_below(&other.cost) {
             return true;
@@ -142,8 +142,8 @@ pub fn most_accurate<'p>(points: &'p [Point], rays: f64, board: Option<&str>) ->
         })
 }
 
-/// The cheapest point whose root mean square error is within a bound: by time on this machine, or
-/// by instructions on a board, at the most that they may be.
+/// Returns the cheapest point whose root mean square error is within a bound. The cost is time on this machine, or the
+/// upper estimate of instructions on a board.
 pub fn cheapest<'p>(points: &'p [Point], most: f64, board: Option<&str>) -> Option<&'p Point> {
     cheapest_within(points, Limits::of_error(most), board)
 }

@@ -252,8 +252,8 @@ pub fn sweep(base: Setting, effects: Effects) -> Vec<Setting> {
     settings
 }
 
-/// The fewest samples per pixel of a reference that is better than every setting of a sweep: twice the
-/// most of theirs, as far as pictures can have so many.
+/// Returns the fewest samples per pixel of a reference that is better than every setting of a sweep. That is twice
+/// their maximum, up to the limit of a picture.
 pub fn least_reference_samples(settings: &[Setting]) -> u16 {
     let most = settings.iter().map(|setting| setting.samples).max();
     let most = most.unwrap_or(1);

@@ -85,8 +85,8 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     if blessed.is_some() && staged.is_ok() {
         report.take_as_recorded();
     }
-    // All of it is done, whatever fails: findings are not lost for a report that cannot be written,
-    // and they make the exit code, whoever reads them. The changes to recorded figures were printed before.
+    // Everything runs, whatever fails. A report that cannot be written does not lose findings, and the findings set the
+    // exit code in either case. The changes to recorded figures were printed before.
     let printed = print_findings(arguments, &report, blessed.as_ref());
     let shown = match &arguments.diff {
         Some(folder) => write_evidence(folder, &report),

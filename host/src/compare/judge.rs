@@ -1,8 +1,8 @@
 //! Compares the contenders' answers with brute force: primitive, instance, and t to the last bit.
 //!
-//! The list tests every primitive, which takes long where there are many. So it is asked about as
-//! many rays as fit a budget, spread evenly over the picture, and about every ray on which two
-//! contenders differ. What all of them have in common on the other rays is not doubted.
+//! Brute force tests every primitive, which takes long where there are many. So it traces as many rays as fit a budget,
+//! spread evenly over the picture, and every ray on which two structures differ. On the other rays a common answer is
+//! taken as right.
 //!
 //! All contenders find instances by the same hierarchy above them. Brute force tests every primitive of a part that a
 //! ray enters.

@@ -1,9 +1,9 @@
 //! Acceleration structures side by side: what each takes to make, to hold and to ask.
 //!
-//! Every contender is compiled into a blob of its own, and all of them trace the same rays: those of
-//! the scene's own picture, as the ray loop casts them, with all that mirrors, glass and shadows
-//! cause. Their answers are compared to the last bit before anything is measured (see `judge.rs`).
-//! Times are medians of repeats in which the contenders take turns, on one thread.
+//! Every structure is compiled into a blob of its own, and all of them trace the same rays. These are the rays of the
+//! scene's own picture, as the ray loop casts them, including those of mirrors, glass and shadows. The answers are
+//! compared bit for bit before anything is measured (see `judge.rs`). Times are medians of repeats on one thread, in
+//! which the structures take turns.
 //!
 //! Instances are kept as the scene has them: each part is compiled for the contender's structure, too.
 

@@ -113,8 +113,8 @@ pub enum Step {
     Opened {
         place: String,
     },
-    /// The ray goes into an instance. The planes of the steps up to `InstanceLeft` are in the part's own coordinates,
-    /// and its nodes are numbered apart; distances stay those of the ray.
+    /// The ray enters an instance. The planes of the steps up to `InstanceLeft` are in the part's own coordinates, and
+    /// its nodes have their own numbers. Distances stay those of the ray.
     InstanceEntered {
         /// In scene-file order.
         instance: u32,
@@ -283,8 +283,8 @@ impl Walk {
         t * self.ray.scale
     }
 
-    /// How far `origin + distance * direction` may be from the point that the kernels compute there:
-    /// what they round of the ray and of the point, and what double precision rounds of this sum.
+    /// Returns how far `origin + distance * direction` may be from the point that the kernels compute there. The
+    /// kernels round the ray and the point, and double precision rounds this sum.
     pub(super) fn rounding(&self, distance: f64, point: [f64; 3]) -> f64 {
         let ray = &self.ray;
         let inside = (distance - self.moved).abs();

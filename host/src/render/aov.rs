@@ -13,8 +13,7 @@ use gridel_core::{Scene, Settings};
 pub enum Aov {
     /// Distance from the eye in scene units, infinite where nothing is hit.
     Depth,
-    /// The normal that the surface is shaded with, of length 1, in the scene's axes, on the side of the eye; 0 where
-    /// nothing is hit.
+    /// The shading normal of length 1, in the scene's axes, on the side of the eye; 0 where nothing is hit.
     Normal,
     /// Diffuse reflectance, linear, of the cell where there is a checkerboard; 0 where nothing is hit.
     Albedo,

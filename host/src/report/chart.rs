@@ -21,9 +21,8 @@ const SIZE: (u32, u32) = (1080, 540);
 const CHART: u32 = 900;
 /// Grid lines.
 const GRID: RGBColor = RGBColor(222, 222, 222);
-/// Colors that color-blind people can distinguish (Okabe and Ito, "Color universal
-/// design", 2008), in the order in which series take them; then they return, and curves have other
-/// dashes and marks.
+/// Colors that color-blind people can distinguish (Okabe and Ito, "Color universal design", 2008), in the order in
+/// which series take them. After the last color they repeat, and curves get other dashes and marks.
 const COLORS: [RGBColor; 7] = [
     RGBColor(0, 114, 178),
     RGBColor(213, 94, 0),

@@ -1,9 +1,9 @@
 //! Which files a scene file may name: those in its own folder and below, unless more is allowed.
 //!
-//! The folder is that of the file from which everything starts, so that a scene may keep imports in
-//! folders and these may name each other. What counts is where a file lies when all links are
-//! followed, so a link that leads outside is outside. Backslashes separate folders as slashes do,
-//! on every system.
+//! The folder is that of the file from which everything starts. So a scene may keep imports in
+//! folders, and these may name each other. All links are followed before a file's place is checked,
+//! so a link that leads outside is outside. Backslashes separate folders as slashes do, on every
+//! system.
 
 use super::SceneError;
 use super::files::{Files, lexical};

@@ -1,5 +1,5 @@
-//! Damaged scene files: whatever is cut off or overwritten, an importer answers with a scene that
-//! holds together or with an error that says what to do, and does so at once.
+//! Tests importers with scene files that are cut off or overwritten. The result is always a
+//! consistent scene or an error that says what to do, and it comes at once.
 
 use super::{IMPORTERS, Importer, MoleculeOptions, MoleculeStyle, Scene, Shape, load, test_scenes};
 use std::path::Path;

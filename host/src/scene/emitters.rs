@@ -13,10 +13,10 @@ pub const MOST_FACES: usize = 32;
 const BLACK: Color = [0.0; 3];
 
 impl Scene {
-    /// The scene with a light for each sphere, disc, face of a box and triangle of a mesh that glows, unless its material
-    /// says that it does not light others; and with an object for each light that is seen. Two triangles that make a
-    /// parallelogram are one light. Lights and objects are added behind the others, once: a scene from here changes no
-    /// more.
+    /// Returns the scene with a light for each sphere, disc, face of a box and triangle of a mesh that glows. A
+    /// material can state that it does not light others; it gets no light. Each light that is visible gets an object.
+    /// Two triangles that form a parallelogram are one light. Lights and objects are appended once: a second call
+    /// changes nothing.
     ///
     /// ```
     /// # let file = "[material.lamp]\nemission = 5\n\
@@ -137,8 +137,8 @@ impl Scene {
         }
     }
 
-    /// Names of objects that glow and do not light others, though they should: those of parts, and those with shapes that
-    /// no light has, or with too many faces.
+    /// Returns the names of objects that glow and should light others, but do not. These are objects of parts, shapes
+    /// that no light has, and objects with too many faces.
     pub fn emitters_without_light(&self) -> impl Iterator<Item = &str> {
         let lights = |object: &&Object| self.materials[object.material].lights_others();
         let own = self.objects.iter();

@@ -40,8 +40,8 @@ pub enum Sky {
     /// A picture of all directions. Its middle lies where a camera looks that begins an orbit: at -z, or at y where z points
     /// up. Its right lies at x.
     Picture(Arc<Panorama>),
-    /// Radiance that depends on the height alone: with h the sine of the elevation, above the horizon that of the horizon
-    /// goes over to that of the zenith as h (2 - h).
+    /// Radiance that depends on the height alone. Above the horizon, the horizon's radiance blends into the zenith's by
+    /// h (2 - h), with h the sine of the elevation.
     Gradient {
         zenith: Color,
         horizon: Color,

@@ -20,8 +20,8 @@ impl Files {
         self.0.insert(lexical(path.as_ref()), bytes.into());
     }
 
-    /// The path and the content of the file that a path stands for: the file of that path, or else the only file of
-    /// that name, because files that are given one by one have no folders.
+    /// Returns the path and the content of the file for a path. It is the file of that path, or else the only file of
+    /// that name. Files that are given one by one have no folders.
     pub(super) fn find(&self, path: &Path) -> Option<(&Path, &[u8])> {
         let path = lexical(path);
         let exact = self.0.get_key_value(&path);

@@ -14,8 +14,8 @@ impl Scene {
     /// tracks are left out.
     ///
     /// # Errors
-    /// If the scene would have more than 16,777,216 primitives or take too much memory, or a placement
-    /// moves a shape out of the range of numbers.
+    /// If the scene would have more than 16,777,216 primitives or take too much memory. Also if a placement moves a
+    /// shape out of the range of numbers.
     ///
     /// ```
     /// use gridel_host::scene::read;

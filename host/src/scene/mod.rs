@@ -1,10 +1,9 @@
 //! The scene in memory: what every importer produces and the compiler reads.
 //!
-//! All coordinates are `f64` scene units in one right-handed world space: importers bake the transforms of
-//! groups and nodes into the geometry, so that nothing downstream knows of them. [Parts](Part) are the
-//! exception: they have coordinates of their own, and [instances](Instance) place them.
-//! [`Scene::flattened`] makes objects of these. Colors are linear RGB, 1.0 being full display white, unless
-//! [`Scene::display_values`] says otherwise.
+//! All coordinates are `f64` scene units in one right-handed world space. Importers bake the transforms of groups and
+//! nodes into the geometry, so later stages need not know them. [Parts](Part) are the exception: they have coordinates
+//! of their own, and [instances](Instance) place them. [`Scene::flattened`] makes objects of these. Colors are linear
+//! RGB, 1.0 being full display white, unless [`Scene::display_values`] says otherwise.
 
 mod access;
 mod attributes;
@@ -120,8 +119,8 @@ pub fn load(path: &Path, molecule: &MoleculeOptions) -> Result<Imported, SceneEr
 /// may be gzipped.
 ///
 /// # Errors
-/// If the file cannot be read, its format is unknown, its content is broken, or it names a file
-/// outside of its folder and may not.
+/// If the file cannot be read, its format is unknown, or its content is broken. Also if it names a file outside of its
+/// folder without permission.
 ///
 /// ```
 /// use gridel_host::scene::{ImportOptions, load_with};
@@ -212,8 +211,8 @@ pub fn read(name: &Path, bytes: Vec<u8>, options: &ImportOptions) -> Result<Impo
     finish(importer.import(input)?, options)
 }
 
-/// Reads a scene from files in memory, of which `name` is the scene's. Files that the scene names are found by their
-/// paths, or else by their names alone if no two files share them; disks are not read.
+/// Reads a scene from files in memory; `name` is the scene's file. Files that the scene names are found by their paths.
+/// A file is found by its name alone if no two files share it. Disks are not read.
 ///
 /// # Errors
 /// As [`load_with`], and if a file that the scene needs is not among them.

@@ -79,8 +79,9 @@ impl Normals {
         Self::unless_flat(vectors, corners)
     }
 
-    /// Normals that are smooth across edges where two faces meet at less than an angle in degrees: at each vertex the
-    /// mean of such faces, weighted by their angles there. Vertices are the same where their coordinates are.
+    /// Computes normals that are smooth across edges where two faces meet at less than `degrees`. The normal at a
+    /// vertex is the mean of such faces, weighted by their angles there. Vertices are the same where their coordinates
+    /// are.
     pub fn computed(vertices: &[DVec3], triangles: &[[u32; 3]], degrees: f64) -> Self {
         let places = same_places(vertices);
         let faces: Vec<DVec3> = triangles
@@ -152,8 +153,8 @@ impl Normals {
     }
 }
 
-/// The matrix that turns normals where another one moves points, outward staying outward, and whether that mirrors: the
-/// inverse transposed, times the magnitude of the determinant.
+/// Returns the matrix that turns normals where `matrix` moves points, and whether that mirrors. Outward stays outward.
+/// The matrix is the inverse transposed, times the magnitude of the determinant.
 pub(super) fn cofactors(matrix: DMat3) -> (DMat3, bool) {
     let DMat3 {
         x_axis: x,

@@ -1,9 +1,9 @@
 //! Reads OFF, the Object File Format of Geomview: the vertices and polygons of a mesh, as text.
 //!
-//! The keyword may be missing, and may have the prefixes `ST`, `C` and `N` of vertices with texture
-//! coordinates, colors and normals, which then stand on one line each. These are ignored, with a
-//! warning each, and so are the colors of faces. Vertices of other than three coordinates (`4OFF`,
-//! `nOFF`) and binary files are rejected. Comments begin with `#`.
+//! The keyword may be missing. It may have the prefixes `ST`, `C` and `N`, for vertices with
+//! texture coordinates, colors and normals on their lines. These are ignored, with a warning each,
+//! and so are the colors of faces. Vertices of other than three coordinates (`4OFF`, `nOFF`) and
+//! binary files are rejected. Comments begin with `#`.
 
 use super::importer::{Importer, Input, stem};
 use super::polygon::{self, MAX_CONCAVE};

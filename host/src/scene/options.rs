@@ -84,8 +84,8 @@ pub enum Instances {
 pub struct ImportOptions {
     /// Choices that a molecule file leaves open.
     pub molecule: MoleculeOptions,
-    /// Which assembly of a PDB or mmCIF file, by its number or name; without one the asymmetric unit, which
-    /// is the atoms as the file lists them.
+    /// The assembly of a PDB or mmCIF file, by its number or name. Default: the asymmetric unit, which is the atoms as
+    /// the file lists them.
     pub assembly: Option<String>,
     /// Which camera and animation.
     pub choice: Choice,

@@ -38,8 +38,8 @@ pub(super) const IMPORTER: Importer = Importer {
 /// Reads a PLY file. It has no camera and no lights; the compiler adds them.
 ///
 /// # Errors
-/// If the file has no faces, or its content is broken; the error names the line where there are lines,
-/// else the vertex or the face.
+/// If the file has no faces, or its content is broken. The error names the line of a text file, else the vertex or the
+/// face.
 fn read(input: Input<'_>) -> Result<Imported, SceneError> {
     let Input { path, bytes, .. } = input;
     check_encoding(path, &bytes)?;

@@ -1,11 +1,11 @@
-//! The memory that a scene takes, computed before it is made: a few lines of a file can stand for more
-//! objects than any machine holds.
+//! Computes the memory that a scene takes before it is made. A few lines of a file can describe more objects than any
+//! machine holds.
 
 use super::Shape;
 use crate::table::grouped;
 
-/// The most bytes that a scene may take until its blob is made: room for as many triangles as a
-/// blob holds, and less than 4 GB.
+/// The most bytes that a scene may take until its blob is made. That is room for as many triangles as a blob holds, and
+/// less than 4 GB.
 pub(super) const MOST_BYTES: u64 = 3_800_000_000;
 
 /// The most bytes of a file whose length is not known before it is read: a gzipped one, and standard

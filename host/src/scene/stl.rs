@@ -1,11 +1,11 @@
 //! Reads STL, binary and text: triangles, and nothing else.
 //!
-//! The parser is our own. The crate `stl_io` was looked at first, but of a text file with several
-//! solids it reads one and says nothing of the rest, and it never says in which line anything is.
+//! The parser is our own. The crate `stl_io` was tried first. It reads one solid of a text file and silently ignores
+//! the others, and its errors name no lines.
 //!
-//! Every solid of a text file is an object. Vertices are shared by their coordinates, so that
-//! triangles meet without a gap. Normals are passed over, since the order of the corners says the
-//! same, and so are the colors that some programs put into binary files, with a warning.
+//! Every solid of a text file is an object. Vertices are shared by their coordinates, so that triangles meet without a
+//! gap. Normals are ignored, since the order of the corners gives them. Colors, which some programs put into binary
+//! files, are ignored with a warning.
 
 use super::importer::{Importer, Input, stem};
 use super::text::{Source, Warnings, check_encoding};

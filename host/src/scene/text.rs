@@ -8,8 +8,8 @@ use std::path::{Path, PathBuf};
 use std::string::FromUtf8Error;
 use std::sync::Arc;
 
-/// A text file in memory. Bytes that are not UTF-8 become U+FFFD: harmless in a comment or a
-/// name, and an error with its line wherever a number or a keyword is expected.
+/// A text file in memory. Bytes that are not UTF-8 become U+FFFD. That is harmless in a comment or
+/// a name. Where a number or a keyword is expected, it is an error with its line.
 pub(super) struct Source {
     pub(super) path: Arc<PathBuf>,
     pub(super) text: String,
@@ -116,8 +116,8 @@ pub(crate) fn check_encoding(path: &Path, bytes: &[u8]) -> Result<(), SceneError
     ))
 }
 
-/// Warnings of an importer. A sentence is kept once, with the first line it applies
-/// to and how many lines follow it, so that a file of a million equal faults stays readable.
+/// Warnings of an importer. A sentence is kept once, with the first line it applies to and the
+/// number of further lines. So the warnings of a file with a million equal faults stay readable.
 #[derive(Default)]
 pub(super) struct Warnings {
     /// Sentence, first place, and the number of further places.

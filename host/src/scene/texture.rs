@@ -29,8 +29,8 @@ pub struct Texture {
     pub transform: DAffine2,
 }
 
-/// An image whose colors are normals of a surface with bumps: red to the right along u, green up against v, blue out of
-/// it, of which 0 is -1, and 255 is 1.
+/// An image whose colors are normals of a bumpy surface: red to the right along u, green up against v, blue outward. A
+/// value of 0 is -1, and 255 is 1.
 #[derive(Clone, Debug, PartialEq)]
 pub struct NormalMap {
     pub texture: Texture,

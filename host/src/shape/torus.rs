@@ -132,8 +132,8 @@ impl Analytic for Torus {
     /// As far as their circles and their minor radii. Circles are at most
     /// as far apart as their centers, their radii and the ends of their axes, of the smaller radius's length.
     ///
-    /// From a point beneath a surface the way outward is as short, unless it comes to the axis before, in the
-    /// pit of a spindle torus: then it goes on along the axis.
+    /// From a point beneath a surface the path outward is equally short, except in the pit of a spindle torus. There it
+    /// reaches the axis first, and continues along the axis.
     fn displacement(&self, other: &Self) -> f64 {
         let (major, minor) = (self.major_radius, self.minor_radius);
         let turned = direction::unit(self.axis).distance(direction::unit(other.axis))

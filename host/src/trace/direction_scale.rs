@@ -3,8 +3,8 @@
 use super::Rejection;
 use glam::DVec3;
 
-/// The largest component of a direction in units, by which t is larger in the core: a factor and a
-/// power of two, because units and directions may be as small and as large as numbers are.
+/// The largest component of a direction in units. `t` is larger in the core by this factor. It is a factor and a power
+/// of two, because units and directions can have any magnitude that numbers have.
 #[derive(Clone, Copy, Debug)]
 pub struct DirectionScale {
     factor: f64,

@@ -1,8 +1,9 @@
 //! Nodes that an animation moves, as joints of the meshes below them.
 //!
-//! A node whose own transform is `T R S` (at rest `T0 R0 S0`), in a node that stands at `W` at rest, moves what is below
-//! it by `W (T R S) (T0 R0 S0)^-1 W^-1`. This is a rotation `W R R0^-1 W^-1` and a scale `S / S0` about the pivot
-//! `W T0`, and a shift by `W (T - T0)`. All three are linear in the keys, so these are kept, whatever lies between them.
+//! A node has its own transform `T R S` (at rest `T0 R0 S0`) in a node that stands at `W` at rest. It moves its
+//! children by `W (T R S) (T0 R0 S0)^-1 W^-1`. This is a rotation `W R R0^-1 W^-1` and a scale `S / S0` about the pivot
+//! `W T0`, and a shift by `W (T - T0)`. All three are linear in the keys, so the keys are kept, with any interpolation
+//! between them.
 
 use super::Importer;
 use super::animation::{Motion, Way};
@@ -196,7 +197,8 @@ fn least_between(first: &Key, second: &Key) -> f64 {
     inside.map(at).fold(from.min(to), f64::min)
 }
 
-/// The even scale of a way of scales, relative to that at rest, and whether it was 0 at some key; `None` if it is none.
+/// Returns the uniform scale of a sequence of scales, relative to that at rest, and whether it is 0 at some key. `None`
+/// if it is not uniform.
 fn even(way: &Way, rest: DVec3) -> Option<(Way, bool)> {
     let inverse = rest.recip();
     if !inverse.is_finite() {

@@ -13,9 +13,9 @@
 //! | emission | emissive factor times `KHR_materials_emissive_strength`: 1 is display white |
 //! | absorption | -ln(attenuation color) / attenuation distance |
 //!
-//! The mirror of a metal without textures and of a roughness from 0.05 to below 1 is rough instead: mirror c m with that
-//! roughness, of which the diffuse color has no part and the highlight only that of m = 0. Others are as above: a
-//! metalness and a roughness of 1 are also what a file without either has.
+//! A metal without textures and with a roughness from 0.05 to below 1 has a rough mirror instead. It is the mirror c m
+//! with that roughness. The diffuse color has no part of it, and the highlight is that of m = 0. Others are as above: a
+//! file that states neither also has a metalness and a roughness of 1.
 //!
 //! Where the alpha mode is `BLEND`, alpha is what of the material is there, and the rest is a pane; but for textures
 //! with alpha.

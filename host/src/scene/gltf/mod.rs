@@ -69,8 +69,8 @@ pub(super) const IMPORTER: Entry = Entry {
 /// lights, the compiler adds them.
 ///
 /// # Errors
-/// If a buffer cannot be read, a required extension is not understood, or the content is broken; the
-/// error names the line of broken JSON, else the element.
+/// If a buffer cannot be read, a required extension is not supported, or the content is broken. The error names the
+/// line of broken JSON, else the element.
 fn read(input: Input<'_>) -> Result<Imported, SceneError> {
     let Input {
         path,

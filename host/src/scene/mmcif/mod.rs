@@ -1,5 +1,5 @@
-//! The categories of mmCIF that say where atoms are (`atom_site`), which of them are bonded beyond those
-//! that distances imply (`struct_conn`), and how they are copied (`pdbx_struct_assembly_gen`,
+//! Reads the categories of mmCIF that drawing needs. They say where atoms are (`atom_site`), and which are bonded
+//! beyond the bonds that distances imply (`struct_conn`). Others say how atoms are copied (`pdbx_struct_assembly_gen`,
 //! `pdbx_struct_oper_list`).
 //!
 //! The author's chain and residue names (`auth_`) come before the archive's (`label_`), as in PDB

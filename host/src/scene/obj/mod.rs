@@ -1,9 +1,8 @@
 //! Reads Wavefront OBJ with its MTL materials.
 //!
-//! The parser is our own. The crate `tobj` was tried first, but it divides positions by `w`, makes
-//! triangles of polylines (`l`), lets NaN through, rejects comments and continuations on face
-//! lines, panics on a color of two numbers, and never says in which line anything is, so that all
-//! of a file would have had to be parsed before it was handed over.
+//! The parser is our own. The crate `tobj` was tried first. It divides positions by `w`, makes triangles of polylines
+//! (`l`), and lets NaN through. It rejects comments and continuations on face lines, panics on a color of two numbers,
+//! and never names a line. So a file would have to be parsed completely before it was passed on.
 //!
 //! Every `o`, `g` and change of `usemtl` starts a new mesh, in file order, which holds only the
 //! vertices that it uses. Faces are cut into triangles in file order. A face whose corners all have

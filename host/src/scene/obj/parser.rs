@@ -94,8 +94,8 @@ pub(super) fn parse<'a>(
     parser.finish(warnings)
 }
 
-/// Reads the index of a normal or of texture coordinates, of which the file has so many so far, counted from 0;
-/// [`MISSING_NORMAL`] for one that cannot be.
+/// Reads the index of a normal or of texture coordinates, and returns it counted from 0. `count` is how many the file
+/// has so far. Returns [`MISSING_NORMAL`] for an index that is out of range.
 fn number_of(index: &str, count: usize) -> u32 {
     let index = index.parse::<i64>().ok().filter(|it| *it != 0);
     let index = index.map(|it| if it < 0 { count as i64 + it } else { it - 1 });

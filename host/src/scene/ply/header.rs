@@ -98,8 +98,8 @@ fn quoted(line: &[u8]) -> String {
     )
 }
 
-/// Rejects a number of elements that the file cannot hold, each of which takes a byte at least, and
-/// properties that are not what they mean.
+/// Rejects a number of elements that the file cannot hold at one byte each or more. Also rejects
+/// properties whose types do not match their meaning.
 pub(super) fn check(path: &Path, element: &ElementDef, bytes: usize) -> Result<(), SceneError> {
     if element.count > bytes || (element.properties.is_empty() && element.count > 0) {
         return Err(SceneError::new(

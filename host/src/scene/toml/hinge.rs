@@ -149,11 +149,12 @@ impl Segment {
     }
 }
 
-/// Into how many pieces a spline of angles is cut that is replaced by splines of quaternions, given the ways between its
-/// control points in degrees.
+/// Returns the number of pieces into which a spline of angles is cut. Splines of quaternions replace it. `legs` are the
+/// differences between its control points in degrees.
 ///
-/// A cubic Hermite spline is off by at most 1/384 of the fourth derivative, which is here that of (sin, cos) of half the
-/// angle: with `n` pieces, at most `(v^4 + 6 v^2 a + 3 a^2 + 4 v j) / n^4` for bounds of the half's derivatives.
+/// The error of a cubic Hermite spline is at most 1/384 of the fourth derivative, here that of (sin, cos) of half the
+/// angle. With `n` pieces that is at most `(v^4 + 6 v^2 a + 3 a^2 + 4 v j) / n^4`, for bounds of the half's
+/// derivatives.
 fn spline_pieces(legs: [f64; 3]) -> f64 {
     let [first, middle, last] = legs.map(|leg| leg.to_radians() / 2.0);
     let speed = 3.0 * first.abs().max(middle.abs()).max(last.abs());

@@ -50,8 +50,8 @@ impl Reader<'_> {
         Ok(groups)
     }
 
-    /// The objects of a group or part, of which there must be some: groups of nothing could be nested
-    /// without end at no cost in primitives.
+    /// Returns the objects of a group or part. At least one is required: empty groups could be nested without end at no
+    /// cost in primitives.
     pub(super) fn members(
         &mut self,
         fields: &Fields<'_>,

@@ -210,8 +210,8 @@ fn chain_without_atoms_is_worth_a_warning() {
     );
 }
 
-/// Atoms of the chains A and B (by their authors X and X), operators 1 to 5 (turns about z by 0, 90, 180 and 270
-/// degrees, and a step along z) and P, a step along x.
+/// Atoms of the chains A and B (by their authors X and X), and the operators 1 to 5 and P. Operators 1 to 5 are turns
+/// about z by 0, 90, 180 and 270 degrees, and a step along z. P is a step along x.
 fn cif_of(groups: &[[&str; 3]]) -> String {
     let mut text = String::from(
         "data_t\nloop_\n_pdbx_struct_assembly_gen.assembly_id\n\
