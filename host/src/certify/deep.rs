@@ -1,10 +1,11 @@
 //! Balls around numbers of 128 or 256 bits.
 //!
-//! A ball is a middle of many bits and a radius of double precision. What an operation rounds is added to the radius,
-//! which is rounded up; what is exact stays exact, so that sums and products of a blob's integers are compared exactly.
+//! A ball is a middle of many bits and a radius of double precision. The rounding of an operation is added to the
+//! radius, which is rounded up. Exact results stay exact, so that sums and products of a blob's integers are compared
+//! exactly.
 //!
-//! The numbers lie in a table of the thread, which [`with_bits`] begins anew, so that a ball is an index and kernels
-//! copy it as they copy floats.
+//! The numbers lie in a table of the thread, which [`with_bits`] clears. So a ball is an index, and kernels copy it as
+//! they copy floats.
 
 use super::number::Enclosure;
 use dashu_float::round::mode::HalfEven;

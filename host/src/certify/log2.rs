@@ -1,4 +1,4 @@
-//! Binary logarithms of integers, with 8 fraction bits: the ends of what one may be, where it is open to which integer a
+//! Binary logarithms of integers, with 8 fraction bits. A value is an interval where it is open to which integer a
 //! number is rounded.
 
 use super::number::Enclosure;

@@ -1,7 +1,7 @@
 //! Colors of vertices and textures, in exact arithmetic.
 //!
-//! A color of vertices is interpolated in real arithmetic. A texture is defined at multiples of 2^-20 of the image, at or
-//! below the coordinates, by integers: where several of them are possible, all are looked up.
+//! A vertex color is interpolated in real arithmetic. A texture is defined by integers at multiples of 2^-20 of the
+//! image, at or below the coordinates. Where several multiples are possible, all are looked up.
 
 use super::hit::Hit;
 use super::log2::Log2;
@@ -125,8 +125,8 @@ fn mixed<N: Enclosure>(weights: Three<N>, roots: [u8; 3]) -> N {
     ratio.at_least(N::zero()).at_most(N::one())
 }
 
-/// Calls a function with the multiples at which a texture may be looked up, for what a sample may see of it; returns
-/// whether there are few enough.
+/// Calls a function with the multiples at which a texture may be looked up, for each possible footprint of a sample.
+/// Returns whether there are few enough.
 pub fn at_places<N: Enclosure>(
     weights: Three<N>,
     coordinates: [[i32; 2]; 3],

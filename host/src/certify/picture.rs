@@ -201,8 +201,8 @@ fn narrow(known: &mut [[f64; 2]; 3], evaluated: &Evaluated) {
     }
 }
 
-/// The linear values of a pixel as a picture has them, 65535 being white, and whether they are proved: of those that
-/// are not, the middle.
+/// Returns the linear values of a pixel as a picture has them, 65535 being white, and whether they are proved. Values
+/// that are not proved are the middle of their interval.
 pub fn linear(world: &World<'_>, settings: &Settings, pixel: [u16; 2]) -> ([u16; 3], bool) {
     let mut known = [[0.0, 1.0]; 3];
     for level in 0..LEVELS.len() {

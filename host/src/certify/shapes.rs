@@ -1,7 +1,7 @@
 //! Where a ray crosses a primitive, and the surface there, by the formulas that define the shapes.
 //!
-//! Solids are closed. A ray that starts on a surface starts beside it by nothing: the t of its start is left out by
-//! what is known of it, not by a comparison.
+//! Solids are closed. A ray from a surface starts exactly on it. The t of its start is excluded by what is known of the
+//! start, not by a comparison.
 
 use super::cone;
 use super::crossing::{

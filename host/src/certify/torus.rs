@@ -1,8 +1,8 @@
 //! Tori: the solid that a disc sweeps along a circle.
 //!
-//! With `q` a point as seen from the center, `w` the axis, `h = w.w`, `G = q.q + R^2 - r^2` and `S = |q x w|^2`, h times
-//! the square of the distance from the axis, the surface is where `F = h G^2 - 4 R^2 S` is 0 and G is not negative. (Where
-//! G is negative lies the inner sheet of a spindle torus, which is inside of the solid.)
+//! Let `q` be a point relative to the center, `w` the axis, `h = w.w` and `G = q.q + R^2 - r^2`. Let `S = |q x w|^2`,
+//! which is h times the square of the distance from the axis. The surface is where `F = h G^2 - 4 R^2 S` is 0 and G is
+//! not negative. (Where G is negative lies the inner sheet of a spindle torus, which is inside of the solid.)
 //!
 //! Along a ray F is a quartic. Its roots are isolated by subdivision: coefficients of Bernstein's polynomials whose signs
 //! are known count the roots of a stretch, none or one. Newton's steps narrow each root, and halving where they do not.

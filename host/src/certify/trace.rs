@@ -1,8 +1,8 @@
 //! The exact picture, enclosed: the rules of a blob evaluated with numbers that hold the exact ones.
 //!
-//! Where a comparison is open, both outcomes are followed and their results joined, as long as there are few; where
-//! and why is recorded. The kernels of the core are not used: their answers depend on what their numbers round (where
-//! a ray starts beside a surface, what is culled), and here nothing is rounded away.
+//! Where a comparison is open, both outcomes are followed and their results joined, as long as there are few. The place
+//! and the reason are recorded. The kernels of the core are not used. Their answers depend on their rounding (where a
+//! ray starts off a surface, which nodes are culled), and here nothing is rounded away.
 
 use super::crossing::Ray;
 use super::deep;

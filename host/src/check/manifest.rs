@@ -87,9 +87,9 @@ impl Manifest {
     /// Reads a manifest.
     ///
     /// # Errors
-    /// If it cannot be read, is not TOML, holds a key or a value that means nothing, or has a
-    /// reference that would be recorded over another file that is read; the error shows file, line
-    /// and remedy.
+    /// If it cannot be read, is not TOML, or has an unknown key or an invalid value. Also if a
+    /// reference would be recorded over another file that is read. The error shows file, line and
+    /// remedy.
     pub fn read(path: &Path) -> Result<Self, SceneError> {
         let source = Source::read(path)?;
         let document = source.parse()?;
@@ -372,8 +372,8 @@ impl Budget {
     }
 }
 
-/// Names the pictures that show what is broken, as the checks are named and what they run on; with
-/// a number where that makes two names equal.
+/// Names the pictures that show what is broken, by the check and what it runs on. A number is
+/// appended where two names would be equal.
 fn name_evidence(checks: &mut [Check]) {
     let mut taken = BTreeSet::new();
     let plain = |c: char| match c {

@@ -65,8 +65,8 @@ pub fn slot_boxes(flat: &Flat, boxes: &[super::hierarchy::Primitive]) -> Vec<Uni
         .collect()
 }
 
-/// Divisions with which rays test fewer primitives than with `counts`, if that is more than in
-/// ordinary scenes: axes are halved or doubled as long as that saves tests.
+/// Returns divisions with which rays test fewer primitives than with `counts`, if that is more than in ordinary scenes.
+/// Halves or doubles axes as long as that saves tests.
 ///
 /// Long primitives lie in many cells one behind the other, and a ray tests them in each.
 fn best_divisions(bounds: &UnitBox, boxes: &[UnitBox], mut counts: [u32; 3]) -> [u32; 3] {
@@ -103,8 +103,8 @@ fn best_divisions(bounds: &UnitBox, boxes: &[UnitBox], mut counts: [u32; 3]) -> 
     }
 }
 
-/// Builds a grid, with as many divisions as are asked for or as many cells as are usual; with fewer
-/// where these would exceed [`MOST_BYTES`], or rays would test the same primitives too often.
+/// Builds a grid with the given divisions, or with the usual number of cells. There are fewer where these would exceed
+/// [`MOST_BYTES`], or where rays would test the same primitives too often.
 ///
 /// # Errors
 /// If the divisions that are asked for exceed it.

@@ -23,9 +23,9 @@ pub struct Coordinates {
 }
 
 impl Coordinates {
-    /// The finest step of which the scene's box, the eye, the lights and the places on their ways are few enough
-    /// multiples, counted
-    /// from the scene's own origin where that costs little precision, else from the lattice's.
+    /// Chooses the finest step of which the scene's box, the eye, the lights and the positions on their paths are few
+    /// enough multiples. They are counted from the scene's own origin where that costs little precision, otherwise from
+    /// the lattice's.
     pub fn choose(
         lattice: &Lattice,
         bounds: [DVec3; 2],

@@ -1,16 +1,14 @@
 //! Keeps closed meshes closed where triangles collapse on the lattice.
 //!
-//! A triangle whose corners a, b, c are rounded onto a line, b between a and c, is left out. What
-//! was its neighbor across the edge a-c then meets those across a-b and b-c, and has no vertex at b:
-//! a T-junction, and rays slip through, because only an edge that two triangles share is watertight.
-//! So the neighbor is cut at b into two triangles. b lies on the edge exactly, so the surface is the
-//! same.
+//! A triangle whose corners a, b, c are rounded onto a line, b between a and c, is left out. Its neighbor across the
+//! edge a-c then meets those across a-b and b-c, and has no vertex at b. That is a T-junction. Rays slip through it,
+//! because only an edge that two triangles share is watertight. So the neighbor is cut at b into two triangles. b lies
+//! on the edge exactly, so the surface is the same.
 //!
-//! Slivers that share edges make up a cluster, which lies on one line. The edges that an odd number
-//! of its slivers share are its border: there a closed mesh has an odd number of other triangles. Each
-//! edge of the border is cut at all ends of others that lie on it. The border is a cycle, because it
-//! is that of the slivers; so its parts between neighboring points are there an even number of
-//! times each, and the mesh is closed again.
+//! Slivers that share edges form a cluster, which lies on one line. The edges that an odd number of its slivers share
+//! are its border: there a closed mesh has an odd number of other triangles. Each edge of the border is cut at all ends
+//! of others that lie on it. The border is a cycle, because it is that of the slivers. So each of its parts between
+//! neighboring points occurs an even number of times, and the mesh is closed again.
 
 use std::collections::HashMap;
 

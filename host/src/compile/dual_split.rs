@@ -1,9 +1,9 @@
 //! Lays a hierarchy out as dual-split nodes: chooses on which axes nodes are carved and split.
 //!
-//! A node's *region* is what the planes on the way down have left of the scene's box. It is at
+//! A node's *region* is the part of the scene's box that the planes above the node leave. It is at
 //! least as large as the node's own box, and how much larger depends on the choices above. The
-//! surface area heuristic on regions weighs what a plane costs against the visits that it saves;
-//! each choice looks ahead as far as the children's.
+//! surface area heuristic on regions weighs the cost of a plane against the visits that it saves.
+//! Each choice looks ahead as far as the choices of the children.
 
 use super::hierarchy::{Node, area};
 use gridel_core::format::NodeWord;

@@ -343,8 +343,8 @@ fn gradient(sky: &Sky, towards: DVec3, up: Up) -> Color {
     [0, 1, 2].map(|channel| horizon[channel] + part * (zenith[channel] - horizon[channel]))
 }
 
-/// The means of a picture over texels: each pixel is cut into as many parts as give every texel some, and each part
-/// counts with its solid angle in the texel that it lies in.
+/// Returns the means of a picture over texels. Each pixel is cut into enough parts that every texel gets some. Each
+/// part counts with its solid angle in the texel that it lies in.
 fn resampled(side: usize, picture: &Panorama, rotation: f64, up: Up) -> Vec<Texel> {
     let [width, height] = picture.size();
     let across = (2 * POINTS_OF_PICTURE * side).div_ceil(width);

@@ -4,8 +4,8 @@ use super::extent::Shapes;
 use crate::scene::{Camera, Color, Scene};
 use glam::DVec3;
 
-/// The background of a scene that states neither a camera nor a background: a light
-/// gray, against which what is white is seen by its shades, and what is black by its outline.
+/// The background of a scene that states neither a camera nor a background. On light gray, white objects are visible by
+/// their shades, and black ones by their outline.
 pub const BACKGROUND: Color = [0.9, 0.92, 0.95];
 
 /// The part of the picture's width or height that the scene takes.
@@ -69,8 +69,8 @@ pub(super) fn framing_of(shapes: &Shapes<'_>, fov_degrees: Option<f64>) -> Camer
     let aspect = f64::from(scene.render.width) / f64::from(scene.render.height);
     let slope = SHARE * libm::tan(fov_degrees.to_radians() / 2.0);
     let from_middle = |direction: DVec3| support(direction) - middle.dot(direction);
-    // The eye lies where two planes of this slope meet that touch the scene from opposite sides: its distance from
-    // the middle of the scene, and how far aside it is.
+    // The eye lies where two planes of this slope meet that touch the scene from opposite sides. The result is its
+    // distance from the middle of the scene, and its offset aside.
     let touching = |axis: DVec3, slope: f64| {
         let [one, other] = [axis, -axis].map(|side| from_middle(side - slope * forward));
         ((one + other) / (2.0 * slope), (one - other) / 2.0)

@@ -1,12 +1,12 @@
 //! Builds the bounding volume hierarchy: top down, by the surface area heuristic over bins.
 //!
 //! The heuristic is MacDonald and Booth's ("Heuristics for ray tracing using space subdivision",
-//! 1990); bins are Wald's ("On fast construction of SAH-based bounding volume hierarchies", 2007).
+//! 1990). Bins are Wald's ("On fast construction of SAH-based bounding volume hierarchies", 2007).
 //! A node with few primitives is swept exactly instead.
 //!
-//! The builder cannot run away: where all centroids are equal, or where the depth that is left
-//! would not do otherwise, a node is cut in two halves of equal count. So the depth never exceeds
-//! [`MAX_LEVELS`], and time is `O(n log n)` a level at the most.
+//! The builder always ends. A node is cut in two halves of equal count where all centroids are
+//! equal, or where the remaining depth would otherwise not suffice. So the depth never exceeds
+//! [`MAX_LEVELS`], and the time is at most `O(n log n)` per level.
 
 use crate::shape::test_cost;
 use gridel_core::Kind;

@@ -53,8 +53,8 @@ pub fn build(instances: &[UnitBox]) -> Tree {
     tree
 }
 
-/// Divides two or more instances in two, neither empty, by the cheapest split along any axis; in halves where the levels
-/// that are left need that. Returns how many come first.
+/// Divides two or more instances in two, neither empty, by the cheapest split along any axis. Divides them in halves
+/// where the remaining levels require it. Returns how many come first.
 fn split(instances: &[UnitBox], numbers: &mut [u32], levels: usize) -> usize {
     let count = numbers.len();
     let bounds = |number: &u32| instances[*number as usize];

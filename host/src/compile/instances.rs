@@ -64,8 +64,8 @@ pub struct Placed {
 }
 
 impl Parts {
-    /// Compiles all parts of a scene by a function that returns a part's blob and by how much its surfaces are moved at
-    /// most, in the part's units of length.
+    /// Compiles all parts of a scene. `compile` returns a part's blob and the largest displacement of its surfaces, in
+    /// the part's units of length.
     pub fn compile(
         scene: &Scene,
         mut compile: impl FnMut(&Scene) -> Result<(Blob, f64), CompileError>,

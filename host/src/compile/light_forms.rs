@@ -24,8 +24,8 @@ fn lift_length(form: &LightForm, lattice: &Lattice) -> f64 {
     }
 }
 
-/// From the position of a light to where it shines from: above the surface that it has in the scene, which must not
-/// stand in its way.
+/// Returns the offset from the position of a light to the point from which it shines. That point lies above the light's
+/// surface in the scene, which must not block the light.
 pub fn lift(form: &LightForm, lattice: &Lattice) -> DVec3 {
     let normal = match form.shape {
         LightShape::Point | LightShape::Sphere { .. } => return DVec3::ZERO,
@@ -37,8 +37,8 @@ pub fn lift(form: &LightForm, lattice: &Lattice) -> DVec3 {
     unit(normal) * lift_length(form, lattice)
 }
 
-/// The record of a form, and the light's color in it: brought to the range where it is most precise, unless a track
-/// gives the light other colors.
+/// Returns the record of a form, and the light's color in it. The color is scaled to the range where it is most
+/// precise, unless a track gives the light other colors.
 pub fn form_record(
     form: &LightForm,
     color: Color,

@@ -29,7 +29,7 @@ pub struct Options {
     /// Bits that coordinates are snapped to: see [`LATTICE_BITS`](crate::compile::LATTICE_BITS).
     pub lattice_bits: u8,
     /// The scene units by which vertices of meshes can move along each axis, for a
-    /// [`Deformation`](gridel_core::Deformation): the box of a scene, and of each part, is wider by as much. Only the
+    /// [`Deformation`](gridel_core::Deformation). The box of a scene, and of each part, is wider by as much. Only the
     /// structure [`Bvh`](gridel_core::Bvh) can be refitted.
     pub room: f64,
     /// Primitives that make a leaf of a hierarchy whatever rays pay for it, at most

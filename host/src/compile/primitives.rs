@@ -44,8 +44,8 @@ pub struct Primitives {
     pub collapsed: LeftOut,
     /// Triangles without area.
     pub without_area: LeftOut,
-    /// For each primitive in scene-file order, how far apart the given and the snapped surface are at
-    /// most, in 1/256 unit; 0 for those that are left out.
+    /// For each primitive in scene-file order, the largest distance between the given and the snapped surface, in 1/256
+    /// unit. 0 for those that are left out.
     pub displacements: Vec<f32>,
     /// Primitives whose surface was moved by more than [`FAR_MOVED`] steps.
     pub far_moved: LeftOut,
@@ -175,8 +175,8 @@ impl Primitives {
         })
     }
 
-    /// The groups that a primitive is in, the largest first, as the parts of its object's name say
-    /// (`A/CYS 3/CA` is the atom CA of the residue CYS 3 of the chain A), and its number.
+    /// Returns the groups that a primitive is in, the largest first, and its number. The groups are the parts of its
+    /// object's name (`A/CYS 3/CA` is the atom CA of the residue CYS 3 of the chain A).
     pub fn groups<'s>(&self, scene: &'s Scene, primitive: &Primitive) -> (Vec<&'s str>, u32) {
         let number = self.numbers[primitive.kind as usize][primitive.index as usize];
         let behind = self.object_first.partition_point(|&first| first <= number);

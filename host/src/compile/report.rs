@@ -12,9 +12,9 @@ use std::time::Duration;
 pub struct Report {
     /// Scene units of a lattice step.
     pub step: f64,
-    /// The farthest that snapping moved a surface, in scene units: no point of the given surface of
-    /// any primitive is farther from its snapped one, and the other way round. For instances it is counted from their
-    /// rotations: a matrix of a scene file becomes the nearest one when it is read.
+    /// The largest displacement of a surface by snapping, in scene units. No point of a given surface is farther from
+    /// its snapped one, and the other way round. For instances it is counted from their rotations: a matrix of a scene
+    /// file becomes the nearest one when it is read.
     pub largest_displacement: f64,
     /// The displacement of each primitive in scene-file order, in steps of the lattice; 0 for those that are
     /// left out.

@@ -293,8 +293,8 @@ impl ShadingData {
     }
 }
 
-/// The way of a light from above the camera's left shoulder, or from above its right one where what is
-/// flat and faces the camera would be dark: the shoulder's name, too.
+/// Returns the direction of a light from above the camera's left shoulder, and the shoulder's name. The light comes
+/// from the right one where flat surfaces that face the camera would otherwise be dark.
 fn over_a_shoulder(shapes: &Shapes<'_>, camera: &Camera) -> (DVec3, &'static str) {
     /// By how many times more the right one must light.
     const CLEARLY: f64 = 2.0;

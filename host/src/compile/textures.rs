@@ -1,9 +1,9 @@
 //! Textures as a blob holds them, within a budget of bytes.
 //!
 //! Without a budget an image of at most 256 colors becomes a palette, and any other RGB888. With one, the image that
-//! takes the most bytes is made coarser until all fit: RGB565 (not where alpha is used), then a palette of 256 colors, then half the size, again and
-//! again. Images wider or higher than 4096 are halved in any case. Levels are smaller copies of what is left, and count; their colors come from the
-//! palette, which has more where there is room.
+//! takes the most bytes is made coarser until all fit. The steps are RGB565 (not where alpha is used), then a palette
+//! of 256 colors, then half the size, again and again. Images wider or higher than 4096 are halved in any case. Levels
+//! are smaller copies of the result, and count. Their colors come from the palette, which has more where there is room.
 
 mod stored;
 

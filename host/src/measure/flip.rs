@@ -1,8 +1,8 @@
 //! How different two pictures look when one flips to the other on a display: LDR-FLIP.
 //!
-//! Andersson, Nilsson, Akenine-Möller, Oskarsson, Åström, Fairchild, "FLIP: A Difference Evaluator for
-//! Alternating Images", HPG 2020. Both pictures are filtered by what the eye can resolve, compared in
-//! a perceptual color space, and the difference is raised where edges or points differ.
+//! Andersson, Nilsson, Akenine-Möller, Oskarsson, Åström, Fairchild, "FLIP: A Difference Evaluator for Alternating
+//! Images", HPG 2020. Filters both pictures by what the eye can resolve, and compares them in a perceptual color space.
+//! Raises the difference where edges or points differ.
 
 /// Pixels a degree of the field of view: a display of 3840 pixels, 0.7 m wide, seen from 0.7 m.
 const PIXELS_PER_DEGREE: f64 = 67.020_64;

@@ -1,6 +1,6 @@
 //! Puts the pictures of an animation in order.
 //!
-//! A picture says in its file which one it is and how it was made ([`FrameNote`]), so pictures may come from several
+//! The file of a picture states its number and how it was made ([`FrameNote`]). So pictures may come from several
 //! machines and in any order.
 
 use super::{PartError, difference, open_png, pixels, text};

@@ -13,8 +13,8 @@ use gridel_core::{Format, Kind, Scene};
 /// larger or smaller.
 pub const STEPS: f64 = 8.0;
 
-/// The cosine between a surface's normal and a ray below which the ray grazes: t is off there by more
-/// than [`STEPS`] steps if the surface is off by one.
+/// The cosine between a surface's normal and a ray below which the ray grazes. There, t is off by more than [`STEPS`]
+/// steps if the surface is off by one.
 pub const GRAZING: f64 = 1.0 / STEPS;
 
 /// How far it is through a scene at the most, in units.
@@ -231,8 +231,8 @@ impl Nearest<'_> {
     }
 }
 
-/// Where a ray may cross a shape that is only known within a length: any of the shapes counts that
-/// are larger or smaller by no more than that.
+/// Where a ray may cross a shape that is known only up to a length. Any shape that is larger or smaller by at most that
+/// length counts.
 ///
 /// A ray meets a solid where it enters it; one that starts inside, where it leaves it.
 #[derive(Clone, Debug)]
@@ -258,8 +258,8 @@ impl<'c> Crossings<'c> {
         if self.solid.is_flat() {
             return true;
         }
-        // What all of the shapes hold, no ray passes unseen; one that may have started inside of it, or of
-        // a larger one around it, leaves.
+        // No ray passes unseen through the region that all of the shapes contain. A ray that may start inside it, or
+        // inside a larger shape around it, hits where it leaves.
         let smallest = self.solid.spans(self.line, &-&self.off);
         smallest.iter().all(|(enter, leave)| {
             let is_around = first <= enter && leave <= last;
@@ -267,8 +267,8 @@ impl<'c> Crossings<'c> {
         })
     }
 
-    /// By where every one of the shapes is met by a ray that counts from `begin`; `None` if one of
-    /// them may not be met at all.
+    /// Returns the t by which a ray that counts from `begin` hits every one of the shapes. `None` if it may miss one of
+    /// them.
     pub fn are_met_by(&self, begin: &Real) -> Option<Real> {
         let smallest = self.solid.spans(self.line, &-&self.off);
         let largest = self.solid.spans(self.line, &self.off);

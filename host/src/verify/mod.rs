@@ -1,9 +1,9 @@
 //! Throws hard rays at a scene and holds every structure and number format to what is promised.
 //!
-//! `rays.rs` makes the rays, `check.rs` puts one to all structures of a blob and compares, `judge.rs`
-//! decides by 320-bit arithmetic where they disagree, from the textbook's formulas of each shape.
-//! Every format is asked with the ray that it can hold, so what is judged is the kernels' arithmetic
-//! and not the rounding of the question. `placed.rs` maps rays by the integers of instances, exactly.
+//! `rays.rs` makes the rays, and `check.rs` traces each through all structures of a blob and compares the answers.
+//! Where they disagree, `judge.rs` decides by 320-bit arithmetic, from the textbook's formulas of each shape. Every
+//! format gets the ray that it can represent. So the test judges the kernels' arithmetic and not the rounding of the
+//! ray. `placed.rs` maps rays by the integers of instances, exactly.
 
 mod check;
 mod closed;

@@ -1,8 +1,8 @@
 //! Pictures from coarse to fine, drawn by threads of their own.
 //!
-//! Threads take blocks in the core's order ([`CoarseToFine`]) and draw them. A new picture takes the place of the
-//! one that is drawn as soon as that one's coarsest blocks are all there, so that a camera that moves all the
-//! time is seen moving; or after [`PATIENCE`], so that a slow scene does not keep anybody waiting.
+//! Threads take blocks in the core's order ([`CoarseToFine`]) and draw them. A new picture replaces the current one as
+//! soon as the current one's coarsest blocks are all drawn. So a camera that moves all the time is seen moving. It also
+//! replaces it after [`PATIENCE`], so that a slow scene keeps nobody waiting.
 
 use super::blocks::{Brush, with_brush};
 use super::frame::{Frame, packed};

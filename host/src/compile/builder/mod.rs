@@ -9,9 +9,9 @@
 //! | `reinsertion.rs` | swept, then improved by taking subtrees out and putting them back |
 //! | `tree.rs` | the tree that all but the first build, and how it becomes a hierarchy |
 //!
-//! All are bounded: none takes more than `O(n log n)` steps per level or pass, some hundred bytes per
-//! primitive, and [`MAX_LEVELS`](gridel_core::format::limits::MAX_LEVELS) levels: below where a
-//! tree would be deeper, its subtrees are halved instead.
+//! All are bounded. None takes more than `O(n log n)` steps per level or pass, some hundred bytes per primitive, and
+//! [`MAX_LEVELS`](gridel_core::format::limits::MAX_LEVELS) levels. Where a tree would be deeper, its subtrees are
+//! halved instead.
 
 mod insertion;
 mod modelled;

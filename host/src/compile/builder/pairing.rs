@@ -28,10 +28,10 @@ const NEIGHBOURS: usize = 16;
 
 /// Pairs the nearest two: those whose common box has the least surface.
 ///
-/// To search all would take n^2 steps. Nodes lie along a space-filling curve instead, each looks for
-/// the nearest among sixteen to either side, and all that find each other are joined at once
-/// (Meister and Bittner, "Parallel locally-ordered clustering for bounding volume hierarchy
-/// construction", 2018).
+/// To search all would take n^2 steps. Instead, nodes lie along a space-filling curve. Each looks
+/// for the nearest among sixteen to either side, and all mutual nearest pairs are joined at once.
+/// Source: Meister and Bittner, "Parallel locally-ordered clustering for bounding volume hierarchy
+/// construction", 2018.
 pub fn nearest(primitives: &[Primitive]) -> Tree {
     let mut tree = Tree::default();
     let mut clusters = leaves(&mut tree, primitives);

@@ -263,8 +263,9 @@ impl Form for Hulls<'_> {
     }
 }
 
-/// Sorts candidates by the middle of where they can be met, and gives them keys: the first level of
-/// this and all later ones, and the last level of this and all earlier ones.
+/// Sorts candidates by the middle of the span where rays can hit them, and gives them keys. A key
+/// is the first level of this and all later candidates, and the last level of this and all earlier
+/// ones.
 pub fn sorted(mut met: Vec<(u32, [f64; 2])>, list: &mut List) {
     const LEVELS: f64 = 16.0;
     /// Part of a level; more than rounding can move a place.

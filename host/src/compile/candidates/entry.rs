@@ -1,8 +1,8 @@
 //! Which nodes of the hierarchy a ray between two gridels enters at.
 //!
-//! A node is replaced by those of its children that lead to something, as long as this pays: it saves
-//! the test of their boxes, and costs what each child would have been spared by its box. How often
-//! rays of the pair miss a child's box is found with a few of them.
+//! A node is replaced by its children that lead to candidates, as long as that lowers the estimated cost. It saves the
+//! test of their boxes, and costs the rays that each child's box would have culled. A few sample rays of the pair
+//! estimate how often rays miss a child's box.
 
 use super::cylinder_cube::{Form, Pair, sorted};
 use super::lists::List;

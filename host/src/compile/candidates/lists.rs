@@ -1,9 +1,9 @@
 //! Builds the lists of a table: in parallel, equal ones once, and never beyond a budget.
 //!
-//! Every list is computed twice. The first pass keeps a fingerprint of each, which shows how many
-//! differ and how many bytes they take; only if these fit the budget is the table allocated, at its
-//! exact size, and the lists that differ are computed again, straight into their places. Beside the
-//! table itself a build takes at most 72 bytes per cell, and nothing that grows with the lists' length.
+//! Every list is computed twice. The first pass keeps a fingerprint of each list, which shows how many differ and how
+//! many bytes they take. Only if these fit the budget is the table allocated, at its exact size. Then the lists that
+//! differ are computed again, straight into their places. Besides the table itself a build takes at most 72 bytes per
+//! cell, and nothing that grows with the lists' length.
 
 use super::budget::OnProgress;
 use rayon::prelude::*;

@@ -1,10 +1,10 @@
 //! Finds generalised strips in a mesh: up to 6 triangles on 8 vertices, each on three in a row.
 //!
-//! Greedy: the triangle with the fewest neighbors that are still free goes first, along that path
-//! through it that zigzags over free triangles whose box is smallest for the square of their number:
-//! rays are spared one strip in twelve that they would test if the longest path were always taken, and
-//! the bytes come back where short strips are joined, the two that make the smallest box before
-//! others. Places between them hold no triangle.
+//! Greedy: the triangle with the fewest free neighbors goes first, along a path through it that zigzags over free
+//! triangles. Among these paths the builder chooses the one whose box is smallest for the square of its number of
+//! triangles. This spares rays one strip in twelve that they would test if it always chose the longest path. The bytes
+//! come back where short strips are joined, first the two that make the smallest box. Places between them hold no
+//! triangle.
 
 use super::hull::Hull;
 use gridel_core::format::cluster::{LANES, STRIP_TRIANGLES, StripMembers};
@@ -25,8 +25,8 @@ pub struct Strip {
 const NOBODY: u32 = u32::MAX;
 /// Strips that are looked at, in the order of their places in space, to join one with.
 const REACH: usize = 48;
-/// The most that a joined box may cost, the sum of the two being 1: there is one strip less, and a node has one
-/// child less. More than a ray's time alone would allow, for their bytes.
+/// The highest cost of a joined box, the sum of the two being 1. A join saves one strip, and one child of a node. The
+/// limit is higher than a ray's time alone would allow, because of these bytes.
 const JOINED_COST: f64 = 3.0;
 
 /// Finds strips that hold every triangle once.
@@ -233,8 +233,8 @@ impl Mesh<'_> {
 }
 
 impl Path {
-    /// The path that comes `back` triangles from behind a start and goes ahead as far as it fits;
-    /// `None` if it comes over a triangle twice.
+    /// Returns the path that starts `back` triangles behind a start and continues ahead as far as it fits. `None` if it
+    /// crosses a triangle twice.
     fn through(behind: &Path, back: usize, ahead: &Path) -> Option<Path> {
         let count = (back + ahead.count).min(STRIP_TRIANGLES);
         let mut path = *ahead;

@@ -2,8 +2,8 @@
 //! reinsertion.
 //!
 //! Reinsertion is that of Meister and Bittner ("Parallel Reinsertion for Bounding Volume Hierarchy
-//! Optimization", 2018), one node at a time: a node is taken out and put where the sum of areas is
-//! least, found by branch and bound.
+//! Optimization", 2018), one node at a time. A node is removed and inserted where the sum of areas
+//! is least, found by branch and bound.
 
 use super::hull::Hull;
 use gridel_core::format::record::UnitBox;

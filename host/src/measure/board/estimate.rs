@@ -13,8 +13,8 @@ pub const CODE: &str = "code: ";
 
 pub const PROFILES: [Profile; 2] = [Profile::Fast, Profile::Small];
 
-/// The scene's own sizes (depth of the stack, width, waiting rays) are constants of its program, which add
-/// up to 0.8 % to code that was measured with others: this part is allowed for.
+/// The scene's own sizes (depth of the stack, width, waiting rays) are constants of its program. They add up to 0.8 %
+/// to code that was measured with others, so the estimate adds this part.
 const OWN_SIZES: u64 = 100;
 
 /// The program of a scene on a board, by what is known of programs.

@@ -1,10 +1,9 @@
 //! The memory report: what a scene takes on a board, in flash and in RAM, and what remains.
 //!
-//! Sizes of the blob and of working memory are exact. Code and call stack are those of programs that the
-//! project's tests built for boards ([`Programs`]), in two profiles: a fast one, and one with the feature
-//! `small`, both linked with `lto = "fat"` and `codegen-units = 1`. Code is that of the fast program; the
-//! call stack is the larger of both. A program that was not built is bounded by the smallest with code
-//! for more, and the report says so.
+//! Sizes of the blob and of working memory are exact. Code and call stack are those of programs that the project's
+//! tests built for boards ([`Programs`]). They are built in two profiles: a fast one, and one with the feature `small`,
+//! both linked with `lto = "fat"` and `codegen-units = 1`. Code is that of the fast program; the call stack is the
+//! larger of both. A program that was not built is bounded by the smallest with code for more, and the report says so.
 //!
 //! On one board of each kind of core many programs were built. For other boards, and for structures other
 //! than dual-split nodes, the figures are scaled by programs that were built for both.

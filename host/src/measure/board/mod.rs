@@ -51,9 +51,9 @@ const MIB: u64 = 1 << 20;
 
 /// All boards: those that QEMU plays, the smallest first, then microcontrollers and their usual modules.
 ///
-/// Flash of an RP2040, an RP2350 and an ESP32 is a chip of its own: it is that of a Raspberry Pi Pico, a Pico 2, and the
-/// smallest usual module. RAM is what one range of addresses has: of an STM32H743 the AXI SRAM, of an ESP32-C3 what its
-/// cache leaves. A Wi-Fi or Bluetooth stack takes RAM of its own.
+/// Flash of an RP2040, an RP2350 and an ESP32 is a separate chip. Its size is that of a Raspberry Pi Pico, a Pico 2,
+/// and the smallest usual module. RAM is the size of one address range: the AXI SRAM of an STM32H743, and what the
+/// cache of an ESP32-C3 leaves. A Wi-Fi or Bluetooth stack takes RAM of its own.
 pub const BOARDS: [Board; 15] = [
     Board {
         name: "stm32vldiscovery",

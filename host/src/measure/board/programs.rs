@@ -1,5 +1,5 @@
-//! Code and call stack of programs that were built for boards: by board, number format and structure,
-//! and by the shapes, wider forms of storage and effects that each has code for.
+//! Code and call stack of programs that were built for boards. The keys are board, number format and structure, and the
+//! shapes, wider forms of storage and effects that a program has code for.
 //!
 //! `programs.json` is written by the board tests. Code is not a sum: what a part takes depends on what
 //! the compiler makes of the rest, by some percent of the program. A program that was built is therefore
@@ -139,8 +139,8 @@ impl Programs {
         let holds = |more: &[&str], less: &[&str]| less.iter().all(|part| more.contains(part));
         let more = known.iter().filter(|(all, _)| holds(all, parts));
         let least = more.map(|&(_, bytes)| bytes).min()?;
-        // More code for the compiler to look through sometimes makes less of it: as much as it does
-        // among the programs that were built may be missing.
+        // The compiler sometimes makes less code of a program with more parts. So the bound is raised by the largest
+        // such excess among the programs that were built.
         let pairs = known
             .iter()
             .flat_map(|less| known.iter().map(move |more| (less, more)));

@@ -11,8 +11,8 @@ use rayon::prelude::*;
 
 /// How much finer the next try is.
 const FINER: f64 = 1.4;
-/// How much of a list is left by the next try where it saves next to nothing: lists are then about a
-/// seventh longer than for single rays.
+/// The part of a list that remains after the next try where it saves next to nothing. Lists are then about a seventh
+/// longer than for single rays.
 const SATURATED: f64 = 0.96;
 /// Lists by which those of a window are estimated.
 const SAMPLES: u64 = 1024;
