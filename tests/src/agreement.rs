@@ -12,8 +12,8 @@ use gridel_core::{
     Structure,
 };
 
-/// The plain hierarchy, culled in integers as the flagged one is in every format: what floats may
-/// do in SIMD registers has other margins, so that planes could not be compared one by one.
+/// The plain hierarchy, culled in integers as the flagged one is in every format. Floats in SIMD registers have other
+/// margins, so planes could not be compared one by one.
 enum Plain {}
 
 impl Accel for Plain {

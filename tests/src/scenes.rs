@@ -52,8 +52,8 @@ pub fn track<const N: usize>(
     }
 }
 
-/// Tracks of everything that moves in a scene whose last material is a checkerboard; the camera turns by a rotation,
-/// or looks at a target and orbits it.
+/// Returns tracks of everything that moves in a scene whose last material is a checkerboard. The camera turns by a
+/// rotation, or looks at a target and orbits it.
 pub fn moving(scene: &Scene, by_rotation: bool) -> Vec<Track> {
     use Interpolation::{Cubic, Linear, Step};
     let mut tracks = vec![

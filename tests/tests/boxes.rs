@@ -326,8 +326,8 @@ fn any_hit_is_a_closest_hit_before_the_end() {
     every_format!(judge(&scene, part_of(20_000, 500_000)));
 }
 
-/// As many of the same primitive as leaves and counters could stumble over (A12): every structure
-/// is built, and the first of them is hit (A15).
+/// Builds every structure with as many copies of one primitive as could overflow leaves and
+/// counters (A12). The first of them is hit (A15).
 #[test]
 fn any_number_of_the_same_primitive() {
     fn first<N: Number>(scene: &Scene<'_>, count: usize) {

@@ -1,5 +1,5 @@
-//! The cylinder cube's hard cases: tables of the right size, rays along boundaries, edges and
-//! corners, origins inside, flat scenes, rays in the sides, and budgets.
+//! The cylinder cube's hard cases: the size of tables, rays along boundaries, edges and corners,
+//! and in the sides. Also origins inside, flat scenes and budgets.
 //!
 //! `fixtures/recorded/cylinder-cube.toml` holds what the paper's table takes for three scenes of the
 //! paper's sizes. After a change that is meant to change lists, `GRIDEL_BLESS=1 cargo test -p

@@ -342,8 +342,8 @@ fn environments_are_verified_and_explained() {
     assert!(sees_sun && !sees_no_sun);
 }
 
-/// Where a light of the sky shines over the edge of a smooth mesh, the way to it begins above the triangle and keeps its
-/// direction: the sky has no place.
+/// A light of the sky shines over the edge of a smooth mesh. The ray to it begins above the triangle and keeps its
+/// direction. The sky has no position.
 #[test]
 fn smooth_meshes_are_lit_from_the_direction_that_was_drawn() {
     let text = "[camera]\neye = [0.5, 2, 8]\ntarget = [0, 0, 0]\nfov = 24\n\

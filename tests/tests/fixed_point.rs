@@ -23,8 +23,8 @@ use gridel_tests::shapes::reach;
 /// The largest coordinate of a scene, in units.
 const END: f64 = 32_764.0;
 
-/// Every corner of the ranges: triangles whose corners are at the lattice's ends, middle and next
-/// to them, hit by rays from and to such places (E1, E2, E5). A number that wraps panics.
+/// Covers every corner of the ranges: triangles whose corners are at the lattice's ends, middle and next to them. Rays
+/// from and to such places hit them (E1, E2, E5). A number that wraps panics.
 #[test]
 fn no_number_wraps_at_the_corners_of_the_lattice() {
     let places = [-END, -END + 1.0 / 256.0, 0.0, 1.0 / 256.0, END];
@@ -126,8 +126,8 @@ fn boxes_hold_their_primitives() {
     assert!(most <= 2.0);
 }
 
-/// No hit is nearer than the exact t less the bound of the point along the ray, however flat the
-/// angle (E2), against an exact plane.
+/// No hit is nearer than the exact t less the bound of the point along the ray, at any angle (E2). The reference is an
+/// exact plane.
 #[test]
 fn grazing_rays_do_not_hit_too_early() {
     let mut random = Random(72);

@@ -1,8 +1,8 @@
 //! Walking the grid and the octree where it goes wrong (rays in planes, through corners, from afar).
 //!
-//! Small spheres lie in every cell and at the corners of many, and every ray is asked in windows
-//! along its way, so that each cell on it must give up what it holds: a cell that is passed over is
-//! an answer that differs from the list's.
+//! Small spheres lie in every cell and at the corners of many. Every ray is traced in windows along
+//! its path, so that each cell on it must yield its primitives. A skipped cell gives an answer that
+//! differs from brute force.
 
 use glam::DVec3;
 use gridel_core::{Counters, Grid, Number, Scene, Structure};

@@ -1,5 +1,5 @@
-//! Objects of size 1 in scenes of 1e2 to 1e6: what a surface's error bound is worth is its own place and
-//! size, not the scene's.
+//! Objects of size 1 in scenes of 1e2 to 1e6. A surface's error bound depends on its own position and size, not on the
+//! scene's.
 
 use glam::{DQuat, DVec3};
 use gridel_core::render::{Pixel, Rgb888};

@@ -169,8 +169,8 @@ fn bytes<N: Number, const EFFECTS: u32>(scene: &Scene<'_>) -> Vec<[u8; 3]> {
     pixels
 }
 
-/// A picture made a few rays at a time is the one made row by row, whatever the steps; and no step
-/// traces more rays than it may.
+/// A picture made a few rays at a time equals the one made row by row, whatever the steps. No step
+/// traces more rays than its limit.
 fn steps_do_not_matter<N: Number>(name: &str, scene: &Scene<'_>) {
     let settings = small(scene);
     let renderer = Renderer::<N, Flagged, { Effects::ALL.0 }>::with_settings(scene, settings);

@@ -221,8 +221,8 @@ fn shadows_reach_up_to_the_contact() {
     every_format!(judge());
 }
 
-/// A light as near to a floor as its error bound, or far away, is not in the floor's shadow, and
-/// the floor is not in its own (F4).
+/// A light as near to a floor as its error bound, or far away, is not in the floor's shadow. The
+/// floor is not in its own (F4).
 #[test]
 fn lights_near_a_surface_shine_on_it() {
     for format in Format::ALL {

@@ -20,8 +20,8 @@ use std::{env, fs};
 struct Paper {
     objects: u32,
     rays: u32,
-    /// Its times: of the hierarchy in the ordinary way and with flagged sides, of the grid, and of
-    /// the cylinder cube, which ran out of memory on the last scene.
+    /// The paper's times of the plain hierarchy, of the flagged one, of the grid, and of the cylinder cube. The
+    /// cylinder cube ran out of memory on the last scene.
     plain: u32,
     flagged: u32,
     grid: u32,

@@ -1,4 +1,4 @@
-//! A scene elsewhere (hard cases G, and E4 and E8 of fixed point): scaled by powers of two,
+//! A scene elsewhere (hard cases G, and E4 and E8 of fixed point). Scaled by powers of two,
 //! shifted, mirrored and turned, it gives the same bits, up to the mirror, until it is rejected.
 
 use glam::DVec3;

@@ -99,8 +99,8 @@ fn real_scenes_keep_their_promises() {
     }
 }
 
-/// Two closed pyramids, base on base, whose corners the lattice rounded apart: a ray that leaves the one
-/// may report the other, and meets the first no more, because it goes on behind both.
+/// Two closed pyramids, base on base, whose corners the lattice rounded apart. A ray that leaves the one may report the
+/// other. Then it does not hit the first again, because it continues behind both.
 #[test]
 fn closed_meshes_that_touch_do_not_leak() {
     for turn in 0..8 {
@@ -139,8 +139,8 @@ fn cuboid(min: [f64; 3], max: [f64; 3]) -> Shape {
     })
 }
 
-/// A ray that starts inside of several solids leaves them where they end, be it at one place or at
-/// several; and reporting the later one is wrong.
+/// A ray that starts inside of several solids leaves them where they end, at one place or at several. Reporting the
+/// later one is wrong.
 #[test]
 fn surfaces_that_a_ray_leaves_are_judged_as_those_it_enters() {
     // All share the face x = 1; one of them reaches further on the other sides.

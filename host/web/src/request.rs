@@ -23,8 +23,8 @@ pub enum Request {
     Move(Move),
     /// Begins a picture.
     Begin(Begin),
-    /// Draws so many more of its pixels, four words of 32 bits each: column and row; color as 0x00BBGGRR, or work;
-    /// linear red and green; linear blue, and width and height of the block.
+    /// Draws so many more of its pixels. The answer has four words of 32 bits per pixel. They are column and row; color
+    /// as 0x00BBGGRR, or work; linear red and green; linear blue and the block's width and height.
     Step { blocks: usize },
     /// Compares two linear pictures, the first being the reference.
     Errors,

@@ -1,8 +1,7 @@
 //! A forger of blobs, which knows header, sections and records.
 //!
-//! Bits flipped at random are nearly always rejected. A forgery worth loading changes one field to a
-//! value that means something, or changes fields that belong together, and states what follows from
-//! that in the header, too.
+//! Bits flipped at random are nearly always rejected. A useful forgery changes one field to a
+//! meaningful value, or changes fields that belong together. It also changes the header to match.
 
 use super::parts::{Base, Parts, Section};
 use crate::random::Random;

@@ -1,8 +1,8 @@
 //! Fuzz targets: one function for each kind of input that comes from outside.
 //!
-//! Each function takes any bytes, and panics where a promise is broken. The fuzz targets of
-//! `tests/fuzz` call them through libFuzzer; [`bounded`] calls them a fixed number of times with
-//! mutations of the committed corpus, so that an ordinary test run needs no instrumented build.
+//! Each function takes any bytes, and panics where a promise is broken. The fuzz targets of `tests/fuzz` call them
+//! through libFuzzer. [`bounded`] calls them a fixed number of times with mutations of the committed corpus. So an
+//! ordinary test run needs no instrumented build.
 
 pub mod bounded;
 mod forge;
@@ -104,8 +104,8 @@ fn agree_in<N: Number>(scene: &Scene<'_>, rays: &[UnitRay]) {
     }
 }
 
-/// Holds the tracks of a loaded scene's blob to what they promise: where they are accepted, the scene has a state at
-/// any time, or the camera is none.
+/// Checks the tracks of a loaded scene's blob. Where they are accepted, the scene has a state at any time, or the
+/// camera is invalid.
 ///
 /// Returns whether they were accepted.
 ///

@@ -11,8 +11,8 @@ fn major_axis(slope: [i64; 3]) -> usize {
         .expect("an axis")
 }
 
-/// What a line crosses, by integers alone: a place of the half-open rule is moved by so little that no sign changes but
-/// those of zeros.
+/// Returns the triangles that a line crosses, by integers alone. The half-open rule moves a point by so little that
+/// only the signs of zeros change.
 fn crossed_exactly(
     triangles: &[[[i64; 3]; 3]],
     origin: [i64; 3],
@@ -60,7 +60,7 @@ fn crossed_exactly(
     crossed
 }
 
-/// Small integers, for which no format rounds what is projected: the hits are those that exact arithmetic finds, in its
+/// With small integers no format rounds what is projected. The hits are those that exact arithmetic finds, in its
 /// order, on edges and vertices as well.
 #[test]
 fn triangles_are_listed_as_exact_arithmetic_finds_them() {

@@ -146,8 +146,8 @@ fn tables_cannot_be_prevalidated() {
     }
 }
 
-/// Every record but the words that lead from one to another, filled with anything: walks end, within
-/// the work that the order allows, and so do pictures.
+/// Fills every record with anything, except the words that lead from one record to another. Walks end within the work
+/// that the order allows, and so do pictures.
 #[test]
 fn nothing_depends_on_unproved_sections() {
     // Numbers that nobody proves leave their ranges. One thread, so that rows of pictures are rendered on it as well.

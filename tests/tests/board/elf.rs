@@ -74,8 +74,8 @@ pub fn allocates(name: &str) -> bool {
     name.contains("__rust_alloc") || name.contains("__rustc::__rdl")
 }
 
-/// Whether a function is a routine of soft floats: of the Arm run-time ABI (4.1.2), or by the name
-/// that GCC's library and LLVM's give it.
+/// Returns whether a function is a routine of soft floats. The names are those of the Arm run-time
+/// ABI (4.1.2), and those of GCC's library and LLVM's.
 pub fn computes_in_floating_point(name: &str) -> bool {
     const CONVERSIONS: [&str; 9] = [
         "__aeabi_i2f",

@@ -208,8 +208,8 @@ fn other_processors(plan: &mut Plan) {
     });
 }
 
-/// Builds and runs a scene's picture, compares it with the host's, and looks at what was linked:
-/// nothing that panics or allocates, no soft floats in `fixed`, and no more memory than there is.
+/// Builds and runs a scene's picture, compares it with the host's, and checks the linked code. Nothing panics or
+/// allocates, `fixed` has no soft floats, and the program fits the memory.
 fn picture_is_the_hosts(board: &'static Board, format: Format, scene: &Compiled) {
     let mut figures = Figures::new();
     let (build, report) = compare_with_the_hosts(board, format, scene);
@@ -279,8 +279,8 @@ fn look_into(
     report.insert("flash-bytes".into(), elf.flash_bytes());
 }
 
-/// No sum, product or shift of the core leaves its type, and the compiler can check it: with all of them
-/// checked, nothing is linked that panics.
+/// No sum, product or shift of the core leaves its type, and the compiler can check it. With all of these checks
+/// enabled, no linked code panics.
 fn linked(plan: &mut Plan) {
     let everywhere = [
         ("microbit", Format::Fixed),

@@ -1,11 +1,11 @@
 //! The deepest call path of a linked program, from its instructions: how much stack it can take.
 //!
-//! Every direct call and jump is decoded (Thumb and RV32); the frame of a function is what the
-//! compiler stated in `.stack_sizes`, or, for the libraries that come compiled, what its prologue
-//! takes. The bound holds because nothing is called through a pointer that was handed on and nothing
-//! recurses: both are demanded here. Relocations show whose address is taken and where. Only code may
-//! take one, and counts as calling it: small code loads the address of what it calls more than twice,
-//! and calls the register. What calls a register without having taken an address is rejected.
+//! Every direct call and jump is decoded (Thumb and RV32). The frame of a function is what the compiler stated in
+//! `.stack_sizes`. For libraries that come compiled, it is what the prologue takes. The bound holds because nothing is
+//! called through a pointer that was passed on and nothing recurses; the test requires both. Relocations show whose
+//! address is taken and where. Only code may take one, and counts as calling it. Small code loads the address of a
+//! function that it calls more than twice, and calls the register. Code that calls a register without having taken an
+//! address is rejected.
 
 use object::elf::{
     R_ARM_ABS32, R_ARM_MOVT_ABS, R_ARM_MOVW_ABS_NC, R_ARM_THM_MOVT_ABS, R_ARM_THM_MOVW_ABS_NC,

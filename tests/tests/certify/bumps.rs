@@ -17,8 +17,8 @@ fn turned_to_ray(normal: Vector, material: &Material, direction: &Vector) -> Vec
     normal
 }
 
-/// The direction in which u grows over a triangle, and whether its image is seen mirrored from the front; `None` where
-/// there are no coordinates, or they lie on a line.
+/// Returns the direction in which u grows over a triangle, and whether its image appears mirrored from the front.
+/// `None` where there are no coordinates, or they lie on a line.
 fn along_u(met: &Met<'_>) -> Option<(Vector, bool)> {
     let [a, b, c] = met.placed.coordinates?.map(|at| at.map(i128::from));
     let ([at_a, at_b, at_c], _) = met.corners()?;

@@ -30,8 +30,8 @@ fn slopes(direction: &Vector) -> (Vector, Real) {
 }
 
 impl Exact<'_> {
-    /// The length of the rays that led to a hit, in 2^-13 units, with that of one of this direction; `None` where no
-    /// texture has levels.
+    /// Returns the length of the rays that led to a hit, in 2^-13 units, including that of one of this direction.
+    /// `None` where no texture has levels.
     pub fn length(&self, before: Option<i32>, met: &Met<'_>, direction: &Vector) -> Option<i32> {
         if !self.scene.effects().contains(Effects::TEXTURE_LEVELS) {
             return None;

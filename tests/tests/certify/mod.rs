@@ -80,8 +80,8 @@ fn pixels_per_scene(scenes: usize) -> usize {
     all / scenes + 1
 }
 
-/// What an interval of a pixel leaves out, with the intervals of double precision and with more bits where pixels need
-/// it; and whether an interval that is made too narrow is noticed.
+/// Returns the exact values that an interval of a pixel misses, with the intervals of double precision and with more
+/// bits where pixels need it. Also returns whether an interval that is made too narrow is noticed.
 fn compared(world: &World<'_>, exact: &Exact<'_>, pixel: [u16; 2]) -> (Vec<String>, bool) {
     let value = exact.pixel(pixel);
     let [quick, precise] = [1, 3].map(|levels| enclose(world, &exact.settings, pixel, levels));
@@ -254,8 +254,8 @@ fn the_table_in_the_readme_is_measured() {
     assert_eq!(table, rows, "paste this:\n{rows}");
 }
 
-/// What a blob is and what firmware runs know nothing of certified pixels: the enclosing numbers are the host's, which
-/// the core and its firmware do not depend on.
+/// Neither blobs nor firmware depend on certified pixels. The enclosing numbers are the host's, which the core and its
+/// firmware do not use.
 #[test]
 fn the_core_and_firmware_have_no_intervals() {
     use std::path::{Path, PathBuf};

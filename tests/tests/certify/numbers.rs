@@ -30,8 +30,8 @@ pub fn one() -> Real {
     real(1.0)
 }
 
-/// t of crossings of the surface that a ray starts on are 0, and those of what touches a light 1, but for the roundings
-/// of 320 bits.
+/// A number near 0 within the roundings of 320 bits. t of crossings of the surface that a ray starts on differs from 0
+/// by no more. t of crossings of the surface of a light differs from 1 by no more.
 pub fn nothing() -> Real {
     real(f64::powi(2.0, -150))
 }

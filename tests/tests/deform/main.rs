@@ -1,4 +1,4 @@
-//! Deforming meshes: hits are those of brute force and of a blob that is compiled with the moved vertices, closed
+//! Deforming meshes. Hits are those of brute force and of a blob that is compiled with the moved vertices. Closed
 //! meshes stay closed, and invalid poses are rejected.
 
 mod parts;

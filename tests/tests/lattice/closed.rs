@@ -204,7 +204,7 @@ fn pieces_keep_the_number_of_their_triangle() {
     assert!(cut > 20);
 }
 
-/// A fan of slivers along a line, one triangle along all of it, and one at each of its parts: every
+/// A fan of slivers along a line, one triangle along all of it, and one at each of its parts. Every
 /// corner of the fan is a vertex on both sides.
 #[test]
 fn chains_of_slivers_cut_their_neighbours() {

@@ -77,8 +77,8 @@ pub(super) fn faults(sources: &[Source], order: &[&str]) -> Vec<String> {
                 .or_insert(line);
         }
     }
-    // Without those that import nothing of the rest, or that nothing of it imports, again and
-    // again, cycles are left, and what lies between two of them.
+    // Modules that import nothing of the rest, or that nothing of it imports, are removed again and
+    // again. Cycles remain, and modules between two of them.
     let mut rest = modules.clone();
     loop {
         let inner: Vec<(&Module, &Module)> = edges

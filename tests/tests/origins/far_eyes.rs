@@ -12,8 +12,8 @@ use gridel_host::scene::{Camera, Light, Shape};
 use gridel_host::shape::Sphere;
 use gridel_tests::scenes;
 
-/// A picture of 24 by 24 pixels of a ball of radius 1 from so many times its radius, through a lens that
-/// fills the picture with it.
+/// Renders 24 by 24 pixels of a ball of radius 1 from a distance in radii. The lens is such that the ball fills the
+/// picture.
 fn picture<N: Number>(away: f64) -> Result<Vec<[u16; 3]>, RenderError> {
     let (center, radius) = (DVec3::ZERO, 1.0);
     let mut scene = scenes::of([Shape::Sphere(Sphere { center, radius })]);

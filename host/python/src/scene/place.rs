@@ -24,8 +24,8 @@ impl NativeScene {
         Some(corners.map(|corner| vertices[corner as usize]))
     }
 
-    /// Where a ray meets a triangle as it was given, in double precision, and the weights of its second and third corner;
-    /// by the hit's own t where the triangle is not a mesh's, or nearly parallel to the ray.
+    /// Returns where a ray meets a triangle as it was given, in double precision, and the weights of its second and
+    /// third corner. Uses the hit's own t where the triangle is not a mesh's, or is nearly parallel to the ray.
     // Inlined, it computes what is used there, and nothing else.
     #[inline(always)]
     pub(super) fn place(&self, ray: &SceneRay, hit: &Found) -> (f64, DVec3, [f64; 2]) {
