@@ -8,7 +8,7 @@ use std::fs::{self, File};
 use std::io::{self, Read};
 use std::path::Path;
 
-/// A blob's bytes, aligned as the core asks.
+/// A blob's bytes, aligned as the core requires.
 ///
 /// ```
 /// # use gridel_host::compile::{Options, compile};

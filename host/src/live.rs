@@ -60,7 +60,7 @@ impl Camera {
     }
 }
 
-/// The axis across which the picture's rows run, with the sign of what points up.
+/// Returns the axis across which the picture's rows run. Its sign is that of the direction up.
 fn upright(view: &View) -> Option<DVec3> {
     let across = (0..3).filter(|&axis| view.right[axis].abs() <= 1 && view.up[axis] != 0);
     let axis = across.max_by_key(|&axis| view.up[axis].abs())?;

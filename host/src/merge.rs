@@ -81,7 +81,7 @@ impl Part {
     }
 }
 
-/// Width, height, what is said about the rows, and the pixels of a picture.
+/// Width, height, the note about the rows, and the pixels of a picture.
 type Read4 = (u32, u32, Option<String>, Vec<u8>);
 
 fn read_png(input: impl BufRead + io::Seek) -> Result<Read4, PartError> {

@@ -63,7 +63,7 @@ fn encode(
     let whole = Vec2(usize::from(window.width), usize::from(window.height));
     let mut about = LayerAttributes {
         layer_position: Vec2(0, window.rows.start.into()),
-        // What does not fit its Latin letters is not said.
+        // Text that does not fit its Latin letters is left out.
         comments: Text::new_or_none(comments),
         ..LayerAttributes::default()
     };

@@ -145,7 +145,7 @@ impl Object {
         }
     }
 
-    /// Names the formats that do not resolve the object beside these surfaces, the largest bounds first.
+    /// Names the formats that do not distinguish the object from these surfaces, the largest bounds first.
     fn unresolved(
         &self,
         map: Option<&ExactMap>,

@@ -6,7 +6,7 @@ use gridel_core::format::record::{Light, Material, Pair, View};
 use gridel_core::render::CameraError;
 use gridel_core::{BlobError, Motion, PosesView, Scene, Tracks};
 
-/// What of a scene changes with time, at some time.
+/// The parts of a scene that change with time, at some time.
 ///
 /// ```
 /// # use gridel_host::compile::{Options, compile};
@@ -101,7 +101,7 @@ impl Poses {
 /// Why a scene has no state at a time.
 #[derive(Debug, thiserror::Error)]
 pub enum StateError {
-    /// The camera is none at this time, in seconds.
+    /// The camera is invalid at this time, in seconds.
     #[error("at {seconds} s there is no picture: {source}")]
     Camera { seconds: f64, source: CameraError },
     /// An instance cannot be where it is led at this time, in seconds.

@@ -37,7 +37,7 @@ impl Table {
         }
     }
 
-    /// A table of nothing but rows.
+    /// Returns a table without a title row.
     pub fn untitled<const N: usize>(columns: [Align; N]) -> Self {
         Self {
             columns: columns.to_vec(),

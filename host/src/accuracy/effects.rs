@@ -1,5 +1,4 @@
-//! What each effect of a scene is worth: what the picture loses without it, what it costs, and in which order to give
-//! effects up.
+//! The worth of each effect of a scene: the loss without it, its cost, and the order in which to leave effects out.
 
 use super::{Bench, MeasureError, Parameter, Point, Results, Setting};
 use crate::measure::board::{Board, MemoryReport, Target, instructions};
@@ -8,13 +7,13 @@ use crate::scene::shown_without;
 use gridel_core::Effects;
 use serde::{Deserialize, Serialize};
 
-/// An effect, what is lost without it, and what it costs in the picture that the scene file states.
+/// An effect, the loss without it, and its cost in the picture that the scene file states.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Worth {
     pub effect: String,
     /// The name of the setting without it.
     pub without: String,
-    /// What shows where it was.
+    /// What the picture shows without it.
     pub shown_without: String,
     /// The picture without it against the same picture with it.
     pub lost: Errors,
@@ -41,7 +40,7 @@ pub struct Worth {
     pub ram: i64,
 }
 
-/// The board whose figures are given where none is asked for.
+/// The board for figures when no board is given.
 pub const BOARD: &str = "mps2-an386";
 
 /// The least part of the work that counts as saved, so that effects that cost no rays are compared, too.

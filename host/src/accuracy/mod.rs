@@ -42,12 +42,12 @@ pub struct Results {
     /// Identifies the sweep: the program's version, the scene, the picture's size, the structure, the reference.
     pub key: String,
     pub base: Setting,
-    /// What became of the scene's instances; `None` without any.
+    /// The treatment of the scene's instances; `None` without any.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub instances: Option<InstanceCount>,
     pub reference: Reference,
     pub points: Vec<Point>,
-    /// What each effect is worth, in the order in which to give them up; empty until all is measured.
+    /// The worth of each effect, in the order in which to leave them out; empty until all is measured.
     #[serde(default)]
     pub effects: Vec<Worth>,
 }
@@ -166,7 +166,7 @@ pub fn cheapest_within<'p>(
         .map(|(_, point)| point)
 }
 
-/// One sentence for each parameter that was changed: what it costs and what it saves.
+/// Returns one sentence for each parameter that was changed: its cost and its saving.
 pub fn sentences(base: &Setting, points: &[Point]) -> Vec<String> {
     let Some(start) = points.iter().find(|point| point.setting == *base) else {
         return Vec::new();
@@ -260,7 +260,7 @@ pub fn sentences(base: &Setting, points: &[Point]) -> Vec<String> {
     sentences
 }
 
-/// A ratio of times, and between what it lies by the repeats of both; `None` where one was timed once.
+/// A ratio of times, and its range by the repeats of both; `None` where one was timed once.
 #[derive(Clone, Copy, Debug)]
 struct Ratio {
     median: f64,

@@ -145,7 +145,7 @@ fn within<N: Enclosure>(form: &LightForm, [u, v]: [u32; 2]) -> Three<N> {
     plus(scale(first, along), scale(second, across))
 }
 
-/// What arrives of a light with a form, given the direction to it; `None` where that is open.
+/// Returns the light that arrives from a light with a form, given the direction to it; `None` where that is open.
 pub fn arriving<N: Enclosure>(
     form: &LightForm,
     aim: &Aim<N>,

@@ -84,7 +84,7 @@ pub fn crossings<N: Enclosure>(
     let across = |v: Three<N>, axial: N| -> Three<N> { [0, 1, 2].map(|k| v[k] * h - w[k] * axial) };
     let q_axial = q_axial + shift * d_axial;
     let (q_across, d_across) = (across(q, q_axial), across(d, d_axial));
-    // Of vectors that are h times as long: |v|^2 is h (h v.v - a^2).
+    // For vectors that are h times as long: |v|^2 is h (h v.v - a^2).
     let a = norm2(d_across) - e.square();
     let b = dot(q_across, d_across) - g * e;
     let c = if at[0] {
@@ -177,7 +177,7 @@ pub fn crossings<N: Enclosure>(
     Ok(())
 }
 
-/// Adds the last of what a ray enters, or the first of what it leaves.
+/// Adds the last crossing where a ray enters, or the first where it leaves.
 fn ends<N: Enclosure>(
     all: &[Crossing<N>],
     sign: Ordering,

@@ -16,7 +16,7 @@ pub struct Ray<N> {
     pub start: Start,
 }
 
-/// What a ray starts on.
+/// The surface that a ray starts on.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Start {
     Free,
@@ -29,7 +29,7 @@ pub enum Start {
         surface: u32,
         /// Planes that it lies in exactly, too.
         also: [u32; 2],
-        /// Whether it goes to the other side than that of the normal.
+        /// True if it goes to the other side than that of the normal.
         inward: bool,
     },
 }
@@ -42,9 +42,9 @@ pub struct Crossing<N> {
     pub fraction: Option<[N; 2]>,
     /// The face of a box; mantle, base and other cap of a cone.
     pub part: u8,
-    /// Whether the ray leaves a solid.
+    /// True if the ray leaves a solid.
     pub leaves: bool,
-    /// Whether it is certain that the ray crosses here.
+    /// True if it is certain that the ray crosses here.
     pub sure: bool,
 }
 

@@ -90,7 +90,7 @@ impl Balls {
         Context::new(self.bits)
     }
 
-    /// A bound of what rounding a number takes or adds.
+    /// Returns a bound of the rounding of a number.
     fn rounding(&self, rounded: &Big) -> f64 {
         magnitude(rounded) * f64::powi(2.0, 2 - self.bits as i32)
     }
@@ -174,7 +174,7 @@ impl Enclosure for Ball {
     }
 
     fn float(value: f64) -> Self {
-        // No number of a scene comes near the ends of the range: an infinite bound stands for the largest float.
+        // No number of a scene comes near the ends of the range: an infinite bound becomes the largest float.
         let value = value.clamp(-f64::MAX, f64::MAX);
         let exact = Big::try_from(value).unwrap_or(zero());
         on_balls(|balls| balls.push(exact, 0.0))

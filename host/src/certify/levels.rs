@@ -46,7 +46,8 @@ pub fn length<N: Enclosure>(path: &Path<N>, hit: &Hit<N>) -> Option<Log2> {
     Some(whole.at_least(0))
 }
 
-/// The side of a square as large as what a sample sees of an image; `None` where there is no image, or no size.
+/// Returns the side of a square as large as the area of an image that a sample sees. `None` where there is no image, or
+/// no size.
 pub fn footprint<N: Enclosure>(
     world: &World<'_>,
     (path, hit): (&Path<N>, &Hit<N>),

@@ -8,7 +8,7 @@ use gridel_core::scene::Footprint;
 /// The most footprints that are looked up for a point.
 const MOST: i32 = 8;
 
-/// The ends of what a binary logarithm may be.
+/// The ends of the interval of a binary logarithm.
 #[derive(Clone, Copy, Debug)]
 pub struct Log2([i32; 2]);
 

@@ -88,7 +88,7 @@ pub trait Enclosure:
         match (self - other).sign() {
             Some(Ordering::Less) => other,
             Some(_) => self,
-            // What is below `other` is enclosed too, which does no harm.
+            // Values below `other` are enclosed too, which does no harm.
             None => self.hull(other),
         }
     }
@@ -162,7 +162,8 @@ pub fn opposite<N: Enclosure>(a: Three<N>) -> Three<N> {
 
 /// The vector at length 1; `None` if it may have no length.
 pub fn unit<N: Enclosure>(v: Three<N>) -> Option<Three<N>> {
-    // Of very long and very short ones squares would leave the range of floats: scaled by a power of two.
+    // Squares of very long and very short vectors would leave the range of floats, so they are scaled by a power of
+    // two.
     let largest = v.iter().fold(0.0_f64, |most, x| {
         let [low, high] = x.bounds();
         most.max(high.abs()).max(low.abs())

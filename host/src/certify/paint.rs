@@ -14,7 +14,7 @@ use gridel_core::scene::Footprint;
 /// The most places of a texture that are looked up for a point.
 const MOST_PLACES: i64 = 64;
 
-/// What weights the diffuse color, and whether it is open what of a texture is shown.
+/// The weight of the diffuse color, and whether the texture's color is open.
 pub struct Weight<N> {
     pub color: Three<N>,
     pub is_open: bool,

@@ -11,7 +11,7 @@ use gridel_core::shade::sampler::Sampler;
 #[derive(Clone, Copy, Debug)]
 pub struct Path<N> {
     pub ray: Ray<N>,
-    /// The ratio of what it brings that arrives at the eye.
+    /// The part of its light that arrives at the eye.
     pub weight: Three<N>,
     /// Reflections and refractions that led to it.
     pub depth: u8,

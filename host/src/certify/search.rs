@@ -38,7 +38,7 @@ pub struct Step {
     pub primitive: Option<u32>,
     #[serde(skip_serializing_if = "Option::is_none")]
     pub object: Option<u32>,
-    /// What the event is about, each number between two.
+    /// The numbers of the event, each with its bounds.
     pub values: Vec<(&'static str, Vec<[f64; 2]>)>,
 }
 
@@ -58,7 +58,7 @@ pub struct Tracer<'w, 's> {
     pub depth: u8,
     /// How far the rays of neighboring samples are apart, where textures have levels.
     pub spread: i32,
-    /// Whether numbers are so slow that intervals are asked first.
+    /// True if numbers are so slow that intervals are evaluated first.
     pub is_slow: bool,
     /// How many outcomes may still be followed.
     pub left: Cell<u32>,
@@ -83,7 +83,7 @@ impl Tracer<'_, '_> {
         }
     }
 
-    /// What was found.
+    /// Returns the result if it is known.
     ///
     /// # Errors
     /// If it is open, with the reason and the place.
@@ -161,7 +161,7 @@ impl Tracer<'_, '_> {
             (surface != NONE).then_some((it.instance, surface))
         };
         let primitive = |it: &Candidate<N>| (solid(it).primitive, it.solid);
-        // What lies in one surface is met at one t, and the first in the scene file counts.
+        // Crossings in one surface have one t, and the first in the scene file counts.
         let order = |a: &Candidate<N>, b: &Candidate<N>| {
             let is_one = a.instance == b.instance
                 && solid(a).meets_at_one_t(solid(b), [&a.crossing, &b.crossing]);

@@ -94,7 +94,7 @@ impl Tracer<'_, '_> {
         direction: Three<N>,
         depth: u8,
     ) -> Result<Three<N>, Stop> {
-        // What reflects or refracts does not show its back.
+        // A mirror or glass does not show its back.
         let turns = material.transmit != [0; 3] || material.mirror != [0; 3];
         let turned = |normal| match turns {
             true => shade::turned_to_ray(normal, direction).ok_or(Stop),

@@ -247,7 +247,7 @@ fn isolated<N: Enclosure>(quartic: &Quartic<N>, ends: [N; 2]) -> Result<Vec<Piec
             grows = false;
             continue;
         }
-        // Halves of what is all open are open.
+        // If all of a stretch is open, its halves are open.
         if all.iter().all(|it| it.sign().is_none()) || stretch.halvings >= HALVINGS {
             match pieces.last_mut() {
                 Some(Piece::Open { last: end, .. }) if grows => *end = last,
@@ -270,7 +270,7 @@ fn isolated<N: Enclosure>(quartic: &Quartic<N>, ends: [N; 2]) -> Result<Vec<Piec
     Ok(pieces.into_iter().map(|it| closed(quartic, it)).collect())
 }
 
-/// A root, if an open stretch holds exactly one, of which only the place was open.
+/// Returns a root, if an open stretch holds exactly one whose place alone was open.
 fn closed<N: Enclosure>(quartic: &Quartic<N>, piece: Piece<N>) -> Piece<N> {
     let Piece::Open { first, last } = piece else {
         return piece;

@@ -27,16 +27,16 @@ pub struct Manifest {
     pub checks: Vec<Check>,
 }
 
-/// One scene, and what is expected of it.
+/// One scene, and the expected figures.
 #[derive(Clone, Debug)]
 pub struct Check {
     pub name: String,
     pub scene: Named,
     pub accel: Option<Structure>,
     pub lattice_bits: Option<u8>,
-    /// Whether the scene file may name files outside of its folder.
+    /// True if the scene file may name files outside of its folder.
     pub allow_outside: bool,
-    /// What becomes of instances; `None` for a blob, which holds them or does not.
+    /// The treatment of instances; `None` for a blob, which has them or not.
     pub instances: Option<Instances>,
     /// Which assembly of a PDB or mmCIF file.
     pub assembly: Option<String>,
@@ -56,7 +56,7 @@ pub struct Check {
     /// The board whose memory the scene must fit.
     pub target: Option<&'static Target>,
     pub boards: Vec<Board>,
-    /// Names for pictures of what is broken: of each format, and behind them of each board.
+    /// Names for pictures of failures: of each format, and then of each board.
     pub(super) evidence: Vec<String>,
 }
 

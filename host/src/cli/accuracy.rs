@@ -43,7 +43,7 @@ struct Printed<'t> {
     frontier: Vec<bool>,
     /// Which setting for a given error, what the number format changes, what to give up first.
     answers: Vec<String>,
-    /// What each effect is worth, in the order in which to give them up.
+    /// The worth of each effect, in the order in which to leave them out.
     effects: &'t [Worth],
     sentences: Vec<String>,
     #[serde(skip_serializing_if = "Option::is_none")]

@@ -1,4 +1,4 @@
-//! `gridel check`: scenes and their memory, held to what is recorded.
+//! `gridel check`: compares scenes and their memory with recorded figures.
 
 use super::failure::Failure;
 use super::output::{check_writable, print, print_json, reject_inputs, warn, write_file};
@@ -106,7 +106,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     recorded.and(reported).and(shown).and(printed).and(failure)
 }
 
-/// Rejects outputs that would destroy what is read or cannot be written, before any work.
+/// Rejects outputs that cannot be written or would overwrite an input, before any work.
 fn prove_outputs(arguments: &Arguments, manifest: &Manifest) -> Result<(), Failure> {
     let (folder, junit) = (&arguments.diff, &arguments.junit);
     let pictures = folder.iter().flat_map(|folder| {
@@ -124,7 +124,7 @@ fn prove_outputs(arguments: &Arguments, manifest: &Manifest) -> Result<(), Failu
     Ok(())
 }
 
-/// Prints the findings, and what is recorded of them.
+/// Prints the findings, and the figures that are recorded of them.
 fn print_findings(
     arguments: &Arguments,
     report: &Report,

@@ -188,7 +188,7 @@ fn to_standard_output(text: &[u8]) -> Result<(), Failure> {
     let mut out = io::stdout().lock();
     let written = out.write_all(text).and_then(|()| out.flush());
     match written {
-        // A reader that has seen enough is nobody's fault, and changes nothing of what was found.
+        // A reader that closes the pipe early is no failure, and changes no finding.
         Err(error) if error.kind() != io::ErrorKind::BrokenPipe => Err(Failure::failed(
             format!("standard output cannot be written: {error}"),
             "check where it leads; files that were asked for are written",

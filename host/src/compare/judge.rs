@@ -25,7 +25,7 @@ pub struct Mismatch {
 
 /// The result of the comparison.
 pub struct Verdict {
-    /// Rays about which the list was asked.
+    /// Rays that brute force traced.
     pub listed: usize,
     /// For each contender.
     pub wrong: Vec<Option<Mismatch>>,

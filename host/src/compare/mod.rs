@@ -118,7 +118,7 @@ fn compare_in<N: Number>(
     let is_opaque = Effects(OPAQUE).contains(list_scene.effects());
     let questions = Questions {
         rays: &picture_rays,
-        // Through glass a shadow ray asks for what it meets first.
+        // Through glass a shadow ray searches for the first hit.
         shadow: if is_opaque {
             Question::Any
         } else {
@@ -195,7 +195,7 @@ fn build(
         memory.peak_usage().saturating_sub(before)
     });
     let mut setup = compiled.report.setup;
-    // What takes no time is repeated, so that the first run's page faults do not count.
+    // Fast runs are repeated, so that the first run's page faults do not count.
     let repeats = if options.repeats == 0 { 0 } else { 4 };
     for _ in 0..repeats {
         if setup > Duration::from_millis(100) {

@@ -11,8 +11,8 @@ use gridel_core::{Angle, Camera as Placed};
 
 /// The camera in the integer coordinates of a header.
 ///
-/// Its direction is that of the scene file's numbers, which can be finer than coordinates are. Where they are
-/// multiples of the step, it is that of [`Placed::look_at`] to the bit.
+/// Its direction is that of the scene file's numbers, which can be finer than coordinates are. Where they are multiples
+/// of the step, it equals that of [`Placed::look_at`], bit for bit.
 pub fn place(camera: &Camera, header: &Header) -> Result<Placed, CompileError> {
     let eye = position(header, camera.eye).ok_or(CameraError::EyeOutOfRange);
     let placed = eye.and_then(|eye| {

@@ -1,4 +1,4 @@
-//! Builds the regular grid, and what it shares with the octree: which primitives reach into which cells.
+//! Builds the regular grid, and code that it shares with the octree: which primitives reach into which cells.
 
 use super::CompileError;
 use super::estimate::{Rays, ordinary_tests};
@@ -12,7 +12,7 @@ use gridel_core::{Kind, Structure};
 
 /// Most bytes that a grid or an octree may take while it is built, its part of the blob included.
 pub const MOST_BYTES: u64 = 256 << 20;
-/// Cells that a grid has for each primitive, where no other number is asked for.
+/// Cells that a grid has per primitive by default.
 const CELLS_PER_PRIMITIVE: f64 = 4.0;
 /// A grid or an octree as a blob holds it.
 #[derive(Debug, Default)]
@@ -107,7 +107,7 @@ fn best_divisions(bounds: &UnitBox, boxes: &[UnitBox], mut counts: [u32; 3]) -> 
 /// [`MOST_BYTES`], or where rays would test the same primitives too often.
 ///
 /// # Errors
-/// If the divisions that are asked for exceed it.
+/// If the given divisions exceed it.
 pub fn grid(
     bounds: &UnitBox,
     boxes: &[UnitBox],

@@ -75,7 +75,7 @@ pub fn position(header: &Header, place: DVec3) -> Option<Position> {
         _ => DVec3::ZERO,
     };
     let steps = ((place - origin) / exp2(header.coordinate_exponent())).round();
-    // The farthest place of all is one step beyond the last coordinate, which stands for it.
+    // The farthest place of all is one step beyond the last coordinate, which is used for it.
     let reach = -f64::from(i32::MIN);
     (steps.abs().max_element() <= reach).then(|| Position(steps.to_array().map(|x| x as i32)))
 }

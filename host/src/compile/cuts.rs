@@ -40,7 +40,7 @@ pub struct Cuts {
 impl Cuts {
     /// The cuts that slivers make necessary.
     pub fn around(slivers: &[Sliver]) -> Self {
-        // Of each edge how often slivers have it, and a sliver that does.
+        // For each edge, how many slivers have it, and one of them.
         let mut shared: HashMap<Edge, (usize, usize)> = HashMap::new();
         let mut clusters = Clusters::new(slivers.len());
         for (number, &sliver) in slivers.iter().enumerate() {
@@ -124,7 +124,7 @@ impl Clusters {
         }
     }
 
-    /// The sliver that stands for a sliver's cluster: the first one of it.
+    /// Returns the first sliver of a sliver's cluster, which represents it.
     fn of(&mut self, mut sliver: usize) -> usize {
         while self.leads_to[sliver] != sliver {
             self.leads_to[sliver] = self.leads_to[self.leads_to[sliver]];

@@ -93,7 +93,7 @@ const LOOK_AHEAD: u32 = 1;
 
 /// The cheapest way to deal with a node whose region is given.
 fn choose(node: &Node, region: &UnitBox, look_ahead: u32) -> Choice {
-    // What does not cut anything is not worth a thought.
+    // A plane that does not cut anything is not considered.
     let cuts = |carves: &&&[usize]| carves.iter().all(|&k| region.0[k] != node.bounds().0[k]);
     let choices = CARVES.iter().filter(cuts).flat_map(|&carves| {
         let mut left = *region;

@@ -7,7 +7,7 @@ use gridel_core::format::track::TrackTarget;
 /// The largest radiance of a record.
 const MOST: f64 = 2047.0;
 
-/// What all light is multiplied with.
+/// The factor of all light.
 pub struct Exposure {
     pub factor: f64,
 }

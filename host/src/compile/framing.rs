@@ -21,9 +21,9 @@ const NEAREST: f64 = 1.0 / 16.0;
 /// Returns a camera that looks at a scene from its front. The scene takes 80 % of the picture's width or height,
 /// and no more of the other; the picture's shape is that of `scene.render`.
 ///
-/// The front is that of the scene's [up](Scene::up): the camera looks along -z where y is up, and along +y where z
-/// is up. A flat scene that would be seen from its edge is seen from above or from its right. Unbounded shapes do
-/// not count beside bounded ones.
+/// The front is that of the scene's [up](Scene::up): the camera looks along -z where y is up, and along +y where z is
+/// up. A flat scene that would be seen from its edge is seen from above or from its right. Unbounded shapes do not
+/// count if there are bounded ones.
 ///
 /// ```
 /// # let file = "[[object]]\nkind = 'sphere'\ncenter = [0, 0, 0]\nradius = 1\nname = 'ball'";

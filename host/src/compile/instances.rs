@@ -18,7 +18,7 @@ use gridel_core::format::track::Joint;
 use gridel_core::format::{SectionKind, instance};
 use std::sync::Arc;
 
-/// What a blob is made for.
+/// The purpose of a blob.
 #[derive(Clone, Copy, Debug)]
 pub enum Role<'p> {
     /// To be loaded, with these parts in it.
@@ -286,7 +286,7 @@ fn alone(part: &Part, scene: &Scene) -> Result<Scene, CompileError> {
     let plain = |object: &Object| {
         let texture = scene.materials[object.material].placing();
         Object {
-            // What is on coordinates already has no transform.
+            // A material that is on coordinates already has no transform.
             material: usize::from(texture.is_some()),
             attributes: object.attributes.placed_on(texture),
             ..object.clone()

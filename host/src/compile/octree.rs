@@ -17,8 +17,7 @@ const FEW: usize = 6;
 /// so a level has hardly more children than entries. Arrays that grow may be twice as long as they are full.
 const OCTREE_ENTRY_BYTES: u64 = 192;
 
-/// Units that the margins of culling take up on both sides of a cell: rays visit it so much earlier
-/// and later.
+/// Units by which the margins of culling widen a cell on both sides: rays visit it earlier and leave it later.
 const CULLING: f64 = 5.0;
 /// Least units of a cell of the finest level, along each axis with an extent. A smaller cell would be lost in the
 /// margins of culling.

@@ -48,7 +48,7 @@ pub struct Options {
     /// Most bytes of all textures' texels, which are stored more coarsely to fit; without it nothing is lost but for
     /// rounding.
     pub texture_bytes: Option<u64>,
-    /// Whether the blob has the names of objects, materials and lights.
+    /// True if the blob has the names of objects, materials and lights.
     pub names: bool,
     /// Gridels along a side of a cylinder cube's faces, 1 to 64; otherwise as many as the budget
     /// holds.
@@ -79,6 +79,6 @@ impl Default for Options {
     }
 }
 
-/// Called now and then, from any thread, with the number of finished cells of a structure's table, and
-/// of all its cells. A table is tried in several sizes where none is asked for.
+/// Called now and then, from any thread. The arguments are the structure, the number of finished cells of its table,
+/// and the number of all its cells. A table is tried in several sizes where none is given.
 pub type OnProgress<'t> = &'t (dyn Fn(Structure, u64, u64) + Sync);

@@ -28,7 +28,7 @@ const FAR_MOVED: f64 = 4.0;
 pub struct Primitives {
     /// Distinct vertices of all meshes, in 1/256 unit. Those that carry something else differ.
     pub vertices: Vec<[i32; 3]>,
-    /// What each vertex carries beside its place; empty where none carries anything.
+    /// The attributes of each vertex other than its position; empty where no vertex has any.
     pub corners: Vec<Corner>,
     /// Objects whose vertices require effects, by name.
     pub required_by: Vec<(Effects, String)>,
@@ -81,7 +81,7 @@ impl LeftOut {
         self.count
     }
 
-    /// At most so many names, and how many there are beside them.
+    /// Returns at most `most` names, and the number of the others.
     pub fn names(&self, most: usize) -> Vec<String> {
         let mut names: Vec<_> = self.names.iter().take(most).cloned().collect();
         if self.count > names.len() {

@@ -20,7 +20,7 @@ const MARGIN: f64 = 1.0 / 4096.0;
 /// How far the instances of a scene move.
 #[derive(Debug, Default)]
 pub struct Reach {
-    /// The box around all that moves, and the room that the scene asks for.
+    /// The box around all that moves, and the room that the scene states.
     pub bounds: Option<[DVec3; 2]>,
     /// For each instance, its least and its greatest scale relative to that at rest.
     pub scales: Vec<[f64; 2]>,
@@ -186,7 +186,7 @@ impl Region {
         }
     }
 
-    /// What a joint makes of it.
+    /// Returns the region after a joint's motion.
     fn moved(&self, range: &Range) -> Self {
         let Range {
             pivot,
@@ -225,7 +225,7 @@ impl Region {
         }
     }
 
-    /// What rotations about the origin sweep.
+    /// Returns the region that rotations about the origin sweep.
     fn turned(&self, turn: Turn) -> Self {
         let [low, high] = self.corners;
         let corner = |number: usize| {

@@ -33,7 +33,7 @@ pub struct Report {
     pub bytes: usize,
     /// Primitives of the longest list that a ray can be led to.
     pub longest_list: usize,
-    /// Effects and the names of what requires each.
+    /// Effects and the names of the parts that require each.
     pub effects: Vec<(String, Vec<String>)>,
     /// How each image of a texture is stored.
     pub textures: Vec<TextureFigures>,
@@ -46,7 +46,7 @@ pub struct Report {
     pub setup: Duration,
     /// Structures with tables of candidate lists.
     pub tables: Vec<TableStats>,
-    /// The names in the blob; `None` if they are not asked for, or there are none.
+    /// The names in the blob; `None` if they are not requested, or there are none.
     pub names: Option<KeptNames>,
 }
 
@@ -59,7 +59,7 @@ pub struct TableStats {
 }
 
 impl Report {
-    /// Adds what a part has to report, whose primitives come after those before it.
+    /// Adds a part's report. Its primitives come after those before it.
     pub(super) fn add_part(&mut self, part: &Report) {
         let steps = (part.step / self.step) as f32;
         let displacements = part.displacements.iter().map(|it| it * steps);

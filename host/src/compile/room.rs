@@ -5,7 +5,7 @@ use glam::DVec3;
 use gridel_core::Kind;
 use gridel_core::format::record::UnitBox;
 
-/// An extent that is wider by so much on all sides.
+/// Returns an extent that is wider by `room` on all sides.
 pub fn widened((lowest, highest): (DVec3, DVec3), room: f64) -> (DVec3, DVec3) {
     (lowest - room, highest + room)
 }

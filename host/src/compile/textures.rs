@@ -27,7 +27,7 @@ pub struct TextureFigures {
     pub height: u32,
     /// `palette`, `rgb565`, `rgb888` or `rgba8888`.
     pub form: &'static str,
-    /// Whether smaller copies of the image follow it.
+    /// True if smaller copies of the image follow it.
     pub levels: bool,
     pub bytes: u64,
 }
@@ -86,7 +86,7 @@ pub struct Textures {
 }
 
 impl Textures {
-    /// What a material's record says of its maps.
+    /// Returns the field of a material's record about its maps.
     pub fn maps(&mut self, material: &Material) -> u16 {
         let alpha = material.alpha.filter(|_| material.transmit == [0.0; 3]);
         let color = material.texture.as_ref();
@@ -128,7 +128,7 @@ impl Textures {
             let of_65535 = |it: f64| (it.clamp(0.0, 1.0) * 65_535.0).round() as u16;
             normal_map = record::NormalMap {
                 texture: limit(self.number(&map.texture, true, false)),
-                // What counts is the ratio of both.
+                // Only the ratio of both matters.
                 across: of_65535(map.scale),
                 along: of_65535(1.0 / map.scale.max(1.0)),
             };

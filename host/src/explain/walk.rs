@@ -1,4 +1,4 @@
-//! A query's way through a structure, in scene units, and why it left out what it left out.
+//! A query's path through a structure, in scene units, and why it skipped nodes.
 
 mod inside;
 mod planes;
@@ -24,7 +24,7 @@ pub struct Walk {
     pub start: [f64; 3],
     /// Distance of `start`: 0 unless the ray starts before the scene's box.
     pub moved: f64,
-    /// Whether any hit would do.
+    /// True if any hit suffices.
     pub any: bool,
     pub steps: Vec<Step>,
     /// Nodes, leaves and cells that were gone into.
@@ -122,7 +122,7 @@ pub enum Step {
     },
     InstanceLeft {
         instance: u32,
-        /// Whether the nearest hit so far is in it.
+        /// True if the nearest hit so far is in it.
         nearest: bool,
     },
     Candidate(Candidate),
@@ -153,7 +153,7 @@ pub struct Plane {
     /// Infinite where the ray runs along the plane.
     #[serde(serialize_with = "finite")]
     pub distance: f64,
-    /// Whether the ray goes into the slab here, and not out of it.
+    /// True if the ray enters the slab here; false if it leaves it.
     pub entry: bool,
 }
 
@@ -292,7 +292,7 @@ impl Walk {
         let units = largest(point)
             .max(largest(ray.start))
             .max(distance.abs() / ray.frame.length(1.0));
-        // Of start, t from either place, and point, on three axes.
+        // The sum over start, t from either place, and point, on three axes.
         let kernels = 8.0 * ray.frame.length(rounded::step(ray.format, units));
         let sum = largest(self.origin) + largest(self.start) + distance.abs();
         ray.aside + ray.turned * inside + kernels + 8.0 * f64::EPSILON * sum
@@ -448,7 +448,7 @@ impl Culled {
     }
 }
 
-/// What the core calls an instance that the hierarchy above leads to.
+/// The core's name for an instance that the hierarchy above leads to.
 const INSTANCE: &str = "instance";
 
 fn instance_name(number: u32) -> String {

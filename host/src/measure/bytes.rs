@@ -1,4 +1,4 @@
-//! The memory map of a blob, and what must be writable beside it.
+//! The memory map of a blob, and the writable memory that it needs.
 
 use gridel_core::accel::Entry;
 use gridel_core::format::SectionKind;
@@ -93,7 +93,7 @@ impl MemoryMap {
     }
 }
 
-/// The memory that the caller provides in one number format, in bytes, beside the call stack.
+/// The memory that the caller provides in one number format, in bytes, besides the call stack.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 pub struct WorkingMemory {
     /// Name of the number format.

@@ -22,7 +22,7 @@ struct Planes {
     pixels: Vec<[f64; 3]>,
 }
 
-/// The difference at every pixel, 0 to 1; its mean is what is reported for a picture.
+/// Returns the difference at every pixel, 0 to 1. The report for a picture is its mean.
 ///
 /// Cost: some 2,000 multiplications per pixel.
 pub fn flip(reference: Picture<'_>, test: Picture<'_>) -> Vec<f64> {

@@ -1,4 +1,4 @@
-//! What became of a scene's instances, and the primitives that it has with and without them.
+//! The treatment of a scene's instances, and the primitives that it has with and without them.
 
 use crate::scene::Instances;
 use crate::table::{counted, grouped};

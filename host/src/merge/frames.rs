@@ -8,7 +8,7 @@ use crate::picture::{Frame, FrameNote};
 use std::fmt;
 use std::io::{BufRead, Seek};
 
-/// What a file says of its picture.
+/// The note of a file about its picture.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct NumberedPicture {
     pub size: [u32; 2],
@@ -16,7 +16,7 @@ pub struct NumberedPicture {
 }
 
 impl NumberedPicture {
-    /// Reads what a PNG says, and none of its pixels.
+    /// Reads the notes of a PNG, and none of its pixels.
     ///
     /// # Errors
     /// If the file is no PNG that says which picture of an animation it is.

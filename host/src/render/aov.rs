@@ -1,4 +1,4 @@
-//! What the surfaces are like that a picture shows: depth, normals, colors and numbers, pixel by pixel. Renderers call
+//! Properties of the surfaces that a picture shows: depth, normals, colors and numbers, pixel by pixel. Renderers call
 //! these arbitrary output variables, AOVs.
 
 use super::Job;
@@ -65,8 +65,8 @@ pub enum Values {
     Numbers(Vec<u32>),
 }
 
-/// Computes AOVs of some rows of a picture, in the order in which they are asked for. Of a job's settings, samples and
-/// ray depth do not count: there is one ray through the middle of each pixel.
+/// Computes AOVs of some rows of a picture, in the order of `aovs`. Ignores a job's samples and ray depth: there is one
+/// ray through the middle of each pixel.
 ///
 /// # Errors
 /// If the blob lacks the structure or a setting is out of its range.

@@ -123,7 +123,7 @@ fn decoded(value: f64) -> f64 {
     if value <= 0.04045 {
         value / 12.92
     } else {
-        // The same bits on every host, unlike the standard library's.
+        // This gives the same bits on every host, unlike the standard library's.
         libm::pow((value + 0.055) / 1.055, 2.4)
     }
 }

@@ -1,4 +1,4 @@
-//! Charts as SVG: bars beside each other, and curves on logarithmic axes.
+//! Charts as SVG: bars side by side, and curves on logarithmic axes.
 
 use crate::table::significant;
 use plotters::coord::Shift;
@@ -17,7 +17,7 @@ fn failed(error: impl Display) -> ChartError {
 }
 
 const SIZE: (u32, u32) = (1080, 540);
-/// Width of what is left of the legend.
+/// Width of the area left of the legend.
 const CHART: u32 = 900;
 /// Grid lines.
 const GRID: RGBColor = RGBColor(222, 222, 222);
@@ -245,7 +245,7 @@ pub fn curves(title: &str, across: &str, up: &str, curves: &[Curve]) -> Result<S
 type Area<'s> = DrawingArea<SVGBackend<'s>, Shift>;
 type Drawn = Result<(), DrawingAreaErrorKind<std::io::Error>>;
 
-/// Names the series beside the chart, each behind a sample that is drawn at its height.
+/// Names the series next to the chart, each behind a sample that is drawn at its height.
 fn legend<'n>(
     area: &Area<'_>,
     names: impl Iterator<Item = &'n String>,

@@ -80,7 +80,7 @@ impl Access {
         }
     }
 
-    /// The path of the file that `name` stands for in `file`.
+    /// Returns the path of the file that `name` in `file` refers to.
     ///
     /// # Errors
     /// If it lies outside of the scene's folder: the cause, which names the folder, and the remedy.

@@ -1,5 +1,5 @@
-//! Malformed and unusual files of other projects: each is read rightly, with a warning of what is
-//! not drawn, or rejected with its true cause.
+//! Malformed and unusual files of other projects. Each is read correctly, with a warning of the
+//! parts that are not drawn, or rejected with its true cause.
 
 use super::{MoleculeOptions, load, test_scenes};
 use std::collections::BTreeSet;
@@ -135,7 +135,8 @@ fn malformed_files_are_read_rightly_or_rejected_with_their_cause() {
     assert!(unlisted.is_empty(), "{unlisted:?}");
 }
 
-/// The materials of Khronos' validator: what is valid is read, with warnings of what is not drawn.
+/// The materials of Khronos' validator: valid files are read, with warnings of the parts that are
+/// not drawn.
 #[test]
 fn valid_files_of_khronos_are_read() {
     for (name, words) in [

@@ -25,7 +25,7 @@ type Color = [f64; 3];
 #[derive(Clone, Debug, PartialEq)]
 pub struct Environment {
     pub sky: Sky,
-    /// What the radiance of the sky is multiplied with.
+    /// Factor of the sky's radiance.
     pub intensity: f64,
     /// By how many degrees the picture is turned around the direction up, counterclockwise as seen from above.
     pub rotation: f64,
@@ -79,7 +79,7 @@ impl Sun {
         2.0 * libm::sin(self.angle.to_radians() / 4.0)
     }
 
-    /// What a radiance is multiplied with for the [color](Self::color): the solid angle over π.
+    /// Returns the factor from a radiance to the [color](Self::color): the solid angle over π.
     pub fn solid_angle_over_pi(&self) -> f64 {
         self.radius() * self.radius()
     }
@@ -132,7 +132,7 @@ impl Panorama {
         self.pixels.chunks_exact(self.width)
     }
 
-    /// Reads a Radiance, PNG or JPEG file, told apart by their content.
+    /// Reads a Radiance, PNG or JPEG file, distinguished by their content.
     pub(super) fn decode(name: &str, bytes: &[u8]) -> Result<Self, Fault> {
         let (width, height, pixels) = if bytes.starts_with(b"#?") {
             radiance::decode(bytes, check_size)?
@@ -157,7 +157,7 @@ impl Panorama {
             .ok_or_else(|| fault("has no pixels", "save the picture again"))
     }
 
-    /// Reads the file that `name` stands for in a scene file.
+    /// Reads the file that `name` in a scene file refers to.
     pub(super) fn file(
         access: &super::access::Access,
         scene: &Path,

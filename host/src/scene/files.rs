@@ -4,8 +4,8 @@ use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-/// Files in memory, by the paths that they have beside each other. A scene that is [read among
-/// them](super::read_among) may name each of them, and nothing else.
+/// Files in memory, by their paths relative to each other. A scene that is [read among them](super::read_among) may
+/// name each of them, and no other file.
 #[derive(Clone, Debug, Default)]
 pub struct Files(BTreeMap<PathBuf, Arc<[u8]>>);
 

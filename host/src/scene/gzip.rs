@@ -115,7 +115,7 @@ mod tests {
                 );
                 assert!(error.remedy.contains("only zeros"), "{}", error.remedy);
             }
-            // What begins as a member must be one.
+            // Data that begins as a member must be one.
             let error = inflate(path, [&whole[..], b"\x1f\x8b\x08"].concat()).unwrap_err();
             assert!(error.cause.contains("is damaged"), "{error}");
         }

@@ -110,7 +110,7 @@ impl Image {
         self.pixels.iter().all(|pixel| pixel[3] == 255)
     }
 
-    /// Reads a PNG or JPEG file, told apart by their content.
+    /// Reads a PNG or JPEG file, distinguished by their content.
     pub(super) fn decode(name: &str, bytes: &[u8]) -> Result<Self, Fault> {
         let (width, height, pixels) = if bytes.starts_with(b"\x89PNG\r\n\x1a\n") {
             png(bytes)?

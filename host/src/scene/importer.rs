@@ -1,4 +1,4 @@
-//! The table of importers: what is known of a scene format, and what an importer is given.
+//! The table of importers: the description of each scene format, and the input of an importer.
 
 use super::access::Access;
 use super::gzip;
@@ -20,7 +20,7 @@ pub struct Importer {
     pub extensions: &'static [&'static str],
     /// Which way is up in its scenes, where a file has no camera that says so.
     pub up: Up,
-    /// Whether its files may be binary; all formats have a text form.
+    /// True if its files may be binary; all formats have a text form.
     pub binary: bool,
     /// A small file in the format, which tests and fuzzers start from.
     pub example: &'static str,
@@ -157,7 +157,7 @@ fn dotted(extensions: &[&str]) -> Vec<String> {
     extensions.iter().map(|it| format!(".{it}")).collect()
 }
 
-/// What a file leaves open, as it is chosen.
+/// The choices that a file leaves open.
 #[derive(Clone, Copy)]
 pub(super) struct Choices<'a> {
     pub(super) molecule: &'a MoleculeOptions,

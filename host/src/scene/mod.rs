@@ -143,7 +143,7 @@ pub fn load_with(path: &Path, options: &ImportOptions) -> Result<Imported, Scene
     finish(importer.import(input)?, options)
 }
 
-/// Shades and flattens what was read as it is asked for.
+/// Shades and flattens the scene as the options require.
 fn finish(mut imported: Imported, options: &ImportOptions) -> Result<Imported, SceneError> {
     let scene = &mut imported.scene;
     let in_parts = scene.parts.iter_mut().flat_map(|part| &mut part.objects);
@@ -188,8 +188,8 @@ fn finish(mut imported: Imported, options: &ImportOptions) -> Result<Imported, S
     Ok(imported)
 }
 
-/// Reads a scene from bytes as [`load_with`] reads a file of this name, which need not exist. Files
-/// that the scene names lie beside it: for a name without a folder in the current folder.
+/// Reads a scene from bytes as [`load_with`] reads a file of this name, which need not exist. Files that the scene
+/// names lie in the same folder; for a name without a folder that is the current folder.
 ///
 /// # Errors
 /// As [`load_with`].

@@ -18,7 +18,7 @@ use std::collections::HashMap;
 /// ```
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Normals {
-    /// Of length 1.
+    /// Normals of length 1.
     pub vectors: Vec<DVec3>,
     /// For each triangle, which of the vectors its corners have; [`Normals::FLAT`] for one that is flat. As many as the
     /// mesh has, or none.
@@ -167,7 +167,7 @@ pub(super) fn cofactors(matrix: DMat3) -> (DMat3, bool) {
     (cofactors * sign, mirrors)
 }
 
-/// Of length 1, or zero where it has no direction.
+/// Returns the vector at length 1, or zero where it has no direction.
 fn length_one(vector: DVec3) -> DVec3 {
     if vector == DVec3::ZERO || !vector.is_finite() {
         return DVec3::ZERO;
@@ -236,7 +236,7 @@ impl Groups {
         }
     }
 
-    /// The corner that stands for a corner's group: the first one of it.
+    /// Returns the first corner of a corner's group, which represents it.
     fn of(&mut self, corner: usize) -> usize {
         let mut corner = corner;
         while self.leads_to[corner] as usize != corner {

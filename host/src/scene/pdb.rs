@@ -51,7 +51,7 @@ fn read(input: Input<'_>) -> Result<Imported, SceneError> {
 fn parse<'a>(source: &'a Source, warnings: &mut Warnings) -> Result<Parsed<'a>, SceneError> {
     let mut parsed = Parsed::default();
     let mut assemblies = Assemblies::default();
-    // Whether the next atom starts a model, and what number the file gives that.
+    // The number that the file gives the next model, if the next atom starts one.
     let mut next_model = Some("1");
     for (number, line) in source.lines() {
         match columns(line, 1, 6).trim_end() {

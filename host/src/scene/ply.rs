@@ -206,7 +206,7 @@ fn mesh(
             "export a mesh; points and lines cannot be rendered",
         ));
     }
-    // Of those that the file lacks nothing is smooth.
+    // Where the file lacks some, nothing is smooth.
     let normals = read.iter().map(|vertex| DVec3::from_array(vertex.normal));
     let normals = Normals::given(
         normals.collect(),
@@ -220,8 +220,8 @@ fn mesh(
     Ok((shape, normals))
 }
 
-/// The triangles of a strip, of which every second one is turned. Vertices that come twice join
-/// strips, and make triangles that are none.
+/// Returns the triangles of a strip, of which every second one is turned. Vertices that come twice join strips, and
+/// make degenerate triangles.
 fn strip_triangles(corners: &[u32]) -> impl Iterator<Item = [u32; 3]> {
     let triangles = corners.windows(3).enumerate().map(|(number, c)| {
         let turned = number % 2 == 1;

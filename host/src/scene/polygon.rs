@@ -161,8 +161,7 @@ struct Clipper<'a> {
     triangles: Vec<[u32; 3]>,
 }
 
-/// How much is asked of an ear. Each kind is tried only where the polygon has none of the kind
-/// before it.
+/// The requirements of an ear. Each kind is tried only where the polygon has none of the kind before it.
 #[derive(Clone, Copy, PartialEq)]
 enum Ear {
     /// A corner that turns left and into which nothing reaches.

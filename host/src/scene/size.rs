@@ -8,8 +8,8 @@ use crate::table::grouped;
 /// less than 4 GB.
 pub(super) const MOST_BYTES: u64 = 3_800_000_000;
 
-/// The most bytes of a file whose length is not known before it is read: a gzipped one, and standard
-/// input. With what is made of it, such a file stays in the memory that the largest scene takes.
+/// The most bytes of a file whose length is not known before it is read: a gzipped one, and standard input. Such a file
+/// and the scene made of it fit the memory that the largest scene takes.
 pub const MOST_INPUT: u64 = 1 << 30;
 
 /// Bytes that an object takes while it is read and compiled, without its name and its triangles.

@@ -88,10 +88,10 @@ impl Source {
     }
 }
 
-/// Rejects text in UTF-16 and UTF-32, which no scene format has: read as bytes, errors would quote
-/// words that nobody wrote.
+/// Rejects text in UTF-16 and UTF-32, which no scene format has. Read as bytes, errors would quote
+/// words that are not in the file.
 pub(crate) fn check_encoding(path: &Path, bytes: &[u8]) -> Result<(), SceneError> {
-    // Without a mark, every second byte of plain text is 0, of which other text has none.
+    // Without a mark, every second byte of plain text is 0; other text has no such byte.
     let head = &bytes[..bytes.len().min(64)];
     let zeros = |odd: usize| {
         let bytes = head.iter().skip(odd).step_by(2);
@@ -126,7 +126,7 @@ pub(super) struct Warnings {
 }
 
 impl Warnings {
-    /// `sentence` has neither capital nor full stop; a line of 0 stands for the whole file.
+    /// `sentence` has neither capital nor full stop; a line of 0 means the whole file.
     pub(super) fn add(&mut self, source: &Source, line: usize, sentence: impl Into<String>) {
         self.add_times(source.place(line), 1, sentence);
     }

@@ -21,9 +21,9 @@ pub struct Texture {
     pub image: Arc<Image>,
     /// Beyond the image, along u and v.
     pub wrap: [Wrap; 2],
-    /// Whether four texels are mixed; otherwise the nearest one counts.
+    /// True if four texels are mixed; otherwise the nearest one is used.
     pub bilinear: bool,
-    /// Whether smaller copies of the image are shown where it is far away.
+    /// True if smaller copies of the image are shown where it is far away.
     pub levels: bool,
     /// Takes the coordinates of meshes to those of the image.
     pub transform: DAffine2,
@@ -93,7 +93,7 @@ impl<'a> Images<'a> {
         }
     }
 
-    /// The image in the file that `name` stands for in a scene file.
+    /// Returns the image in the file that `name` in a scene file refers to.
     ///
     /// # Errors
     /// If it lies outside of the scene's folder, or is no image: cause and remedy.

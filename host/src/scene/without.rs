@@ -214,7 +214,7 @@ pub fn leave_out(scene: &mut Scene, effect: Effects) -> Option<Vec<String>> {
     Some(names.collect())
 }
 
-/// What shows where a single effect was, as part of a sentence.
+/// Returns what the picture shows without a single effect, as part of a sentence.
 ///
 /// ```
 /// use gridel_core::Effects;

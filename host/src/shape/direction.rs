@@ -34,7 +34,7 @@ pub fn integers(vector: DVec3) -> [i32; 3] {
         .map(|component| component as i32)
 }
 
-/// The smallest integers with the given ratios, of which the largest is 1 or -1.
+/// Returns the smallest integers with the given ratios. The largest ratio is 1 or -1.
 fn common(ratios: DVec3) -> Option<DVec3> {
     let mut fractions = [(0, 1); 3];
     let mut denominator = 1;

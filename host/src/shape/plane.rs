@@ -109,7 +109,7 @@ impl Analytic for Plane {
 
     fn transformed(&self, by: &DAffine3) -> Result<Self, Misfit> {
         orientation(by.matrix3)?;
-        // What is at right angles to the plane stays so.
+        // Vectors at right angles to the plane stay so.
         let turned = to_size_one(by.matrix3).1.inverse().transpose();
         Ok(Self {
             point: by.transform_point3(self.point),

@@ -12,7 +12,7 @@ pub struct Snapped<T> {
     pub record: T,
     /// How far apart the given and the snapped surface are at most, in 1/256 unit.
     pub displacement: f64,
-    /// Whether its box lies in the range of box coordinates.
+    /// True if its box lies in the range of box coordinates.
     pub fits: bool,
 }
 

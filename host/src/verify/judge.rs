@@ -1,5 +1,5 @@
-//! Right answers, by arithmetic that owes nothing to the kernels: which primitive a ray hits first,
-//! within what a number format may be off by.
+//! Right answers by arithmetic that is independent of the kernels: which primitive a ray hits first, within the
+//! tolerance of a number format.
 
 use super::placed::{PlacedPart, PlacedSolid};
 use super::rounded::{Answer, HitId, RoundedRay};
@@ -9,8 +9,7 @@ use gridel_core::format::limits;
 use gridel_core::format::record::UnitBox;
 use gridel_core::{Format, Kind, Scene};
 
-/// How many rounding steps an answer may be off by: the shape that it is right for may be so much
-/// larger or smaller.
+/// How many rounding steps an answer may be off by. It is right for a shape that is larger or smaller by at most that.
 pub const STEPS: f64 = 8.0;
 
 /// The cosine between a surface's normal and a ray below which the ray grazes. There, t is off by more than [`STEPS`]

@@ -1,4 +1,4 @@
-//! Throws hard rays at a scene and holds every structure and number format to what is promised.
+//! Traces hard rays through a scene, and checks that every structure and number format keeps its promises.
 //!
 //! `rays.rs` makes the rays, and `check.rs` traces each through all structures of a blob and compares the answers.
 //! Where they disagree, `judge.rs` decides by 320-bit arithmetic, from the textbook's formulas of each shape. Every
@@ -48,7 +48,7 @@ pub struct Report {
 pub struct FormatReport {
     pub format: &'static str,
     pub hits: u64,
-    /// Answers that exact arithmetic was asked about.
+    /// Answers that exact arithmetic judged.
     pub judged: u64,
     /// Rays that do not graze what they meet.
     pub worst: Worst,
@@ -111,12 +111,11 @@ impl Report {
     }
 }
 
-/// Rays of all sorts that a scene is verified with where nothing else is asked for.
+/// Default number of rays of all sorts that a scene is verified with.
 pub const RAYS: u64 = 10_000;
 /// Rays of a chunk of work.
 const CHUNK: u64 = 128;
-/// One ray in so many is judged by exact arithmetic whatever was answered, and one hit in so many is
-/// left by secondary rays.
+/// One ray in this many is judged by exact arithmetic whatever the answer. Secondary rays leave one hit in this many.
 const CONTROL: u64 = 16;
 /// Examples that are kept per property.
 const EXAMPLES: usize = 5;
@@ -288,7 +287,7 @@ impl Work<'_> {
         }
     }
 
-    /// A point inside of a closed mesh, in units: halfway from a face to what is opposite of it.
+    /// Returns a point inside of a closed mesh, in units: halfway from a face to the opposite one.
     fn inside(&self, mesh: &ClosedMesh) -> Option<[f64; 3]> {
         const TRIED: usize = 64;
         let step = mesh.count().div_ceil(TRIED);

@@ -283,7 +283,8 @@ fn with_a_window(targets: &Targets, random: &mut Random) -> UnitRay {
     ray
 }
 
-/// Along the side of what a box holds, at the distance of its round or flat side.
+/// Returns a ray along the side of the primitive in a box, at the distance of its round or flat
+/// side.
 fn grazing(targets: &Targets, random: &mut Random) -> UnitRay {
     let bounds = targets.a_box(random).0.map(|side| side.map(f64::from));
     let axis = random.below(3);

@@ -17,7 +17,7 @@ use std::time::{Duration, Instant};
 /// How long coarse blocks may keep the next picture waiting.
 const PATIENCE: Duration = Duration::from_millis(250);
 
-/// How long a thread draws before it hands over what it has, and looks for something newer.
+/// How long a thread draws before it delivers its pixels, and looks for a newer picture.
 const TURN: Duration = Duration::from_millis(2);
 
 /// Draws pictures of a scene, one after the other, from coarse to fine.
@@ -34,7 +34,7 @@ struct Progress {
     shot: Option<Shot>,
     number: u64,
     begun: Instant,
-    /// The blocks that nobody has taken yet, and how many were taken and are not drawn.
+    /// The order of the blocks that are not taken yet, and how many were taken and are not drawn.
     order: CoarseToFine,
     taken: usize,
     drawn: usize,
@@ -44,12 +44,12 @@ struct Progress {
     error: Option<ViewError>,
     /// The picture to draw next.
     next: Option<Shot>,
-    /// Whether the frame changed since somebody looked.
+    /// True if the frame changed since it was last read.
     is_new: bool,
     stopped: bool,
 }
 
-/// What a front end shows beside the frame.
+/// The status that a front end shows with the frame.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Status {
     /// The share of pixels that are drawn, 0 to 1.
@@ -112,7 +112,7 @@ impl<'s> Refiner<'s> {
         with(&state.frame, &status)
     }
 
-    /// Waits until the last picture that was asked for is there, or cannot be.
+    /// Waits until the last requested picture is complete, or cannot be.
     pub fn wait(&self) {
         let is_busy = |state: &mut Progress| state.next.is_some() || !state.is_done();
         let state = self.lock();
@@ -136,7 +136,7 @@ impl<'s> Refiner<'s> {
         }
     }
 
-    /// Waits for blocks that nobody has taken.
+    /// Waits for blocks that are not taken yet.
     fn next_shot(&self) -> Option<(u64, Shot)> {
         let mut state = self.lock();
         loop {
@@ -223,12 +223,12 @@ impl<'s> Refiner<'s> {
 }
 
 impl Progress {
-    /// Whether all blocks are drawn.
+    /// Returns whether all blocks are drawn.
     fn is_done(&self) -> bool {
         self.order.side() == 0 && self.taken == 0
     }
 
-    /// Whether the next picture may begin.
+    /// Returns whether the next picture may begin.
     fn is_superseded(&self) -> bool {
         let is_seen = self.drawn >= self.coarsest;
         self.next.is_some() && (is_seen || self.begun.elapsed() > PATIENCE)

@@ -17,7 +17,7 @@ const ZOOM: f64 = 0.8;
 /// The nearest distance to the target, in multiples of the first camera's. The furthest is where coordinates end.
 const NEAREST: f64 = 1e-4;
 
-/// What is shown of a scene. Everything that changes it is a function without other effects.
+/// The view of a scene. Everything that changes it is a function without other effects.
 pub struct State<'s> {
     scene: &'s Scene<'s>,
     camera: Camera,
@@ -29,7 +29,7 @@ pub struct State<'s> {
     heat_map: bool,
 }
 
-/// What is left to do after an action.
+/// The remaining work after an action.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Effect {
     Nothing,
@@ -95,7 +95,7 @@ impl<'s> State<'s> {
         format!("{format}, {structure}, {samples}{heat_map}")
     }
 
-    /// Does what a key asks for.
+    /// Performs the action of a key.
     pub fn apply(&mut self, action: Action) -> Effect {
         match action {
             Action::Orbit(steps) => {

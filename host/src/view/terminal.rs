@@ -26,8 +26,8 @@ const LOOK_TIME: Duration = Duration::from_millis(250);
 /// Lines below the picture, for the settings.
 const LINES_BELOW: u16 = 1;
 
-/// The size of a picture with the shape of another one, in pixels of the terminal, or of 80 columns where standard
-/// output is none.
+/// Returns the size of a picture with a given shape, in pixels of the terminal. Uses 80 columns where standard output
+/// is not a terminal.
 pub fn fitting_size(shape: [u16; 2]) -> [u16; 2] {
     let size = Term::stdout().size_checked();
     let (rows, columns) = size.unwrap_or((u16::MAX, COLUMNS));
@@ -111,7 +111,7 @@ pub fn live(refiner: &Refiner<'_>, state: State<'_>, is_fixed: bool) -> io::Resu
     })
 }
 
-/// What happens while a scene is shown.
+/// The events while a scene is shown.
 enum Event {
     Key(Key),
     /// There is more of the picture.
@@ -171,12 +171,12 @@ fn write(text: &str) -> io::Result<()> {
 struct Live<'r, 's> {
     refiner: &'r Refiner<'s>,
     state: State<'s>,
-    /// The width and height of which the picture has the ratio.
+    /// The width and height whose ratio the picture has.
     shape: [u16; 2],
     is_fixed: bool,
     /// Shown in place of the settings until the next key.
     message: Option<String>,
-    /// Whether the keys are shown in place of the picture.
+    /// True if the keys are shown in place of the picture.
     shows_keys: bool,
 }
 
@@ -187,7 +187,7 @@ impl Live<'_, '_> {
         let mut last = Instant::now();
         loop {
             self.fit()?;
-            // Nothing tells of another size of the terminal, so it is looked at now and then.
+            // No event reports another size of the terminal, so it is checked now and then.
             let timeout = match is_drawn && !self.shows_keys {
                 true => FRAME_TIME.saturating_sub(last.elapsed()),
                 false => LOOK_TIME,

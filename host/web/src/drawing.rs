@@ -11,7 +11,7 @@ pub struct Drawing {
     pub slot: usize,
     shot: Shot,
     blocks: Box<dyn Iterator<Item = Block>>,
-    /// Whether all blocks of the coarsest size are drawn.
+    /// True if all blocks of the coarsest size are drawn.
     pub is_seen: bool,
 }
 

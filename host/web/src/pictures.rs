@@ -17,7 +17,7 @@ fn pixels(bytes: &[u8]) -> Vec<[u16; 3]> {
     bytemuck::pod_collect_to_vec(bytes)
 }
 
-/// Two pictures of the same size: a reference, and what is compared with it.
+/// Returns two pictures of the same size: a reference, and one to compare with it.
 fn pair(bytes: &[u8]) -> [Vec<[u16; 3]>; 2] {
     let (reference, picture) = bytes.split_at(bytes.len() / 2);
     [pixels(reference), pixels(picture)]
@@ -48,7 +48,7 @@ pub fn difference(bytes: &[u8]) -> Answer {
     Ok((json!({}), difference_picture(&reference, &picture)))
 }
 
-/// Colors work; black is none.
+/// Colors work; black is no work.
 pub fn heat_map(bytes: &[u8]) -> Answer {
     let work: Vec<u32> = bytemuck::pod_collect_to_vec(bytes);
     let maximum = work.iter().copied().max().unwrap_or(0);

@@ -9,7 +9,7 @@ use serde::{Deserialize, Deserializer, de::Error};
 #[derive(Deserialize)]
 #[serde(tag = "do", rename_all = "kebab-case")]
 pub enum Request {
-    /// What there is to choose from.
+    /// Returns the choices.
     About,
     /// Forgets all files.
     ClearFiles,
@@ -82,7 +82,7 @@ pub struct Move {
 #[derive(Deserialize)]
 pub struct Begin {
     pub shot: ShotOf,
-    /// Of so many workers, the number of this one.
+    /// The number of this worker, and the number of workers.
     pub share: [usize; 2],
 }
 

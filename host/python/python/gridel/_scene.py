@@ -236,7 +236,8 @@ class Scene:
     def to_blob(
         self, *, accel: Optional[Accel] = None, lattice_bits: Optional[int] = None
     ) -> bytes:
-        """Returns the scene blob, for files and for devices; compiled anew if structures or bits are given."""
+        """Returns the scene blob, for files and for devices; compiled again if structures or bits
+        are given."""
         names = None if accel is None else _names(accel)
         return self._native.to_blob(names, lattice_bits)
 

@@ -33,7 +33,7 @@ def _array(value: Any) -> np.ndarray:
 
 
 def _like(given: Any, result: np.ndarray) -> Any:
-    """The result in the form of what was given."""
+    """Returns the result in the form of the argument."""
     if _is_tensor(given):
         return sys.modules["open3d"].core.Tensor(np.ascontiguousarray(result))
     return result.view(Array)

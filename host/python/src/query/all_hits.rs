@@ -21,7 +21,7 @@ use std::ops::Range;
 /// Hits that are listed at a time.
 const LISTED: usize = 16;
 
-/// The number of hits of each ray; 0 of a ray that is none.
+/// Returns the number of hits of each ray; 0 for an invalid ray.
 pub fn count(scene: &Scene<'_>, rays: Rays<'_>, how: How) -> Vec<u32> {
     fill(how, rays.len(), 0, |start, answers| {
         dispatch!(how, count_chunk, [], (scene, rays, start, answers));

@@ -10,7 +10,7 @@ pub struct Columns<'c, T> {
     pub t: &'c mut [T],
     pub object: &'c mut [u32],
     pub primitive: &'c mut [u32],
-    /// Empty where nobody asks.
+    /// Empty where it is not requested.
     pub instance: &'c mut [u32],
     pub normal: &'c mut [[f32; 3]],
     pub uv: &'c mut [[f32; 2]],

@@ -26,7 +26,7 @@ impl NativeScene {
 
     /// Returns where a ray meets a triangle as it was given, in double precision, and the weights of its second and
     /// third corner. Uses the hit's own t where the triangle is not a mesh's, or is nearly parallel to the ray.
-    // Inlined, it computes what is used there, and nothing else.
+    // Inlining lets the compiler compute only the values that are used there.
     #[inline(always)]
     pub(super) fn place(&self, ray: &SceneRay, hit: &Found) -> (f64, DVec3, [f64; 2]) {
         let own = ray.origin + ray.direction * hit.t;

@@ -8,7 +8,7 @@ use gridel_host::accuracy::{Limits, Point, Results, cheapest_within, most_accura
 use gridel_host::table::counted;
 use serde::Serialize;
 
-/// The setting that was asked for.
+/// The requested setting.
 #[derive(Serialize)]
 pub struct Choice {
     pub name: String,
@@ -21,7 +21,7 @@ pub struct Choice {
     pub render: String,
 }
 
-/// The setting within the limits that were asked for, as options: the cheapest where an error is given, else the most
+/// Returns the setting within the requested limits, as options: the cheapest where an error is given, else the most
 /// accurate.
 pub fn choice(arguments: &Arguments, stem: &str, results: &Results) -> Option<Choice> {
     let board = arguments.board.as_deref();

@@ -105,7 +105,7 @@ impl ViewOptions {
         Ok(view)
     }
 
-    /// Whether an option was given in place of what a track moves.
+    /// Returns whether an option replaces the property that a track moves.
     pub fn replaces(&self, target: TrackTarget) -> bool {
         let turns = self.eye.is_some() || self.target.is_some() || self.up.is_some();
         match target {
@@ -197,7 +197,7 @@ mod tests {
         let view = (camera.target - camera.eye).normalize();
         assert!(view.distance(DVec3::Y) < 1e-12);
         assert_eq!(camera.fov_degrees, 10.0);
-        // Now the scene has a camera, of which the rest stays.
+        // Now the scene has a camera, and its other values stay.
         let view = ViewOptions {
             eye: Some(DVec3::new(7.0, 8.0, 9.0)),
             background: Some([0.0; 3]),

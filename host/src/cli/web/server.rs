@@ -73,7 +73,7 @@ impl Server {
         respond(stream, answer, request.starts_with("HEAD "))
     }
 
-    /// The file that a request asks for, or the code and the words of a refusal.
+    /// Returns the file of a request, or the code and the words of a refusal.
     fn find(&self, request: &str) -> Result<PathBuf, (u16, &'static str)> {
         let mut words = request.split(' ');
         let (method, target) = (words.next(), words.next().unwrap_or_default());

@@ -68,10 +68,9 @@ impl Builder {
     }
 }
 
-/// Builds a hierarchy and puts the primitives in the order of its leaves; `None` without primitives.
-/// `group` gives the names of the groups that a primitive is in, the largest first, and its number
-/// in scene-file order. Builders other than the first two make leaves of the usual size where
-/// `leaf_size` asks for larger ones.
+/// Builds a hierarchy and puts the primitives in the order of its leaves; `None` without primitives. `group` gives the
+/// names of the groups that a primitive is in, the largest first, and its number in scene-file order. Builders other
+/// than the first two make leaves of the usual size where `leaf_size` is larger.
 pub fn build<'g>(
     builder: Builder,
     primitives: &mut [Primitive],

@@ -8,7 +8,7 @@ use rayon::prelude::*;
 pub fn random(primitives: &[Primitive]) -> Tree {
     let mut tree = Tree::default();
     let mut clusters = leaves(&mut tree, primitives);
-    // The same on every machine: a multiplicative shuffle of the places.
+    // A multiplicative shuffle of the places, equal on every machine.
     clusters.sort_by_key(|&leaf| (leaf as u32).wrapping_mul(0x9e37_79b1) ^ 0x2545_f491);
     while clusters.len() > 1 {
         clusters = clusters

@@ -143,7 +143,7 @@ impl Ord for Candidate {
     }
 }
 
-/// The node beside which a box adds least surface.
+/// Returns the node next to which a box adds least surface.
 fn best_place(tree: &Tree, bounds: &UnitBox) -> usize {
     let own = area(bounds);
     let mut best = (f64::INFINITY, tree.root);

@@ -83,7 +83,7 @@ impl Tree {
                         count: places.len(),
                         tests,
                         cost: area(&node.bounds) * tests,
-                        // What is more than a leaf is halved.
+                        // A range with more than a leaf's primitives is halved.
                         height: if places.len() > LEAF_SIZE {
                             halvings(places.len())
                         } else {

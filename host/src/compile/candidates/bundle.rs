@@ -12,7 +12,7 @@ use gridel_core::format::record::Gridels;
 pub struct Bundle {
     /// The major axis.
     pub axis: usize,
-    /// Whether the way from the apex leads up it.
+    /// True if the axis increases away from the apex.
     pub up: bool,
     /// Where the rays begin on their major axis: the point, or a plane beyond the scene.
     pub start: f64,
@@ -28,7 +28,7 @@ pub enum Rays {
     Along([f64; 2]),
 }
 
-/// Ranges of what the rays of a bundle differ by, on the two axes that follow the major one.
+/// The ranges by which the rays of a bundle differ, on the two axes that follow the major one.
 pub type Ranges = [[f64; 2]; 2];
 
 impl Bundle {

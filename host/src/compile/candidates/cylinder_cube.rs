@@ -32,7 +32,7 @@ pub const FACES: [[u32; 2]; Gridels::FACE_PAIRS as usize] = {
     faces
 };
 
-/// Numbers of gridels per side that are tried, where none is asked for.
+/// Numbers of gridels per side that are tried by default.
 const SIZES: [u32; 19] = [
     1, 2, 3, 4, 5, 6, 7, 8, 10, 12, 14, 16, 20, 24, 28, 32, 40, 48, 64,
 ];
@@ -42,9 +42,9 @@ const PAPER_SIZE: u32 = 4;
 /// How the candidates of a pair of gridels are found.
 pub trait Form: Sync {
     const STRUCTURE: Structure;
-    /// Whether lists are sorted along the way and have keys.
+    /// True if lists are sorted along the ray and have keys.
     const KEYED: bool;
-    /// Most gridels per side that are tried, where none is asked for.
+    /// Most gridels per side that are tried by default.
     const MOST: u32;
 
     /// The number beyond the largest candidate.
@@ -85,7 +85,7 @@ fn rectangle(gridels: &Gridels, face: u32, number: u32) -> [[f64; 2]; 3] {
     sides
 }
 
-/// Builds a cube with the gridels that are asked for, or as many as fit the budget.
+/// Builds a cube with the given gridels, or as many as fit the budget.
 pub fn build<F: Form>(
     form: &F,
     targets: &Targets<'_>,

@@ -102,7 +102,7 @@ impl EntryNodes<'_> {
     }
 }
 
-/// A few rays of a pair of gridels, made when they are asked for.
+/// A few rays of a pair of gridels, made when they are needed.
 struct Samples<'p> {
     pair: &'p Pair,
     rays: OnceCell<[Shaft; SAMPLES]>,

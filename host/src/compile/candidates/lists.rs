@@ -80,7 +80,7 @@ pub struct Plan<'p> {
     pub cells: u64,
     /// The number beyond the largest candidate.
     pub end: u32,
-    /// Whether entries have keys.
+    /// True if entries have keys.
     pub keyed: bool,
     /// Fills the list of a cell.
     pub list: &'p (dyn Fn(u64, &mut List) + Sync),

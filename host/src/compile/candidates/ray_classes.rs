@@ -29,7 +29,7 @@ const LONG: usize = 64;
 const MOST_TESTS: usize = 1 << 26;
 /// Halvings from a root to a leaf, at the most.
 const MOST_LEVELS: u32 = 60;
-/// Bytes of a leaf beside its entries: its share of nodes, its cell and its list's start.
+/// Bytes of a leaf besides its entries: its share of nodes, its cell and its list's start.
 const LEAF_BYTES: u64 = 8 + 3 + 3;
 
 /// A class that may be halved.

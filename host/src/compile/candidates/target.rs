@@ -226,7 +226,7 @@ fn surface(primitives: &Primitives, kind: Kind, index: usize) -> Surface {
 fn flat(normal: DVec3, point: DVec3) -> Surface {
     let normal = normal.normalize_or_zero();
     let middle = normal.dot(point);
-    // The rounding of what is computed here is far below the spare.
+    // The rounding of this computation is far below the spare.
     let spare = SURFACE_SPARE;
     Surface::Flat {
         normal: normal.to_array(),

@@ -77,8 +77,8 @@ enum Item {
 }
 
 impl Wide {
-    /// Builds the hierarchy. Where other structures share the slots of what is in no cluster, those
-    /// are `shared`.
+    /// Builds the hierarchy. `shared` are the slots of primitives that are in no cluster, where
+    /// other structures share them.
     ///
     /// # Errors
     /// If the hierarchy is too deep for any stack.

@@ -111,7 +111,7 @@ fn neighbours(vertices: usize, triangles: &[[u32; 3]]) -> Vec<[u32; 3]> {
     neighbours
 }
 
-/// A path through free triangles, each of which shares an edge with the one before.
+/// A path through free triangles. Each shares an edge with the one before.
 #[derive(Clone, Copy)]
 struct Path {
     vertices: [u32; LANES],
@@ -162,7 +162,7 @@ impl Mesh<'_> {
     fn best_through(&self, triangle: u32, free: &[bool]) -> Strip {
         let [a, b, c] = self.triangles[triangle as usize];
         let mut best: Option<(usize, i64, Path, Hull)> = None;
-        // The same zigzag backwards is another of the six.
+        // A zigzag backwards is another of the six.
         for vertices in [[a, b, c], [b, c, a], [c, a, b]] {
             let ahead = self.zigzag(triangle, vertices, free);
             let [first, second, third] = vertices;

@@ -34,7 +34,7 @@ struct Inner {
 }
 
 impl Tree {
-    /// A tree over items, at most one of which may be missing.
+    /// Builds a tree over items, at most one of which may be missing.
     pub fn build(items: &[Hull], balanced: bool) -> Option<Self> {
         let first = *items.first()?;
         let places = [0, 1, 2].map(|axis| places(items, axis));
@@ -133,14 +133,15 @@ impl Tree {
         Some(if left == node { right } else { left })
     }
 
-    /// The node beside which another would cost least, if that is better than where it is.
+    /// Returns the node next to which another one would cost least, if that is better than its
+    /// current place.
     fn best_place(&self, node: u32, stack: &mut Vec<(i64, u32)>) -> Option<u32> {
         let own = self.area(node);
         let parent = self.parent(node)?;
         self.parent(parent)?;
         let sibling = self.sibling(node)?;
         let mut best = (0, None);
-        // What is saved up to here by taking the node out.
+        // The saving up to here of taking the node out.
         let mut saved = self.area(parent);
         let hull = self.hull(node);
         let mut without = self.hull(sibling);
@@ -174,7 +175,7 @@ impl Tree {
         best.1.filter(|&place| place != sibling && place != parent)
     }
 
-    /// Moves a node beside another one.
+    /// Moves a node next to another one.
     fn put(&mut self, node: u32, to: u32) {
         let (Some(parent), Some(sibling)) = (self.parent(node), self.sibling(node)) else {
             return;
@@ -243,7 +244,7 @@ struct Builder<'b> {
     items: &'b [Hull],
     /// Where each item comes along each axis.
     places: &'b [Vec<u32>; 3],
-    /// Whether halves are of equal count, whatever it costs, so that the tree is not deep.
+    /// True if halves are of equal count at any cost, so that the tree is not deep.
     balanced: bool,
 }
 

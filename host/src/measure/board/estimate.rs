@@ -5,7 +5,7 @@ use super::account::Account;
 use super::programs::{Footprint, Known, Profile, Programs, everything};
 use gridel_core::{Format, Structure};
 
-/// A program that was built for every board, beside that of all parts.
+/// The parts of a program that was built for every board, besides that of all parts.
 pub const FEW: [&str; 3] = ["triangle", "sphere", "shadow"];
 
 /// How items of code begin.
@@ -17,7 +17,7 @@ pub const PROFILES: [Profile; 2] = [Profile::Fast, Profile::Small];
 /// to code that was measured with others, so the estimate adds this part.
 const OWN_SIZES: u64 = 100;
 
-/// The program of a scene on a board, by what is known of programs.
+/// The program of a scene on a board, estimated from measured programs.
 pub struct ProgramEstimate<'p> {
     pub programs: &'p Programs,
     pub here: (&'static Board, Format),
@@ -29,7 +29,7 @@ pub struct ProgramEstimate<'p> {
 
 impl ProgramEstimate<'_> {
     pub fn code(&self, profile: Profile) -> Option<Known> {
-        // What a structure adds to one program it adds to others.
+        // A structure adds the same to one program as to others.
         let code = self.figure(
             profile,
             |it| it.code,

@@ -1,5 +1,4 @@
-//! Boards that scenes are built for, as data: what a program has there, how it computes best, and what it
-//! costs.
+//! Boards that scenes are built for, as data: the memory for a program, the best number format, and the costs.
 //!
 //! | file | what it holds |
 //! |---|---|
@@ -200,7 +199,7 @@ impl Board {
             .find(|board| board.name.eq_ignore_ascii_case(name))
     }
 
-    /// Whether QEMU plays this board.
+    /// Returns whether QEMU emulates this board.
     pub fn is_emulated(&self) -> bool {
         self.name == self.measured
     }
@@ -224,7 +223,7 @@ impl Board {
         }
     }
 
-    /// The number format to use where none is asked for.
+    /// Returns the default number format.
     pub fn format(&self) -> Format {
         self.formats[0]
     }

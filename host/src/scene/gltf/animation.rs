@@ -27,7 +27,7 @@ pub(super) struct Way {
     pub(super) keys: Vec<Key>,
 }
 
-/// What of a node moves.
+/// The moving properties of a node.
 #[derive(Clone, Debug, Default)]
 struct Moves {
     translation: Option<Way>,
@@ -44,17 +44,17 @@ pub(super) struct Motion {
     parents: Vec<Option<usize>>,
     /// Where each node stands in the one above, at rest.
     rest: Vec<DMat4>,
-    /// Whether some way was sampled.
+    /// True if some way was sampled.
     pub(super) sampled: bool,
 }
 
-/// Whether the animation was chosen by the user, and what it is called.
+/// The chosen animation: its name, and whether the user chose it.
 pub(super) struct Chosen<'d> {
     pub(super) animation: Animation<'d>,
     pub(super) by_name: bool,
 }
 
-/// The animation that is asked for, or the first.
+/// Returns the requested animation, or the first.
 pub(super) fn choose<'d>(
     path: &Path,
     document: &'d Document,
@@ -138,17 +138,17 @@ impl Motion {
         Ok(motion)
     }
 
-    /// Whether nothing moves.
+    /// Returns whether nothing moves.
     pub(super) fn is_empty(&self) -> bool {
         self.nodes.is_empty()
     }
 
-    /// Whether the weights of a node's morph targets change.
+    /// Returns whether the weights of a node's morph targets change.
     pub(super) fn has_weights(&self, node: usize) -> bool {
         self.nodes.get(&node).is_some_and(|moves| moves.weights)
     }
 
-    /// Whether a node, or one above it, moves.
+    /// Returns whether a node, or one above it, moves.
     pub(super) fn moves(&self, node: usize) -> bool {
         self.chain(node).any(|it| self.moves_itself(it))
     }
@@ -260,7 +260,7 @@ impl Motion {
         ]
     }
 
-    /// Place and rotation of a node of which nothing above moves, with its own keys.
+    /// Returns position and rotation of a node with its own keys, if no node above it moves.
     fn own_ways(&self, node: usize) -> Option<[Way; 2]> {
         if self.chain(node).skip(1).any(|it| self.moves_itself(it)) {
             return None;
@@ -354,7 +354,7 @@ fn turned(world: &DMat4) -> DQuat {
 
 /// The rotation of a matrix that turns and scales alike in all directions; `None` for another.
 fn rotation_of(matrix: DMat3) -> Option<DQuat> {
-    /// Of single precision.
+    /// Tolerance of single precision.
     const TOLERANCE: f64 = 1e-6;
     let scale = matrix.determinant().cbrt();
     let turns = matrix * (1.0 / scale);
@@ -433,7 +433,7 @@ impl Way {
 
     /// The value at a time, as glTF defines it.
     fn at(&self, seconds: f64) -> [f64; 4] {
-        // Of four components are rotations alone.
+        // Only rotations have four components.
         let turns = self.keys.iter().any(|key| key.value[3] != 0.0);
         interpolate(self.interpolation, &self.keys, turns, seconds)
     }

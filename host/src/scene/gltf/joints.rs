@@ -18,13 +18,13 @@ use std::collections::HashMap;
 /// How far a matrix can be from a rotation times a scale, and a change of size from an even one.
 const TOLERANCE: f64 = 1e-5;
 
-/// The scale of what shrinks to nothing.
+/// The scale of a mesh that shrinks to nothing.
 const NOTHING: f64 = 1.0 / 256.0;
 
 impl Importer<'_> {
     /// Makes joints of the nodes that move meshes. `placed` has all nodes, each behind the one above it.
     pub(super) fn joints(&mut self, placed: &[Placed<'_>]) {
-        // Whether a node, or one below it, has a mesh that can move.
+        // For each node, whether it or one below it has a mesh that can move.
         let mut carries = HashMap::new();
         for (node, _) in placed.iter().rev() {
             let below = node
@@ -52,8 +52,8 @@ impl Importer<'_> {
         }
     }
 
-    /// Makes a joint of a node, if its animation moves what is below. `above` and `world` say where the node above it
-    /// and it itself stand at rest.
+    /// Makes a joint of a node, if its animation moves a mesh below. `above` and `world` are the transforms at rest of
+    /// the node above it and of the node itself.
     fn joint(
         &mut self,
         node: &Node<'_>,
@@ -95,7 +95,7 @@ impl Importer<'_> {
 #[derive(Default)]
 struct Own {
     ways: Vec<(TrackTarget, Way)>,
-    /// What of it cannot be shown, and what happens instead.
+    /// Parts of the motion that cannot be shown, and what happens instead.
     warnings: Vec<&'static str>,
 }
 
@@ -156,7 +156,7 @@ impl Own {
     fn add(&mut self, target: TrackTarget, way: Way, rest: DVec4) {
         let is_rest = |value: [f64; 4]| {
             let value = DVec4::from_array(value);
-            // Of the two quaternions of no rotation either is.
+            // For no rotation, either of the two quaternions will do.
             let other = match target {
                 TrackTarget::JointRotation => -rest * value.length(),
                 _ => rest,

@@ -54,7 +54,7 @@ fn taken_ior(ior: f32) -> f64 {
     f64::from(ior).clamp(1.0, 4.0)
 }
 
-/// Whether the alpha of the base color alone is not cut out.
+/// Returns whether the alpha of the base color alone is not cut out.
 fn is_there(material: &gltf::Material<'_>) -> bool {
     let [.., alpha] = material.pbr_metallic_roughness().base_color_factor();
     alpha >= material.alpha_cutoff().unwrap_or(0.5)
@@ -90,7 +90,7 @@ pub(super) fn read(material: &gltf::Material<'_>, alpha_is_used: bool) -> Materi
         AlphaMode::Blend if !alpha_is_used => alpha,
         _ => 1.0,
     };
-    // Factors of a texture that is not read say little, and what is mirrored has no texture.
+    // Factors of a texture that is not read say little, and a mirror has no texture.
     let is_plain = surface.metallic_roughness_texture().is_none()
         && surface.base_color_texture().is_none();
     let is_glossy =

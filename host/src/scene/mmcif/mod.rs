@@ -240,7 +240,7 @@ impl<'a> Parser<'a, '_> {
     }
 
     fn bond(&mut self, table: &Table<'a>, columns: &BondColumns) {
-        // Hydrogen bonds are none, and a partner that symmetry moves is not where its atom is.
+        // Hydrogen bonds do not count, and a partner that symmetry moves is not where its atom is.
         let kind = table.value([columns.kind]);
         let is_bond = ["covale", "disulf", "metalc"].iter().any(|bond| {
             kind.get(..bond.len())

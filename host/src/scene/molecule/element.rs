@@ -31,7 +31,7 @@ impl Element {
             .then_some(Self(number))
     }
 
-    /// The symbol, such as `Fe`; `X` for what is unknown.
+    /// The symbol, such as `Fe`; `X` for unknown elements.
     pub(crate) fn symbol(self) -> &'static str {
         ELEMENTS[usize::from(self.0)].0
     }

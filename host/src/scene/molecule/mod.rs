@@ -30,7 +30,7 @@ use assembly::{Copied, assemble};
 use limit::check_size;
 use std::collections::{HashMap, HashSet};
 
-/// Makes a scene of what `parse` reads from a file.
+/// Makes a scene of the atoms that `parse` reads from a file.
 ///
 /// # Errors
 /// If the file has no atoms, its content is broken (the error names the line), or it lacks the requested model or

@@ -187,8 +187,8 @@ impl<'a> Importer<'a> {
     fn fill(&mut self, line: &Line<'a>) -> Result<(), SceneError> {
         let format = "f r g b Kd Ks Shine T ior";
         let numbers = match line.numbers_from(1) {
-            // Short lines are common in files written by hand; what is missing is what says
-            // "opaque".
+            // Short lines are common in files written by hand. The missing numbers are those that
+            // say "opaque".
             given @ (6 | 7) => {
                 self.warnings.add(
                     self.source,

@@ -46,8 +46,8 @@ pub(super) const IMPORTER: Importer = Importer {
     read,
 };
 
-/// Reads an OBJ file and the material files it names, which lie beside it. It has no camera and
-/// no lights; the compiler adds them.
+/// Reads an OBJ file and the material files it names, which lie in the same folder. It has no camera and no lights; the
+/// compiler adds them.
 ///
 /// # Errors
 /// If the file has no faces, or its content is broken; the error names the line.
@@ -309,7 +309,7 @@ impl Mesher<'_> {
     }
 }
 
-/// The normals of a part, of which it holds only those that it uses.
+/// The normals that a part uses.
 #[derive(Default)]
 struct PartNormals {
     vectors: Vec<DVec3>,

@@ -132,7 +132,7 @@ impl Statements {
             opacity = 1.0;
         }
         let diffuse = match (self.diffuse, default.diffuse) {
-            // What the texture weights.
+            // The color that the texture weights.
             (None, _) if self.texture.is_some() => [1.0; 3],
             (Some(color), _) | (None, Diffuse::Plain(color)) => color,
             (None, Diffuse::Checker { even, .. }) => even,
@@ -194,7 +194,7 @@ impl Statements {
     }
 }
 
-/// The roughness that a file gives in terms of [`Material::roughness`]: what is nearly smooth is smooth.
+/// Converts the roughness of a file to [`Material::roughness`]; nearly smooth counts as smooth.
 fn taken_roughness(roughness: f64) -> f64 {
     if roughness < Material::LEAST_ROUGHNESS {
         0.0

@@ -1,5 +1,4 @@
-//! Counts what a scene will hold before anything is placed: groups in groups can grow beyond all
-//! memory in a few lines.
+//! Counts the content of a scene before anything is placed. Groups in groups can exceed all memory in a few lines.
 
 use super::item::{Content, Group, Item, PartItem};
 use super::material::Palette;
@@ -22,7 +21,7 @@ struct Cost {
 }
 
 impl Cost {
-    /// The cost of what an item holds, whose names begin with the item's.
+    /// Returns the cost of an item's content, whose names begin with the item's.
     fn inside(self, item: &Item) -> Self {
         Self {
             size: self.size.with_longer_names(item.name.len() + 1),
@@ -82,7 +81,7 @@ impl<'c> Census<'c> {
         for (name, group) in unused {
             let place = self.source.place(&group.span);
             warnings.push(format!("{place}: the group {name:?} is placed nowhere"));
-            // What is never placed must still make sense.
+            // Groups that are never placed must still be valid.
             self.open.push(name);
             self.items(&group.items, 1)?;
             self.open.pop();

@@ -7,7 +7,7 @@ use glam::{DAffine3, DQuat, DVec3};
 use gridel_core::format::track::ValueKind;
 use std::collections::HashSet;
 
-/// What of an import is taken over.
+/// The parts of an import that are adopted.
 pub(super) struct ImportPlace<'p> {
     pub(super) camera: bool,
     /// The number of its first light.
@@ -44,7 +44,8 @@ impl ImportPlace<'_> {
     }
 }
 
-/// A scene's own tracks, and those of imports of what it does not move itself.
+/// Returns a scene's own tracks, and tracks of imports for the properties that it does not move
+/// itself.
 pub(super) fn with_imported(mut own: Vec<Track>, imported: Vec<Track>) -> Vec<Track> {
     let aims = own.iter().any(|track| {
         let target = track.target;
@@ -116,7 +117,7 @@ pub(super) fn moved(track: &Track, by: &DAffine3) -> Option<Track> {
 
 /// The rotation of a transform that turns and scales alike in all directions.
 fn rotation_of(by: &DAffine3) -> Option<DQuat> {
-    /// Far above rounding, and far below what is seen.
+    /// Far above rounding, and far below visible differences.
     const TOLERANCE: f64 = 1e-9;
     let scale = by.matrix3.determinant().cbrt();
     let turns = by.matrix3 * (1.0 / scale);
@@ -125,7 +126,7 @@ fn rotation_of(by: &DAffine3) -> Option<DQuat> {
     is_rotation.then(|| DQuat::from_mat3(&turns))
 }
 
-/// The error of what cannot follow the transform of its import.
+/// Returns the error of a track that cannot follow the transform of its import.
 pub(super) fn lost(source: &Source, item: &Item, what: &str) -> SceneError {
     source.error(
         &item.span,

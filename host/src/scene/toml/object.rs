@@ -16,7 +16,7 @@ use std::rc::Rc;
 /// The keys of every object.
 const KEYS: &[&str] = &["kind", "name", "material"];
 
-/// The kinds of objects beside those that [`Shape`] has.
+/// The kinds of objects besides those that [`Shape`] has.
 const KINDS: [&str; 5] = ["triangle", "mesh", "group", "instance", "import"];
 
 /// Reads objects, and the files that they import.

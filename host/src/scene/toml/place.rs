@@ -20,7 +20,7 @@ pub(super) struct Placer<'p> {
     groups: &'p BTreeMap<String, Group>,
     palette: &'p mut Palette,
     placed: Placed,
-    /// Whether the objects are those of a part, which holds no instances.
+    /// True if the objects are those of a part, which holds no instances.
     in_part: bool,
     /// The first part of each import that has some, by the import, its materials here, and how smooth it is made.
     imported: HashMap<(*const Scene, Vec<usize>, Option<u64>), usize>,
@@ -29,7 +29,7 @@ pub(super) struct Placer<'p> {
     size: Size,
 }
 
-/// What the tables of a file come to.
+/// The placed content of a file's tables.
 #[derive(Default)]
 pub(super) struct Placed {
     pub(super) objects: Vec<Object>,

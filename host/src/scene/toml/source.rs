@@ -16,8 +16,8 @@ pub(crate) type Span = Range<usize>;
 pub(crate) struct Source {
     pub(crate) path: Arc<PathBuf>,
     text: String,
-    /// The offset at which each line starts; counting lines anew for every object would make long
-    /// files quadratic.
+    /// The offset at which each line starts. Counting lines again for every object would take
+    /// quadratic time for long files.
     line_starts: Vec<usize>,
 }
 

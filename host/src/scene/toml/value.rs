@@ -157,7 +157,7 @@ impl<'a> Value<'a> {
         }
     }
 
-    /// A color of which no channel is above 1: a surface reflects no more than arrives.
+    /// Reads a color with no channel above 1: a surface reflects no more than arrives.
     pub(crate) fn reflectance(self) -> Result<Color, SceneError> {
         self.color_up_to(
             1.0,

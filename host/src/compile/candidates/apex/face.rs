@@ -1,4 +1,4 @@
-//! The faces of a cube of directions around an apex, and what is seen through each.
+//! The faces of a cube of directions around an apex, and the candidates behind each.
 
 use super::super::bundle::{Bundle, Ranges, Rays};
 use super::super::target::Target;
@@ -11,7 +11,7 @@ const WIDER: f64 = 1.02;
 /// 2^30, the ratio 1.
 pub(super) const ONE: f64 = 1_073_741_824.0;
 
-/// A face of a cube of directions, and what is seen through it.
+/// A face of a cube of directions, and the candidates behind it.
 pub(super) struct Face {
     pub(super) bundle: Bundle,
     /// The content of a window there.

@@ -162,7 +162,7 @@ impl<'t> Window<'t> {
         let shaft = self.bundle.shaft(ranges, self.last);
         let mut sight = Sight::new(&self.bundle, ranges);
         let mut met: Vec<(f64, u32)> = Vec::new();
-        // The least depth of what is left out.
+        // The least depth of the omitted candidates.
         let mut cut = f64::INFINITY;
         for &place in &self.columns[column as usize] {
             let one = &self.seen[place as usize];

@@ -200,7 +200,7 @@ fn cameras_and_animations_are_chosen_by_name() {
     }
     let top = chosen(&document, choice(Some("top"), Some("dolly"))).unwrap();
     assert_eq!(top.scene.camera.unwrap().eye, DVec3::new(0.0, 9.0, 0.0));
-    // Of the light alone.
+    // The track of the light alone.
     assert_eq!(top.scene.tracks.len(), 1);
     let error = chosen(&document, choice(Some("side"), None)).unwrap_err();
     assert!(

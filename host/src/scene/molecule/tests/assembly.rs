@@ -192,7 +192,7 @@ fn faults_of_remarks_name_line_cause_and_remedy() {
         assert_eq!(error.line, line, "{error}\n{text}");
         assert!(error.cause.contains(cause), "{error}\n{text}");
         assert!(error.remedy.contains(remedy), "{}", error.remedy);
-        // Nobody asks for the assembly, so nothing is wrong.
+        // No option selects the assembly, so nothing is wrong.
         assert!(pdb(&text).is_ok());
     }
 }
