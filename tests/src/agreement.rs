@@ -54,7 +54,7 @@ pub struct Tally {
 
 /// Compares all structures on rays, and on a ray from every tenth surface that they meet.
 ///
-/// The list is asked for as many rays as fit `list_tests` tests of primitives.
+/// Brute force traces as many rays as fit `list_tests` tests of primitives.
 pub fn compare<N: Number>(
     name: &str,
     scene: &Scene<'_>,

@@ -2,7 +2,7 @@
 
 use std::env;
 
-/// Returns whether the environment asks for all that the project promises, by `GRIDEL_FULL=1`.
+/// Returns whether the environment requests all that the project promises, by `GRIDEL_FULL=1`.
 pub fn full() -> bool {
     env::var_os("GRIDEL_FULL").is_some_and(|value| value == "1")
 }

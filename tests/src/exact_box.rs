@@ -1,4 +1,4 @@
-//! Whether a ray meets a box, in integers, without any rounding.
+//! Tests whether a ray meets a box, in integers, without any rounding.
 
 use gridel_core::format::record::UnitBox;
 

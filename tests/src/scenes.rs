@@ -216,8 +216,8 @@ pub fn fixtures() -> Vec<(String, Scene)> {
     paths.iter().map(|path| (name(path), read(path))).collect()
 }
 
-/// A file of real scenes: below `GRIDEL_SCENES`, or in the folder `shared/scenes` beside the
-/// repository. Tests that need one are passed over, loudly, where it is absent.
+/// Returns a file of real scenes: below `GRIDEL_SCENES`, or in the folder `shared/scenes` next to the repository. Tests
+/// that need one are skipped, with a message, where it is absent.
 pub fn real(name: &str) -> Option<PathBuf> {
     let folder = std::env::var_os("GRIDEL_SCENES").map_or_else(
         || Path::new(env!("CARGO_MANIFEST_DIR")).join("../../shared/scenes"),

@@ -8,7 +8,7 @@ use gridel_host::accuracy::{
 use gridel_host::measure::board::PICTURE_COSTS;
 use gridel_tests::scenes;
 
-/// A sweep of a small picture, timed by what it counts so that the test does not depend on clocks.
+/// A sweep of a small picture. Its times are its counts, so that the test does not depend on clocks.
 fn swept(name: &str) -> Results {
     let path = scenes::fixture_folder().join(name).with_extension("toml");
     let scene = scenes::read(&path);
@@ -131,7 +131,7 @@ fn parts_of_errors_are_those_of_formats_and_samples(results: &Results) {
     }
 }
 
-/// Every effect of the scene has a setting without it, and the first to go changes the picture least for what it saves.
+/// Every effect of the scene has a setting without it. The first to leave out changes the picture least for its saving.
 fn effects_are_ordered_by_what_they_are_worth(results: &Results) {
     let base = results.base;
     let left_out = |it: &&Point| it.setting.differs(&base) == [Parameter::Effects];

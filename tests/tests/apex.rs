@@ -65,7 +65,8 @@ fn fallen_back<N: Number, A: Accel>(scene: &Scene<'_>, rays: &[Ray<N>]) -> usize
 fn apexes_serve_the_rays_of_the_eye_and_of_lights() {
     fn in_format<N: Number>(name: &str, scene: &Scene<'_>) {
         let rays = PictureRays::<N>::of(scene, settings(scene)).expect("rays");
-        // What misses everything may miss the windows too, and then asks the hierarchy's root.
+        // A ray that misses everything may miss the windows too, and then starts at the hierarchy's
+        // root.
         let meets = |ray: &&Ray<N>| any::<N, List>(scene, ray);
         let seen: Vec<_> = rays.primary.iter().filter(meets).copied().collect();
         let format = N::FORMAT.name();

@@ -176,7 +176,7 @@ fn in_planes(random: &mut Random, planes: usize) -> Case {
     case
 }
 
-/// Whether the core takes the box for one that the ray may meet: in the form that this machine
+/// Returns whether the core finds that the ray may meet the box: in the form that this machine
 /// culls with, and in integers.
 fn taken<N: Number>(case: &Case) -> bool {
     let origin = case.origin.map(|x| x as f64 / 256.0);

@@ -196,7 +196,7 @@ fn lenses_of_all_sizes_bring_light() {
     }
 }
 
-/// A ray of the caller's own passes no lens: it shows what it shows in the same scene with a pinhole.
+/// A ray of the caller's own passes no lens. It shows the same as in that scene with a pinhole.
 #[test]
 fn rays_of_the_callers_own_pass_no_lens() {
     every_format!(shows_what_a_pinhole_shows());

@@ -1,5 +1,5 @@
-//! Fixed point (hard cases E). The operations themselves are tested beside `Fixed` in the core,
-//! mirrors and scales in `transforms`, watertight meshes in `watertight`.
+//! Fixed point (hard cases E). The operations themselves are tested with `Fixed` in the core, mirrors and scales in
+//! `transforms`, watertight meshes in `watertight`.
 //!
 //! A number that wraps panics, in these and in all other tests of the project: they are built with the core's feature
 //! `strict-ranges`.

@@ -325,8 +325,8 @@ fn mirrors_do_not_matter() {
     }
 }
 
-/// Cells that would take too much memory are rejected with the figure; where none are asked for,
-/// there are fewer.
+/// Cells that would take too much memory are rejected with the figure. Without a given number of
+/// cells, there are fewer.
 #[test]
 fn memory_is_bounded() {
     let big = |_| {

@@ -51,7 +51,7 @@ fn blob(text: &str) -> Blob {
 fn closed_furnace_has_the_analytic_radiance() {
     for (albedo, emission) in [(0.5, 0.1), (0.8, 0.1)] {
         let exact = emission / (1.0 - albedo);
-        // What more than 32 bounces bring: 0.06 % of a radiance at an albedo of 0.8.
+        // The light of more than 32 bounces: 0.06 % of a radiance at an albedo of 0.8.
         let brought = exact * (1.0 - f64::powi(albedo, 33));
         assert!((brought / exact - 1.0).abs() < 0.002);
         check("furnace", &room(albedo, emission, false, 32), brought);
@@ -63,7 +63,7 @@ fn closed_furnace_has_the_analytic_radiance() {
     }
 }
 
-/// The same where each wall is a light as well: nothing is brought twice, and nothing is lost.
+/// A furnace where each wall is a light as well: no light counts twice, and none is lost.
 #[test]
 fn light_of_lights_is_brought_once() {
     for format in Format::ALL {

@@ -142,7 +142,7 @@ fn a_box_on_a_large_ground_keeps_its_shadow() {
             let right = picture(&blob, Format::F64, size);
             let off = |format| differing(&picture(&blob, format, size), &right);
             let (f32, fixed) = (off(Format::F32), off(Format::Fixed));
-            // What a step of the lattice changes is what the scene itself is known to.
+            // A step of the lattice is the uncertainty of the scene itself; this is its effect on the picture.
             let mut looked = plain.clone();
             if let Some(camera) = &mut looked.camera {
                 camera.eye += report.step;

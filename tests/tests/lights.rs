@@ -202,7 +202,7 @@ fn surfaces_that_glow_light_others_and_are_seen() {
     );
     let blob = scene("", "[278, 30, 279.6]", "[278, 0, 279.6]", &mesh);
     check("mesh", &blob, 15.0 * 0.044_632_5 / PI);
-    // Of a box, the lower face alone is seen from below.
+    // Only the lower face of a box is visible from below.
     let cuboid = format!(
         "{lamp}\n[[object]]\nkind = 'box'\nmin = [213, 548.8, 227]\nmax = [343, 600, 332]\nmaterial = 'lamp'\n{FLOOR}"
     );

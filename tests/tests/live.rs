@@ -139,7 +139,7 @@ fn a_camera_at_run_time_is_the_one_that_is_compiled() {
                 continue;
             }
             compared += 1;
-            // What the scene lacks and was supplied depends on whether it has a camera.
+            // The supplied defaults depend on whether the scene has a camera.
             let same_surroundings =
                 background == [compiled.view().background, compiled.view().ambient];
             let frame = |view: &View| (view.eye, view.forward, view.right, view.up);

@@ -198,7 +198,7 @@ fn surfaces_are_lit_as_if_they_had_the_normals_of_the_image() {
     }
 }
 
-/// A flat image, and one without a scale, changes nothing but for rounding.
+/// A flat image, and one without a scale, change only roundings.
 #[test]
 fn flat_normals_are_those_of_the_mesh() {
     let plain = |smooth: bool| {
@@ -341,7 +341,7 @@ fn light_behind_a_triangle_does_not_reach_its_front() {
     }
 }
 
-/// What a bumpy mirror reflects is before it, and never what is behind.
+/// A ray off a bumpy mirror shows objects before the mirror, and never those behind it.
 #[test]
 fn mirrored_rays_stay_before_the_surface() {
     for smooth in [false, true] {

@@ -1,8 +1,8 @@
 //! Pictures: the same bytes however they are made, and what physics demands of them.
 //!
 //! `fixtures/check.toml` holds a hash of a small picture of every fixture in every number format,
-//! and what it costs. After a change that is meant to change these, `gridel check --bless
-//! fixtures/check.toml` writes them anew; the difference belongs into the same commit.
+//! and its costs. After an intended change of these, `gridel check --bless fixtures/check.toml`
+//! writes them again; the difference belongs into the same commit.
 
 use glam::DVec3;
 use gridel_core::format::limits::MAX_STACK_DEPTH;

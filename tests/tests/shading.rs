@@ -1,6 +1,6 @@
-//! Light at surfaces (hard cases F): glass is left as often as it is entered, contact is
-//! kept, lights do not shadow themselves. Laws of single surfaces are tested beside `glass` in the
-//! core, self-hits in `shapes`, pictures in `render`.
+//! Light at surfaces (hard cases F): rays leave glass as often as they enter it, contact is kept,
+//! lights do not shadow themselves. Laws of single surfaces are tested with `glass` in the core,
+//! self-hits in `shapes`, pictures in `render`.
 
 use glam::DVec3;
 use gridel_core::{Flagged, Format, Hit, List, NoCount, Number, Scene, Settings, Structure};

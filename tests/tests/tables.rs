@@ -1,11 +1,10 @@
 //! The paper's tables, as counts: what each structure tests per ray, over the rays of three pictures.
 //!
-//! Each scene has about as many objects as the paper's: a glass chessboard and two crystals in place
-//! of molecules. `fixtures/recorded/structures.json` holds what was counted last, beside the paper's
-//! figures, and the README prints it. Counts must not drift: in integers they are the same on every
-//! machine. The ordinary test casts the rays of a picture of 64 by 64 pixels; with `--ignored` those
-//! of the paper's 256 by 256. `GRIDEL_RECORD_TABLES=1` records anew; read the difference before it
-//! is committed.
+//! Each scene has about as many objects as the paper's: a glass chessboard and two crystals in place of molecules.
+//! `fixtures/recorded/structures.json` holds the last counts with the paper's figures, and the README prints it. Counts
+//! must not drift: in integers they are the same on every machine. The ordinary test casts the rays of a picture of 64
+//! by 64 pixels; with `--ignored` those of the paper's 256 by 256. `GRIDEL_RECORD_TABLES=1` records again; read the
+//! difference before it is committed.
 
 use gridel_core::{Format, Structure};
 use gridel_host::compare::{Comparison, Options, compare};

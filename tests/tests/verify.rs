@@ -1,4 +1,4 @@
-//! `verify` finds nothing wrong with what is right, and everything that is made wrong on purpose.
+//! `verify` finds no fault in right answers, and every fault that is made on purpose.
 
 use glam::{DQuat, DVec3, EulerRot};
 use gridel_core::accel::{Space, StackView, StructureViews, Traverse};
@@ -265,7 +265,7 @@ fn with_hit(change: impl Fn(&mut Hit<f64>)) -> impl Fn(&mut StructureAnswer<f64>
 #[test]
 fn mutated_answers_are_caught() {
     assert_eq!(broken_by(|_| ()), []);
-    // Of one structure.
+    // One structure is broken.
     let flagged = |heard: &StructureAnswer<f64>| heard.structure == Structure::Flagged;
     let lost = broken_by(|heard| {
         if flagged(heard) {
@@ -281,7 +281,7 @@ fn mutated_answers_are_caught() {
     assert_eq!(last_bit, [Property::Structures]);
     let no_shadow = broken_by(|heard| heard.any = false);
     assert_eq!(no_shadow, [Property::AnyHit]);
-    // Of all of them.
+    // All structures are broken.
     let blind = broken_by(|heard| (heard.hit, heard.any) = (None, false));
     assert_eq!(blind, [Property::Answers]);
     assert_eq!(

@@ -164,7 +164,7 @@ fn closed_meshes_have_no_hole_and_no_double_edge() {
     }
 }
 
-/// Counts leaks of a closed mesh; the list is asked for every `list_step`th ray.
+/// Counts leaks of a closed mesh; brute force traces every `list_step`th ray.
 fn no_leaks<N: Number>(name: &str, scene: &Scene<'_>, from: [f64; 3], list_step: usize) {
     let targets = vertices_and_edges(scene);
     let all = || targets.iter().copied().step_by(step());

@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 /// The inputs in a folder, in the order of the files' names.
 ///
 /// # Panics
-/// If there are none.
+/// If the corpus is empty.
 pub fn corpus(folder: &Path) -> Vec<Vec<u8>> {
     let entries = std::fs::read_dir(folder).expect("the corpus is committed");
     let mut paths: Vec<PathBuf> = entries.map(|it| it.expect("an entry").path()).collect();

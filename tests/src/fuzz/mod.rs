@@ -22,7 +22,7 @@ use gridel_host::blob::Blob;
 use gridel_host::state::{State, StateError};
 use std::mem::offset_of;
 
-/// Rays that a loaded blob is asked about, in each number format.
+/// Rays that are traced through a loaded blob, in each number format.
 const RAYS: usize = 15;
 
 /// Seals bytes as a blob, loads it, and holds every structure to brute force.

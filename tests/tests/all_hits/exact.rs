@@ -83,7 +83,7 @@ fn triangles_are_listed_as_exact_arithmetic_finds_them() {
             let origin = [0, 1, 2].map(|k| corner[k] - 1024 * slope[k]);
             let mut moved = [1_i128 << 20, 1];
             if N::FORMAT == Format::Fixed {
-                // What is seen is turned into the ray's direction there.
+                // The projected point is turned into the ray's direction there.
                 for (place, moved) in moved.iter_mut().enumerate() {
                     if slope[(major_axis(slope) + 1 + place) % 3] < 0 {
                         *moved = -*moved;

@@ -103,8 +103,8 @@ fn pack_radii_that_wrap_are_rejected() {
     }
 }
 
-/// A vertex beyond 32767 units has a box that ends at -32768, if it wraps; among other triangles of the
-/// strip nobody sees it.
+/// A vertex beyond 32767 units has a box that ends at -32768, if it wraps. Among other triangles of the strip it goes
+/// unnoticed.
 #[test]
 fn strip_vertices_that_wrap_are_rejected_or_in_no_triangle() {
     let bytes = alone(Structure::Wide, &scenes::of([scenes::sheet(4)]), 24);
@@ -146,7 +146,7 @@ fn homes_of_triangles_without_records_are_rejected() {
     let shared = compile(&scene, &shared).expect("compiles").blob;
     works(&shared.scene().expect("a scene"), 20);
     assert!(section(shared.bytes(), SectionKind::SlotLocations).1.count > 0);
-    // The same without the pairs, the leaves and the triangles' records and slots.
+    // The blob without the pairs, the leaves and the triangles' records and slots.
     let mut base = Base::of(shared.bytes());
     base.remove(&[
         SectionKind::Pairs,

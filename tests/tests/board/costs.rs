@@ -172,7 +172,7 @@ fn everything_on_a_board(board: &'static Board, format: Format) {
     linked.check();
 }
 
-/// The same through the other structures that boards prevalidate.
+/// Measures everything through the other structures that boards prevalidate.
 fn everything_through_other_structures(board: &'static Board, format: Format) {
     let mut linked = Linked::new();
     let others = Prevalidated::STRUCTURES.into_iter();

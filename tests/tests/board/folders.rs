@@ -105,7 +105,7 @@ impl Claim {
         while cores.len() > KEPT {
             let oldest = cores.pop_front().map(|oldest| oldest.files);
             for file in oldest.into_iter().flatten() {
-                // Cargo builds anew what is missing; what is still there only takes room.
+                // Cargo builds missing files again; the others only take room.
                 let _ = fs::remove_file(file);
             }
         }

@@ -4,8 +4,8 @@
 //! (`rustup target add`). A test without what its board needs is ignored and says why; it fails if
 //! `GRIDEL_REQUIRE_BOARDS` is 1. The ordinary run has a picture of every board, `GRIDEL_FULL=1` all.
 //!
-//! `fixtures/recorded/board.json` holds what was measured last: nothing may grow by more than 2 %.
-//! `GRIDEL_RECORD_BOARDS=1` records anew; read the difference before it is committed.
+//! `fixtures/recorded/board.json` holds the last measurements: nothing may grow by more than 2 %.
+//! `GRIDEL_RECORD_BOARDS=1` records again; read the difference before it is committed.
 
 #[path = "../../firmware/src/arm.rs"]
 mod arm;
@@ -120,7 +120,7 @@ fn pictures(plan: &mut Plan) {
             .run(move || picture_is_the_hosts(board, format, &scenes::glass_chess()));
     }
 
-    // What 8 KiB of RAM and 128 KiB of flash are enough for, and 16 KiB and 256 KiB.
+    // Scenes that fit 8 KiB of RAM and 128 KiB of flash, and 16 KiB and 256 KiB.
     let discovery = board("stm32vldiscovery");
     type Make = fn() -> Compiled;
     let large: [(&str, &'static Board, Make); 4] = [

@@ -110,7 +110,7 @@ impl Linked {
         let _one_at_a_time = FILE.lock().unwrap_or_else(|poison| poison.into_inner());
         let text = fs::read(path()).expect("a table of programs");
         let mut recorded: Programs = serde_json::from_slice(&text).expect("a table of programs");
-        // What once had code for all parts, before there were more, is built no more.
+        // Removes programs that once had code for all parts, before there were more; they are not built any more.
         let all: Vec<&str> = everything().collect();
         let has_all = |parts: &[&str]| all.iter().all(|part| parts.contains(part));
         recorded.retain(|parts| !parts.contains(&"display-values") || has_all(parts));

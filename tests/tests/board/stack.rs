@@ -65,7 +65,7 @@ impl CallGraph {
             let mut decoded = Decoded::default();
             code.decode(range.clone(), decoder, &mut decoded);
             let frame = match (stated.get(&range.start), decoded.frame) {
-                // What small code has in common; the compiler states no frame of it.
+                // Code that functions of a small build share; the compiler states no frame of it.
                 (Some(&stated), Some(found)) if name.starts_with("OUTLINED_FUNCTION_") => {
                     stated.max(found)
                 }
@@ -227,7 +227,7 @@ fn taken_addresses(
             SectionKind::Data,
         ];
         let allocated = kinds.contains(&section.kind());
-        // The hardware calls what the vector table names; nobody unwinds.
+        // The hardware calls the functions of the vector table; nothing unwinds.
         if !allocated || [".vector_table", ".ARM.exidx"].contains(&section_name) {
             continue;
         }
@@ -285,7 +285,7 @@ struct Decoded {
     /// Bytes by which the stack pointer falls; `None` if that is unknown.
     frame: Option<u64>,
     targets: Vec<u64>,
-    /// Whether it calls an address in a register.
+    /// True if it calls an address in a register.
     calls_register: bool,
     /// A register and an upper part that was put into it (RV32).
     upper: Option<(u32, u32)>,

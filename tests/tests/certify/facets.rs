@@ -34,7 +34,7 @@ impl Facets {
         (&square + (one() - &square) * cos * cos).sqrt()
     }
 
-    /// What masks the ways in and out together: `cos_out` slant_in + `cos_in` slant_out.
+    /// Returns the joint masking of the ways in and out: `cos_out` slant_in + `cos_in` slant_out.
     fn masking(&self, cos_out: &Real) -> Real {
         cos_out * self.slant(&self.cos_in) + &self.cos_in * self.slant(cos_out)
     }
@@ -101,7 +101,8 @@ impl Facets {
 }
 
 impl Exact<'_> {
-    /// What the facets of a rough surface mirror of a light that rays do not meet; `None` of others.
+    /// Returns the light that the facets of a rough surface mirror, for a light that rays do not
+    /// hit; `None` for others.
     pub fn mirrored_light(
         &self,
         surface: &Surface<'_>,

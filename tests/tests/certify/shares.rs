@@ -25,9 +25,9 @@ const REAL: [(&str, bool); 13] = [
     ("molecules/3dqb.pdb", false),
 ];
 
-/// Of the fixtures and real scenes, the least part that is proved.
+/// The least proved part of the fixtures and real scenes.
 const LEAST: f64 = 0.99;
-/// Of the Standard Procedural Databases without glass.
+/// The least proved part of the Standard Procedural Databases without glass.
 const LEAST_WITHOUT_GLASS: f64 = 0.999;
 
 fn row(name: &str, [width, height]: [u16; 2], pixels: &[Enclosed]) -> String {
@@ -57,7 +57,7 @@ fn rows() -> Vec<&'static str> {
     table.lines().skip(2).collect()
 }
 
-/// With `GRIDEL_FULL=1` the table is measured anew; else small pictures stand for large ones.
+/// With `GRIDEL_FULL=1` the table is measured again; otherwise small pictures replace large ones.
 #[test]
 fn the_share_of_proved_pixels_is_as_large_as_promised() {
     let mut measured = Vec::new();
@@ -104,7 +104,7 @@ fn the_share_of_proved_pixels_is_as_large_as_promised() {
     }
 }
 
-/// The table has every scene, and no share below what is promised.
+/// The table has every scene, and no share below the promised one.
 #[test]
 fn the_table_of_proved_pixels_is_complete() {
     let rows = rows();

@@ -77,12 +77,12 @@ impl Exact<'_> {
         Some(Aim::far(way, color(brought, 20)))
     }
 
-    /// What a ray of a kind brings that meets nothing.
+    /// Returns the light of a ray that hits nothing, by its kind.
     pub fn missed(&self, kind: RayKind, direction: &Vector) -> Vector {
         let Some(record) = self.scene.environment() else {
             return color(self.scene.view().background, 20);
         };
-        // What lights up a surface as a light of the scene, rays do not bring again.
+        // Rays do not bring the light again that reaches a surface as a light of the scene.
         let (sees_map, sees_sun) = match kind {
             RayKind::Primary | RayKind::Reflected | RayKind::Refracted => (true, true),
             RayKind::Glossy => (true, false),

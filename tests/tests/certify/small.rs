@@ -1,4 +1,4 @@
-//! Small scenes, each of which has what the fixtures do not.
+//! Small scenes with the features that the fixtures lack.
 
 use gridel_host::scene::{Alpha, ImportOptions, Scene, read};
 use gridel_tests::scenes;
@@ -117,7 +117,7 @@ fn lamps() -> String {
     )
 }
 
-/// Rough glass by itself, and media that overlap, of which one is rough and one absorbs; glass and a stone within.
+/// Rough glass alone, and overlapping media, one rough and one absorbing. Glass and a stone lie within.
 fn rough_glass() -> String {
     format!(
         "background = [0.3, 0.5, 0.8]\nambient = 0.1\n{CAMERA}\

@@ -29,7 +29,7 @@ fn ball() -> Shape {
 fn placed_ball(scene: &Loaded<'_>, record: &Record) -> (DVec3, f64) {
     let sides = scene.parts()[usize::from(record.part)].bounds().0;
     let half = sides.map(|[low, high]| (f64::from(high) - f64::from(low)) / 2.0);
-    // Boxes lie up to a unit beside.
+    // Boxes are off by up to a unit.
     let radius = half.into_iter().fold(0.0, f64::max);
     let middle =
         DVec3::from_array(sides.map(|[low, high]| (f64::from(low) + f64::from(high)) / 2.0));

@@ -31,7 +31,7 @@ fn corners(scene: &Scene<'_>) -> impl Iterator<Item = [[i32; 3]; 3]> {
     (0..scene.count(Kind::Triangle)).map(|slot| scene.triangle(slot).expect("a triangle"))
 }
 
-/// Whether an even number of triangles meet at every edge.
+/// Returns whether an even number of triangles meet at every edge.
 fn is_closed(scene: &Scene<'_>) -> bool {
     let mut edges: HashMap<[[i32; 3]; 2], usize> = HashMap::new();
     for [a, b, c] in corners(scene) {

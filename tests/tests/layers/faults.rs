@@ -35,7 +35,7 @@ pub(super) fn faults(sources: &[Source], order: &[&str]) -> Vec<String> {
             }
         }
     }
-    // The file that declares what a path names, through whatever passes it on.
+    // Finds the file that declares the item of a path, through all re-exports.
     let declares = |mut path: Module| {
         for _ in 0..modules.len() {
             let mut length = path.len();

@@ -87,7 +87,7 @@ impl Left {
                 let normal = side * DVec3::from_array(hit.normal.map(N::ratio_to_f64));
                 let mut way = outward(random, normal);
                 if !solid.is_bounded() {
-                    // What is nearly parallel to it meets it somewhere, or not, as slopes are rounded.
+                    // A ray nearly parallel to it hits it somewhere, or not, as slopes are rounded.
                     way += normal * f64::powi(2.0, -16);
                 }
                 let from = depart(&scene, &hit, side > 0.0);
@@ -141,7 +141,7 @@ fn no_self_hits<N: Number>(shape: usize, shapes: usize, rays_each: usize) {
     left.report::<N>(SHAPES[shape]);
 }
 
-/// A ground as large as the lattice whose top lies about a height, level or nearly so.
+/// A ground as large as the lattice. Its top lies near a height, level or nearly so.
 fn ground(random: &mut Random, shape: usize) -> (Solid, f64) {
     // Spheres and cones reach twice as far down.
     let most = if matches!(SHAPES[shape], "triangle" | "box" | "disc") {

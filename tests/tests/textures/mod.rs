@@ -1,4 +1,5 @@
-//! Colors of vertices and textures: every number format and structure shows what is computed here from the definition.
+//! Colors of vertices and textures: every number format and structure shows the values that these tests compute from
+//! the definition.
 
 mod alpha;
 
@@ -120,7 +121,7 @@ fn places() -> impl Iterator<Item = (usize, [f64; 2])> {
     all.filter(|(_, [x, y])| x.abs() < 0.98 && y.abs() < 0.98)
 }
 
-/// What the square shows at a place by interpolation between the corners of its two triangles.
+/// Returns the square's value at a place by interpolation between the corners of its two triangles.
 fn interpolated<const N: usize>([x, y]: [f64; 2], corners: [[f64; N]; 4]) -> [f64; N] {
     let (x, y) = (0.5 * (x + 1.0), 0.5 * (y + 1.0));
     std::array::from_fn(|k| {
