@@ -1,5 +1,5 @@
-//! Camera and lights of a blob in scene units: read from it, and placed in it as a program on a device places
-//! its own.
+//! Camera and lights of a blob in scene units. They are read from a blob, and placed in it as a program on a device
+//! places its own.
 
 use crate::compile::{CompileError, light_record, place};
 use crate::scene::{Camera, Light};
@@ -50,11 +50,11 @@ impl Camera {
         }
     }
 
-    /// The view of a blob with this camera in place of its own, to the bit as if it were compiled with it.
+    /// Returns the view of a blob with this camera in place of its own. It equals a blob compiled with this camera, bit
+    /// for bit.
     ///
     /// # Errors
-    /// If the camera looks nowhere or along the direction that points up, or its eye lies beyond the blob's
-    /// scene coordinates.
+    /// If the camera has no direction or looks along up, or its eye lies beyond the blob's scene coordinates.
     pub fn in_blob(&self, scene: &Scene<'_>) -> Result<View, CompileError> {
         Ok(place(self, scene.header())?.view(scene))
     }

@@ -10,7 +10,7 @@ use tempfile::NamedTempFile;
 static UNFINISHED: Mutex<Vec<PathBuf>> = Mutex::new(Vec::new());
 
 fn unfinished() -> MutexGuard<'static, Vec<PathBuf>> {
-    // A list of paths is whole even if the thread that held it panicked.
+    // A list of paths is complete even if the thread that locked it panicked.
     UNFINISHED.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
@@ -99,8 +99,8 @@ impl Files {
     /// Gives all of them their names.
     ///
     /// # Errors
-    /// If one cannot be replaced, which [`add`](Self::add) has seen to be possible; with its path.
-    /// Then those before it are there, and those behind it are not.
+    /// If one cannot be replaced, though [`add`](Self::add) found that it can; with its path. Then
+    /// the files before it exist, and those after it do not.
     pub fn keep(mut self) -> Result<(), (PathBuf, io::Error)> {
         let mut unfinished = unfinished();
         let mut files = std::mem::take(&mut self.complete).into_iter();
@@ -122,7 +122,7 @@ impl Drop for Files {
         let mut unfinished = unfinished();
         for (file, _) in self.complete.drain(..) {
             unfinished.retain(|path| path != file.path());
-            // It removes itself here, before anybody else can see the list.
+            // It removes itself here, before others can see the list.
             drop(file);
         }
     }

@@ -133,7 +133,7 @@ impl RenderMetadata {
     }
 }
 
-/// The checksum of the values of a scene that a program may put others in place of.
+/// Returns the checksum of the values of a scene that a program may replace.
 fn checksum_of_view(scene: &Scene<'_>) -> u32 {
     let parts: [&[u8]; 3] = [
         bytemuck::bytes_of(scene.view()),

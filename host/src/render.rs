@@ -168,7 +168,8 @@ const SHADOWED: u32 = Effects::SHADOW.0;
 pub(crate) const OPAQUE: u32 = Effects::ALL.without(Effects::FILTERING).0;
 pub(crate) const ALL: u32 = Effects::ALL.0;
 
-/// WebAssembly is sent to pages, so it has no code for what other code does as well: what counts draws all pictures.
+/// WebAssembly is downloaded by pages, so it has no second code for the same work: the code that counts draws all
+/// pictures.
 pub(crate) const PAGE: bool = cfg!(target_family = "wasm");
 
 /// True if no structure has code of its own. The library's own tests compile all of it again.

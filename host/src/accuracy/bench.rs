@@ -217,7 +217,7 @@ impl<'s> Bench<'s> {
         Ok(checksum(self.blob(&base)?.bytes()))
     }
 
-    /// Returns what became of the scene's instances; `None` without any.
+    /// Returns the treatment of the scene's instances; `None` without any.
     pub fn instances(&mut self) -> Result<Option<InstanceCount>, MeasureError> {
         let (base, copied) = (self.base(), self.copied);
         Ok(InstanceCount::of(&self.blob(&base)?.scene()?, copied))
@@ -305,7 +305,7 @@ impl<'s> Bench<'s> {
         Ok(exact)
     }
 
-    /// Measures a setting but for its time; its pixels, too.
+    /// Measures a setting without its time; returns its pixels, too.
     pub fn measure(
         &mut self,
         setting: &Setting,

@@ -28,7 +28,7 @@ pub struct Worth {
     pub time_range: Option<[f64; 2]>,
     /// Bytes of the blob.
     pub blob_bytes: i64,
-    /// Instructions per pixel, the least and the most, on [`BOARD`] in its best number format; `None` where the format
+    /// The least and the most instructions per pixel on [`BOARD`] in its best number format; `None` where the format
     /// was not measured there.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub instructions: Option<[f64; 2]>,

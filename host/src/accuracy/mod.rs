@@ -59,8 +59,8 @@ impl Results {
     }
 }
 
-/// Which points nothing beats: no other is as right at a cost that is surely no higher, and better in one
-/// of the two. Costs are those of [`Cost::is_below`].
+/// Returns which points are not beaten. A point beats another if its error is no larger, its cost certainly no higher,
+/// and one of the two is better. Costs are those of [`Cost::is_below`].
 pub fn frontier(points: &[Point]) -> Vec<bool> {
     frontier_by(points, |point| point.errors.rmse)
 }

@@ -188,7 +188,7 @@ fn data(size: [u16; 2], results: &Results, pictures: &[PagePicture]) -> io::Resu
         "pictures": images.images,
         "reference": reference,
     });
-    // A script ends at the first end mark, wherever it stands.
+    // A script ends at the first end mark, also within a text.
     Ok(data.to_string().replace('<', "\\u003c"))
 }
 

@@ -35,7 +35,8 @@ impl Truth {
     }
 }
 
-/// The exact picture, linear, 65535 being white, and how many of its pixels are open: of those the middle is taken.
+/// Returns the exact picture, linear, 65535 being white, and how many of its pixels are open. Open pixels have the
+/// middle of their interval.
 pub(super) fn exact_pixels(
     scene: &Scene<'_>,
     settings: &Settings,

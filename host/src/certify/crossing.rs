@@ -22,7 +22,7 @@ pub enum Start {
     Free,
     On {
         instance: u32,
-        /// The first primitive of its form: of those, each is left alike.
+        /// The first primitive of its form. A ray leaves all primitives of one form equally.
         twin: u32,
         part: u8,
         /// The surface that the start lies in, if primitives may share it.
@@ -72,7 +72,7 @@ pub fn exact<N: Enclosure>(v: [i64; 3]) -> Three<N> {
 }
 
 impl<N: Enclosure> Crossing<N> {
-    /// Adds a crossing if its t is above 0, as far as is known.
+    /// Adds a crossing if its t may be above 0.
     pub fn keep(mut self, found: &mut Vec<Self>) {
         match positive(self.t) {
             Some(true) => found.push(self),

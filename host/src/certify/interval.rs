@@ -240,7 +240,7 @@ impl Enclosure for Interval {
     }
 
     fn half(self) -> Self {
-        // Exact, but for numbers that are hardly floats.
+        // Exact, except for numbers near the smallest floats.
         let half = |x: f64| x * 0.5;
         let is_exact = |x: f64| x == 0.0 || x.abs() > 1e-300;
         if is_exact(self.low) && is_exact(self.high) {

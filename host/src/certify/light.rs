@@ -45,7 +45,7 @@ impl Tracer<'_, '_> {
         if is_nothing(arriving) {
             return Ok(black);
         }
-        // The way may start elsewhere, and lights reached or not.
+        // The way may start elsewhere, and the light may be reached or not.
         let mut ways = vec![Some((hit.point, aim.way, hit.start(hit.front)))];
         if self.has(Effects::SMOOTH.with(Effects::SHADOW)) {
             let geometric = dot(hit.facing(), to_light);

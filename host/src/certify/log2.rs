@@ -17,7 +17,7 @@ impl Log2 {
         Self([self.0[0] + other.0[0], self.0[1] + other.0[1]])
     }
 
-    /// With another one that is known.
+    /// Adds a number that is known.
     pub fn and(self, known: i32) -> Self {
         Self(self.0.map(|it| it + known))
     }

@@ -3,7 +3,7 @@
 use std::cmp::Ordering;
 use std::ops::{Add, Mul, Neg, Sub};
 
-/// A number that is known to lie between two others.
+/// A number with a lower and an upper bound.
 ///
 /// Every operation returns an enclosure of all results that the enclosed numbers can have.
 pub trait Enclosure:
@@ -53,7 +53,7 @@ pub trait Enclosure:
         low + (high - low) * 0.5
     }
 
-    /// How far apart the bounds are, at most.
+    /// Returns the largest distance of the bounds.
     fn width(self) -> f64 {
         let [low, high] = self.bounds();
         (high - low).next_up()

@@ -20,7 +20,7 @@ pub struct Weight<N> {
     pub is_open: bool,
 }
 
-/// Colors of vertices and a texture at a hit; `None` where the point is known too badly.
+/// Returns colors of vertices and a texture at a hit; `None` where the bounds of the point are too wide.
 pub fn weight<N: Enclosure>(
     world: &World<'_>,
     hit: &Hit<N>,
@@ -66,7 +66,7 @@ pub struct Alpha<N> {
     pub is_open: bool,
 }
 
-/// The alpha of a surface at a hit; `None` where the point is known too badly.
+/// Returns the alpha of a surface at a hit; `None` where the bounds of the point are too wide.
 pub fn alpha<N: Enclosure>(
     world: &World<'_>,
     hit: &Hit<N>,

@@ -1,4 +1,4 @@
-//! Rays on their way from the eye, and what they have been through.
+//! Rays on their way from the eye, and their history.
 
 use super::crossing::Ray;
 use super::log2::Log2;
@@ -18,7 +18,7 @@ pub struct Path<N> {
     pub kind: RayKind,
     /// The random points of its sample.
     pub points: Sampler,
-    /// Diffuse reflections that led to it, but for the last.
+    /// Diffuse reflections that led to it, without the last.
     pub reflections: u8,
     pub inside: Inside,
     /// How long the rays before it are, where textures have levels.

@@ -56,7 +56,7 @@ impl Enclosed {
         (self.done == 1 && self.low == self.high).then_some(self.low)
     }
 
-    /// How far apart the bounds are, of the worst channel.
+    /// Returns the distance of the bounds of the worst channel.
     pub fn width(&self) -> f64 {
         let widths = self.linear.iter().map(|[low, high]| high - low);
         widths.fold(0.0, f64::max)

@@ -14,7 +14,7 @@ pub fn turn<N: Enclosure>(coordinate: u32) -> [N; 2] {
     Angle(coordinate).sin_cos().map(ratio_of)
 }
 
-/// Two directions that are perpendicular to one of length 1 and to each other; `None` where it is open which ones.
+/// Returns two directions that are perpendicular to one of length 1 and to each other; `None` where they are open.
 pub fn beside<N: Enclosure>([x, y, z]: Three<N>) -> Option<[Three<N>; 2]> {
     let one = N::one();
     let is_below = z.sign()? == Ordering::Less;

@@ -56,7 +56,7 @@ pub struct Candidate<N> {
 pub struct Tracer<'w, 's> {
     pub world: &'w World<'s>,
     pub depth: u8,
-    /// How far the rays of neighboring samples are apart, where textures have levels.
+    /// The distance of rays of neighboring samples, where textures have levels.
     pub spread: i32,
     /// True if numbers are so slow that intervals are evaluated first.
     pub is_slow: bool,
@@ -196,7 +196,7 @@ impl Tracer<'_, '_> {
             .map(|index| found[index])
             .collect();
         let may_miss = !found.iter().any(|it| it.crossing.sure);
-        // Faces of one object in one plane look alike at their common edge.
+        // Faces of one object in one plane look the same at their common edge.
         let alike = |a: &Candidate<N>, b: &Candidate<N>| {
             let is_plain = |it: &Candidate<N>| {
                 let is_painted = !solid(it).paint.is_plain();
@@ -246,7 +246,7 @@ impl Tracer<'_, '_> {
         Ok((left, may_miss))
     }
 
-    /// Calls a function with every crossing up to an end, which the function may bring nearer.
+    /// Calls a function with every crossing before an end. The function may move the end nearer.
     pub fn search<N: Enclosure>(
         &self,
         ray: &Ray<N>,

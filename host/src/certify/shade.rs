@@ -207,7 +207,7 @@ fn unfolded([x, y]: [i16; 2]) -> [i64; 3] {
     }
 }
 
-/// A corner's normal as it is weighted: of nearly length 1, by the line and the step that define its length.
+/// Returns a corner's normal for interpolation: nearly of length 1, by the line and the step that define its length.
 fn corner_normal<N: Enclosure>(stored: [i16; 2]) -> Three<N> {
     let v = unfolded(stored).map(|x| N::scaled(x, 15));
     let square = norm2(v);
@@ -245,7 +245,7 @@ pub fn weights<N: Enclosure>(
 ) -> Option<(Three<N>, Three<N>)> {
     let placed = world.placed.get(hit.instance as usize);
     let point = placed.map_or(hit.point, |placed| placed.point(hit.point));
-    // Weights are areas, as they are seen along the largest component of the normal.
+    // Weights are areas, projected along the largest component of the normal.
     let size = normal.map(i64::abs);
     let (i, j, across) = if size[0] >= size[1] && size[0] >= size[2] {
         (1, 2, normal[0])
@@ -305,7 +305,7 @@ pub fn lift<N: Enclosure>(world: &World<'_>, hit: &Hit<N>) -> Option<(Option<boo
         if way.iter().all(|x| x.bounds() == [0.0, 0.0]) {
             return Some((Some(false), nowhere));
         }
-        // The transposed matrix serves as the inverse, as it does in the kernels.
+        // The transposed matrix is used as the inverse, as in the kernels.
         let length = norm2(way).sqrt();
         let direction = unit(way)?;
         let mapped = placed.normal(direction);

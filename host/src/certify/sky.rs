@@ -9,7 +9,7 @@ use gridel_core::{RayKind, Scene};
 /// The dimension of points of the map.
 pub const DIMENSION: u16 = 0x1020;
 
-/// How far apart the ends of a place may lie: less than what one weight covers, so that there is nothing between them.
+/// Largest distance between the ends of a place: less than the range of one weight, so that nothing lies between them.
 const NARROW: i64 = 1 << 13;
 
 /// Radiance, and whether it is open what of the environment it is.
@@ -129,7 +129,7 @@ pub fn from_map<N: Enclosure>(scene: &Scene<'_>, point: [u32; 2]) -> Option<(Thr
     Some((direction, radiance))
 }
 
-/// A direction of the sun: the squares of lengths from its middle, on a sphere, are all alike.
+/// Returns a direction of the sun. The squares of lengths from its middle, on a sphere, are uniform.
 pub fn in_sun<N: Enclosure>(record: &Environment, [u, v]: [u32; 2]) -> Option<Three<N>> {
     let half = ratio_of::<N>(record.sun_radius).half() * random::ratio::<N>(u).sqrt();
     let square = half.square();

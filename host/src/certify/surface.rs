@@ -1,4 +1,4 @@
-//! A surface as a ray sees it: its normal, its color, and how much of it is there.
+//! A surface at a ray's hit: its normal, its color, and the part of it that is present.
 
 use super::bump;
 use super::hit::{Hit, Seen};
@@ -18,7 +18,7 @@ impl Tracer<'_, '_> {
     /// The surface of a hit.
     ///
     /// # Errors
-    /// If it is known too badly.
+    /// If its bounds are too wide.
     pub fn seen<'h, N: Enclosure>(
         &self,
         hit: &'h Hit<N>,

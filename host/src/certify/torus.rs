@@ -16,11 +16,11 @@ use std::cmp::Ordering;
 /// A polynomial; its first coefficient is that of 1.
 type Quartic<N> = [N; 5];
 
-/// Most stretches that are looked at along a ray.
+/// Most stretches that are examined along a ray.
 const STRETCHES: usize = 1500;
 /// Most times that a stretch is halved.
 const HALVINGS: u32 = 280;
-/// Most of Newton's steps: each doubles the digits, but for the first ones, which halve the stretch.
+/// Most of Newton's steps. Each doubles the digits, except the first ones, which halve the stretch.
 const STEPS: usize = 64;
 /// Most stretches with crossings: numbers of parts.
 const PARTS: u8 = 6;
@@ -308,7 +308,7 @@ fn narrowed<N: Enclosure>(quartic: &Quartic<N>, between: N) -> N {
             root = next;
             continue;
         }
-        // In the half where the quartic changes its sign, as it goes one way.
+        // The root is in the half where the quartic, which is monotonic, changes its sign.
         let is_before = match (here.sign(), slope.sign()) {
             (Some(here), Some(slope)) if here.is_ne() => here == slope,
             _ => {

@@ -1,4 +1,4 @@
-//! A blob as exact arithmetic sees it: integers, and boxes that hold what they are the boxes of.
+//! A blob for exact arithmetic: integers, and boxes around primitives.
 //!
 //! Lengths are in steps of the storage lattice, 1/256 unit.
 
@@ -54,8 +54,8 @@ pub struct Solid {
     /// Its number in scene-file order, which decides between hits at one place; of a part's with those before it.
     pub primitive: u32,
     pub object: u32,
-    /// The surfaces that its parts lie in, planes and cylinders without ends: a ray meets primitives that share one at
-    /// one t.
+    /// The surfaces that its parts lie in, planes and cylinders without ends. A ray hits primitives that share one at
+    /// the same t.
     pub surfaces: [u32; 6],
     /// The first primitive of the very same form.
     pub twin: u32,
@@ -414,7 +414,7 @@ impl Surfaces {
     }
 }
 
-/// The shortest vector of integers on the line of another one, whichever way that points.
+/// Returns the shortest vector of integers on the line of another one, of either sign.
 fn line(vector: [i64; 3]) -> [i64; 3] {
     let first = vector.iter().find(|&&x| x != 0).map_or(1, |x| x.signum());
     reduced(vector).map(|x| x * first)

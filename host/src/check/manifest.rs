@@ -1,4 +1,4 @@
-//! The manifest, read: every key is known, every value in its range.
+//! The parsed manifest: every key is known, every value in its range.
 
 mod board;
 mod named;
@@ -288,14 +288,14 @@ impl Check {
         Ok(check)
     }
 
-    /// Returns whether there is nothing that could be held or broken.
+    /// Returns whether no expectation could pass or fail.
     fn expects_nothing(&self) -> bool {
         let Budget {
             blob_bytes,
             working_bytes,
             stack_entries,
             tests_per_ray,
-            // These need a target, which is an expectation by itself.
+            // These need a target, which alone is an expectation.
             flash: _,
             ram: _,
             call_stack: _,

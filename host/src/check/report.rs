@@ -70,7 +70,7 @@ pub(super) enum Record {
     Picture(std::path::PathBuf, Image),
 }
 
-/// A step on the way to a value.
+/// A step of the path to a value.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) enum Key {
     Name(String),

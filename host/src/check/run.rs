@@ -69,7 +69,7 @@ pub(super) struct Compared<'c> {
 }
 
 impl Run<'_> {
-    /// Everything; an error is one that leaves nothing to measure.
+    /// Runs everything. An error is one after which nothing can be measured.
     fn all(&mut self, progress: &dyn Fn()) -> Result<(), String> {
         let check = self.check;
         let blob = self.blob()?;

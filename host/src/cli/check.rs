@@ -163,7 +163,7 @@ fn print_findings(
     printed
 }
 
-/// Why things are as they are, where they are not held, each reason once.
+/// Returns the reasons for results that did not pass, each reason once.
 fn reasons(report: &Report) -> String {
     let mut lines = Vec::new();
     for finding in &report.findings {

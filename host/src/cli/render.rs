@@ -136,7 +136,7 @@ impl<'a> Target<'a> {
         Ok(Self::Frames(output, frames.clone()))
     }
 
-    /// Pixels that are held at once.
+    /// Returns the largest number of pixels in memory at once.
     fn most_pixels(&self) -> usize {
         match self {
             Self::Frames(..) => MOST_PIXELS,

@@ -20,7 +20,7 @@ use gridel_host::table::{counted, grouped, printable, significant};
 use std::path::Path;
 use warnings::{far_moved, leave_out, names_changed};
 
-/// A blob, from wherever it came.
+/// A blob, from a file or from the compiler.
 pub struct Source {
     input: Input,
     pub blob: Blob,

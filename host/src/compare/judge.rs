@@ -43,7 +43,7 @@ pub fn judge<N: Number>(
         .par_iter()
         .map(|&(scene, &structure)| {
             if structure == Structure::List {
-                // The list is not judged by itself.
+                // Brute force is not compared with itself.
                 return Vec::new();
             }
             all_answers((scene, structure), &rays)
@@ -151,7 +151,7 @@ mod tests {
         compile(&scene, &options).unwrap().blob
     }
 
-    /// A structure of another scene stands in for a broken one.
+    /// A structure of another scene acts as a broken one.
     #[test]
     fn a_row_that_differs_is_wrong_and_no_other() {
         let (right, other) = (spheres([0.5, 0.5]), spheres([0.5, 0.45]));

@@ -1,4 +1,4 @@
-//! Acceleration structures side by side: what each takes to make, to hold and to ask.
+//! Acceleration structures side by side: the cost to build, to store and to query each.
 //!
 //! Every structure is compiled into a blob of its own, and all of them trace the same rays. These are the rays of the
 //! scene's own picture, as the ray loop casts them, including those of mirrors, glass and shadows. The answers are

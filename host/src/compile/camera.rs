@@ -39,7 +39,7 @@ pub fn integers(direction: DVec3) -> [i32; 3] {
     direction.to_array().map(scaled)
 }
 
-/// The nearest angle at which something can be seen.
+/// Returns the nearest angle at which a camera sees something.
 pub fn angle(degrees: f64) -> Angle {
     let steps = (degrees / 360.0 * exp2(32)).round() as u32;
     Angle(steps.clamp(2, Angle::HALF.0 - 1))

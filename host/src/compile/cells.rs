@@ -30,7 +30,7 @@ pub fn longest(starts: &[u32]) -> usize {
     lengths.max().unwrap_or(0) as usize
 }
 
-/// Divisions of a grid's axes: cells as nearly cubes as can be, so many in all.
+/// Returns divisions of a grid's axes: `cells` cells in all, as nearly cubes as possible.
 fn usual_divisions(bounds: &UnitBox, cells: f64) -> [u32; 3] {
     let extents = bounds
         .0

@@ -8,7 +8,7 @@ use gridel_core::Position;
 use gridel_core::format::limits::MAX_COORDINATE_SHIFT;
 use gridel_core::format::record::Header;
 
-/// How many times as far as the scene and its eye coordinates reach, so that both can move.
+/// How many times farther coordinates reach than the scene and its eye, so that both can move.
 const ROOM: f64 = 4.0;
 
 /// How many powers of two coarser the step may be for coordinates that are counted from the scene's own
@@ -18,7 +18,7 @@ const COARSER: u8 = 4;
 /// Scene coordinates as integers.
 #[derive(Clone, Copy, Debug)]
 pub struct Coordinates {
-    /// The fields of a blob's header that say so; the others are 0.
+    /// The fields of a blob's header that state it; the others are 0.
     pub header: Header,
 }
 
@@ -40,8 +40,8 @@ impl Coordinates {
         let ways = ways.iter().copied();
         let still = bounds.into_iter().chain([eye]).chain(lights);
         let places: Vec<DVec3> = still.chain(ways).collect();
-        // The smallest shift of which all places, counted from `origin`, are few enough multiples; the largest
-        // leaves less room.
+        // Returns the smallest shift at which all places, counted from `origin`, are few enough multiples. The largest
+        // shift leaves less room.
         let shift = |origin: DVec3| {
             let far = places
                 .iter()

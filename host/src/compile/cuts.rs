@@ -77,8 +77,7 @@ impl Cuts {
         self.points.is_empty()
     }
 
-    /// The pieces that a triangle is cut into, turned as it is: the triangle alone where no edge of
-    /// it is cut.
+    /// Returns the pieces that a triangle is cut into, wound as it is. It is the triangle alone where no edge is cut.
     pub fn pieces(&self, corners: [Point; 3]) -> Vec<[Point; 3]> {
         let cut_edges = [0, 1, 2].map(|side: usize| {
             let (from, to) = (corners[side], corners[(side + 1) % 3]);

@@ -91,7 +91,7 @@ pub fn lay_out(root: &mut Node) -> Vec<DualNode> {
 /// Levels below a node whose choices a choice takes into account.
 const LOOK_AHEAD: u32 = 1;
 
-/// The cheapest way to deal with a node whose region is given.
+/// Returns the cheapest treatment of a node whose region is given.
 fn choose(node: &Node, region: &UnitBox, look_ahead: u32) -> Choice {
     // A plane that does not cut anything is not considered.
     let cuts = |carves: &&&[usize]| carves.iter().all(|&k| region.0[k] != node.bounds().0[k]);
@@ -112,7 +112,7 @@ fn choose(node: &Node, region: &UnitBox, look_ahead: u32) -> Choice {
     cheapest.expect("there is always the choice to carve nothing")
 }
 
-/// The ways to go on from a node whose carved region is given, with their costs.
+/// Returns the choices after a node whose carved region is given, with their costs.
 fn choices_of_split(
     node: &Node,
     region: UnitBox,

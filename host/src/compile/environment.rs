@@ -197,7 +197,7 @@ fn sun_of(
     Ok((record, (color != [0.0; 3]).then_some(light)))
 }
 
-/// An error where a sample of the map as a light, L over π times the density, is beyond the range of `fixed`.
+/// Returns an error where a sample of the map as a light, L over π times the density, is beyond the range of `fixed`.
 fn check_brightness(texels: &[Texel], all: f64) -> Result<(), CompileError> {
     let area = 4.0 / texels.len() as f64;
     let samples = texels.iter().flat_map(|texel| {

@@ -10,7 +10,7 @@ use gridel_core::format::record::UnitBox;
 /// scenes has about 2 for each, as rays pass through so many cells.
 const ORDINARY: f64 = 16.0;
 
-/// Tests per ray that ordinary scenes of so many primitives stay below.
+/// Returns a number of tests per ray that ordinary scenes with this many primitives stay below.
 pub fn ordinary_tests(primitives: usize) -> f64 {
     ORDINARY * libm::cbrt(primitives as f64)
 }

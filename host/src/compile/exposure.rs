@@ -1,4 +1,4 @@
-//! Exposure: all light of a scene is multiplied when it is compiled, so that pictures cost no more for it.
+//! Exposure. The compiler multiplies all light of a scene, so that pictures cost no more.
 
 use super::CompileError;
 use crate::scene::{Color, Light, Scene, Track};

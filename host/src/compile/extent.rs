@@ -45,7 +45,7 @@ impl<'s> PreparedPart<'s> {
     }
 }
 
-/// Faces, or, of many, one for all that look nearly the same way.
+/// Returns faces. If there are many, faces with nearly the same normal are joined.
 fn joined(faces: Vec<DVec3>) -> Vec<DVec3> {
     const SIDE: usize = 16;
     if faces.len() <= MOST_FACES {
@@ -108,7 +108,7 @@ impl<'s> Shapes<'s> {
         own.chain(placed).fold(f64::NEG_INFINITY, f64::max)
     }
 
-    /// Calls `visit` with the normals of all that is flat, as long as twice its area.
+    /// Calls `visit` with the normals of all flat faces, twice as long as the face's area.
     pub fn each_face(&self, mut visit: impl FnMut(DVec3)) {
         for object in &self.scene.objects {
             object.shape.faces().into_iter().for_each(&mut visit);

@@ -133,8 +133,8 @@ mod tests {
         }
     }
 
-    /// The picture's part that the projected corners of the scene's box take, across and along, and
-    /// how far their middle is from the picture's.
+    /// Returns the part of the picture that the projected corners of the scene's box take, across and along. Also
+    /// returns how far their middle is from the picture's.
     fn share(scene: &Scene, camera: &Camera) -> ([f64; 2], [f64; 2]) {
         let (lowest, highest) = Shapes::of(scene).extent();
         let forward = (camera.target - camera.eye).normalize();

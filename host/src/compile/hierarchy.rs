@@ -14,7 +14,7 @@ use gridel_core::format::Leaf;
 use gridel_core::format::limits::MAX_LEVELS;
 use gridel_core::format::record::UnitBox;
 
-/// A primitive as the builder sees it.
+/// A primitive for the builder.
 #[derive(Clone, Copy, Debug)]
 pub struct Primitive {
     pub bounds: UnitBox,
@@ -81,8 +81,8 @@ pub enum Splits {
 
 /// Builds a hierarchy and puts the primitives in the order of its leaves. `None` without primitives.
 ///
-/// With `leaf_size` not 0, so many primitives of one kind make a leaf, whatever rays pay for it;
-/// the heuristic decides about more than that.
+/// With `leaf_size` not 0, up to that many primitives of one kind make a leaf, whatever the cost.
+/// The heuristic decides about more than that.
 pub fn build(primitives: &mut [Primitive], splits: Splits, leaf_size: usize) -> Option<Node> {
     if primitives.is_empty() {
         return None;
@@ -181,7 +181,7 @@ fn build_node(
 struct Split {
     cost: f64,
     axis: usize,
-    /// Centroids below this (or, for a sweep, the first so many in order) go left.
+    /// Centroids below this (or, for a sweep, this many in order) go left.
     rule: Rule,
 }
 

@@ -44,7 +44,7 @@ pub struct Parts {
     pub object_first: Vec<u32>,
     /// Parts with meshes whose vertices require effects, by name.
     pub required_by: Vec<(Effects, String)>,
-    /// For each part, its first primitive, counted likewise; then how many there are.
+    /// For each part, its first primitive, counted in the same way. The total follows.
     first_primitive: Vec<u32>,
     /// The bytes of their structures.
     pub sizes: Sizes,
@@ -231,7 +231,7 @@ impl Parts {
         })
     }
 
-    /// The sections of parts, whose primitives come after so many of the scene's own.
+    /// Returns the sections of parts, whose primitives come after the scene's own `own_primitives`.
     pub fn sections(&self, own_primitives: u32) -> Vec<Section> {
         let (mut start, mut words) = (0, Vec::new());
         let mut directory = Vec::with_capacity(self.blobs.len());

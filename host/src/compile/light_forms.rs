@@ -12,8 +12,8 @@ const LONGEST: f64 = (1 << 17) as f64;
 /// The longest edge, in units.
 const LONGEST_EDGE: f64 = (1 << 15) as f64;
 
-/// By how many steps of the lattice light starts above a surface of the scene: more than the lattice moves that, and
-/// than arithmetic errs.
+/// Steps of the lattice by which light starts above a surface of the scene. More than the lattice moves the surface,
+/// and than the error of arithmetic.
 const LIFT: f64 = 4.0;
 
 fn lift_length(form: &LightForm, lattice: &Lattice) -> f64 {
@@ -97,7 +97,7 @@ pub fn form_record(
     for edge in edges {
         limited("edge or radius", edge.length(), LONGEST_EDGE)?;
     }
-    // The color is as precise as it can be, and the distance at which the light has it makes up for that.
+    // The color is as precise as possible, and the distance at which the light has it compensates.
     let (peak, mut color) = (color.into_iter().fold(0.0, f64::max), color);
     if reference > 0.0 && peak > 0.0 {
         if !has_color_track {

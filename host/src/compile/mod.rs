@@ -438,8 +438,8 @@ impl Hierarchies {
     }
 }
 
-/// Counts what the cylinder cube of a scene takes, with a number of gridels per side (1 to 64); instances are
-/// flattened. Builds nothing, so it takes time and no memory.
+/// Counts the size of a scene's cylinder cube, with a number of gridels per side (1 to 64); instances are flattened.
+/// Builds nothing, so it takes time and no memory.
 ///
 /// # Errors
 /// If the scene does not fit a lattice, or its instances are too many to be flattened.

@@ -10,7 +10,7 @@ use gridel_core::format::{OctreeNode, SectionKind};
 use gridel_core::shared::MOST_LEVELS;
 use gridel_core::shared::{cells_of, divide};
 
-/// Primitives in a cell of an octree that are not worth a split.
+/// Largest number of primitives in a cell of an octree that is not split.
 const FEW: usize = 6;
 
 /// Most bytes that an octree's build needs per entry of its finest cells. An inner node has more than [`FEW`] entries,
@@ -63,7 +63,7 @@ pub fn bounds(bounds: &UnitBox, boxes: &[UnitBox]) -> UnitBox {
 /// Builds an octree.
 ///
 /// # Errors
-/// If not even an octree of one cell keeps to [`MOST_BYTES`].
+/// If even an octree of one cell exceeds [`MOST_BYTES`].
 pub fn build(bounds: &UnitBox, boxes: &[UnitBox]) -> Result<Cells, CompileError> {
     // No finer than memory allows.
     let mut levels = usual_levels(boxes.len());
@@ -120,8 +120,7 @@ struct Nodes {
 }
 
 impl Nodes {
-    /// Builds an octree of at most so many levels over primitives that reach into ranges of the
-    /// finest cells.
+    /// Builds an octree of at most `most_levels` levels over primitives that reach into ranges of the finest cells.
     fn build(ranges: &[Range], most_levels: u32) -> Self {
         let mut octree = Self::default();
         octree.starts.push(0);
@@ -178,8 +177,8 @@ impl Nodes {
         tests.sum()
     }
 
-    /// The octree with leaves in place of all nodes in whose children rays test no fewer primitives
-    /// than the node has.
+    /// Returns the octree with leaves in place of nodes in whose children rays test no fewer primitives than in the
+    /// node.
     fn without_worthless_splits(&self, share: impl Fn(u32) -> f64) -> Self {
         let mut tests: Vec<f64> = self
             .contents

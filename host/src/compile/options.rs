@@ -45,8 +45,7 @@ pub struct Options {
     pub grid: Option<[u32; 3]>,
     /// Reject a blob that would be larger. Names that make it larger are left out.
     pub max_bytes: Option<u64>,
-    /// Most bytes of all textures' texels, which are stored more coarsely to fit; without it nothing is lost but for
-    /// rounding.
+    /// Most bytes of all textures' texels, which are stored more coarsely to fit. Without it only rounding is lost.
     pub texture_bytes: Option<u64>,
     /// True if the blob has the names of objects, materials and lights.
     pub names: bool,

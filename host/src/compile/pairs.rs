@@ -24,7 +24,7 @@ pub struct Flat {
 /// Flattens a hierarchy over `primitives` in the order of its leaves.
 pub fn flatten(root: &Node, primitives: &[Primitive]) -> Flat {
     let mut flat = Flat::default();
-    // Nodes by level; leaves take their slots in the order in which they are met.
+    // Nodes by level; leaves take their slots in the order in which they are reached.
     let mut level = vec![root];
     let mut pairs_before = 0;
     while !level.is_empty() {

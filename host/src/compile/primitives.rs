@@ -20,7 +20,7 @@ use serde::{Serialize, Serializer};
 const MOST: usize = 1 << 24;
 /// Primitives that are left out or moved far and named; the rest are counted.
 const NAMED: usize = 20;
-/// Steps of the lattice that a surface may be moved before that is worth a warning.
+/// Displacement of a surface, in steps of the lattice, from which a warning is given.
 const FAR_MOVED: f64 = 4.0;
 
 /// Primitives of all kinds, each in scene-file order.
@@ -304,15 +304,14 @@ impl Primitives {
         Ok(())
     }
 
-    /// Gives the primitive that was just added its number; its surface was moved by so many 1/256
-    /// units.
+    /// Gives the primitive that was just added its number. `displacement` is that of its surface in 1/256 unit.
     fn keep(&mut self, kind: Kind, displacement: f64) {
         self.numbers[kind as usize].push(self.total);
         self.displacements.push(rounded_up(displacement));
         self.total += 1;
     }
 
-    /// Passes over a primitive that the lattice leaves nothing of.
+    /// Leaves out a primitive that collapses on the lattice.
     fn leave_out(&mut self) {
         self.displacements.push(0.0);
         self.total += 1;

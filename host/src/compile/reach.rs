@@ -1,7 +1,7 @@
 //! How far instances move: a box that holds a placed part at all times of the tracks of its joints.
 //!
 //! Each joint has a range of rotations, scales and shifts, and all of them are taken together, at rest and at any time.
-//! Keys bound what lies between them: those of a spline together with its Bézier control points. Rotations about one
+//! Keys bound the values between them: those of a spline together with its Bézier control points. Rotations about one
 //! axis sweep a cylinder about it, others a sphere about the pivot.
 
 use crate::scene::{
@@ -11,7 +11,7 @@ use crate::shape::Lattice;
 use glam::{DQuat, DVec3, DVec4};
 use gridel_core::format::record::UnitBox;
 
-/// How far the axes of rotations about one axis can be apart.
+/// Largest difference of the axes of rotations about one axis.
 const SAME_AXIS: f64 = 1e-6;
 
 /// By what part of its size room is widened: some units for the rounding of boxes.
@@ -216,7 +216,7 @@ impl Region {
         .trimmed()
     }
 
-    /// As seen from a place.
+    /// Returns the region relative to a place.
     fn seen_from(&self, place: DVec3) -> Self {
         Self {
             corners: self.corners.map(|corner| corner - place),
@@ -278,7 +278,7 @@ impl Region {
         .trimmed()
     }
 
-    /// With no more of the box than the sphere holds.
+    /// Returns the region without the parts of the box outside of the sphere.
     fn trimmed(self) -> Self {
         let [low, high] = self.corners;
         Self {

@@ -10,7 +10,7 @@ use gridel_core::{Kind, geometry};
 /// The result of adding a shape.
 pub struct Added {
     pub kind: Kind,
-    /// How far apart the given and the snapped surface are at most, in 1/256 unit.
+    /// Largest distance between the given and the snapped surface, in 1/256 unit.
     pub displacement: f64,
     /// True if its box lies in the range of box coordinates.
     pub fits: bool,
@@ -32,7 +32,7 @@ macro_rules! registry {
         }
 
         impl Records {
-            /// Snaps a shape that is no mesh; `None` if the lattice leaves nothing of it.
+            /// Snaps a shape that is no mesh; `None` if it collapses on the lattice.
             pub fn add(&mut self, shape: &Shape, lattice: &Lattice) -> Option<Added> {
                 match shape {
                     Shape::Mesh { .. } => None,
@@ -106,7 +106,7 @@ pub fn in_order<T: Copy>(records: &[T], slots: &[u32]) -> Vec<T> {
     slots.iter().map(|&index| records[index as usize]).collect()
 }
 
-/// Spheres in the narrowest form that a lattice of so many bits allows.
+/// Returns spheres in the narrowest form that a lattice of this many bits allows.
 fn spheres(bits: u8, spheres: &[SnappedSphere]) -> Section {
     if bits <= 16 {
         let narrow = spheres.iter().map(|sphere| Sphere16 {

@@ -22,7 +22,7 @@ pub struct Report {
     pub displacements: Vec<f32>,
     /// Primitives whose surface was moved by more than four steps of the lattice.
     pub far_moved: LeftOut,
-    /// Primitives that the lattice leaves nothing of; they keep their numbers.
+    /// Primitives that collapse on the lattice; they keep their numbers.
     pub collapsed: LeftOut,
     /// Triangles that have no area in the scene file already; they keep their numbers, too.
     pub without_area: LeftOut,

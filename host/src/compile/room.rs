@@ -10,7 +10,8 @@ pub fn widened((lowest, highest): (DVec3, DVec3), room: f64) -> (DVec3, DVec3) {
     (lowest - room, highest + room)
 }
 
-/// The box around all primitives, and around all places to which vertices can move by so many units.
+/// Returns the box around all primitives, and around all places to which vertices can move by
+/// `room` units.
 pub fn around(primitives: &[Primitive], room: f64) -> Option<UnitBox> {
     let own = bounds(primitives)?;
     let meshes = primitives.iter().filter(|it| it.kind == Kind::Triangle);

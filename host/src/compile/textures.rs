@@ -51,7 +51,8 @@ impl fmt::Display for TextureFigures {
     }
 }
 
-/// A channel of linear light as a blob holds it; of scenes whose colors are display values, the channel itself counts.
+/// Returns a channel of linear light as a blob holds it. In scenes whose colors are display values, the channel itself
+/// counts.
 pub fn root(linear: f64, display_values: bool) -> u8 {
     let channel = linear.clamp(0.0, 1.0);
     let channel = if display_values {

@@ -26,7 +26,7 @@ pub fn sections(
     let mut numbered: Vec<(TrackTarget, u32, &Track)> = Vec::new();
     for track in &all {
         let index = match track.target.is_of_material() {
-            // Nothing of such a material is seen.
+            // Such a material is not visible.
             true => match materials[track.index] {
                 Some(number) => number,
                 None => continue,
@@ -136,7 +136,7 @@ fn complete(tracks: &mut Vec<Track>, camera: &Camera) {
     tracks.extend(missing.into_iter().flatten());
 }
 
-/// The places that a track leads to, for the choice of coordinates.
+/// Returns the positions that a track reaches, for the choice of coordinates.
 pub fn places(tracks: &[Track], camera: &Camera) -> Vec<DVec3> {
     let of = |target| {
         let tracks = tracks.iter().filter(move |track| track.target == target);
@@ -257,7 +257,7 @@ enum Scale {
         offset: DVec3,
         factor: f64,
     },
-    /// Directions of light, made as long as 1.
+    /// Directions of light, brought to length 1.
     Towards,
     /// Quaternions.
     Rotation,

@@ -186,7 +186,7 @@ pub fn corner_at(point: Place, places: [Place; 3], corners: [Corner; 3]) -> Corn
         }),
         color: color.map(|(from, to)| {
             [0, 1, 2, 3].map(|k: usize| {
-                // Roots of linear light, but for alpha.
+                // Roots of linear light, except for alpha.
                 let power = if k < 3 { 2.0 } else { 1.0 };
                 let light = |it: u8| libm::pow(f64::from(it), power);
                 libm::pow(mixed(light(from[k]), light(to[k])), 1.0 / power).round() as u8

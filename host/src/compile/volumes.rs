@@ -131,7 +131,7 @@ fn range(node: &Node) -> Range<usize> {
     }
 }
 
-/// Steps towards the farthest primitive; after so many the radius is within some percent of the
+/// Steps towards the farthest primitive. After this many the radius is within some percent of the
 /// least (Badoiu and Clarkson, "Smaller core-sets for balls", 2003).
 const STEPS: usize = 24;
 

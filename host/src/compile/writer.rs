@@ -34,8 +34,8 @@ pub struct Parts {
 }
 
 impl Parts {
-    /// Adds names, unless that makes the blob larger than `max_bytes`. Returns what became of them;
-    /// `None` where nothing has a name.
+    /// Adds names, unless that makes the blob larger than `max_bytes`. Returns the kept names; `None` where nothing has
+    /// a name.
     pub fn add_names(&mut self, names: &Names, max_bytes: Option<u64>) -> Option<KeptNames> {
         let lights = self.records(SectionKind::Lights);
         let (sections, mut kept) = names.sections(lights);

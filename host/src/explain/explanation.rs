@@ -47,7 +47,7 @@ pub struct Ray {
     /// `None` where its direction vanished, so that it was not traced.
     pub walk: Option<Walk>,
     pub hit: Option<Hit>,
-    /// The weight that absorption on the way leaves.
+    /// The weight after absorption on the way.
     pub absorbed: Option<[f64; 3]>,
     /// The smooth normal that the surface is shaded with.
     pub smooth: Option<[f64; 3]>,
@@ -62,7 +62,7 @@ pub struct Ray {
     /// surroundings.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub media: Option<[Option<u32>; 2]>,
-    /// How much of the surface is there, where the alpha of a texture says so.
+    /// The part of the surface that is present, where the alpha of a texture says so.
     pub alpha: Option<f64>,
     pub lights: Vec<Lighting>,
     /// The point of the lens from which a ray of the camera starts, in scene units.
@@ -179,7 +179,7 @@ pub enum LightOutcome {
     BehindTriangle,
     /// The surface lies outside of a spot, or behind an area.
     Outside,
-    /// Something stands in between.
+    /// Another object blocks it.
     Blocked {
         kind: &'static str,
         primitive: u32,

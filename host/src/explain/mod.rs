@@ -27,7 +27,7 @@ use gridel_core::{
 /// The subject of an explanation.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Subject {
-    /// A pixel of the picture that the settings ask for, from its upper left corner.
+    /// A pixel of the picture of the settings, from its upper left corner.
     Pixel([u16; 2]),
     /// A ray of one's own.
     Ray(SceneRay),

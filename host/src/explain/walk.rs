@@ -10,7 +10,7 @@ use gridel_core::observe::event::NodeId;
 use gridel_core::{Event, Format, Scene};
 use serde::Serialize;
 
-/// One query: a ray and its way. Distances are scene units along the ray, counted from `origin`.
+/// One query: a ray and its walk. Distances are scene units along the ray, counted from `origin`.
 #[derive(Clone, Debug, Serialize)]
 pub struct Walk {
     /// The origin as it was given: the caller's, the camera's, or the point that a secondary ray
@@ -20,14 +20,14 @@ pub struct Walk {
     pub direction: [f64; 3],
     /// The interval of the ray that counts.
     pub interval: [f64; 2],
-    /// Where the kernels start: at `origin`, or where a ray from outside comes to the scene's box.
+    /// Where the kernels start: at `origin`, or where a ray from outside reaches the scene's box.
     pub start: [f64; 3],
     /// Distance of `start`: 0 unless the ray starts before the scene's box.
     pub moved: f64,
     /// True if any hit suffices.
     pub any: bool,
     pub steps: Vec<Step>,
-    /// Nodes, leaves and cells that were gone into.
+    /// Nodes, leaves and cells that were entered.
     pub opened: usize,
     /// Those that were tested and left out.
     pub culled: usize,
@@ -70,7 +70,7 @@ impl From<&SceneRay> for Given {
     }
 }
 
-/// A direction, whatever its length, by its largest component, and the length of that.
+/// Returns a direction divided by its largest component, and the length of that.
 fn along_major(direction: DVec3) -> (DVec3, f64) {
     let slope = direction / direction.abs().max_element();
     (slope, slope.length())
@@ -104,7 +104,7 @@ struct InUnits {
 #[serde(tag = "step", rename_all = "kebab-case")]
 pub enum Step {
     Tested(Tested),
-    /// A node that was put off, and then lay behind a hit.
+    /// A node that was postponed, and then lay behind a hit.
     GivenUp {
         place: String,
         enters: f64,
@@ -199,7 +199,7 @@ pub struct Candidate {
     pub object: u32,
     /// The instance in scene-file order; `None` for the scene's own objects.
     pub instance: Option<u32>,
-    /// Where the ray's line enters and leaves it.
+    /// The t where the ray's line enters and leaves it.
     pub crossing: Option<[f64; 2]>,
     pub verdict: Verdict,
 }
@@ -211,7 +211,7 @@ pub enum Verdict {
     Missed,
     /// The line meets it where the ray does not count.
     NotInInterval,
-    /// A nearer hit is known.
+    /// A nearer hit was found before.
     Farther,
     /// The nearest hit so far.
     Nearest,

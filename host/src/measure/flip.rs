@@ -144,7 +144,7 @@ fn perceived(planes: &Planes) -> Vec<[f64; 3]> {
 }
 
 impl Planes {
-    /// A plane filtered along rows and then along columns; beyond its edges it goes on as it ends.
+    /// Returns a plane filtered along rows and then along columns; beyond its edges the last values repeat.
     fn filter(&self, plane: &[f64], across: &[f64], down: &[f64]) -> Vec<f64> {
         let (width, height) = (self.width as isize, self.height as isize);
         let at = |plane: &[f64], x: isize, y: isize| {

@@ -82,7 +82,8 @@ impl Answer {
     }
 }
 
-/// The number of a hit's instance, by its surface: out of line, because timed queries ask for none.
+/// Returns the number of a hit's instance, by its surface. Out of line, because timed queries do
+/// not need it.
 #[cold]
 #[inline(never)]
 fn instance_of<N: Number>(scene: &Scene<'_>, ray: &Ray<N>, hit: &PrimitiveHit<N>) -> u32 {
@@ -116,7 +117,7 @@ impl<N: Number> Questions<'_, N> {
 /// Rays, one after the other.
 pub type Rays<'i, 'r, N> = &'i mut dyn Iterator<Item = &'r Ray<N>>;
 
-/// Asks rays through a structure of its own code, and hands over what comes of it.
+/// Traces rays through a structure's own code, and passes on the results.
 pub fn ask<N: Number>(
     (scene, structure): (&Scene<'_>, Structure),
     question: Question,

@@ -61,7 +61,7 @@ pub enum Values {
     Coordinates(Vec<[f32; 2]>),
     /// Normals and colors.
     Vectors(Vec<[f32; 3]>),
-    /// Numbers of objects and the like.
+    /// Numbers, such as those of objects.
     Numbers(Vec<u32>),
 }
 

@@ -17,8 +17,8 @@ pub struct LinearPicture {
     pub width: u16,
     /// Rows of the whole picture that these are.
     pub rows: Range<u16>,
-    /// Red, green and blue, row by row, 1 being display white: the sums of all that rays bring. In `fixed` what one ray
-    /// brings is at most 2,048.
+    /// Red, green and blue, row by row, 1 being display white: the sums of the light of all rays. In `fixed` one ray
+    /// brings at most 2,048.
     pub pixels: Vec<[f32; 3]>,
 }
 
@@ -118,7 +118,7 @@ fn rows<N: Number>(
     Ok(pixels)
 }
 
-/// The linear value of a display value, by the curve of sRGB (IEC 61966-2-1), which goes on above 1.
+/// Returns the linear value of a display value, by the curve of sRGB (IEC 61966-2-1), which continues above 1.
 fn decoded(value: f64) -> f64 {
     if value <= 0.04045 {
         value / 12.92

@@ -27,7 +27,7 @@ pub(super) fn blob(name: &str, text: &str) -> Blob {
     compiled.expect("a blob").blob
 }
 
-/// A picture with so many samples per pixel.
+/// Returns a picture with this many samples per pixel.
 pub(super) fn job(scene: &Scene<'_>, format: Format, samples: u16) -> Job {
     let settings = Settings {
         width: WIDTH,

@@ -88,7 +88,7 @@ pub fn bars(
     };
     let largest = values().fold(1.0, f64::max);
     let smallest = values().filter(|&v| v > 0.0).fold(largest, f64::min);
-    // Half a decade below the smallest, so that it is seen.
+    // Half a decade below the smallest, so that it is visible.
     let low = f64::powf(10.0, (smallest.log10() - 0.5).floor());
     let mut svg = String::new();
     {

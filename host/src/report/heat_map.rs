@@ -21,8 +21,9 @@ impl<'p> HeatMap<'p> {
         Self { picture, maximum }
     }
 
-    /// Writes the map as PNG: black is no work, white the maximum, which the file names. Colors go
-    /// by the square root of the work, or the few pixels with the most would leave all others black.
+    /// Writes the map as PNG: black is no work, white the maximum, which the file states. Colors
+    /// follow the square root of the work. Otherwise the few pixels with the most would leave all
+    /// others black.
     ///
     /// # Errors
     /// If `out` has one.

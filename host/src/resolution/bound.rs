@@ -19,7 +19,7 @@ impl Extent {
 
     pub(super) fn of(solid: &Solid) -> Self {
         if !solid.is_bounded() {
-            // It is near whatever lies in the box of a scene.
+            // It is near everything in the box of a scene.
             return Self {
                 lowest: DVec3::splat(f64::from(i16::MIN)),
                 highest: DVec3::splat(f64::from(i16::MAX)),

@@ -115,7 +115,7 @@ impl Access {
             if !lexical(&path).starts_with(root) {
                 return Err(outside());
             }
-            // A file that is not there lies nowhere; reading says so.
+            // A file that does not exist has no place; reading reports it.
             if path
                 .canonicalize()
                 .is_ok_and(|real| !real.starts_with(root))

@@ -6,7 +6,7 @@ use std::collections::BTreeSet;
 
 /// The result of reading a file.
 enum Expected {
-    /// As many objects, and a warning with each of these words, no more.
+    /// The number of objects, and a warning with each of these words, no more.
     Read(usize, &'static [&'static str]),
     /// An error with these words.
     Rejected(&'static str),

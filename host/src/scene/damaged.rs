@@ -119,7 +119,7 @@ fn damaged_files() {
     damage("glb", &binary, binary.len(), 3000);
 }
 
-/// Formats whose files are never empty; what becomes of damaged TOML, its own tests say.
+/// Formats whose files are never empty. TOML has its own tests of damaged files.
 fn damageable() -> impl Iterator<Item = &'static Importer> {
     IMPORTERS.iter().filter(|it| it.name != "TOML")
 }

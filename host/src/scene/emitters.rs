@@ -1,4 +1,4 @@
-//! Objects that glow as lights, and lights that are seen as objects.
+//! Objects that glow as lights, and lights that are visible as objects.
 
 use super::attributes::Attributes;
 use super::light_form::{LightForm, LightShape};
@@ -228,7 +228,7 @@ fn parallelogram(first: [DVec3; 3], second: [DVec3; 3]) -> Option<(DVec3, LightS
     is_one.then_some((a, LightShape::Rectangle { edges }))
 }
 
-/// The shape that is seen of a light with an area.
+/// Returns the visible shape of a light with an area.
 fn seen(position: DVec3, shape: &LightShape) -> Option<Shape> {
     let mesh = |vertices: Vec<DVec3>, triangles: Vec<[u32; 3]>| Shape::Mesh {
         vertices,

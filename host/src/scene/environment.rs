@@ -27,7 +27,7 @@ pub struct Environment {
     pub sky: Sky,
     /// Factor of the sky's radiance.
     pub intensity: f64,
-    /// By how many degrees the picture is turned around the direction up, counterclockwise as seen from above.
+    /// Degrees by which the picture is turned around the direction up, counterclockwise as seen from above.
     pub rotation: f64,
     /// Rows of the map in a blob: 16, 32, 64, 128 or 256.
     pub size: u32,
@@ -52,9 +52,9 @@ pub enum Sky {
 /// A disc in the sky.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Sun {
-    /// The way that its light travels.
+    /// The direction in which its light travels.
     pub direction: DVec3,
-    /// The color of a directional light that gives as much light.
+    /// The color of a directional light of the same strength.
     pub color: Color,
     /// Degrees from edge to edge: above 0, up to 90.
     pub angle: f64,

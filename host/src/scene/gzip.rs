@@ -1,4 +1,4 @@
-//! Gzipped files (RFC 1952), which are known by their first bytes, whatever their names are.
+//! Gzipped files (RFC 1952), recognized by their first bytes, not by their names.
 
 use super::SceneError;
 use super::size::MOST_INPUT;

@@ -18,7 +18,7 @@ pub struct Importer {
     /// Extensions of its files, in lower case and without a dot, the usual one first. Behind each of
     /// them `.gz` may stand.
     pub extensions: &'static [&'static str],
-    /// Which way is up in its scenes, where a file has no camera that says so.
+    /// The direction up in its scenes, where a file has no camera that states it.
     pub up: Up,
     /// True if its files may be binary; all formats have a text form.
     pub binary: bool,
@@ -99,14 +99,15 @@ impl Importers {
         }
     }
 
-    /// Reads a file, and finds its importer by its name, or by its content if the name says nothing.
+    /// Reads a file, and finds its importer by its name, or by its content if the name has no known
+    /// extension.
     pub(super) fn open<'a>(
         self,
         path: &'a Path,
         choices: Choices<'a>,
         access: &'a Access,
     ) -> Result<(&'static Importer, Input<'a>), SceneError> {
-        // A file that nothing can read is not worth reading.
+        // A file that no importer can read is not read.
         self.of_name(path)?;
         self.input(path, access.read(path)?, choices, access)
     }

@@ -23,7 +23,7 @@ pub struct Scene {
     pub camera: Option<Camera>,
     /// The lens of the camera, in place of a pinhole.
     pub lens: Option<Lens>,
-    /// Which way is up, for that frame.
+    /// The direction up, for that frame.
     pub up: Up,
     /// The color of rays that hit nothing; without one it is black, or light if there is no camera
     /// either.
@@ -66,7 +66,7 @@ pub struct Scene {
 pub struct Lens {
     /// Half of the aperture, in scene units: above 0.
     pub radius: f64,
-    /// The distance of the plane on which the picture is sharp, along the camera's axis; without one that of the camera's
+    /// The distance of the plane on which the picture is sharp, along the camera's axis. Default: that of the camera's
     /// target.
     pub focus: Option<f64>,
 }
@@ -77,7 +77,7 @@ pub struct Camera {
     pub eye: DVec3,
     /// A point in the middle of the picture; not equal to `eye`.
     pub target: DVec3,
-    /// Which way is up; not parallel to the view direction.
+    /// The direction up; not parallel to the view direction.
     pub up: DVec3,
     /// Full vertical field of view in degrees, in (0, 180).
     pub fov_degrees: f64,
@@ -108,7 +108,7 @@ impl Camera {
 pub enum Light {
     /// Shines from `position` in all directions, without falloff.
     Point { position: DVec3, color: Color },
-    /// Shines from infinitely far away; `direction` is the way the light travels.
+    /// Shines from infinitely far away; `direction` is that in which the light travels.
     Directional { direction: DVec3, color: Color },
 }
 
@@ -234,7 +234,7 @@ pub struct Object {
     pub normals: Normals,
     /// Colors of vertices, and texture coordinates. Other shapes have none.
     pub attributes: Attributes,
-    /// Where the scene file says so, for messages.
+    /// Its place in the scene file, for messages.
     pub place: SourceSpan,
 }
 
@@ -244,7 +244,7 @@ pub struct Part {
     pub name: String,
     /// At least one, each with a box; materials are the scene's.
     pub objects: Vec<Object>,
-    /// Where the scene file says so, for messages.
+    /// Its place in the scene file, for messages.
     pub place: SourceSpan,
 }
 
@@ -258,7 +258,7 @@ pub struct Instance {
     pub placement: Placement,
     /// Index into [`Scene::joints`]; `None` for one that stands still.
     pub joint: Option<usize>,
-    /// Where the scene file says so, for messages.
+    /// Its place in the scene file, for messages.
     pub place: SourceSpan,
 }
 
@@ -274,7 +274,7 @@ pub struct Joint {
     pub parent: Option<usize>,
     /// The place about which it turns, at rest.
     pub pivot: DVec3,
-    /// Where the scene file says so, for messages.
+    /// Its place in the scene file, for messages.
     pub place: SourceSpan,
 }
 

@@ -37,7 +37,7 @@ pub enum NormalsChoice {
     Smooth(f64),
 }
 
-/// How far a normal of a file may be from that of its face to be that one: less than a step of a display.
+/// Largest angle in radians at which a normal of a file counts as that of its face: less than a step of a display.
 const SAME: f64 = 1.0 / 1024.0;
 
 impl Normals {

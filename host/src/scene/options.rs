@@ -1,4 +1,4 @@
-//! How a scene file is read, and what comes of it.
+//! The options for reading a scene file, and the result.
 
 use super::model::Scene;
 use super::normals::NormalsChoice;
@@ -32,7 +32,7 @@ impl Default for MoleculeOptions {
     }
 }
 
-/// A scene, and what its importer had to pass over to read it.
+/// A scene, and warnings of the parts that its importer ignored.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Imported {
     pub scene: Scene,
@@ -72,7 +72,7 @@ pub struct Choice {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Instances {
-    /// Parts are held once, and instances place them.
+    /// Parts are stored once, and instances place them.
     #[default]
     Keep,
     /// Each instance becomes objects of its own.

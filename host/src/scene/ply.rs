@@ -25,7 +25,7 @@ pub(super) const IMPORTER: Importer = Importer {
     name: "PLY",
     about: "the Stanford scans' meshes",
     extensions: &["ply"],
-    // The format says nothing; the Stanford scans stand along y.
+    // The format does not state it; the Stanford scans stand along y.
     up: Up::Y,
     binary: true,
     example: "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\n\
@@ -234,7 +234,7 @@ fn strip_triangles(corners: &[u32]) -> impl Iterator<Item = [u32; 3]> {
     triangles.filter(|[a, b, c]| a != b && b != c && c != a)
 }
 
-/// A vertex; NaN where it says nothing.
+/// A vertex; NaN for missing numbers.
 struct Vertex {
     position: [f64; 3],
     normal: [f64; 3],

@@ -170,7 +170,7 @@ enum Ear {
     /// It comes after the clear ears, which use vertices on edges, so that neighbors that share
     /// them leave no gap.
     Flat,
-    /// Any corner that turns left; only an outline that crosses itself comes to this.
+    /// Any corner that turns left. Only an outline that crosses itself reaches this kind.
     Convex,
     /// Any corner.
     Any,

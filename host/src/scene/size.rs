@@ -18,7 +18,7 @@ const OBJECT: u64 = 512;
 /// Bytes that a triangle takes, with its share of the vertices; measured likewise, with the
 /// structure `wide`.
 const TRIANGLE: u64 = 224;
-/// How often a name is held: in the scene, and for messages.
+/// The number of copies of a name: in the scene, and for messages.
 const NAMES: u64 = 2;
 
 /// The most primitives that a scene may hold.
@@ -67,7 +67,7 @@ impl Size {
         }
     }
 
-    /// Returns the size with so many bytes more in each name.
+    /// Returns the size with `by` bytes more in each name.
     #[must_use]
     pub(super) fn with_longer_names(self, by: usize) -> Self {
         let more = self.objects.saturating_mul(by as u64);

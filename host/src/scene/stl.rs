@@ -24,7 +24,7 @@ pub(super) const IMPORTER: Importer = Importer {
     name: "STL",
     about: "triangles, as printers and CAD programs use them",
     extensions: &["stl"],
-    // The format says nothing; CAD programs and printers have the plate in x and y.
+    // The format does not state it; CAD programs and printers have the plate in x and y.
     up: Up::Z,
     binary: true,
     example: "solid tip\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\n\
@@ -41,7 +41,7 @@ fn announced(bytes: &[u8]) -> Option<u32> {
     Some(u32::from_le_bytes(*count))
 }
 
-/// How many bytes a binary file of so many triangles has.
+/// Returns the bytes of a binary file of this many triangles.
 fn length(triangles: u32) -> u64 {
     HEAD as u64 + TRIANGLE as u64 * u64::from(triangles)
 }

@@ -131,7 +131,8 @@ impl Warnings {
         self.add_times(source.place(line), 1, sentence);
     }
 
-    /// A sentence that holds at this place first, and so many times in all, at least once.
+    /// Adds a sentence with the first place it applies to, and the number of times in all, at least
+    /// once.
     pub(super) fn add_times(
         &mut self,
         place: SourceSpan,

@@ -43,7 +43,7 @@ impl NormalMap {
     pub const STEEPEST: f64 = 16.0;
 }
 
-/// How an image goes on beyond its edges.
+/// The continuation of an image beyond its edges.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum Wrap {
     /// It repeats.
@@ -51,7 +51,7 @@ pub enum Wrap {
     Repeat,
     /// It repeats, every second time mirrored.
     Mirror,
-    /// Its edge goes on.
+    /// Its edge is repeated.
     Clamp,
 }
 

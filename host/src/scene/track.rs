@@ -21,7 +21,7 @@ pub struct Track {
     pub interpolation: Interpolation,
     /// At least one, by rising times.
     pub keys: Vec<Key>,
-    /// Where the scene file says so, for messages.
+    /// Its place in the scene file, for messages.
     pub place: SourceSpan,
 }
 

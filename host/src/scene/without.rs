@@ -165,8 +165,9 @@ fn remove_tracks(scene: &mut Scene, target: TrackTarget) {
 }
 
 impl Scene {
-    /// Takes away all that calls for some effects: the blob has no byte of them, and the program no code. What calls for
-    /// others stays, but for what depends on them: without glass nothing absorbs, and without a falloff lights have no area.
+    /// Removes all that calls for some effects: the blob has no byte of them, and the program no code. Settings for
+    /// other effects stay, except those that depend on them. Without glass nothing absorbs, and without a falloff
+    /// lights have no area.
     ///
     /// ```
     /// # let file = "[[object]]\nkind = 'sphere'\ncenter = [0, 0, 0]\nradius = 1\nname = 'ball'";

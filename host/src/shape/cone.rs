@@ -67,14 +67,14 @@ struct Frame {
 }
 
 impl Frame {
-    /// How far a place is along the axis, and its way from the axis.
+    /// Returns a point's height along the axis, and its offset from the axis.
     fn parts(&self, from_middle: &Vector) -> (Real, Vector) {
         let y = dot(from_middle, &self.axis);
         let across = along(from_middle, &-&y, &self.axis);
         (y, across)
     }
 
-    /// The mantle's normal on the side of a way from the axis.
+    /// Returns the mantle's normal on the side of an offset from the axis.
     fn mantle(&self, across: &Vector, condition: f64) -> Normal {
         let radial = scaled(&unit(across), &self.cos);
         Normal {
@@ -236,7 +236,7 @@ impl Analytic for Cone {
         base.max(apex)
     }
 
-    /// They are convex, so as far as the farther pair of caps.
+    /// Both solids are convex, so it is the displacement of the farther pair of caps.
     fn displacement(&self, other: &Self) -> f64 {
         let (these, others) = (self.caps(), other.caps());
         these[0]

@@ -2,7 +2,7 @@
 
 use super::exact::{Line, Real, Vector, dot, minus, norm};
 
-/// Where a line enters and leaves.
+/// The t where a line enters and leaves.
 pub type Span = Option<(Real, Real)>;
 
 /// Beyond everything.

@@ -10,7 +10,7 @@ pub const ROUNDED_UP: f64 = 1.0 + 1e-12;
 #[derive(Clone, Copy, Debug)]
 pub struct Snapped<T> {
     pub record: T,
-    /// How far apart the given and the snapped surface are at most, in 1/256 unit.
+    /// Largest distance between the given and the snapped surface, in 1/256 unit.
     pub displacement: f64,
     /// True if its box lies in the range of box coordinates.
     pub fits: bool,

@@ -256,7 +256,7 @@ fn numbers<N: Number>(ray: &RoundedRay, judge: &Judge, hit: &Hit<N>) -> Option<S
     None
 }
 
-/// Where a ray starts that leaves a hit on the normal's side, or else on the other.
+/// Returns where a ray starts that leaves a hit on the normal's side, or else on the other.
 pub fn depart<N: Number>(scene: &Scene<'_>, hit: &Hit<N>, outward: bool) -> [f64; 3] {
     let start = if outward {
         hit.outside()
@@ -266,8 +266,8 @@ pub fn depart<N: Number>(scene: &Scene<'_>, hit: &Hit<N>, outward: bool) -> [f64
     start.map(N::length_to_f64)
 }
 
-/// Lets rays leave a hit on both sides, as the ray loop does. Those that meet the same surface again, or never leave
-/// the solid that they are in, are faults.
+/// Lets rays leave a hit on both sides, as the ray loop does. Faults are rays that hit the same surface again, or never
+/// leave the solid that they are in.
 pub fn leave<N: Number>(
     scene: &Scene<'_>,
     judge: &Judge,
@@ -333,8 +333,7 @@ pub fn leave<N: Number>(
     faults
 }
 
-/// Follows a ray that starts inside of a closed mesh until it meets the mesh; a fault if it never
-/// does.
+/// Follows a ray that starts inside of a closed mesh until it hits the mesh. A ray that never does is a fault.
 pub fn sealed<N: Number, A: Accel>(
     scene: &Scene<'_>,
     judge: &Judge,

@@ -38,8 +38,8 @@ pub struct Judge {
     placed: Vec<PlacedPart>,
 }
 
-/// The primitives of a blob without its parts, in ascending order of their numbers, which the pieces of a cut triangle
-/// share.
+/// The primitives of a blob without its parts, in ascending order of their numbers. The pieces of a cut triangle share
+/// a number.
 struct Solids(Vec<(u32, Option<UnitBox>, Solid)>);
 
 impl Solids {
@@ -233,7 +233,7 @@ impl Nearest<'_> {
 /// Where a ray may cross a shape that is known only up to a length. Any shape that is larger or smaller by at most that
 /// length counts.
 ///
-/// A ray meets a solid where it enters it; one that starts inside, where it leaves it.
+/// A ray hits a solid where it enters it. A ray that starts inside hits it where it leaves it.
 #[derive(Clone, Debug)]
 pub struct Crossings<'c> {
     solid: &'c Solid,

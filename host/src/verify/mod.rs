@@ -34,7 +34,7 @@ use std::collections::BTreeMap;
 /// The report of a verification.
 #[derive(Clone, Debug, Default, Serialize)]
 pub struct Report {
-    /// Rays that were put to every structure in every format.
+    /// Rays that were traced through every structure in every format.
     pub rays: u64,
     pub structures: Vec<&'static str>,
     pub formats: Vec<FormatReport>,
@@ -87,7 +87,7 @@ impl Worst {
 pub struct PropertyReport {
     pub property: Property,
     pub text: &'static str,
-    /// Answers that were held to it.
+    /// Answers that were checked for it.
     pub checked: u64,
     pub broken: u64,
     /// The first that broke it.
@@ -125,8 +125,8 @@ pub fn steps(rays: u64) -> u64 {
     2 * rays.div_ceil(CHUNK)
 }
 
-/// Verifies a scene with so many rays of all sorts, and as many at the vertices and edges of closed
-/// meshes. Calls `progress` after every step, from any thread. The same rays are thrown every time.
+/// Verifies a scene with `rays` rays of all sorts, and as many at the vertices and edges of closed meshes. Calls
+/// `progress` after every step, from any thread. The rays are the same every time.
 ///
 /// ```
 /// # use gridel_host::compile::{Options, compile};

@@ -41,8 +41,8 @@ pub fn rays(scene: &Scene<'_>, seed: u64) -> impl Iterator<Item = UnitRay> + use
     (0..).map(move |number: usize| targets.ray(number, &mut random))
 }
 
-/// Endless rays that go through a scene and, but for odd cases, touch nothing: neither edges nor the
-/// surface that they start from.
+/// Returns endless rays that go through a scene and, except in rare cases, touch neither edges nor
+/// the surface that they start from.
 pub fn plain_rays(scene: &Scene<'_>, seed: u64) -> impl Iterator<Item = UnitRay> + use<> {
     let targets = Targets::of(scene);
     let mut random = Random(seed);
@@ -325,8 +325,8 @@ fn from_on_a_surface(targets: &Targets, random: &mut Random) -> UnitRay {
     UnitRay::new(origin, random.direction())
 }
 
-/// In a plane between two cells of the scene's box cut evenly, along it, across an edge of cells, or
-/// from corner to corner.
+/// Returns a ray in a plane between two cells of the scene's box cut evenly. It runs along the
+/// plane, across an edge of cells, or from corner to corner.
 fn in_a_cells_plane(targets: &Targets, random: &mut Random) -> UnitRay {
     let cells = [2, 3, 4, 8, 16, 64][random.below(6)];
     let corner = |random: &mut Random| {

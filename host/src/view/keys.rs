@@ -1,6 +1,6 @@
 //! Keys and what they do, in a window and in a terminal.
 
-/// A key, whatever reads it.
+/// A key, from any source.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Key {
     Character(char),

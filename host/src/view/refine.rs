@@ -24,7 +24,7 @@ const TURN: Duration = Duration::from_millis(2);
 pub struct Refiner<'s> {
     scene: &'s Scene<'s>,
     state: Mutex<Progress>,
-    /// There is something to draw, or nothing any more.
+    /// Signals that there is something to draw, or that drawing ends.
     changed: Condvar,
 }
 
@@ -80,8 +80,8 @@ impl<'s> Refiner<'s> {
         }
     }
 
-    /// Draws with one thread for each core while `front` runs, and returns what that returns. Calls `wake` from
-    /// any thread when there is something new to look at, and not again before somebody looked.
+    /// Draws with one thread for each core while `front` runs, and returns the result of `front`. Calls `wake` from any
+    /// thread when there is a new frame, and not again before it was read.
     pub fn run<R>(&self, wake: &(dyn Fn() + Sync), front: impl FnOnce() -> R) -> R {
         let threads = thread::available_parallelism().map_or(1, usize::from);
         thread::scope(|scope| {
@@ -94,7 +94,7 @@ impl<'s> Refiner<'s> {
         })
     }
 
-    /// Asks for a picture, in place of the one that is drawn and of any that waits.
+    /// Requests a picture, in place of the one that is drawn and of any that waits.
     pub fn show(&self, shot: Shot) {
         self.lock().next = Some(shot);
         self.changed.notify_all();
@@ -119,7 +119,7 @@ impl<'s> Refiner<'s> {
         drop(self.changed.wait_while(state, is_busy));
     }
 
-    /// Takes part in the drawing until there will be nothing any more.
+    /// Takes part in the drawing until it ends.
     fn work(&self, wake: &(dyn Fn() + Sync)) {
         while let Some((number, shot)) = self.next_shot() {
             let Err(error) = self.draw(number, &shot, wake) else {

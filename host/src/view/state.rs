@@ -61,7 +61,7 @@ impl<'s> State<'s> {
         }
     }
 
-    /// The scene from another camera, if it can be seen from there.
+    /// Returns the scene from another camera, if that camera is valid.
     pub fn seen_from(mut self, camera: Camera) -> Self {
         self.moved(camera);
         self
@@ -147,7 +147,7 @@ impl<'s> State<'s> {
         self.moved(self.camera.panned(-right, down))
     }
 
-    /// Brings the camera nearer by so many steps, or further away.
+    /// Moves the camera nearer by a number of steps, or further away.
     pub fn zoom(&mut self, steps: f64) -> Effect {
         let [first, now] = [self.first_camera, self.camera].map(|it| it.eye.distance(it.target));
         let wanted = (now * ZOOM.powf(steps)).max(NEAREST * first);
@@ -168,7 +168,7 @@ impl<'s> State<'s> {
         Effect::Redraw
     }
 
-    /// Takes another camera, unless the scene cannot be seen from there.
+    /// Takes another camera, unless it is invalid for the scene.
     fn moved(&mut self, camera: Camera) -> Effect {
         if camera.is_along_up() {
             return Effect::Nothing;

@@ -20,7 +20,7 @@ const COLUMNS: u16 = 80;
 /// The least time between two frames, which a terminal takes long to draw.
 const FRAME_TIME: Duration = Duration::from_millis(50);
 
-/// The time after which the terminal's size is looked at.
+/// The time after which the terminal's size is checked.
 const LOOK_TIME: Duration = Duration::from_millis(250);
 
 /// Lines below the picture, for the settings.
@@ -85,7 +85,7 @@ pub fn one_frame(refiner: &Refiner<'_>, state: &State<'_>) -> Result<String, Vie
     })
 }
 
-/// Shows a scene until somebody quits. The picture fits the terminal, or keeps its size if `is_fixed`.
+/// Shows a scene until the user quits. The picture fits the terminal, or keeps its size if `is_fixed`.
 ///
 /// # Errors
 /// If standard output cannot be written.
@@ -94,7 +94,7 @@ pub fn live(refiner: &Refiner<'_>, state: State<'_>, is_fixed: bool) -> io::Resu
     let wake = sender.clone();
     thread::scope(|scope| {
         scope.spawn(move || read_keys(&sender));
-        // Nobody listens any more at the end.
+        // At the end the receiver is gone.
         let wake = || drop(wake.send(Event::Drawn));
         refiner.run(&wake, || {
             let _screen = Screen::open()?;

@@ -74,7 +74,7 @@ fn without_place(error: &impl Display) -> String {
 pub fn run(refiner: &Refiner<'_>, state: State<'_>, viewed: Viewed<'_>) -> Result<(), WindowError> {
     let events = EventLoop::<Wake>::with_user_event().build()?;
     let proxy = events.create_proxy();
-    // Nobody listens any more at the end.
+    // At the end the receiver is gone.
     let wake = || drop(proxy.send_event(Wake::Drawn));
     thread::scope(|scope| {
         refiner.run(&wake, || {

@@ -14,7 +14,7 @@ pub struct Choice {
     pub name: String,
     pub rmse: f64,
     pub rays_per_pixel: f64,
-    /// How surely it is the cheapest, where time on this machine decides.
+    /// How certain it is that the setting is the cheapest, where time on this machine decides.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub noise: Option<String>,
     pub build: String,
@@ -70,7 +70,7 @@ pub fn choice(arguments: &Arguments, stem: &str, results: &Results) -> Option<Ch
     })
 }
 
-/// How surely a point is the fastest within a bound.
+/// Returns how certain it is that a point is the fastest within a bound.
 fn noise(fastest: &Point, points: &[Point], limits: Limits) -> String {
     let Some(repeats) = fastest.cost.interval() else {
         return String::from(", timed once, so its noise is unknown");

@@ -1,4 +1,4 @@
-//! Options that say from where a scene is seen.
+//! Options for the camera of a scene.
 
 use super::values::{numbers, vector};
 use crate::cli::failure::Failure;
@@ -70,7 +70,7 @@ impl ViewOptions {
         }
         if scene.camera.is_none() {
             scene.background = scene.background.or(Some(compile::BACKGROUND));
-            // Which way is up decides from where the whole scene is seen.
+            // The direction up decides from where the whole scene is seen.
             for up in [Up::Y, Up::Z] {
                 // Along the axis, however long.
                 let is_along =
@@ -123,7 +123,7 @@ impl ViewOptions {
         camera.iter().any(|(given, _)| *given)
     }
 
-    /// A camera with what was given in place of its own.
+    /// Returns a camera with the given values in place of its own.
     fn moved(&self, camera: Camera) -> Result<Camera, Failure> {
         let camera = Camera {
             eye: self.eye.unwrap_or(camera.eye),

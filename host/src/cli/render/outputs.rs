@@ -19,7 +19,7 @@ use gridel_host::report::HeatMap;
 use serde::Serialize;
 use std::path::{Path, PathBuf};
 
-/// Pixels of pictures for displays that are held at once.
+/// Largest number of pixels of pictures for displays in memory at once.
 pub const MOST_PIXELS: usize = 1 << 26;
 
 /// The formats of pictures, as messages list them.
@@ -180,7 +180,7 @@ impl<'a> Outputs<'a> {
         }
     }
 
-    /// Pixels that are held at once.
+    /// Returns the largest number of pixels in memory at once.
     pub fn most_pixels(&self) -> usize {
         match self.stored {
             Stored::Shown(_) if self.aovs.is_empty() => MOST_PIXELS,

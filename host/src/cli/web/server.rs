@@ -102,7 +102,7 @@ impl Server {
     }
 }
 
-/// The first line of a request; the others say nothing that matters here.
+/// Reads the first line of a request; the others do not matter here.
 fn read_request(stream: &TcpStream) -> io::Result<String> {
     let mut reader = BufReader::new(stream.take(MOST_REQUEST));
     let (mut first, mut line) = (String::new(), String::new());

@@ -46,7 +46,7 @@ pub fn nearest(primitives: &[Primitive]) -> Tree {
                 let apart =
                     |other: &usize| area(&bounds.union(&tree.nodes[clusters[*other]].bounds));
                 let others = (first..end).filter(|&other| other != place);
-                // Ties go by place, so that two always find each other.
+                // Ties are decided by place, so that two always find each other.
                 let key = |other: &usize| (apart(other), place.min(*other), place.max(*other));
                 others
                     .min_by(|a, b| {

@@ -114,7 +114,7 @@ fn refit(tree: &mut Tree, mut number: usize) {
     }
 }
 
-/// A node that waits to be looked at, the cheapest first.
+/// A node that waits to be examined, the cheapest first.
 struct Candidate {
     /// By how much all nodes above would grow.
     growth: f64,

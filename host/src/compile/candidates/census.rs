@@ -46,7 +46,7 @@ pub struct CubeCensus {
     pub objects: u64,
     /// Cylinders between opposite faces alone, 3 n^4: what the paper counts.
     pub opposite: Census,
-    /// Cylinders between all different faces, 15 n^4: what serves every ray.
+    /// Cylinders between all different faces, 15 n^4, as every ray needs.
     pub all: Census,
     /// Counts with hulls in place of cylinders, tested against the objects themselves.
     pub tight: Census,

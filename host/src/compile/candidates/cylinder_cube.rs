@@ -1,4 +1,4 @@
-//! Builds the cylinder cubes: for every pair of gridels of different faces, what can be met between
+//! Builds the cylinder cubes: for every pair of gridels of different faces, the candidates between
 //! them (the paper, section 3.1).
 
 use super::budget::{Budget, OnProgress, OverBudget};
@@ -94,7 +94,7 @@ pub fn build<F: Form>(
     let plan = |count: u32| OfSize::new(form, Gridels::new(&targets.bounds, count));
     if let Some(count) = budget.gridels {
         let sized = plan(count);
-        // Not worth counting what cannot fit.
+        // Does not count what cannot fit.
         let least = Gridels::pairs(count);
         if least > budget.bytes {
             return Err(budget.exceeded(F::STRUCTURE, Some(count), least, true));

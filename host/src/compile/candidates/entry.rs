@@ -16,7 +16,7 @@ use std::cell::OnceCell;
 /// The form whose lists hold nodes.
 pub struct EntryNodes<'t>(pub &'t Targets<'t>);
 
-/// Rays tried for a pair: from so many places of one gridel to another place of the other.
+/// Rays tried for a pair, each from a place of one gridel to a place of the other.
 const SAMPLES: usize = 16;
 
 impl Form for EntryNodes<'_> {

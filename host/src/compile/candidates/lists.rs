@@ -93,8 +93,8 @@ pub struct Counted {
     order: Vec<Print>,
 }
 
-/// The fingerprint of a cell's list: lists with the same are taken to be equal, which two different
-/// ones are with a chance of 2^-128.
+/// The fingerprint of a cell's list. Lists with the same fingerprint count as equal; two different ones have it with a
+/// chance of 2^-128.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 struct Print {
     hash: [u64; 2],

@@ -35,7 +35,7 @@ impl Forests {
                 continue;
             };
             let (left, right) = (forests.costs[left as usize], forests.costs[right as usize]);
-            // The best way to share out 2 to 8 trees.
+            // The best distribution of 2 to 8 trees.
             let shared: [(f64, u8); FORESTS] = std::array::from_fn(|index| {
                 let trees = index + 2;
                 (1..trees)

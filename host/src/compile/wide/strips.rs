@@ -23,7 +23,7 @@ pub struct Strip {
 
 /// No triangle, as a neighbor.
 const NOBODY: u32 = u32::MAX;
-/// Strips that are looked at, in the order of their places in space, to join one with.
+/// Strips that are considered for a join with one, in the order of their places in space.
 const REACH: usize = 48;
 /// The highest cost of a joined box, the sum of the two being 1. A join saves one strip, and one child of a node. The
 /// limit is higher than a ray's time alone would allow, because of these bytes.
@@ -127,8 +127,7 @@ impl Mesh<'_> {
             let free = neighbours.filter(|&&it| it != NOBODY && free[it as usize]);
             free.count()
         };
-        // By how many neighbors are free; what was left last goes on first. Entries may be out of
-        // date.
+        // By the number of free neighbors; the last entry comes first. Entries may be out of date.
         let mut waiting: [Vec<u32>; 4] = Default::default();
         for triangle in (0..self.triangles.len() as u32).rev() {
             waiting[degree(triangle, &free)].push(triangle);
@@ -191,7 +190,7 @@ impl Mesh<'_> {
         }
     }
 
-    /// Goes on from a triangle over the edge of its last two vertices, as far as it is free.
+    /// Continues from a triangle over the edge of its last two vertices, as far as triangles are free.
     fn zigzag(&self, start: u32, corners: [u32; 3], free: &[bool]) -> Path {
         let mut path = Path {
             vertices: [0; LANES],
@@ -286,8 +285,8 @@ fn join(strips: Vec<Strip>) -> Vec<Strip> {
 }
 
 impl Strip {
-    /// Both strips as one, if it has room for them: end to end, over a vertex or an edge that ends
-    /// of theirs share.
+    /// Returns both strips as one, if it has room for them. They join end to end, over a vertex or an edge that their
+    /// ends share.
     fn and(&self, other: &Strip) -> Option<Strip> {
         let turns = [(false, false), (false, true), (true, false), (true, true)];
         let joints = turns.into_iter().map(|(turn, turn_other)| {

@@ -102,7 +102,7 @@ impl Tree {
         order
     }
 
-    /// Takes every node out once, large ones first, and puts it where it costs least. Returns
+    /// Takes every node out once, large ones first, and inserts it where it costs least. Returns
     /// whether any was moved.
     pub fn reinsert(&mut self) -> bool {
         let mut nodes: Vec<u32> = (0..self.bounds.len() as u32).collect();
@@ -195,7 +195,7 @@ impl Tree {
         self.children[parent as usize - self.items] = [to, node];
         self.parents[to as usize] = parent;
         self.parents[node as usize] = parent;
-        // Whatever its box was elsewhere, those above have not seen it here.
+        // The nodes above do not include its box here, whatever its box was elsewhere.
         self.bounds[parent as usize] = self.hull(to).union(&self.hull(node));
         self.refit(above);
     }

@@ -49,8 +49,8 @@ impl ProgramEstimate<'_> {
         )
     }
 
-    /// A figure of the program; `through` makes it one for another structure, by the figures of all
-    /// parts through that and through dual-split nodes.
+    /// Returns a figure of the program. `through` converts it to another structure, by the figures of all parts through
+    /// that one and through dual-split nodes.
     fn figure(
         &self,
         profile: Profile,

@@ -81,8 +81,8 @@ impl MemoryReport {
     /// The structures that were measured: those that firmware can prevalidate.
     pub const STRUCTURES: [Structure; 4] = Prevalidated::STRUCTURES;
 
-    /// The report of a scene that `blob` holds, in one of the board's number formats, through the
-    /// best structure that the blob holds.
+    /// Returns the report of a scene in `blob`, in one of the board's number formats, through the best structure of the
+    /// blob.
     ///
     /// # Errors
     /// If the structure is not one of [`Self::STRUCTURES`].
@@ -404,7 +404,7 @@ mod tests {
         }
     }
 
-    /// The known part can be too much by itself.
+    /// The known part can exceed the board alone.
     #[test]
     fn unknown_figures_do_not_hide_what_is_short() {
         let report = report(&Programs::default(), 100);

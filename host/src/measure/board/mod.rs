@@ -32,8 +32,8 @@ pub struct Board {
     pub name: &'static str,
     /// The name of its processor core.
     pub core: &'static str,
-    /// The board that QEMU plays, on whose core programs were built and measured: the board itself, or one with a core
-    /// of the same kind.
+    /// The board that QEMU emulates, on whose core programs were built and measured: the board itself, or one with a
+    /// core of the same kind.
     pub measured: &'static str,
     /// The Rust target of its core.
     pub target: &'static str,

@@ -1,7 +1,7 @@
 //! The animations of a glTF file: tracks of its camera and its lights.
 //!
-//! A node's own translation and rotation keep their keys. Where nodes above it move as well, or the way is not one that
-//! tracks have, it is sampled [`RATE`] times per second.
+//! A node's own translation and rotation keep their keys. Where nodes above it move as well, or tracks do not have such
+//! an interpolation, they are sampled [`RATE`] times per second.
 
 use super::buffers::Buffers;
 use super::place::transform;
@@ -14,10 +14,10 @@ use gltf::{Animation, Document};
 use std::collections::HashMap;
 use std::path::Path;
 
-/// Samples per second of a way that has no keys of its own.
+/// Samples per second of a motion that has no keys of its own.
 const RATE: f64 = 60.0;
 
-/// Most samples of a way; longer ones are sampled less often.
+/// Most samples of a motion; longer ones are sampled less often.
 const MOST_SAMPLES: f64 = 65_536.0;
 
 /// How a property of a node moves.
@@ -42,7 +42,7 @@ pub(super) struct Motion {
     nodes: HashMap<usize, Moves>,
     /// The node above each node.
     parents: Vec<Option<usize>>,
-    /// Where each node stands in the one above, at rest.
+    /// The transform of each node in the one above, at rest.
     rest: Vec<DMat4>,
     /// True if some way was sampled.
     pub(super) sampled: bool,
@@ -177,7 +177,7 @@ impl Motion {
         self.parents[node]
     }
 
-    /// Where a node stands in the one above it.
+    /// Returns the transform of a node in the one above it.
     fn local(&self, node: usize, seconds: f64) -> DMat4 {
         let rest = self.rest[node];
         let Some(moves) = self.nodes.get(&node) else {
@@ -193,7 +193,7 @@ impl Motion {
         )
     }
 
-    /// Where a node stands in the scene.
+    /// Returns the transform of a node in the scene.
     fn world(&self, node: usize, seconds: f64) -> DMat4 {
         let locals = self.chain(node).map(|it| self.local(it, seconds));
         locals.fold(DMat4::IDENTITY, |world, local| local * world)
@@ -344,7 +344,7 @@ fn first_time(moves: &Moves) -> f64 {
     keys.map(|key| key.seconds).fold(f64::INFINITY, f64::min)
 }
 
-/// How a camera is turned that looks along -z of a node, with y upwards as far as can be.
+/// Returns the rotation of a camera that looks along -z of a node, with y upwards as far as possible.
 fn turned(world: &DMat4) -> DQuat {
     let back = world.transform_vector3(DVec3::Z).normalize_or(DVec3::Z);
     let right = world.transform_vector3(DVec3::Y).cross(back);
@@ -352,7 +352,7 @@ fn turned(world: &DMat4) -> DQuat {
     DQuat::from_mat3(&DMat3::from_cols(right, back.cross(right), back))
 }
 
-/// The rotation of a matrix that turns and scales alike in all directions; `None` for another.
+/// Returns the rotation of a matrix that scales equally in all directions; `None` for another.
 fn rotation_of(matrix: DMat3) -> Option<DQuat> {
     /// Tolerance of single precision.
     const TOLERANCE: f64 = 1e-6;
@@ -364,7 +364,7 @@ fn rotation_of(matrix: DMat3) -> Option<DQuat> {
 }
 
 impl Way {
-    /// The way with each value, and each change of it, mapped linearly.
+    /// Returns the keys with each value, and each change of it, mapped linearly.
     pub(super) fn map(&self, map: impl Fn([f64; 4]) -> [f64; 4]) -> Self {
         let key = |key: &Key| Key {
             seconds: key.seconds,
@@ -378,7 +378,7 @@ impl Way {
         }
     }
 
-    /// The way as seen from a place at rest, whose values and changes are mapped by `linear`.
+    /// Returns the keys relative to a place at rest, with values and changes mapped by `linear`.
     pub(super) fn beside(&self, rest: DVec4, linear: DMat3) -> Self {
         let vector = |[x, y, z, _]: [f64; 4]| {
             let [x, y, z] = (linear * DVec3::new(x, y, z)).to_array();
@@ -392,7 +392,7 @@ impl Way {
         way
     }
 
-    /// The way of places, seen from the scene.
+    /// Returns the positions in the scene's coordinates.
     fn placed(&self, above: &DAffine3) -> Self {
         let vector = |[x, y, z, _]: [f64; 4]| {
             let [x, y, z] = above.transform_vector3(DVec3::new(x, y, z)).to_array();

@@ -1,6 +1,6 @@
 //! The binary side of a glTF file: buffers, and what accessors read from them.
 //!
-//! The crate's own readers trust offsets, counts and types; here nothing is read that is not there.
+//! The crate's own readers trust offsets, counts and types; here every read is checked.
 
 use crate::scene::SceneError;
 use crate::scene::access::Access;

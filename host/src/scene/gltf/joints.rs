@@ -15,7 +15,7 @@ use glam::{DMat3, DMat4, DQuat, DVec3, DVec4};
 use gltf::Node;
 use std::collections::HashMap;
 
-/// How far a matrix can be from a rotation times a scale, and a change of size from an even one.
+/// Largest difference of a matrix from a rotation times a scale, and of a change of size from a uniform one.
 const TOLERANCE: f64 = 1e-5;
 
 /// The scale of a mesh that shrinks to nothing.
@@ -152,7 +152,7 @@ impl Own {
         own
     }
 
-    /// Adds a way, unless it stays at rest.
+    /// Adds a track, unless it stays at rest.
     fn add(&mut self, target: TrackTarget, way: Way, rest: DVec4) {
         let is_rest = |value: [f64; 4]| {
             let value = DVec4::from_array(value);

@@ -17,8 +17,8 @@
 //! with that roughness. The diffuse color has no part of it, and the highlight is that of m = 0. Others are as above: a
 //! file that states neither also has a metalness and a roughness of 1.
 //!
-//! Where the alpha mode is `BLEND`, alpha is what of the material is there, and the rest is a pane; but for textures
-//! with alpha.
+//! Where the alpha mode is `BLEND`, alpha is the part of the material that is present, and the rest is a pane. Textures
+//! with alpha are the exception.
 
 use crate::scene::{Alpha, Color, Diffuse, Material};
 use gltf::material::AlphaMode;

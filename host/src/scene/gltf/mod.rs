@@ -174,7 +174,7 @@ impl Importer<'_> {
         self.warn_of(1, sentence);
     }
 
-    /// Warns of so many things at once, if there are any.
+    /// Warns of `count` things at once, if there are any.
     fn warn_of(&mut self, count: usize, sentence: impl Into<String>) {
         if count > 0 {
             self.warnings.add_times(self.place.clone(), count, sentence);

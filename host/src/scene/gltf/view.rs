@@ -1,8 +1,8 @@
 //! The cameras and lights of a glTF file.
 //!
 //! Points and spots fall off with the square of the distance, and end at their range and their cones, as
-//! `KHR_lights_punctual` says. Intensities are in candela and lux, which span many powers of ten: so all are scaled
-//! alike, as a photographer would expose. The light that is strongest in the middle of the scene is 1 there.
+//! `KHR_lights_punctual` says. Intensities are in candela and lux, which span many powers of ten. So one factor scales
+//! all, as a photographer would expose. The light that is strongest in the middle of the scene is 1 there.
 
 use super::animation::Motion;
 use crate::scene::{

@@ -21,8 +21,8 @@ const MOST_IN_CELL: usize = 1000;
 /// The most bonds that are collected; their sticks would fit into no memory.
 const MOST_BONDS: usize = 1 << 24;
 
-/// The bonds between sites, each pair once with the lower index first, and the sites that are
-/// crowded beyond reason, for which none are found.
+/// Returns the bonds between sites, each pair once with the lower index first. Also returns the
+/// sites that are so crowded that their bonds are not searched for.
 ///
 /// The sites are sorted into cells as wide as the longest possible bond, so that the cost is
 /// linear in their number.

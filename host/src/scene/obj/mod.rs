@@ -28,7 +28,7 @@ pub(super) const IMPORTER: Importer = Importer {
     name: "OBJ",
     about: "Wavefront's meshes, with MTL materials",
     extensions: &["obj"],
-    // The format says nothing; modelling programs export y up by default.
+    // The format does not state it; modelling programs export y up by default.
     up: Up::Y,
     binary: false,
     example: "v 0 0 0\nv 4 0 0\nv 4 4 0\nv 3 1 0\nf 1 2 3 4\n",
@@ -130,8 +130,8 @@ fn check_size(source: &Source, parsed: &Parsed<'_>) -> Result<(), SceneError> {
     Ok(())
 }
 
-/// Reads the files that `mtllib` names. One that is missing is worth a warning alone: it was
-/// often left behind, and the geometry is all there.
+/// Reads the files that `mtllib` names. A missing one only causes a warning: it is often not delivered, and the
+/// geometry is complete.
 fn read_libraries(
     source: &Source,
     parsed: &Parsed<'_>,

@@ -297,8 +297,7 @@ impl Reader<'_> {
         }
     }
 
-    /// Reads a color of one number (gray) or three, from 0 to 1; `None` where it is given in
-    /// another way.
+    /// Reads a color of one number (gray) or three, from 0 to 1; `None` where it has another form.
     fn color(&self, line: usize, warnings: &mut Warnings) -> Result<Option<Color>, SceneError> {
         self.color_up_to(1.0, line, warnings)
     }

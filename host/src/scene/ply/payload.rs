@@ -259,7 +259,7 @@ impl<'w> Words<'w> {
         ])
     }
 
-    /// Reads a list: its length, and so many numbers of a type.
+    /// Reads a list: its length, and that many numbers of a type.
     fn list(&mut self, kind: &ScalarType, property: &str) -> Result<Property, Fault> {
         let text = self.next(Word::Length, property)?;
         let length = text.parse::<usize>().map_err(|_| {

@@ -13,7 +13,7 @@ pub(super) const MAX_NESTING: usize = 64;
 /// The cost of placing some objects.
 #[derive(Clone, Copy, Default)]
 struct Cost {
-    /// Primitives, or as much memory as they would take.
+    /// Primitives, or an equivalent of their memory.
     primitives: u64,
     size: Size,
     /// How many groups are nested inside each other.
@@ -32,7 +32,7 @@ impl Cost {
 
 /// The result of the census.
 pub(super) struct Usage {
-    /// How many objects the scene's own list comes to.
+    /// The number of objects in the scene's own list after expansion.
     pub(super) objects: usize,
     /// About groups that the scene does not use.
     pub(super) warnings: Vec<String>,
@@ -232,7 +232,8 @@ fn imported_size(scene: &Scene) -> Size {
     objects.chain(instances).fold(Size::default(), Size::plus)
 }
 
-/// The primitives of an import; instances, joints and keys weigh as much, so that they do not multiply for free.
+/// Returns the primitives of an import. Instances, joints and keys count as well, so that they do not multiply at no
+/// cost.
 fn imported(scene: &Scene) -> u64 {
     let objects = objects_of(scene).map(|object| primitives(&object.shape));
     let tracks = scene.tracks.iter().filter(|it| it.target.is_of_joint());

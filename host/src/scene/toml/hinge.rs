@@ -1,7 +1,8 @@
 //! Rotations by angles about one axis, as keys of quaternions.
 //!
 //! The way between two quaternions is less than half a turn, and that of an angle has any number of turns. So keys are
-//! added between those of the file: on the way of a linear track exactly, on that of a spline within [`TOLERANCE`].
+//! added between those of the file. On the way of a linear track they are exact, on that of a spline within
+//! [`TOLERANCE`].
 
 use crate::scene::{Interpolation, Key, TICKS_PER_SECOND};
 use crate::shape::unit;
@@ -16,7 +17,7 @@ const LINEAR_STEP: f64 = 90.0;
 /// How far a spline of quaternions may be from that of the angles, in radians.
 const TOLERANCE: f64 = 2e-5;
 
-/// Degrees that are surely less than half a turn.
+/// Degrees that are certainly less than half a turn.
 const MOST_DEGREES: f64 = 150.0;
 
 /// Keys of rotations about an axis, given keys of angles in degrees and their changes.

@@ -114,7 +114,7 @@ impl Imports {
 
     /// Reads the scene file from which everything starts.
     pub(super) fn root(&mut self, input: Input<'_>) -> Result<Scene, SceneError> {
-        // A path that leads nowhere is that of standard input, which nothing can import.
+        // A path that does not exist is that of standard input, which no file can import.
         let canonical = input
             .access
             .canonical(input.path)

@@ -115,7 +115,7 @@ pub(super) fn moved(track: &Track, by: &DAffine3) -> Option<Track> {
     Some(moved)
 }
 
-/// The rotation of a transform that turns and scales alike in all directions.
+/// Returns the rotation of a transform that scales equally in all directions.
 fn rotation_of(by: &DAffine3) -> Option<DQuat> {
     /// Far above rounding, and far below visible differences.
     const TOLERANCE: f64 = 1e-9;

@@ -96,7 +96,7 @@ impl Source {
     }
 }
 
-/// The name among `known` that is most like `wanted`.
+/// Returns the name among `known` that is most similar to `wanted`.
 pub(crate) fn nearest<'k>(wanted: &str, known: impl Iterator<Item = &'k str>) -> Option<&'k str> {
     let likeness = |name: &str| strsim::jaro_winkler(wanted, name);
     known.max_by(|a, b| likeness(a).total_cmp(&likeness(b)))

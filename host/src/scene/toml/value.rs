@@ -280,7 +280,7 @@ impl<'a> Value<'a> {
         Fields::new(self.source, self.span(), self.table()?, what, keys)
     }
 
-    /// The value of one key of a table, whatever its other keys are.
+    /// Returns the value of one key of a table, and ignores its other keys.
     pub(crate) fn member(self, what: &'a str, key: &str) -> Result<Value<'a>, SceneError> {
         let (source, span, table) = (self.source, self.span(), self.table()?);
         Fields {

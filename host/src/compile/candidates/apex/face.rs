@@ -16,11 +16,11 @@ pub(super) struct Face {
     pub(super) bundle: Bundle,
     /// The content of a window there.
     pub(super) window: Ranges,
-    /// The targets that are seen, the nearest first.
+    /// The visible targets, the nearest first.
     pub(super) seen: Vec<Seen>,
 }
 
-/// A target that is seen.
+/// A visible target.
 #[derive(Clone, Copy)]
 pub(super) struct Seen {
     pub(super) slot: u32,
@@ -31,7 +31,7 @@ pub(super) struct Seen {
 }
 
 impl Face {
-    /// Returns the face as seen from a point; `None` if nothing is seen.
+    /// Returns the face as seen from a point; `None` if no target is visible.
     pub(super) fn of_point(
         targets: &[Target],
         at: [i32; 3],

@@ -19,8 +19,7 @@ const SAMPLES: u64 = 1024;
 /// 2^32 divided by the golden ratio: its multiples are spread evenly.
 const GOLDEN: u32 = 0x9e37_79b9;
 
-/// The size of cells with which an apex takes at most so many bytes, estimated from samples; `None` if
-/// no size does.
+/// Returns the size of cells with which an apex takes at most `bytes`, estimated from samples; `None` if no size does.
 pub(super) fn cell_size(faces: &[Face], targets: &[Target], bytes: f64) -> Option<f64> {
     let entry = if targets.len() < 256 { 2.0 } else { 3.0 };
     // Entries of the lists, and all bytes: a list for each cell, its number and its first entry.
@@ -34,7 +33,7 @@ pub(super) fn cell_size(faces: &[Face], targets: &[Target], bytes: f64) -> Optio
     let sides = faces.iter().flat_map(|face| face.window);
     let widest = sides.map(|[low, high]| high - low).fold(0.0, f64::max);
     if widest < f64::MIN_POSITIVE {
-        // Nothing is seen, so no size is small enough.
+        // No target is visible, so no size is small enough.
         return None;
     }
     let mut size = widest;
@@ -45,7 +44,7 @@ pub(super) fn cell_size(faces: &[Face], targets: &[Target], bytes: f64) -> Optio
     while size > widest / f64::from(Apex::MOST_CELLS) {
         let finer = size / FINER;
         let (more, all) = taken(finer);
-        // Where lists hardly get shorter any more, finer cells are only more of them.
+        // Where lists hardly get shorter, finer cells only add lists.
         if all > bytes || more > SATURATED * FINER * FINER * now {
             break;
         }
@@ -54,14 +53,14 @@ pub(super) fn cell_size(faces: &[Face], targets: &[Target], bytes: f64) -> Optio
     Some(size)
 }
 
-/// A window with the targets that are seen through each of its columns.
+/// A window with the targets that are visible through each of its columns.
 pub(super) struct Window<'t> {
     pub(super) record: ApexWindow,
     bundle: Bundle,
     targets: &'t [Target],
-    /// All that is seen through it, the nearest first.
+    /// All targets visible through it, the nearest first.
     seen: Vec<Seen>,
-    /// For each column those that are seen through it, by their places.
+    /// For each column the targets visible through it, by their places.
     columns: Vec<Vec<u32>>,
     /// The farthest that anything lies along the axis.
     last: f64,
@@ -221,7 +220,7 @@ impl Sight {
         }
     }
 
-    /// Takes what stands in the way.
+    /// Records a target in the way of the rays.
     fn meet(&mut self, target: &Target) {
         for (from, way, met) in &mut self.rays {
             if let Some(depth) = target.entered_by(*from, *way) {

@@ -238,7 +238,7 @@ fn cif_of(groups: &[[&str; 3]]) -> String {
     text
 }
 
-/// Where the first atom of chain A stands in an assembly with this expression.
+/// Returns where the first atom of chain A stands in an assembly with this expression.
 fn places(expression: &str) -> Vec<DVec3> {
     let text = cif_of(&[["1", expression, "A"]]);
     let scene = assembled("t.cif", &text, "1").unwrap().scene;
