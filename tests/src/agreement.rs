@@ -47,7 +47,7 @@ pub struct Tally {
     pub hits: u64,
     /// Rays that were compared with the list, too.
     pub listed: u64,
-    /// Planes tested, the root's apart.
+    /// Planes tested, without the root's.
     pub plain_planes: u64,
     pub flagged_planes: u64,
 }
@@ -84,7 +84,7 @@ pub fn compare<N: Number>(
     tally
 }
 
-/// Compares on one ray; returns where a ray leaves the surface that was met.
+/// Compares on one ray; returns where a ray leaves the surface that was hit.
 fn compare_one<N: Number>(
     name: &str,
     scene: &Scene<'_>,

@@ -12,8 +12,8 @@ use gridel_host::scene::Shape;
 use gridel_host::shape::{Normal, Solid, Sphere};
 use gridel_host::verify::judge::Crossings;
 
-/// A blob of shapes whose lattice is known: one unit is one scene unit, and its zero is the
-/// scene's. Two specks at the ends of the lattice see to that; they come last.
+/// Returns a blob of shapes whose lattice is known: one unit is one scene unit, and its zero is the
+/// scene's. Two specks at the ends of the lattice ensure that; they come last.
 pub fn blob_of<'s>(solids: impl IntoIterator<Item = &'s Solid>) -> Blob {
     let speck = |corner: f64| {
         Shape::Sphere(Sphere {
@@ -49,7 +49,7 @@ pub struct Verdict<N: Number> {
     pub hit: Option<Hit<N>>,
     /// The least error on a ladder that explains the position of the hit, or a miss.
     pub crossing: f64,
-    /// The error, if there should have been a hit and was none, or the other way.
+    /// The error, if a hit is missing, or reported where there is none.
     pub flag: f64,
     /// By how much the normal is off.
     pub normal: f64,

@@ -77,7 +77,7 @@ pub fn check(name: &str, blob: &Blob, exact: f64) {
     }
 }
 
-/// How many pixels of a picture are proved to be off by more than one of 255, in its own size and samples.
+/// Returns how many pixels of a picture are proved to be off by more than one of 255, in its own size and samples.
 pub fn wrong_pixels(blob: &Blob, format: Format) -> usize {
     let scene = blob.scene().expect("a scene");
     let settings = Settings::of(&scene);

@@ -1,5 +1,5 @@
-//! Boxes and traversal (hard cases A): a box that a ray meets is never passed by, and nothing about
-//! a tree changes an answer. That structures agree ray by ray is in `structures`.
+//! Boxes and traversal (hard cases A). A box that a ray meets is never skipped, and the form of a
+//! tree does not change an answer. That structures agree ray by ray is in `structures`.
 
 use glam::DVec3;
 use gridel_core::format::record::UnitBox;
@@ -236,8 +236,8 @@ fn boxes_that_are_met_are_never_passed_by() {
     }
 }
 
-/// Neither the sign of a zero (A2) nor the length of a direction (A8) matters: the same bits
-/// through every structure.
+/// Neither the sign of a zero (A2) nor the length of a direction (A8) matters: the bits are the
+/// same through every structure.
 #[test]
 fn signs_of_zero_and_lengths_of_directions_change_no_bit() {
     fn judge<N: Number>(scene: &Scene<'_>, rays: usize) {

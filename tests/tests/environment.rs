@@ -199,7 +199,7 @@ fn spot() -> Environment {
     Environment::of(Sky::Picture(Arc::new(panorama)))
 }
 
-/// The error falls at least as N^-0.6, and is far below that of as many directions that are all alike.
+/// The error falls at least as N^-0.6, and is far below that of as many uniform directions.
 #[test]
 fn bright_spots_converge() {
     let mut scene = scene("[0, 6, 0]", "[0, 0, 0]", BALL);

@@ -1,7 +1,7 @@
 //! Fixed point (hard cases E). The operations themselves are tested with `Fixed` in the core, mirrors and scales in
 //! `transforms`, watertight meshes in `watertight`.
 //!
-//! A number that wraps panics, in these and in all other tests of the project: they are built with the core's feature
+//! A number that wraps panics, in these and in all other tests of the project. They are built with the core's feature
 //! `strict-ranges`.
 
 use glam::DVec3;
@@ -206,8 +206,7 @@ fn far_rays_meet_what_they_are_aimed_at() {
     }
 }
 
-/// Scenes that no lattice can hold are rejected by name (E8); any other uses its lattice to at least
-/// a half.
+/// Scenes that no lattice can hold are rejected by name (E8); any other takes up at least half of its lattice.
 #[test]
 fn the_lattice_fits_the_scene() {
     let mut random = Random(74);

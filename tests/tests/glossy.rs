@@ -38,7 +38,7 @@ fn brdf(alpha: f64, i: Vector, o: Vector) -> f64 {
     distribution / (1.0 + lambda(alpha, i[1]) + lambda(alpha, o[1])) / (4.0 * i[1] * o[1])
 }
 
-/// The mean over the facets that are seen: of their normals, each with its weight.
+/// Returns the mean over the visible facets: of their normals, each with its weight.
 fn over_visible(alpha: f64, i: Vector, value: impl Fn(Vector) -> f64) -> f64 {
     const CELLS: usize = 400;
     let (mut whole, mut sum) = (0.0, 0.0);
@@ -57,7 +57,7 @@ fn over_visible(alpha: f64, i: Vector, value: impl Fn(Vector) -> f64) -> f64 {
     sum / whole
 }
 
-/// The part of light from everywhere that facets reflect, each a part by the cosine under which it is seen.
+/// Returns the part of light from everywhere that facets reflect, each by the cosine between it and the ray.
 fn reflected(alpha: f64, cos: f64, by_facet: impl Fn(f64) -> f64) -> f64 {
     let i = over(cos, 0.0);
     over_visible(alpha, i, |m| {
@@ -194,7 +194,8 @@ fn distant_lights_are_reflected_by_the_formula() {
     }
 }
 
-/// A lamp above a rough floor: π f cos of all its points, once, whether it is seen or not, and through a pane.
+/// A lamp above a rough floor gives π f cos of all its points, once. This holds whether the lamp is visible or not, and
+/// through a pane.
 #[test]
 fn lamps_are_reflected_once() {
     let cos = 0.8;
@@ -317,7 +318,7 @@ fn rough_glass_splits_light_by_its_facets() {
     assert!((reflected(0.0025, 1.0, |cos| fresnel(1.5, cos)) - 0.04).abs() < 1e-4);
 }
 
-/// No light comes of nothing: a slab and a ball of rough glass under light from everywhere.
+/// No light appears from nothing: a slab and a ball of rough glass under light from everywhere.
 #[test]
 fn lossless_rough_glass_shows_no_more_than_is_there() {
     for roughness in ROUGHNESSES {

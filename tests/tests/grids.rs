@@ -67,7 +67,7 @@ fn lattice(middle: DVec3, flat: bool) -> scene::Scene {
     scenes::of(shapes)
 }
 
-/// Asks a ray in windows along its way, through the list and through both structures.
+/// Traces a ray in windows along its path, through brute force and through both structures.
 fn probe<N: Number>(name: &str, scene: &Scene<'_>, ray: UnitRay) {
     let size = 65_536.0;
     let major = ray

@@ -257,7 +257,7 @@ fn a_plane_looks_like_a_large_ground() {
     }
 }
 
-/// A box of 0.6 on the top of a ball so large that single precision does not know where that is.
+/// Returns a box of 0.6 on the top of a ball. The ball is so large that single precision cannot locate its top.
 fn box_on_a_ball() -> Scene {
     let mut scene = box_on(Ground::Slab, 1e6);
     scene.objects[0].shape = Shape::Sphere(Sphere {

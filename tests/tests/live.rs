@@ -1,4 +1,4 @@
-//! Cameras, lights and materials that a program puts in place of a blob's own.
+//! Cameras, lights and materials of a program that replace a blob's own.
 
 use glam::DVec3;
 use gridel_core::format::limits::FARTHEST;
@@ -301,7 +301,7 @@ fn values_out_of_range_are_rejected_with_their_place() {
     assert_eq!(light(&|it| it.color = [i32::MAX; 3]), None);
 }
 
-/// Whatever is not rejected renders, without a number that leaves its range where those are checked.
+/// Every accepted value renders, and no number leaves its range where ranges are checked.
 #[test]
 fn any_values_are_rejected_or_harmless() {
     let file = scene_file();

@@ -1,4 +1,5 @@
-//! Motion blur: samples are shared out among the moments of a shutter, and what moves is as blurred as it must be.
+//! Motion blur: samples are distributed over the moments of a shutter, and moving objects are blurred by the right
+//! amount.
 
 use gridel_core::render::{RenderError, Shutter};
 use gridel_core::{

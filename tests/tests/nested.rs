@@ -1,4 +1,4 @@
-//! Nested dielectrics: where glass overlaps, light takes the way that it takes through bodies that fit.
+//! Nested dielectrics: where glass overlaps, light takes the same path as through bodies that fit.
 
 use gridel_core::{Effects, Format, Settings, Structure};
 use gridel_host::blob::Blob;

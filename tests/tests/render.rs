@@ -93,7 +93,7 @@ fn threads_rows_and_structures_do_not_matter() {
     }
 }
 
-/// No format is far from another, and none has a black pixel where another has light: a NaN would
+/// No format is far from another, and none has a black pixel where another has light. A NaN would
 /// be black.
 #[test]
 fn formats_agree() {
@@ -253,8 +253,8 @@ fn pictures_are_the_same_a_few_rays_at_a_time() {
     }
 }
 
-/// An abandoned cursor leaves rays in the workspace, which must not reach the next picture; and
-/// rectangles end at the last pixel that there is.
+/// An abandoned cursor leaves rays in the workspace, which must not reach the next picture.
+/// Rectangles end at the last pixel.
 #[test]
 fn cursors_can_be_dropped_and_ends_are_ends() {
     let fixture = scenes::read(&scenes::fixture_folder().join("glass-chess.toml"));

@@ -55,7 +55,7 @@ const PAPER: [Paper; 3] = [
     },
 ];
 
-/// The structures that the paper compares, those that it names, and what was made of them.
+/// The structures that the paper compares, those that it names, and their successors.
 const STRUCTURES: [Structure; 13] = [
     Structure::Bvh,
     Structure::Flagged,

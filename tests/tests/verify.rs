@@ -179,7 +179,7 @@ fn surfaces_that_a_ray_leaves_are_judged_as_those_it_enters() {
             assert_eq!(outcome.faults, [], "{ray:?}");
             let hit = heard[0].hit.expect("a hit");
             shared += usize::from(hit.normal[0] == N::ONE);
-            // The second box is left last wherever it is not left at the shared face.
+            // The ray leaves the second box last wherever it does not leave it at the shared face.
             let rounded = RoundedRay::of(&ready);
             let outer = |k: usize| {
                 let sides = scene.primitive_bounds(Kind::Box, second).expect("a box").0[k];

@@ -284,7 +284,7 @@ fn axis_parallel_rays_through_vertices_hit() {
     }
 }
 
-/// A ray enters a closed mesh as often as it leaves it, counted by going on behind every hit.
+/// A ray enters a closed mesh as often as it leaves it, counted by continuing behind every hit.
 #[test]
 fn rays_enter_as_often_as_they_leave() {
     fn parity<N: Number>(name: &str, scene: &Scene<'_>, rays: usize) {

@@ -24,7 +24,7 @@ const CHUNK: usize = 2048;
 /// The number of a missing item.
 pub const NONE: u32 = u32::MAX;
 
-/// How to ask.
+/// The settings of a query.
 #[derive(Clone, Copy)]
 pub struct How {
     pub format: Format,
@@ -78,7 +78,7 @@ pub use all_hits::{all, count, locations};
 pub use columns::{Columns, cast};
 pub use inside::contains;
 
-/// Calls a function with all threads, or in a pool of so many.
+/// Calls a function with all threads, or in a pool of `threads`.
 pub fn with_threads<T: Send>(threads: usize, work: impl FnOnce() -> T + Send) -> T {
     if threads == 0 {
         return work();
@@ -90,7 +90,7 @@ pub fn with_threads<T: Send>(threads: usize, work: impl FnOnce() -> T + Send) ->
     }
 }
 
-/// Works on chunks, by all threads or so many.
+/// Works on chunks, with all threads or a given number.
 fn each_chunk<C: Send, T: Send>(
     how: How,
     chunks: Vec<C>,

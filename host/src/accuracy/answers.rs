@@ -1,5 +1,5 @@
 //! The answers at the top of the page: the setting for a given error, the effect of the number format, and what to
-//! leave out first.
+//! leave out.
 
 use super::{Cost, Parameter, Point, Results, Truth, cheapest};
 use crate::table::{counted, significant};

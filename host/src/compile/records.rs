@@ -32,7 +32,7 @@ macro_rules! registry {
         }
 
         impl Records {
-            /// Snaps a shape that is no mesh; `None` if it collapses on the lattice.
+            /// Snaps a shape that is no mesh; `None` if the lattice leaves nothing of it.
             pub fn add(&mut self, shape: &Shape, lattice: &Lattice) -> Option<Added> {
                 match shape {
                     Shape::Mesh { .. } => None,

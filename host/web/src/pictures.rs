@@ -79,7 +79,7 @@ pub fn png(loaded: &Loaded, [width, height]: [u16; 2], bytes: &[u8]) -> Answer {
         counters: None,
         work: Vec::new(),
     };
-    // The file of a whole picture says nothing of these.
+    // The file of a whole picture states none of these.
     let job = Job::whole(Format::F32, Structure::List, settings);
     let metadata = RenderMetadata::of(scene, &job);
     let mut file = Vec::new();

@@ -39,7 +39,7 @@ pub fn some_rays(scene: &Scene<'_>, seed: u64) -> Vec<UnitRay> {
     rays::rays(scene, seed).take(RAYS).collect()
 }
 
-/// Gives bytes a length and a checksum that fit, as far as they have room for them.
+/// Gives bytes a matching length and checksum, as far as they have room for them.
 pub fn sealed(bytes: &[u8]) -> Blob {
     let mut bytes = bytes.to_vec();
     let length = bytes.len() as u32;

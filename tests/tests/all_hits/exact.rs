@@ -112,7 +112,7 @@ fn triangles_are_listed_as_exact_arithmetic_finds_them() {
                 let found = f64::from_bits(hit.2);
                 assert!((found - t).abs() <= 0.01, "{found}, {t}: {}", about());
             }
-            // Places that rounding puts into another order, as hits at an edge.
+            // Hits that rounding puts into another order, as at an edge.
             let mut found = found;
             found.sort_unstable();
             as_expected.sort_unstable();

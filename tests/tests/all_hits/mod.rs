@@ -21,7 +21,7 @@ use gridel_tests::scenes;
 /// A hit, whether the ray leaves there, and the bits of its t.
 type Listed = (Option<HitBits>, bool, u64);
 
-/// All hits, listed so many at a time.
+/// Returns all hits, listed `SIZE` at a time.
 fn list<N: Number, const SIZE: usize>(scene: &Scene<'_>, ray: &Ray<N>) -> Vec<Listed> {
     let mut stack = Stack::<MAX_STACK_DEPTH>::new();
     let mut list = HitList::<N, SIZE>::new();

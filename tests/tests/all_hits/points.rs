@@ -2,7 +2,7 @@
 
 use super::*;
 
-/// Points in and around solids and closed meshes, apart from those that lie next to a surface.
+/// Points in and around solids and closed meshes, except those that lie next to a surface.
 #[test]
 fn points_are_contained_where_geometry_says_so() {
     fn contained<N: Number>(scene: &Scene<'_>, count: usize) {

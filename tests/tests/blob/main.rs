@@ -116,8 +116,8 @@ fn small_blob(lattice_bits: u8) -> Vec<u8> {
     blob.bytes().to_vec()
 }
 
-/// Uses a scene that was accepted: all structures that loading proves agree, the others come to an
-/// end, and so do pictures.
+/// Uses a scene that was accepted. All structures that loading proves agree, and the others and
+/// pictures terminate.
 fn works(scene: &Scene<'_>, rays_each: usize) {
     every_format!(structures_agree(scene, rays_each));
     let samples = 1;

@@ -1,5 +1,5 @@
-//! Blobs of every version that was ever written: this build reads them and answers as recorded, or
-//! rejects them and says which versions are meant.
+//! Blobs of every version of the format. This build reads them and answers as recorded, or rejects them and names the
+//! supported versions.
 //!
 //! `fixtures/blobs` holds one of each structure, built from `scene.toml` there with `gridel build` as it
 //! was when the format had that version. These files stay as they are: when the format changes, its

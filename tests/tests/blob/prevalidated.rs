@@ -99,7 +99,7 @@ fn disorder_is_found() {
             for bit in 0..8 * links {
                 let mut changed = bytes.clone();
                 changed[end - links + bit / 8] ^= 1 << (bit % 8);
-                // Owners of planes, and the axes of splits and carves, lead nowhere.
+                // Owners of planes, and the axes of splits and carves, are no links.
                 let leads = match kind {
                     SectionKind::FlaggedPairs => bit < 26,
                     SectionKind::DualNodes => bit < 24,
@@ -289,7 +289,7 @@ fn demands_are_those_of_the_scene() {
     }
 }
 
-/// Whatever a blob was made of, reading its demand ends.
+/// Reading the requirements of any blob terminates.
 #[test]
 fn requirements_of_broken_blobs_are_read_or_rejected() {
     let whole = blob_for_boards(24);

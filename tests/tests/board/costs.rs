@@ -98,8 +98,8 @@ fn shapes_and_effects_are_paid_for_one_by_one() {
         figures.add(&build.to_string(), &report);
     }
     figures.check();
-    // The code of effects that nothing requires costs next to nothing. That of shapes and wider
-    // storage does: leaves choose between them.
+    // The code of effects that nothing requires is negligible. That of shapes and wider storage is not: leaves choose
+    // between them.
     let base = &scenes[0];
     let build = Build::new(discovery, Format::Fixed, Structure::DualSplit, base);
     let effects = Effects::NAMED.map(|(_, name)| name);

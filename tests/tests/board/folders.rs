@@ -42,7 +42,7 @@ fn all() -> MutexGuard<'static, [Folder; FOLDERS]> {
     ALL.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-/// A target folder that is held for one build.
+/// A target folder that is reserved for one build.
 pub struct Claim {
     number: usize,
     folder: PathBuf,

@@ -138,7 +138,7 @@ fn pictures(plan: &mut Plan) {
         test.run(move || picture_is_the_hosts(board, Format::Fixed, &scene()));
     }
 
-    // Small code gives the same bits, with every shape and effect, and holds no more that panics.
+    // A small build gives the same bits, with every shape and effect, and has no more code that panics.
     for (name, format) in [
         ("mps2-an386", Format::F32),
         ("mps2-an385", Format::Fixed),
@@ -171,8 +171,8 @@ fn pictures(plan: &mut Plan) {
     }
 }
 
-/// Every number format and every structure, where lanes are those of NEON or of none, is the host's to
-/// the bit. Where bytes lie the other way round, the blob is rejected.
+/// Every number format and structure, with lanes of NEON or without lanes, gives the host's bits. On a big-endian
+/// processor the blob is rejected.
 fn other_processors(plan: &mut Plan) {
     fn program<'b>(board: &'b Board, scene: &'b Compiled) -> Program<'b> {
         Build::new(board, Format::Fixed, Structure::DualSplit, scene)

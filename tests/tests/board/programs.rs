@@ -1,4 +1,4 @@
-//! Code and call stacks of linked programs, which the memory report is made of, and whether it is right.
+//! Code and call stacks of linked programs, from which the memory report is made, and tests of the report.
 //!
 //! They are recorded in the package of the host, `host/src/measure/board/programs.json`.
 
@@ -233,8 +233,8 @@ fn memory_report_is_within_5_percent(board: &'static Board, format: Format, all:
     assert!(wrong.is_empty(), "{}", wrong.join("\n"));
 }
 
-/// Programs that were not recorded are bounded. How far beyond the true figures the bounds lie stands in
-/// the host's documentation (`gridel_host::measure::board::programs`).
+/// Programs that were not recorded are bounded. The host's documentation states how far beyond the true figures the
+/// bounds lie (`gridel_host::measure::board::programs`).
 fn memory_report_bounds_programs_beyond(board: &'static Board, format: Format) {
     let mut wrong = Vec::new();
     for (shapes, effects) in [

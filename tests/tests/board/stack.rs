@@ -43,7 +43,7 @@ impl CallGraph {
     /// Reads a program that was linked with `--emit-relocs`.
     ///
     /// # Errors
-    /// If a frame is unknown, or a function may be called through a pointer that was handed on.
+    /// If a frame is unknown, or a function may be called through a pointer that was passed on.
     pub fn read(file: &File<'_>) -> Result<Self, String> {
         let decoder: Decoder = match file.architecture() {
             Architecture::Arm => thumb,
@@ -96,7 +96,7 @@ impl CallGraph {
     /// The deepest path from the program's entry.
     ///
     /// # Errors
-    /// If a function calls itself, directly or through others, or a call leads nowhere.
+    /// If a function calls itself, directly or through others, or the target of a call is unknown.
     pub fn deepest(&self) -> Result<Path, String> {
         let mut known = BTreeMap::new();
         self.deepest_from(self.entry, &mut Vec::new(), &mut known)
@@ -205,7 +205,7 @@ fn stated_frames(file: &File<'_>) -> BTreeMap<u64, u64> {
     frames
 }
 
-/// Functions that only the hardware calls, by an address that the start-up code hands to it.
+/// Functions that only the hardware calls, by an address that the start-up code sets.
 const TRAPS: [&str; 3] = ["_start_trap", "_default_start_trap", "_default_abort"];
 /// The steps of riscv-rt's start-up code, which jumps through registers from one to the next.
 const STEPS: [&str; 2] = ["_abs_start", "_start_rust"];

@@ -7,7 +7,8 @@ use super::placed::Met;
 use gridel_core::format::record::Material;
 use gridel_host::shape::exact::{Real, Vector, along, cross, dot, minus, scaled, unit};
 
-/// A normal without what of it is behind a ray, if that meets a surface that sends rays on: such do not show their back.
+/// Returns a normal without its part behind a ray, for a surface that sends rays on: such surfaces do not show their
+/// back.
 fn turned_to_ray(normal: Vector, material: &Material, direction: &Vector) -> Vector {
     let behind = dot(&normal, direction);
     let sends = material.transmit != [0; 3] || material.mirror != [0; 3];

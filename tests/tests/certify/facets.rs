@@ -48,7 +48,7 @@ impl Facets {
             self.cos_in.clone(),
         ];
         let [x, y, z] = unit(&seen);
-        // A point of the cap above -z of the sphere, all alike.
+        // A point of the cap above -z of the sphere, uniformly.
         let sag = part(u) * (one() + &z);
         let across = limited(&sag * (real(2.0) - &sag), 0.0, 1.0).sqrt();
         let [sine, cosine] = turn(v);

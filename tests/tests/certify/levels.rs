@@ -1,4 +1,4 @@
-//! How much of an image a sample sees, by logarithms of integers with 8 fraction bits.
+//! The area of an image that a sample covers, by logarithms of integers with 8 fraction bits.
 
 use super::exact::Exact;
 use super::numbers::{floor, one, real};

@@ -9,7 +9,7 @@ use gridel_core::format::light_form::LightForm;
 use gridel_core::format::record::Light;
 use gridel_host::shape::exact::{Real, Vector, dot, minus, norm, scaled, unit};
 
-/// The cone in which a sphere is seen.
+/// The cone of directions to a sphere.
 pub struct Cone {
     /// How far its middle is.
     distance: Real,

@@ -31,7 +31,7 @@ fn highlight(surface: &Surface<'_>, to_light: &Vector) -> Vector {
     scaled(&color(material.highlight, 30), &power)
 }
 
-/// A surface in the way of light.
+/// A surface between a point and a light.
 struct Passed {
     left: Vector,
     beyond: Inside,
@@ -110,7 +110,7 @@ impl Exact<'_> {
         Some(origin)
     }
 
-    /// The part of light that is left on its way.
+    /// Returns the part of light that remains on its way.
     fn left(
         &self,
         mut line: Line,

@@ -1,4 +1,4 @@
-//! Glass: what meets at its faces, how a ray is split there, and which medium fills a place that several take.
+//! Glass: the media at its faces, the split of a ray there, and the medium that fills a place that several take.
 
 use super::exact::Exact;
 use super::numbers::{fraction, one, real};

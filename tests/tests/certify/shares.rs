@@ -1,5 +1,4 @@
-//! The share of pixels that are proved, for the fixtures and for scenes from elsewhere, and the table of them in
-//! EXACT.md.
+//! The share of proved pixels, for the fixtures and for scenes from elsewhere, and its table in EXACT.md.
 
 use super::{certified, fixtures, settings};
 use gridel_host::certify::{Enclosed, Reason};

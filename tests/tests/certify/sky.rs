@@ -52,7 +52,7 @@ fn is_in_sun(record: &Environment, direction: &Vector) -> bool {
     record.sun_radius > 0 && dot(&off, &off) <= &radius * &radius
 }
 
-/// A direction of the sun: squares of lengths from its middle, on a sphere, are all alike.
+/// Returns a direction of the sun. Squares of lengths from its middle, on a sphere, are uniform.
 pub fn in_sun(record: &Environment, [u, v]: [u32; 2]) -> Vector {
     let half = fraction(record.sun_radius, 30) * real(0.5) * part(u).sqrt();
     let square = &half * &half;

@@ -291,7 +291,7 @@ fn invalid_poses_are_rejected() {
     deformation.vertices_mut()[7] = rest;
     assert_eq!(deformation.refit(&scene), Ok(()));
 
-    // The first triangle becomes a needle: a corner comes to lie halfway between the others.
+    // The first triangle becomes a needle: a corner lies halfway between the others.
     let stored: &[Vertex24] = scene.stored_vertices().expect("vertices");
     let number = |corner: [i32; 3]| stored.iter().position(|it| it.position() == corner);
     let [a, b, c] = scene

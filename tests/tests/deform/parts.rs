@@ -1,4 +1,4 @@
-//! Parts that deform, and the room that the compiler leaves them.
+//! Parts that deform, and their room.
 
 use super::{ball, mesh, ray, shake};
 use glam::{DQuat, DVec3};

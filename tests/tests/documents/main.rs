@@ -132,7 +132,7 @@ fn every_hard_case_has_its_test() {
 /// Compares a generated table of a document with the measured one; `GRIDEL_BLESS=1` writes it.
 fn holds_table(document: &str, mark: &str, table: &str) {
     static DOCUMENTS: Mutex<()> = Mutex::new(());
-    // Tests that write it run at the same time; one that failed says so itself.
+    // Tests that write it run at the same time; a failed one reports its own failure.
     let _one_at_a_time = DOCUMENTS
         .lock()
         .unwrap_or_else(|poison| poison.into_inner());

@@ -1,5 +1,5 @@
-//! The reported displacement bounds how far apart the given and the snapped surfaces are, and what
-//! compiles loads.
+//! The reported displacement bounds the distance between the given and the snapped surfaces, and
+//! compiled scenes load.
 
 use glam::DVec3;
 use gridel_core::geometry::Geometry;

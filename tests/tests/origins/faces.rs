@@ -71,7 +71,7 @@ fn meets_faces_in<N: Number>(scene: &Scene<'_>, axis: DVec3, random: &mut Random
     }
 }
 
-/// A cap of a cylinder in the nearest face of the scene's box was lost by rounding, and its inside met.
+/// A cap of a cylinder in the nearest face of the scene's box was lost by rounding, and its inside hit.
 #[test]
 fn faces_in_the_scenes_box_are_met_from_outside() {
     let random = &mut Random(0xface);

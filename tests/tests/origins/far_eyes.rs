@@ -86,7 +86,7 @@ fn far_eyes_see_the_scene_or_are_rejected() {
     assert!(fixed[2].is_some() && double[2].is_some() && single[2].is_none());
 }
 
-/// A way through glass that is longer than a length can be: it wrapped, and the glass shone.
+/// A path through glass that exceeds the range of lengths: it wrapped, and the glass shone.
 #[test]
 fn glass_seen_from_inside_from_far_away_absorbs_all() {
     let mut scene = scenes::of([Shape::Mesh {

@@ -128,7 +128,8 @@ fn all_inline<N: Number, A: Accel, Q: Question<Answer = Found>>(
 /// Places, numbers of rays and triangles.
 pub type Locations = (Vec<[f64; 3]>, Vec<i64>, Vec<i64>);
 
-/// Where rays meet triangles: at most so many of each ray, or the first alone. Chunk by chunk.
+/// Returns where rays hit triangles: all hits of each ray up to a number, or the first alone. Chunk
+/// by chunk.
 pub fn locations(
     scene: &Scene<'_>,
     rays: Rays<'_>,

@@ -17,7 +17,7 @@ pub struct Columns<'c, T> {
 }
 
 impl<'c, T> Columns<'c, T> {
-    /// The first so many rows, and the others.
+    /// Returns the first `at` rows, and the others.
     fn split(self, at: usize) -> (Self, Self) {
         let (t, more_t) = self.t.split_at_mut(at);
         let (object, more_objects) = self.object.split_at_mut(at);

@@ -137,8 +137,8 @@ fn check_indices(path: &Path, root: &Root) -> Result<(), SceneError> {
     Ok(())
 }
 
-/// Validates the rest. Allows two things that the crate rejects and the format does not: a texture
-/// without an image, and an accessor without a view, which holds zeros.
+/// Validates the rest. Allows two things that the crate rejects and the format does not. They are a
+/// texture without an image, and an accessor without a view, which holds zeros.
 fn validate(path: &Path, root: &Root) -> Result<(), SceneError> {
     let mut first = None;
     root.validate(root, gltf::json::Path::new, &mut |place, error| {

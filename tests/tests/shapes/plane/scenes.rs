@@ -232,7 +232,7 @@ fn planes_are_out_of_the_frame() {
     assert_eq!(view(&soup), view(&grounded));
 }
 
-/// Two planes that cross: whichever a ray meets first, on both sides of the line where they meet.
+/// Two planes that cross: a ray hits the nearer one, on both sides of the line where they meet.
 #[test]
 fn of_two_crossing_planes_the_nearer_is_met() {
     fn judge<N: Number>() {
