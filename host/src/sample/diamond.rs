@@ -15,7 +15,7 @@ pub const DIAMOND_27_000: f64 = 33.2;
 /// angstroms.
 pub fn diamond(radius: f64) -> Scene {
     // All atoms lie at whole quarters of the cell's edge. Where these are even, they form a
-    // face-centerd lattice. Where they are odd, they form another one, shifted by a quarter of the
+    // face-centered lattice. Where they are odd, they form another one, shifted by a quarter of the
     // diagonal.
     let quarter = LATTICE_CONSTANT / 4.0;
     let reach = (radius / quarter).floor() as i64;

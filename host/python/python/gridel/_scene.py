@@ -29,8 +29,8 @@ class Hits(NamedTuple):
     instance: NDArray[np.uint32]
     #: (n, 3) float32: the geometric normal, of length 1: outward, or to where corners run counter-clockwise.
     normal: NDArray[np.float32]
-    #: (n, 2) float32: weights of a triangle's second and third corner; nan where the scene's meshes are not at hand
-    #: (scenes from blobs, instances) and for other shapes, 0 on a miss.
+    #: (n, 2) float32: weights of a triangle's second and third corner; 0 on a miss. nan where the scene's meshes are not
+    #: available (scenes from blobs, instances), and for other shapes.
     uv: NDArray[np.float32]
 
 
