@@ -13,7 +13,7 @@ pub struct Worth {
     pub effect: String,
     /// The name of the setting without it.
     pub without: String,
-    /// What the picture shows without it.
+    /// The part of a sentence about the picture without it.
     pub shown_without: String,
     /// The picture without it against the same picture with it.
     pub lost: Errors,
