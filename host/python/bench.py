@@ -1,5 +1,5 @@
-"""Measures this package beside trimesh with embreex and Open3D: the same rays, one thread each, in turns. Seconds are those
-of the processor, so that other programs count little.
+"""Compares this package with trimesh with embreex and with Open3D: the same rays, one thread each,
+in turns. Seconds are those of the processor, so that other programs count little.
 
 python bench.py MESH [--rays N] [--repeats N]
 

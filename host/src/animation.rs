@@ -52,14 +52,14 @@ impl AnimationFormat {
     pub fn most_per_second(self) -> u16 {
         match self {
             Self::Apng => 1000,
-            // Browsers slow down what is shown for less than two hundredths.
+            // Browsers slow down frames that are shown for less than two hundredths.
             Self::Gif => 50,
         }
     }
 }
 
 impl Animation {
-    /// Writes the animation; asks for each picture once, in order.
+    /// Writes the animation; requests each picture once, in order.
     ///
     /// # Errors
     /// If `out` or a picture has one, or a picture has another size.
@@ -143,7 +143,7 @@ impl NumberedName {
     /// Reads a name with `%d`, or with `%0Nd` for at least `N` digits; `None` without one.
     ///
     /// # Errors
-    /// If there are several, or the `%` stands for something else: why.
+    /// If there are several, or the `%` has another meaning. The error gives the reason.
     ///
     /// ```
     /// use gridel_host::animation::NumberedName;

@@ -8,7 +8,7 @@ use std::fs::{self, File};
 use std::io::{self, Read};
 use std::path::Path;
 
-/// A blob's bytes, aligned as the core asks.
+/// A blob's bytes, aligned as the core requires.
 ///
 /// ```
 /// # use gridel_host::compile::{Options, compile};
@@ -119,8 +119,8 @@ impl fmt::Debug for Blob {
     }
 }
 
-/// Returns whether a file begins as a blob does, or is named like one and so was meant as one. The last two
-/// bytes of the magic do not count, so that a blob that was mangled as text is called a broken blob.
+/// Returns whether a file begins as a blob does, or has a blob's name. The last two bytes of the magic do not count, so
+/// that a blob that was damaged as text is reported as a broken blob.
 ///
 /// # Errors
 /// If the file cannot be read.

@@ -1,5 +1,5 @@
-//! Writes a scene as Rust: a module with the aligned blob, its limits as constants, and the types
-//! that have exactly the memory that it needs.
+//! Writes a scene as a Rust module. It holds the aligned blob, its limits as constants, and types with exactly the
+//! memory that the scene needs.
 
 use crate::measure::Deforming;
 use crate::measure::board::Board;

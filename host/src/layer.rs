@@ -33,7 +33,7 @@ impl LinearFormat {
         }
     }
 
-    /// Whether this build writes the format.
+    /// Returns whether this build writes the format.
     pub fn is_available(self) -> bool {
         self == Self::Npy || cfg!(feature = "exr")
     }

@@ -26,7 +26,7 @@
 //! | know a shape, on the lattice and exactly | [`shape`] |
 //! | find objects that a number format cannot resolve | [`resolution`] |
 //!
-//! The program `gridel` is a thin layer over this library: what it does can be done from here.
+//! The program `gridel` is a thin layer over this library: everything that it does can be done from here.
 //!
 //! ```
 //! use gridel_core::{Format, Settings, Structure};

@@ -1,5 +1,5 @@
-//! Camera and lights of a blob in scene units: read from it, and placed in it as a program on a device places
-//! its own.
+//! Camera and lights of a blob in scene units. They are read from a blob, and placed in it as a program on a device
+//! places its own.
 
 use crate::compile::{CompileError, light_record, place};
 use crate::scene::{Camera, Light};
@@ -9,8 +9,8 @@ use gridel_core::Scene;
 use gridel_core::format::record::{self, View};
 
 impl Camera {
-    /// The camera of a blob. Its target lies in the middle of the picture, as deep as the middle of the scene; up
-    /// is an axis, if the camera stands upright on it.
+    /// Returns the camera of a blob. The target lies in the middle of the picture, as deep as the middle of the scene.
+    /// Up is an axis if the camera stands upright on it.
     ///
     /// ```
     /// # use gridel_host::compile::{Options, compile};
@@ -50,17 +50,17 @@ impl Camera {
         }
     }
 
-    /// The view of a blob with this camera in place of its own, to the bit as if it were compiled with it.
+    /// Returns the view of a blob with this camera in place of its own. It equals a blob compiled with this camera, bit
+    /// for bit.
     ///
     /// # Errors
-    /// If the camera looks nowhere or along the direction that points up, or its eye lies beyond the blob's
-    /// scene coordinates.
+    /// If the camera has no direction or looks along up, or its eye lies beyond the blob's scene coordinates.
     pub fn in_blob(&self, scene: &Scene<'_>) -> Result<View, CompileError> {
         Ok(place(self, scene.header())?.view(scene))
     }
 }
 
-/// The axis across which the picture's rows run, with the sign of what points up.
+/// Returns the axis across which the picture's rows run. Its sign is that of the direction up.
 fn upright(view: &View) -> Option<DVec3> {
     let across = (0..3).filter(|&axis| view.right[axis].abs() <= 1 && view.up[axis] != 0);
     let axis = across.max_by_key(|&axis| view.up[axis].abs())?;

@@ -1,8 +1,8 @@
 //! Puts a picture together from parts that were rendered on their own.
 //!
-//! A part says in its file which rows of which picture it is ([`Rows`]) and how that was made, so
-//! parts may come in any order, parts of different pictures are rejected, and parts may overlap
-//! where they agree: what two machines rendered twice is the same.
+//! The file of a part states which rows of which picture it holds ([`Rows`]) and how they were made. So parts may come
+//! in any order, and parts of different pictures are rejected. Parts may overlap where they agree: two machines render
+//! the same rows with the same bits.
 
 mod frames;
 
@@ -81,7 +81,7 @@ impl Part {
     }
 }
 
-/// Width, height, what is said about the rows, and the pixels of a picture.
+/// Width, height, the note about the rows, and the pixels of a picture.
 type Read4 = (u32, u32, Option<String>, Vec<u8>);
 
 fn read_png(input: impl BufRead + io::Seek) -> Result<Read4, PartError> {
@@ -205,8 +205,8 @@ impl Merge {
     /// Adds a part.
     ///
     /// # Errors
-    /// If it is of a picture of another size, or one that was made in another way, or a row is not
-    /// what another part says it is.
+    /// If the part is of a picture of another size, if it was made in another way, or if a row differs from another
+    /// part's.
     pub fn add(&mut self, part: &Part) -> Result<(), MergeError> {
         let number = self.parts;
         self.parts += 1;

@@ -102,7 +102,7 @@ struct Header<'a> {
     shape: Vec<u64>,
 }
 
-/// Reads the header, and returns it with what is behind it.
+/// Reads the header, and returns it with the bytes behind it.
 fn header(file: &[u8]) -> Result<(Header<'_>, &[u8]), RaysError> {
     let broken = |cause: String| RaysError::Header { cause };
     let Some(rest) = file.strip_prefix(b"\x93NUMPY") else {

@@ -1,4 +1,4 @@
-//! What is observed of rays in numbers.
+//! Observed numbers of rays.
 
 use gridel_core::{Counters, Observer, RayKind};
 use std::any::Any;
@@ -11,7 +11,7 @@ pub type RaySink<'s> = &'s mut dyn FnMut(RayKind, &dyn Any);
 #[derive(Default)]
 pub struct Observed<'s> {
     pub counters: Counters,
-    /// The sum of what rays brought to samples.
+    /// The sum of the radiance that rays brought to samples.
     pub radiance: [f64; 3],
     pub sink: Option<RaySink<'s>>,
 }

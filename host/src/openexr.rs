@@ -12,9 +12,9 @@ use exr::prelude::{
 };
 use std::io::{self, Write};
 
-/// Writes layers as OpenEXR: the picture in the channels `R`, `G` and `B`, depth in `Z`, colors and vectors in channels
-/// such as `albedo.R` and `normal.X`, numbers in channels of their own. Rows of a picture keep their place in it. `comments`
-/// says how the picture was made.
+/// Writes layers as OpenEXR. The picture is in the channels `R`, `G` and `B`, and depth in `Z`. Colors and vectors are
+/// in channels such as `albedo.R` and `normal.X`, numbers in one channel each. Rows of a picture keep their place in
+/// it. `comments` says how the picture was made.
 ///
 /// # Errors
 /// If `out` has one, or this build lacks the feature `exr`.
@@ -63,7 +63,7 @@ fn encode(
     let whole = Vec2(usize::from(window.width), usize::from(window.height));
     let mut about = LayerAttributes {
         layer_position: Vec2(0, window.rows.start.into()),
-        // What does not fit its Latin letters is not said.
+        // Text that does not fit its Latin letters is left out.
         comments: Text::new_or_none(comments),
         ..LayerAttributes::default()
     };

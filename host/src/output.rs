@@ -10,7 +10,7 @@ use tempfile::NamedTempFile;
 static UNFINISHED: Mutex<Vec<PathBuf>> = Mutex::new(Vec::new());
 
 fn unfinished() -> MutexGuard<'static, Vec<PathBuf>> {
-    // A list of paths is whole even if the thread that held it panicked.
+    // A list of paths is complete even if the thread that locked it panicked.
     UNFINISHED.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
@@ -53,9 +53,9 @@ pub fn place(path: &Path) -> PathBuf {
 
 /// Files that belong together: none of them takes its name before all are complete.
 ///
-/// The content of each goes to a new file in its folder. A symbolic link stays one, and what it
-/// leads to is replaced; a file that may not be written is not replaced either. Devices and pipes
-/// cannot be replaced: they are written to at once.
+/// The content of each goes to a new file in its folder. A symbolic link stays one, and its target
+/// is replaced. A file without write permission is not replaced either. Devices and pipes cannot be
+/// replaced, so they are written to at once.
 #[derive(Debug, Default)]
 pub struct Files {
     /// Complete files, and the names that they take.
@@ -99,8 +99,8 @@ impl Files {
     /// Gives all of them their names.
     ///
     /// # Errors
-    /// If one cannot be replaced, which [`add`](Self::add) has seen to be possible; with its path.
-    /// Then those before it are there, and those behind it are not.
+    /// If one cannot be replaced, though [`add`](Self::add) found that it can; with its path. Then
+    /// the files before it exist, and those after it do not.
     pub fn keep(mut self) -> Result<(), (PathBuf, io::Error)> {
         let mut unfinished = unfinished();
         let mut files = std::mem::take(&mut self.complete).into_iter();
@@ -122,7 +122,7 @@ impl Drop for Files {
         let mut unfinished = unfinished();
         for (file, _) in self.complete.drain(..) {
             unfinished.retain(|path| path != file.path());
-            // It removes itself here, before anybody else can see the list.
+            // It removes itself here, before others can see the list.
             drop(file);
         }
     }
@@ -246,7 +246,7 @@ mod tests {
         std::os::unix::fs::symlink(path("a"), path("folder/link")).unwrap();
         std::os::unix::fs::symlink(path("folder"), path("other")).unwrap();
         assert_eq!(place(&path("other/link")), place(&path("folder/../a")));
-        // And of what is not there yet.
+        // And of a file that does not exist yet.
         assert_eq!(
             place(&path("other/lost/b")),
             place(&path("folder/./lost/b"))
@@ -268,7 +268,7 @@ mod tests {
         assert_eq!(fs::read(&target).unwrap(), b"new");
         let mode = fs::metadata(&target).unwrap().permissions().mode();
         assert_eq!(mode & 0o777, 0o640);
-        // What a link leads to need not be there.
+        // The target of a link need not exist.
         fs::remove_file(&target).unwrap();
         let second = folder.path().join("second");
         symlink("link", &second).unwrap();

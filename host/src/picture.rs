@@ -9,7 +9,7 @@ use std::ops::Range;
 use std::path::Path;
 use std::str::FromStr;
 
-/// All that decides the colors of a picture's pixels, beside their place and the picture's size.
+/// All that decides the colors of a picture's pixels, except their place and the picture's size.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct RenderMetadata {
     /// Checksum of the blob.
@@ -51,7 +51,7 @@ pub struct Frame {
     pub per_second: u16,
 }
 
-/// What a file says of a picture of an animation: which one it is, and how it was made.
+/// The note of a file about a picture of an animation: its number, and how it was made.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct FrameNote {
     pub frame: Frame,
@@ -98,7 +98,7 @@ impl FromStr for FrameNote {
     }
 }
 
-/// Names and values behind what is said first.
+/// Writes names and values behind the text so far.
 fn write_pairs(f: &mut fmt::Formatter<'_>, pairs: &[(String, String)]) -> fmt::Result {
     for (number, (name, value)) in pairs.iter().enumerate() {
         let before = if number == 0 { "; " } else { ", " };
@@ -122,18 +122,18 @@ impl RenderMetadata {
         }
     }
 
-    /// The same at a moment.
+    /// Returns the metadata at a moment.
     pub fn at(self, moment: Option<Moment>) -> Self {
         Self { moment, ..self }
     }
 
-    /// The same with motion blurred.
+    /// Returns the metadata with motion blurred.
     pub fn exposed(self, exposure: Option<Exposure>) -> Self {
         Self { exposure, ..self }
     }
 }
 
-/// The checksum of the values of a scene that a program may put others in place of.
+/// Returns the checksum of the values of a scene that a program may replace.
 fn checksum_of_view(scene: &Scene<'_>) -> u32 {
     let parts: [&[u8]; 3] = [
         bytemuck::bytes_of(scene.view()),
@@ -176,7 +176,7 @@ impl fmt::Display for RenderMetadata {
     }
 }
 
-/// Which rows of which picture a file has; PNG and PPM files of a part say so.
+/// The rows of a picture that a file has, as PNG and PPM files of a part state them.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Rows {
     /// The rows, from the top.
@@ -234,8 +234,8 @@ impl FromStr for Rows {
     }
 }
 
-/// A hash of a picture: FNV-1a with 64 bits over its linear channels of 16 bits, the lower byte
-/// first, red before green before blue, row by row; in hexadecimal.
+/// Returns a hash of a picture in hexadecimal: 64-bit FNV-1a over its linear channels of 16 bits. The lower byte comes
+/// first, red before green before blue, row by row.
 ///
 /// ```
 /// use gridel_host::picture::hash;
@@ -283,8 +283,8 @@ impl PictureFormat {
         }
     }
 
-    /// Writes a picture. Dithering goes by a pixel's place in the whole picture, so rows that are
-    /// rendered on their own match.
+    /// Writes a picture. Dithering depends on a pixel's place in the whole picture, so rows that are rendered
+    /// separately match.
     ///
     /// # Errors
     /// If `out` has one.

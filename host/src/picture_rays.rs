@@ -50,7 +50,7 @@ impl<N: Number> PictureRays<N> {
 
     /// Casts the rays of a picture. The scene must hold flagged pairs.
     ///
-    /// Through glass a shadow ray goes on behind every surface as a new one; each is kept.
+    /// Through glass a shadow ray continues behind every surface as a new one; each is kept.
     ///
     /// # Errors
     /// If there are more than [`MOST_RAYS`], or the settings are out of their range.

@@ -1,7 +1,7 @@
 //! Renders pictures from a blob on all cores.
 //!
-//! Rows are spread over threads; a pixel depends on nothing but the blob, the number format and the
-//! settings, so a picture is the same bit for bit with any number of threads.
+//! Rows are spread over threads. A pixel depends only on the blob, the number format and the settings. So a picture is
+//! the same, bit for bit, with any number of threads.
 
 mod aov;
 mod first_hits;
@@ -159,7 +159,7 @@ pub(crate) type Tracer<'s> = dyn Fn([u16; 2], &mut [[u16; 3]]) -> Option<Cost> +
 /// The cost of a part of a row in total, and of each of its pixels.
 pub(crate) type Cost = (Counters, Vec<u32>);
 
-/// A new tracer, or why there is none.
+/// A new tracer, or the reason why there is none.
 type NewTracer<'s> = Result<Box<Tracer<'s>>, RenderError>;
 
 /// Sets of effects that the ray loop is compiled for; a scene gets the first that has all of its.
@@ -168,10 +168,11 @@ const SHADOWED: u32 = Effects::SHADOW.0;
 pub(crate) const OPAQUE: u32 = Effects::ALL.without(Effects::FILTERING).0;
 pub(crate) const ALL: u32 = Effects::ALL.0;
 
-/// WebAssembly is sent to pages, so it has no code for what other code does as well: what counts draws all pictures.
+/// WebAssembly is downloaded by pages, so it has no second code for the same work: the code that counts draws all
+/// pictures.
 pub(crate) const PAGE: bool = cfg!(target_family = "wasm");
 
-/// Whether no structure has code of its own. The library's own tests compile all of it again.
+/// True if no structure has code of its own. The library's own tests compile all of it again.
 const COMPACT: bool = PAGE || cfg!(test);
 
 fn with_format<'s, N: Number>(moments: &'s [Scene<'_>], job: &Job) -> NewTracer<'s> {
@@ -209,7 +210,7 @@ fn renderers<'s, N: Number, A: Accel, const EFFECTS: u32>(
     Ok(renderers)
 }
 
-/// Whether a set of effects has all that the moments require.
+/// Returns whether a set of effects has all that the moments require.
 fn all_within(moments: &[Scene<'_>], set: u32) -> bool {
     moments
         .iter()
@@ -300,7 +301,7 @@ fn spread(job: &Job, progress: &(dyn Fn() + Sync), tracer: &Tracer<'_>) -> Pictu
     }
 }
 
-/// A part of a row, and what it cost.
+/// A part of a row, and its cost.
 fn counted_row<N: Number, A: Accel, const EFFECTS: u32>(
     renderers: &[Renderer<'_, '_, N, A, EFFECTS>],
     first: [u16; 2],

@@ -1,12 +1,11 @@
-//! Which objects are so small, for where they lie and what they touch, that a number format can lose
-//! their contact shadows.
+//! Finds objects so small, for their position and their neighbors, that a number format can lose their contact shadows.
 //!
-//! A second surface at [`FACTOR`] error bounds' distance is met (see
-//! [`Hit::error`](gridel_core::Hit::error)); so an object whose smallest feature is less than that may not
-//! be distinguished from the surface that it touches.
+//! A ray hits a second surface if it is at least [`FACTOR`] error bounds away (see
+//! [`Hit::error`](gridel_core::Hit::error)). So an object whose smallest feature is smaller may not be distinguished
+//! from the surface that it touches.
 //!
-//! Objects of parts are looked at where instances place them, and their surfaces have the bounds that they have there:
-//! the maps of instances round as well.
+//! Objects of parts are examined where instances place them. Their surfaces have the error bounds that apply there,
+//! because the maps of instances round as well.
 
 mod bound;
 
@@ -18,11 +17,11 @@ use serde::Serialize;
 /// Distance, in error bounds, from which two surfaces are distinguished.
 pub const FACTOR: f64 = 8.0;
 
-/// Surfaces with the largest bounds that objects are held against.
+/// Surfaces with the largest bounds that objects are compared with.
 const MOST_SURFACES: usize = 4096;
 
-/// Placed primitives that are looked at: those of the farthest instances, whose bounds are the largest. The last of these
-/// instances may exceed the number.
+/// Placed primitives that are examined: those of the farthest instances, whose bounds are the largest. The last of
+/// these instances may exceed the number.
 const MOST_PLACED: usize = 1 << 18;
 
 /// An object that some formats do not resolve.
@@ -145,7 +144,7 @@ impl Object {
         }
     }
 
-    /// Names the formats that do not resolve the object beside these surfaces, the largest bounds first.
+    /// Names the formats that do not distinguish the object from these surfaces, the largest bounds first.
     fn unresolved(
         &self,
         map: Option<&ExactMap>,
@@ -236,11 +235,11 @@ fn farthest(scene: &Scene<'_>, parts: &[Content], most: usize) -> Vec<InstanceEx
     instances
 }
 
-/// The objects that `fixed` or `f32` does not resolve, in scene-file order: the scene's own ones, then those of each
-/// instance.
+/// Returns the objects that `fixed` or `f32` does not distinguish, in scene-file order: the scene's own ones, then
+/// those of each instance.
 ///
-/// Takes time for every primitive, and more only where features are some 2^-16 of the scene. Instances are looked at from
-/// the farthest on, until they hold 2^18 primitives; objects and surfaces of nearer ones are passed over.
+/// Takes time for every primitive, and more only where features are some 2^-16 of the scene. Instances are examined
+/// from the farthest on, until they hold 2^18 primitives. Objects and surfaces of nearer ones are skipped.
 ///
 /// ```
 /// # use gridel_host::compile::{Options, compile};

@@ -6,7 +6,7 @@ use gridel_core::format::record::{Light, Material, Pair, View};
 use gridel_core::render::CameraError;
 use gridel_core::{BlobError, Motion, PosesView, Scene, Tracks};
 
-/// What of a scene changes with time, at some time.
+/// The parts of a scene that change with time, at some time.
 ///
 /// ```
 /// # use gridel_host::compile::{Options, compile};
@@ -101,7 +101,7 @@ impl Poses {
 /// Why a scene has no state at a time.
 #[derive(Debug, thiserror::Error)]
 pub enum StateError {
-    /// The camera is none at this time, in seconds.
+    /// The camera is invalid at this time, in seconds.
     #[error("at {seconds} s there is no picture: {source}")]
     Camera { seconds: f64, source: CameraError },
     /// An instance cannot be where it is led at this time, in seconds.
@@ -116,7 +116,7 @@ impl State {
     /// The state of a scene at a time, in ticks of its tracks.
     ///
     /// # Errors
-    /// If the camera comes to look nowhere or along the direction that points up, an instance leaves the scene's box, or
+    /// If the camera would have no direction or would look along up, or if an instance leaves the scene's box. Also if
     /// the tracks are not those of the scene's blob.
     pub fn at(scene: &Scene<'_>, tracks: &Tracks<'_>, time: i32) -> Result<Self, StateError> {
         let seconds = f64::from(time) / f64::from(tracks.ticks_per_second());

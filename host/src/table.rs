@@ -37,7 +37,7 @@ impl Table {
         }
     }
 
-    /// A table of nothing but rows.
+    /// Returns a table without a title row.
     pub fn untitled<const N: usize>(columns: [Align; N]) -> Self {
         Self {
             columns: columns.to_vec(),
@@ -116,8 +116,8 @@ pub fn power_of_two(power: f64) -> String {
 /// Most characters of a name that texts show.
 const MAX_SHOWN: usize = 80;
 
-/// A name of a scene file as a terminal can show it: on one line, control characters escaped as in
-/// Rust, and at most 80 characters.
+/// Returns a name of a scene file as a terminal can show it: on one line, at most 80 characters.
+/// Control characters are escaped as in Rust.
 ///
 /// ```
 /// assert_eq!(gridel_host::table::printable("a\nb"), "a\\nb");

@@ -75,7 +75,7 @@ impl SceneHit {
 pub struct Query {
     pub format: Format,
     pub structure: Structure,
-    /// Whether any hit will do; it is reported with t 0 and no normal.
+    /// True if any hit suffices; it is reported with t 0 and no normal.
     pub any: bool,
 }
 
@@ -120,7 +120,7 @@ pub fn trace(
     }
 }
 
-/// Traces rays like [`trace`], and counts what is tested for them.
+/// Traces rays like [`trace`], and counts their tests.
 ///
 /// ```
 /// # use gridel_host::compile::{Options, compile};
@@ -176,7 +176,7 @@ fn with_format<N: Number>(
     hits: &mut [SceneHit],
 ) -> Rejections {
     let (any, count) = (query.any, &mut NoCount);
-    // What hosts and boards trace with; the others are there to be compared.
+    // Hosts and boards trace with these; the others are for comparison.
     match query.structure {
         Structure::Bvh => through::<N, Bvh, _>(scene, rays, any, hits, count),
         Structure::Flagged => through::<N, Flagged, _>(scene, rays, any, hits, count),
@@ -274,7 +274,7 @@ fn closest_of_each<N: Number, A: Accel, C: Observer>(
         {
             let found = ready.as_ref().map_err(|why| *why);
             let found = found.and_then(|(ray, direction_scale)| {
-                // Inlined, it computes what is used here, and nothing else.
+                // Inlining lets the compiler compute only the values that are used here.
                 let Some(found) = met.and_then(|met| met.hit(scene, ray)) else {
                     return Ok(SceneHit::MISS);
                 };
@@ -451,7 +451,7 @@ impl Frame {
     }
 }
 
-/// Whether an origin in units is near the scene; one with NaN need not be.
+/// Returns whether an origin in units is near the scene; one with NaN need not be.
 #[inline(always)]
 fn is_near(origin: DVec3) -> bool {
     origin.abs().max_element() <= carry::FAR

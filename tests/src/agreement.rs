@@ -12,8 +12,8 @@ use gridel_core::{
     Structure,
 };
 
-/// The plain hierarchy, culled in integers as the flagged one is in every format: what floats may
-/// do in SIMD registers has other margins, so that planes could not be compared one by one.
+/// The plain hierarchy, culled in integers as the flagged one is in every format. Floats in SIMD registers have other
+/// margins, so planes could not be compared one by one.
 enum Plain {}
 
 impl Accel for Plain {
@@ -47,14 +47,14 @@ pub struct Tally {
     pub hits: u64,
     /// Rays that were compared with the list, too.
     pub listed: u64,
-    /// Planes tested, the root's apart.
+    /// Planes tested, without the root's.
     pub plain_planes: u64,
     pub flagged_planes: u64,
 }
 
 /// Compares all structures on rays, and on a ray from every tenth surface that they meet.
 ///
-/// The list is asked for as many rays as fit `list_tests` tests of primitives.
+/// Brute force traces as many rays as fit `list_tests` tests of primitives.
 pub fn compare<N: Number>(
     name: &str,
     scene: &Scene<'_>,
@@ -84,7 +84,7 @@ pub fn compare<N: Number>(
     tally
 }
 
-/// Compares on one ray; returns where a ray leaves the surface that was met.
+/// Compares on one ray; returns where a ray leaves the surface that was hit.
 fn compare_one<N: Number>(
     name: &str,
     scene: &Scene<'_>,

@@ -1,10 +1,10 @@
 //! Error bounds of each kernel's answers, as data: the tests read it, and `core/ACCURACY.md`
 //! prints it.
 //!
-//! `u` is 2^-24 in `f32` and 2^-53 in `f64`, where errors are counted in `u` times the largest
-//! magnitude among the coordinates of ray, hit and shape and the hit's distance; in `fixed` they
-//! are counted in sub-steps, 2^-13 of a unit. An answer is off by a length if it is right for a shape
-//! that is larger or smaller by that length (see [`gridel_host::shape::Geometric`]).
+//! `u` is 2^-24 in `f32` and 2^-53 in `f64`. There, errors are counted in `u` times the largest magnitude among the
+//! coordinates of ray, hit and shape and the hit's distance. In `fixed` they are counted in sub-steps, 2^-13 of a unit.
+//! An answer is off by a length if it is right for a shape that is larger or smaller by that length (see
+//! [`gridel_host::shape::Geometric`]).
 
 use crate::shapes::{self, Named};
 use gridel_core::{Format, Number};

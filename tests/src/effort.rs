@@ -2,7 +2,7 @@
 
 use std::env;
 
-/// Returns whether the environment asks for all that the project promises, by `GRIDEL_FULL=1`.
+/// Returns whether the environment requests all that the project promises, by `GRIDEL_FULL=1`.
 pub fn full() -> bool {
     env::var_os("GRIDEL_FULL").is_some_and(|value| value == "1")
 }
@@ -12,8 +12,8 @@ pub fn part_of(quick: usize, full: usize) -> usize {
     if self::full() { full } else { quick }
 }
 
-/// Every how many of many like cases are tested by the longest tests: all where the environment says
-/// `GRIDEL_FULL=1`, or else each third.
+/// Returns the stride of the longest tests over many similar cases: 1 where the environment has
+/// `GRIDEL_FULL=1`, or else 3.
 pub fn step() -> usize {
     if third_of(3) == 3 { 1 } else { 3 }
 }

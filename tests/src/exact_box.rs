@@ -1,4 +1,4 @@
-//! Whether a ray meets a box, in integers, without any rounding.
+//! Tests whether a ray meets a box, in integers, without any rounding.
 
 use gridel_core::format::record::UnitBox;
 
@@ -18,7 +18,7 @@ pub struct ExactRay {
     pub tmax: i64,
 }
 
-/// A way over a slope: a t, the slope above 0.
+/// A length over a slope: a t, the slope above 0.
 #[derive(Clone, Copy)]
 struct Fraction(i128, i128);
 

@@ -12,8 +12,8 @@ use gridel_host::scene::Shape;
 use gridel_host::shape::{Normal, Solid, Sphere};
 use gridel_host::verify::judge::Crossings;
 
-/// A blob of shapes whose lattice is known: one unit is one scene unit, and its zero is the
-/// scene's. Two specks at the ends of the lattice see to that; they come last.
+/// Returns a blob of shapes whose lattice is known: one unit is one scene unit, and its zero is the
+/// scene's. Two specks at the ends of the lattice ensure that; they come last.
 pub fn blob_of<'s>(solids: impl IntoIterator<Item = &'s Solid>) -> Blob {
     let speck = |corner: f64| {
         Shape::Sphere(Sphere {
@@ -30,7 +30,7 @@ pub fn blob_of<'s>(solids: impl IntoIterator<Item = &'s Solid>) -> Blob {
     blob
 }
 
-/// Errors that are tried, in steps; the last stands for anything.
+/// Errors that are tried, in steps; the last means any error.
 const LADDER: [f64; 15] = [
     0.5, 1.0, 1.5, 2.0, 3.0, 4.0, 6.0, 8.0, 12.0, 16.0, 24.0, 32.0, 64.0, 1024.0, 1e9,
 ];
@@ -47,9 +47,9 @@ fn is_right(solid: &Solid, line: &Line, answer: Option<f64>, error: f64) -> bool
 /// The errors of an answer, in the units of the table of bounds.
 pub struct Verdict<N: Number> {
     pub hit: Option<Hit<N>>,
-    /// The least error on a ladder that explains where the hit is, or that there is none.
+    /// The least error on a ladder that explains the position of the hit, or a miss.
     pub crossing: f64,
-    /// The error, if there should have been a hit and was none, or the other way.
+    /// The error, if a hit is missing, or reported where there is none.
     pub flag: f64,
     /// By how much the normal is off.
     pub normal: f64,
@@ -57,14 +57,14 @@ pub struct Verdict<N: Number> {
     pub length: f64,
     /// How far the surface is from the hit's point, as a part of the bound that comes with it.
     pub point: f64,
-    /// Whether a ray that enters the solid was said to leave it, or the other way.
+    /// True if a ray that enters the solid was reported to leave it, or the other way.
     pub wrong_side: bool,
 }
 
 /// Asks the list about one ray and judges the answer. `None` if the ray hits a speck.
 ///
 /// Origins lie on the lattice and slopes have at most 23 fraction bits, so that every number format
-/// is asked the same question.
+/// gets the same ray.
 pub fn verdict<N: Number>(
     solid: &Solid,
     scene: &Scene<'_>,

@@ -1,4 +1,5 @@
-//! Shared parts of the whole-program tests: scenes, rays, and answers that owe nothing to the core.
+//! Shared parts of the whole-program tests: scenes, rays, and answers that are independent of the
+//! core.
 
 /// The example of the package's page compiles.
 #[cfg(doctest)]

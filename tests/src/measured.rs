@@ -1,4 +1,4 @@
-//! Values of pixels, with their errors, beside what analysis gives.
+//! Values of pixels, with their errors, compared with the values of analysis.
 
 use crate::effort::full;
 use gridel_core::{Format, Settings, Structure};
@@ -7,7 +7,7 @@ use gridel_host::certify::{World, code, enclose};
 use gridel_host::render::{Job, render};
 use gridel_host::scene::Scene;
 
-/// Scrambles: the pixels of a picture, each of which has one of its own.
+/// Scrambles: the pixels of a picture, each with its own scramble.
 pub const SCRAMBLES: usize = 16;
 
 /// The keys of a picture with as many pixels, which a narrow field of view makes show nearly one point.
@@ -77,7 +77,7 @@ pub fn check(name: &str, blob: &Blob, exact: f64) {
     }
 }
 
-/// How many pixels of a picture are proved to be off by more than one of 255, in its own size and samples.
+/// Returns how many pixels of a picture are proved to be off by more than one of 255, in its own size and samples.
 pub fn wrong_pixels(blob: &Blob, format: Format) -> usize {
     let scene = blob.scene().expect("a scene");
     let settings = Settings::of(&scene);

@@ -4,8 +4,8 @@ use glam::DVec3;
 use gridel_host::scene::Scene;
 use gridel_host::shape::Map;
 
-/// A scene with every vector put through a linear function, every length multiplied, and every
-/// point shifted.
+/// Returns a scene with a linear function applied to every vector. Every length is multiplied, and
+/// every point shifted.
 pub fn with(scene: &Scene, turn: impl Fn(DVec3) -> DVec3, scale: f64, shift: DVec3) -> Scene {
     let mut moved = scene.clone();
     for object in &mut moved.objects {

@@ -66,8 +66,8 @@ type Answer<N> = (Option<Hit<N>>, bool);
 /// The first hit through a structure that is chosen while the program runs, and whether
 /// [`any_hit`] finds one.
 ///
-/// Every structure is compiled for every format once, in this library, and not again in each
-/// program of tests: hence the detour by types that are known when the program runs.
+/// Every structure is compiled for every format once, in this library, and not again in each test program. So the types
+/// are selected at run time.
 pub fn through<N: Number>(structure: Structure, scene: &Scene<'_>, ray: &Ray<N>) -> Answer<N> {
     fn answer<N: Number, M: Number>(
         asked: fn(Structure, &Scene<'_>, &Ray<M>) -> Answer<M>,
@@ -105,8 +105,8 @@ fn ask<N: Number>(structure: Structure, scene: &Scene<'_>, ray: &Ray<N>) -> Answ
     )
 }
 
-/// How far t is off at most, measured along the normal: the bound of the largest coordinate of ray and
-/// hit, which is more than that of the hit's point.
+/// Returns the largest error of t, measured along the normal. It is the bound of the largest coordinate of ray and hit,
+/// which is more than that of the hit's point.
 pub fn t_bound<N: Number>(ray: &Ray<N>, hit: &Hit<N>) -> f64 {
     let place = ray.start().into_iter().chain(hit.point);
     let largest = place.fold(N::ZERO, |most, x| most.max(x.abs()));

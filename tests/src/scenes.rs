@@ -1,4 +1,4 @@
-//! Scenes: generated ones, the project's fixtures, and real ones where they are at hand.
+//! Scenes: generated ones, the project's fixtures, and real ones where they are available.
 
 use crate::random::Random;
 use glam::DVec3;
@@ -52,8 +52,8 @@ pub fn track<const N: usize>(
     }
 }
 
-/// Tracks of everything that moves in a scene whose last material is a checkerboard; the camera turns by a rotation,
-/// or looks at a target and orbits it.
+/// Returns tracks of everything that moves in a scene whose last material is a checkerboard. The camera turns by a
+/// rotation, or looks at a target and orbits it.
 pub fn moving(scene: &Scene, by_rotation: bool) -> Vec<Track> {
     use Interpolation::{Cubic, Linear, Step};
     let mut tracks = vec![
@@ -132,13 +132,13 @@ pub fn moving(scene: &Scene, by_rotation: bool) -> Vec<Track> {
     tracks
 }
 
-/// A blob with every structure that is proved when it is loaded: tables of candidates take long to
-/// build and have tests of their own.
+/// Returns a blob with every structure that loading proves. Tables of candidates take long to build and have tests of
+/// their own.
 pub fn blob(scene: &Scene, lattice_bits: u8) -> Blob {
     blob_with_inside(scene, lattice_bits).expect("meshes with an inside")
 }
 
-/// Returns the blob, or `None` if the lattice leaves a closed mesh no inside.
+/// Returns the blob, or `None` if a closed mesh has no inside on the lattice.
 pub fn blob_with_inside(scene: &Scene, lattice_bits: u8) -> Option<Blob> {
     let all = Structure::ALL.into_iter();
     let options = Options {
@@ -216,8 +216,8 @@ pub fn fixtures() -> Vec<(String, Scene)> {
     paths.iter().map(|path| (name(path), read(path))).collect()
 }
 
-/// A file of real scenes: below `GRIDEL_SCENES`, or in the folder `shared/scenes` beside the
-/// repository. Tests that need one are passed over, loudly, where it is absent.
+/// Returns a file of real scenes: below `GRIDEL_SCENES`, or in the folder `shared/scenes` next to the repository. Tests
+/// that need one are skipped, with a message, where it is absent.
 pub fn real(name: &str) -> Option<PathBuf> {
     let folder = std::env::var_os("GRIDEL_SCENES").map_or_else(
         || Path::new(env!("CARGO_MANIFEST_DIR")).join("../../shared/scenes"),
@@ -234,8 +234,8 @@ pub fn real(name: &str) -> Option<PathBuf> {
     None
 }
 
-/// A scene of spheres from above its front right corner: the view in which costs of molecules were
-/// recorded from the beginning.
+/// Returns a scene of spheres from above its front right corner. Costs of molecules were recorded in this view from the
+/// beginning.
 pub fn from_its_corner(mut scene: Scene) -> Scene {
     let spheres = scene
         .objects
@@ -309,7 +309,7 @@ pub fn soup(seed: u64, count: usize, size: f64) -> Scene {
     }))
 }
 
-/// A bent sheet of so many squares a side, as a mesh.
+/// Returns a bent sheet of `squares` squares per side, as a mesh.
 pub fn sheet(squares: u32) -> Shape {
     let row = squares + 1;
     let corner = |number: u32| {

@@ -8,7 +8,7 @@ use gridel_host::accuracy::{
 use gridel_host::measure::board::PICTURE_COSTS;
 use gridel_tests::scenes;
 
-/// A sweep of a small picture, timed by what it counts so that the test does not depend on clocks.
+/// A sweep of a small picture. Its times are its counts, so that the test does not depend on clocks.
 fn swept(name: &str) -> Results {
     let path = scenes::fixture_folder().join(name).with_extension("toml");
     let scene = scenes::read(&path);
@@ -49,8 +49,8 @@ fn more_work_is_more_right() {
     assert!(rmse(Parameter::Depth, "0") > rmse(Parameter::Depth, "6"));
     assert!(rmse(Parameter::Cutoff, "0.125") > rmse(Parameter::Cutoff, "0.00195"));
     assert!(rmse(Parameter::LatticeBits, "10") > rmse(Parameter::LatticeBits, "24"));
-    // Distances of single precision are right to a few units of its last place, of double precision
-    // to none, on a coarse lattice to many.
+    // Distances of single precision are right to a few units of its last place, and those of double precision exactly.
+    // On a coarse lattice they are off by many.
     let ulps = |parameter, value| of(parameter, value).errors.t_ulps[0];
     assert!(ulps(Parameter::Format, "f64") < 1e-3);
     assert!(ulps(Parameter::Format, "f32") < 8.0);
@@ -131,7 +131,7 @@ fn parts_of_errors_are_those_of_formats_and_samples(results: &Results) {
     }
 }
 
-/// Every effect of the scene has a setting without it, and the first to go changes the picture least for what it saves.
+/// Every effect of the scene has a setting without it. The first to leave out changes the picture least for its saving.
 fn effects_are_ordered_by_what_they_are_worth(results: &Results) {
     let base = results.base;
     let left_out = |it: &&Point| it.setting.differs(&base) == [Parameter::Effects];

@@ -22,7 +22,7 @@ thread_local! {
 unsafe impl GlobalAlloc for Counted {
     unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
         ALLOCATIONS.set(ALLOCATIONS.get() + 1);
-        // SAFETY: the caller's promises are those that the system asks for.
+        // SAFETY: the caller keeps the promises that the system requires.
         unsafe { System.alloc(layout) }
     }
 

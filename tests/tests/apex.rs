@@ -1,4 +1,4 @@
-//! Apex lists serve the rays of their points, and no others; ray classes serve the scene's own.
+//! Apex lists are used by the rays of their points only; ray classes by the scene's own.
 
 use glam::DVec3;
 use gridel_core::format::limits::MAX_STACK_DEPTH;
@@ -47,7 +47,7 @@ fn settings(scene: &Scene<'_>) -> Settings {
     }
 }
 
-/// How many of some rays ask the hierarchy; all must be answered as by the list.
+/// Returns how many rays use the hierarchy. All answers must equal those of brute force.
 fn fallen_back<N: Number, A: Accel>(scene: &Scene<'_>, rays: &[Ray<N>]) -> usize {
     let falls = |ray: &&Ray<N>| {
         let mut work = Counters::default();
@@ -65,7 +65,8 @@ fn fallen_back<N: Number, A: Accel>(scene: &Scene<'_>, rays: &[Ray<N>]) -> usize
 fn apexes_serve_the_rays_of_the_eye_and_of_lights() {
     fn in_format<N: Number>(name: &str, scene: &Scene<'_>) {
         let rays = PictureRays::<N>::of(scene, settings(scene)).expect("rays");
-        // What misses everything may miss the windows too, and then asks the hierarchy's root.
+        // A ray that misses everything may miss the windows too, and then starts at the hierarchy's
+        // root.
         let meets = |ray: &&Ray<N>| any::<N, List>(scene, ray);
         let seen: Vec<_> = rays.primary.iter().filter(meets).copied().collect();
         let format = N::FORMAT.name();
@@ -74,7 +75,7 @@ fn apexes_serve_the_rays_of_the_eye_and_of_lights() {
         fallen_back::<N, Apex>(scene, &rays.primary);
         let shaded: Vec<_> = rays.shadow.iter().filter(meets).copied().collect();
         assert!(!shaded.is_empty(), "{name}, {format}");
-        // Lists show whether anything is in the way, though they are cut; what comes first may lie
+        // Lists show whether anything is in the way, though they are cut; the first hit may lie
         // behind the cut.
         let asks_on = |ray: &&Ray<N>| {
             let mut work = Counters::default();

@@ -1,5 +1,5 @@
-//! Boxes and traversal (hard cases A): a box that a ray meets is never passed by, and nothing about
-//! a tree changes an answer. That structures agree ray by ray is in `structures`.
+//! Boxes and traversal (hard cases A). A box that a ray meets is never skipped, and the form of a
+//! tree does not change an answer. That structures agree ray by ray is in `structures`.
 
 use glam::DVec3;
 use gridel_core::format::record::UnitBox;
@@ -176,7 +176,7 @@ fn in_planes(random: &mut Random, planes: usize) -> Case {
     case
 }
 
-/// Whether the core takes the box for one that the ray may meet: in the form that this machine
+/// Returns whether the core finds that the ray may meet the box: in the form that this machine
 /// culls with, and in integers.
 fn taken<N: Number>(case: &Case) -> bool {
     let origin = case.origin.map(|x| x as f64 / 256.0);
@@ -236,8 +236,8 @@ fn boxes_that_are_met_are_never_passed_by() {
     }
 }
 
-/// Neither the sign of a zero (A2) nor the length of a direction (A8) matters: the same bits
-/// through every structure.
+/// Neither the sign of a zero (A2) nor the length of a direction (A8) matters: the bits are the
+/// same through every structure.
 #[test]
 fn signs_of_zero_and_lengths_of_directions_change_no_bit() {
     fn judge<N: Number>(scene: &Scene<'_>, rays: usize) {
@@ -326,8 +326,8 @@ fn any_hit_is_a_closest_hit_before_the_end() {
     every_format!(judge(&scene, part_of(20_000, 500_000)));
 }
 
-/// As many of the same primitive as leaves and counters could stumble over (A12): every structure
-/// is built, and the first of them is hit (A15).
+/// Builds every structure with as many copies of one primitive as could overflow leaves and
+/// counters (A12). The first of them is hit (A15).
 #[test]
 fn any_number_of_the_same_primitive() {
     fn first<N: Number>(scene: &Scene<'_>, count: usize) {

@@ -22,7 +22,7 @@ fn source() -> String {
         .collect()
 }
 
-/// The names of a function's parameters, from what is in its parentheses.
+/// Returns the names of a function's parameters, from the text in its parentheses.
 fn parameters(list: &str, name: impl Fn(&str) -> Option<String>) -> Vec<String> {
     list.split(',').filter_map(|one| name(one.trim())).collect()
 }

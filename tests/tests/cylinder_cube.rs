@@ -1,9 +1,9 @@
-//! The cylinder cube's hard cases: tables of the right size, rays along boundaries, edges and
-//! corners, origins inside, flat scenes, rays in the sides, and budgets.
+//! The cylinder cube's hard cases: the size of tables, rays along boundaries, edges and corners,
+//! and in the sides. Also origins inside, flat scenes and budgets.
 //!
-//! `fixtures/recorded/cylinder-cube.toml` holds what the paper's table takes for three scenes of the
-//! paper's sizes. After a change that is meant to change lists, `GRIDEL_BLESS=1 cargo test -p
-//! gridel-tests --test cylinder_cube` writes it anew; the difference belongs into the same commit.
+//! `fixtures/recorded/cylinder-cube.toml` holds the sizes of the paper's table for three scenes of
+//! the paper's sizes. After an intended change of lists, `GRIDEL_BLESS=1 cargo test -p gridel-tests
+//! --test cylinder_cube` writes it again; the difference belongs into the same commit.
 
 use glam::DVec3;
 use gridel_core::format::record::{Gridels, UnitBox};
@@ -243,7 +243,7 @@ fn c4_origins_inside_and_on_faces() {
                 origin[axis] = scene.bounds().0[axis][random.below(2)].into();
             }
             let mut ray = UnitRay::new(origin, random.direction());
-            // What lies behind the origin counts where tmin says so.
+            // Hits behind the origin count where tmin says so.
             ray.tmin = [0.0, 0.0, -1e5][random.below(3)];
             ray
         };

@@ -50,8 +50,8 @@ fn pixels_per_unit(depth: f64) -> f64 {
     f64::from(SIDE) / (2.0 * depth * 15_f64.to_radians().tan())
 }
 
-/// The diameter of a uniform disc with the spread of a picture along each axis, and how far the disc's middle is from the
-/// picture's.
+/// Returns the diameter of a uniform disc with the spread of a picture along each axis. Also returns how far the disc's
+/// middle is from the picture's.
 fn diameter(picture: &[f64]) -> ([f64; 2], f64) {
     let side = usize::from(SIDE);
     let at = |index: usize| [index % side, index / side].map(|it| it as f64 + 0.5);
@@ -196,7 +196,7 @@ fn lenses_of_all_sizes_bring_light() {
     }
 }
 
-/// A ray of the caller's own passes no lens: it shows what it shows in the same scene with a pinhole.
+/// A ray of the caller's own passes no lens. It shows the same as in that scene with a pinhole.
 #[test]
 fn rays_of_the_callers_own_pass_no_lens() {
     every_format!(shows_what_a_pinhole_shows());

@@ -8,7 +8,7 @@ use gridel_tests::every_format;
 use gridel_tests::random::Random;
 use gridel_tests::scenes;
 
-/// A ball of some radius around a place, and what it hits of a ray, in steps: all in double precision.
+/// A ball of some radius around a place, and the hit of a ray on it, in steps: all in double precision.
 struct Ball {
     center: DVec3,
     radius: f64,

@@ -87,7 +87,7 @@ fn half_bright_sky_gives_the_analytic_irradiance() {
 fn gradient_gives_the_analytic_irradiance() {
     let sky = "[environment]\nzenith = 0.9\nhorizon = 0\nground = 0.3\nsize = 128";
     let blob = compiled(&scene("[0, 6, 0]", "[0, 0, 0]", &format!("{sky}\n{BALL}")));
-    // What the map makes of the curve is within 1 in 1,000 of it.
+    // The map's value of the curve is within 1 in 1,000 of it.
     let exact = 0.8 * 0.9 * 2.0 * (2.0 / 3.0 - 0.25);
     for format in Format::ALL {
         let ([mean, ..], error) = measured_color(&blob, format, 1024);
@@ -143,7 +143,7 @@ fn directions() -> Environment {
     }
 }
 
-/// What [`directions`] shows.
+/// Returns the value that [`directions`] shows.
 fn shown(towards: DVec3) -> [f64; 3] {
     // The middle is at -z, the right at x.
     let longitude = PI + f64::atan2(towards.x, -towards.z);
@@ -199,7 +199,7 @@ fn spot() -> Environment {
     Environment::of(Sky::Picture(Arc::new(panorama)))
 }
 
-/// The error falls at least as N^-0.6, and is far below that of as many directions that are all alike.
+/// The error falls at least as N^-0.6, and is far below that of as many uniform directions.
 #[test]
 fn bright_spots_converge() {
     let mut scene = scene("[0, 6, 0]", "[0, 0, 0]", BALL);
@@ -342,8 +342,8 @@ fn environments_are_verified_and_explained() {
     assert!(sees_sun && !sees_no_sun);
 }
 
-/// Where a light of the sky shines over the edge of a smooth mesh, the way to it begins above the triangle and keeps its
-/// direction: the sky has no place.
+/// A light of the sky shines over the edge of a smooth mesh. The ray to it begins above the triangle and keeps its
+/// direction. The sky has no position.
 #[test]
 fn smooth_meshes_are_lit_from_the_direction_that_was_drawn() {
     let text = "[camera]\neye = [0.5, 2, 8]\ntarget = [0, 0, 0]\nfov = 24\n\

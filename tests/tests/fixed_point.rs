@@ -1,7 +1,7 @@
-//! Fixed point (hard cases E). The operations themselves are tested beside `Fixed` in the core,
-//! mirrors and scales in `transforms`, watertight meshes in `watertight`.
+//! Fixed point (hard cases E). The operations themselves are tested with `Fixed` in the core, mirrors and scales in
+//! `transforms`, watertight meshes in `watertight`.
 //!
-//! A number that wraps panics, in these and in all other tests of the project: they are built with the core's feature
+//! A number that wraps panics, in these and in all other tests of the project. They are built with the core's feature
 //! `strict-ranges`.
 
 use glam::DVec3;
@@ -23,8 +23,8 @@ use gridel_tests::shapes::reach;
 /// The largest coordinate of a scene, in units.
 const END: f64 = 32_764.0;
 
-/// Every corner of the ranges: triangles whose corners are at the lattice's ends, middle and next
-/// to them, hit by rays from and to such places (E1, E2, E5). A number that wraps panics.
+/// Covers every corner of the ranges: triangles whose corners are at the lattice's ends, middle and next to them. Rays
+/// from and to such places hit them (E1, E2, E5). A number that wraps panics.
 #[test]
 fn no_number_wraps_at_the_corners_of_the_lattice() {
     let places = [-END, -END + 1.0 / 256.0, 0.0, 1.0 / 256.0, END];
@@ -126,8 +126,8 @@ fn boxes_hold_their_primitives() {
     assert!(most <= 2.0);
 }
 
-/// No hit is nearer than the exact t less the bound of the point along the ray, however flat the
-/// angle (E2), against an exact plane.
+/// No hit is nearer than the exact t less the bound of the point along the ray, at any angle (E2). The reference is an
+/// exact plane.
 #[test]
 fn grazing_rays_do_not_hit_too_early() {
     let mut random = Random(72);
@@ -206,8 +206,7 @@ fn far_rays_meet_what_they_are_aimed_at() {
     }
 }
 
-/// Scenes that no lattice can hold are rejected by name (E8); any other uses its lattice to at least
-/// a half.
+/// Scenes that no lattice can hold are rejected by name (E8); any other takes up at least half of its lattice.
 #[test]
 fn the_lattice_fits_the_scene() {
     let mut random = Random(74);

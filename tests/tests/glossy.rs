@@ -38,12 +38,12 @@ fn brdf(alpha: f64, i: Vector, o: Vector) -> f64 {
     distribution / (1.0 + lambda(alpha, i[1]) + lambda(alpha, o[1])) / (4.0 * i[1] * o[1])
 }
 
-/// The mean over the facets that are seen: of their normals, each with its weight.
+/// Returns the mean over the visible facets: of their normals, each with its weight.
 fn over_visible(alpha: f64, i: Vector, value: impl Fn(Vector) -> f64) -> f64 {
     const CELLS: usize = 400;
     let (mut whole, mut sum) = (0.0, 0.0);
     for ring in 0..CELLS {
-        // The distribution times the cosine is even over a part from 0 to 1, of which this is left.
+        // The distribution times the cosine is even over a part from 0 to 1; this is the rest of it.
         let root = (ring as f64 + 0.5) / CELLS as f64;
         let (left, width) = (root.powi(4), root.powi(3));
         let cos = 1.0 / (1.0 + alpha * alpha * (1.0 - left) / left).sqrt();
@@ -57,7 +57,7 @@ fn over_visible(alpha: f64, i: Vector, value: impl Fn(Vector) -> f64) -> f64 {
     sum / whole
 }
 
-/// The part of light from everywhere that facets reflect, each a part by the cosine under which it is seen.
+/// Returns the part of light from everywhere that facets reflect, each by the cosine between it and the ray.
 fn reflected(alpha: f64, cos: f64, by_facet: impl Fn(f64) -> f64) -> f64 {
     let i = over(cos, 0.0);
     over_visible(alpha, i, |m| {
@@ -130,7 +130,7 @@ fn check(name: &str, blob: &Blob, samples: u16, exact: f64) {
     }
 }
 
-/// Samples by which steep facets are drawn, too, of which there are few.
+/// Samples that also draw steep facets, which are few.
 const MANY: u16 = 1024;
 
 const ROUGHNESSES: [f64; 5] = [0.05, 0.2, 0.4, 0.7, 1.0];
@@ -194,7 +194,8 @@ fn distant_lights_are_reflected_by_the_formula() {
     }
 }
 
-/// A lamp above a rough floor: π f cos of all its points, once, whether it is seen or not, and through a pane.
+/// A lamp above a rough floor gives π f cos of all its points, once. This holds whether the lamp is visible or not, and
+/// through a pane.
 #[test]
 fn lamps_are_reflected_once() {
     let cos = 0.8;
@@ -224,7 +225,7 @@ fn lamps_are_reflected_once() {
     }
 }
 
-/// A lamp that fills what a little rough mirror shows of it, brighter than a sample can be: its points are not drawn.
+/// A lamp fills the reflection in a little rough mirror, brighter than a sample can be. Its points are not drawn.
 #[test]
 fn lamps_fill_little_rough_mirrors() {
     for roughness in [0.05, 0.1, 0.2] {
@@ -248,7 +249,7 @@ fn lamps_fill_little_rough_mirrors() {
     }
 }
 
-/// The part of what facets reflect that goes to the lamp above.
+/// The part of the facets' reflection that goes to the lamp above.
 fn within(alpha: f64, cos: f64) -> f64 {
     let i = over(cos, 0.0);
     over_visible(alpha, i, |m| {
@@ -263,7 +264,8 @@ fn within(alpha: f64, cos: f64) -> f64 {
     })
 }
 
-/// What glows and is no light of the scene is seen in rough mirrors, the narrower the more as in smooth ones.
+/// An object that glows and is no light of the scene is visible in rough mirrors. The narrower they are, the more it
+/// looks as in smooth ones.
 #[test]
 fn little_rough_mirrors_show_what_smooth_ones_show() {
     let ceiling = "ambient = 0.01\n[material.glow]\ndiffuse = 0\nemission = 0.5\nlights = false\n\
@@ -316,7 +318,7 @@ fn rough_glass_splits_light_by_its_facets() {
     assert!((reflected(0.0025, 1.0, |cos| fresnel(1.5, cos)) - 0.04).abs() < 1e-4);
 }
 
-/// No light comes of nothing: a slab and a ball of rough glass under light from everywhere.
+/// No light appears from nothing: a slab and a ball of rough glass under light from everywhere.
 #[test]
 fn lossless_rough_glass_shows_no_more_than_is_there() {
     for roughness in ROUGHNESSES {

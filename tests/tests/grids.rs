@@ -1,8 +1,8 @@
 //! Walking the grid and the octree where it goes wrong (rays in planes, through corners, from afar).
 //!
-//! Small spheres lie in every cell and at the corners of many, and every ray is asked in windows
-//! along its way, so that each cell on it must give up what it holds: a cell that is passed over is
-//! an answer that differs from the list's.
+//! Small spheres lie in every cell and at the corners of many. Every ray is traced in windows along
+//! its path, so that each cell on it must yield its primitives. A skipped cell gives an answer that
+//! differs from brute force.
 
 use glam::DVec3;
 use gridel_core::{Counters, Grid, Number, Scene, Structure};
@@ -67,7 +67,7 @@ fn lattice(middle: DVec3, flat: bool) -> scene::Scene {
     scenes::of(shapes)
 }
 
-/// Asks a ray in windows along its way, through the list and through both structures.
+/// Traces a ray in windows along its path, through brute force and through both structures.
 fn probe<N: Number>(name: &str, scene: &Scene<'_>, ray: UnitRay) {
     let size = 65_536.0;
     let major = ray
@@ -325,8 +325,8 @@ fn mirrors_do_not_matter() {
     }
 }
 
-/// Cells that would take too much memory are rejected with the figure; where none are asked for,
-/// there are fewer.
+/// Cells that would take too much memory are rejected with the figure. Without a given number of
+/// cells, there are fewer.
 #[test]
 fn memory_is_bounded() {
     let big = |_| {

@@ -7,7 +7,8 @@ use gridel_host::blob::Blob;
 use gridel_host::compile::{Options, compile};
 use gridel_tests::measured::{SCRAMBLES_WIDE, check, measured, read};
 
-/// A room around the origin, 20 wide, whose walls glow inwards: each of four squares, which a light can have the size of.
+/// Returns a room around the origin, 20 wide, whose walls glow inwards. Each wall has four squares, the size of a
+/// light.
 fn room(albedo: f64, emission: f64, lights: bool, bounces: u8) -> Blob {
     let mut text = format!(
         "[camera]\neye = [1, 2, 3]\ntarget = [4, 3, -9]\nfov = 0.2\n\
@@ -46,12 +47,13 @@ fn blob(text: &str) -> Blob {
         .blob
 }
 
-/// A closed room whose walls glow has the radiance e / (1 - a) everywhere, less what bounces beyond the last one bring.
+/// A closed room whose walls glow has the radiance e / (1 - a) everywhere, less the light of bounces beyond the last
+/// one.
 #[test]
 fn closed_furnace_has_the_analytic_radiance() {
     for (albedo, emission) in [(0.5, 0.1), (0.8, 0.1)] {
         let exact = emission / (1.0 - albedo);
-        // What more than 32 bounces bring: 0.06 % of a radiance at an albedo of 0.8.
+        // The light of more than 32 bounces: 0.06 % of a radiance at an albedo of 0.8.
         let brought = exact * (1.0 - f64::powi(albedo, 33));
         assert!((brought / exact - 1.0).abs() < 0.002);
         check("furnace", &room(albedo, emission, false, 32), brought);
@@ -63,7 +65,7 @@ fn closed_furnace_has_the_analytic_radiance() {
     }
 }
 
-/// The same where each wall is a light as well: nothing is brought twice, and nothing is lost.
+/// A furnace where each wall is a light as well: no light counts twice, and none is lost.
 #[test]
 fn light_of_lights_is_brought_once() {
     for format in Format::ALL {
@@ -121,7 +123,7 @@ fn objects_without_light_of_a_shared_material_light_by_diffuse_rays() {
     }
 }
 
-/// Surfaces that mirror, let light through and are diffuse cause three rays: the work list that the effects ask for is
+/// Surfaces that mirror, transmit light and are diffuse cause three rays. The work list that the effects require is
 /// long enough.
 #[test]
 fn work_lists_hold_all_rays_that_wait() {

@@ -1,5 +1,5 @@
-//! Objects of size 1 in scenes of 1e2 to 1e6: what a surface's error bound is worth is its own place and
-//! size, not the scene's.
+//! Objects of size 1 in scenes of 1e2 to 1e6. A surface's error bound depends on its own position and size, not on the
+//! scene's.
 
 use glam::{DQuat, DVec3};
 use gridel_core::render::{Pixel, Rgb888};
@@ -142,7 +142,7 @@ fn a_box_on_a_large_ground_keeps_its_shadow() {
             let right = picture(&blob, Format::F64, size);
             let off = |format| differing(&picture(&blob, format, size), &right);
             let (f32, fixed) = (off(Format::F32), off(Format::Fixed));
-            // What a step of the lattice changes is what the scene itself is known to.
+            // A step of the lattice is the uncertainty of the scene itself; this is its effect on the picture.
             let mut looked = plain.clone();
             if let Some(camera) = &mut looked.camera {
                 camera.eye += report.step;
@@ -257,7 +257,7 @@ fn a_plane_looks_like_a_large_ground() {
     }
 }
 
-/// A box of 0.6 on the top of a ball so large that single precision does not know where that is.
+/// Returns a box of 0.6 on the top of a ball. The ball is so large that single precision cannot locate its top.
 fn box_on_a_ball() -> Scene {
     let mut scene = box_on(Ground::Slab, 1e6);
     scene.objects[0].shape = Shape::Sphere(Sphere {

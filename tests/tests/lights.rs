@@ -22,7 +22,7 @@ fn scene(lights: &str, eye: &str, target: &str, objects: &str) -> Blob {
 const FLOOR: &str =
     "[[object]]\nkind = 'box'\nmin = [-900, -100, -900]\nmax = [1500, 0, 1500]\nmaterial = 'white'";
 
-/// The irradiance that the light of the Cornell box gives, over its radiance: integrated over the light with midpoints
+/// Returns the irradiance of the Cornell box's light, over its radiance. It is integrated over the light with midpoints
 /// of 400 by 400 cells.
 #[test]
 fn cornell_light_gives_the_analytic_irradiance() {
@@ -201,7 +201,7 @@ fn points_fall_off_and_spots_end() {
     assert_eq!(measured(&view(&spot, 45.0), Format::Fixed, 1), (0.0, 0.0));
 }
 
-/// A light that is seen lights as one that is not: its own surface does not stand in its way.
+/// A visible light lights as an invisible one: its own surface does not block it.
 #[test]
 fn visible_lights_light_as_invisible_ones() {
     let rectangle = 15.0 * 0.044_632_5 / PI;
@@ -239,7 +239,7 @@ fn surfaces_that_glow_light_others_and_are_seen() {
     );
     let blob = scene("", "[278, 30, 279.6]", "[278, 0, 279.6]", &mesh);
     check("mesh", &blob, 15.0 * 0.044_632_5 / PI);
-    // Of a box, the lower face alone is seen from below.
+    // Only the lower face of a box is visible from below.
     let cuboid = format!(
         "{lamp}\n[[object]]\nkind = 'box'\nmin = [213, 548.8, 227]\nmax = [343, 600, 332]\nmaterial = 'lamp'\n{FLOOR}"
     );

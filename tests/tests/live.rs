@@ -1,4 +1,4 @@
-//! Cameras, lights and materials that a program puts in place of a blob's own.
+//! Cameras, lights and materials of a program that replace a blob's own.
 
 use glam::DVec3;
 use gridel_core::format::limits::FARTHEST;
@@ -139,7 +139,7 @@ fn a_camera_at_run_time_is_the_one_that_is_compiled() {
                 continue;
             }
             compared += 1;
-            // What the scene lacks and was supplied depends on whether it has a camera.
+            // The supplied defaults depend on whether the scene has a camera.
             let same_surroundings =
                 background == [compiled.view().background, compiled.view().ambient];
             let frame = |view: &View| (view.eye, view.forward, view.right, view.up);
@@ -301,7 +301,7 @@ fn values_out_of_range_are_rejected_with_their_place() {
     assert_eq!(light(&|it| it.color = [i32::MAX; 3]), None);
 }
 
-/// Whatever is not rejected renders, without a number that leaves its range where those are checked.
+/// Every accepted value renders, and no number leaves its range where ranges are checked.
 #[test]
 fn any_values_are_rejected_or_harmless() {
     let file = scene_file();

@@ -1,4 +1,5 @@
-//! Motion blur: samples are shared out among the moments of a shutter, and what moves is as blurred as it must be.
+//! Motion blur: samples are distributed over the moments of a shutter, and moving objects are blurred by the right
+//! amount.
 
 use gridel_core::render::{RenderError, Shutter};
 use gridel_core::{
@@ -68,7 +69,7 @@ fn scenes_that_stand_still_are_as_without_a_shutter() {
     }
 }
 
-/// The background is white at one moment alone, so a pixel tells how many samples were taken at it.
+/// The background is white at one moment alone, so a pixel shows how many samples were taken at it.
 #[test]
 fn each_moment_has_its_share_of_the_samples() {
     let blob = blob("background = 0\n[render]\nwidth = 1\nheight = 1\n");

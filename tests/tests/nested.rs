@@ -1,4 +1,4 @@
-//! Nested dielectrics: where glass overlaps, light takes the way that it takes through bodies that fit.
+//! Nested dielectrics: where glass overlaps, light takes the same path as through bodies that fit.
 
 use gridel_core::{Effects, Format, Settings, Structure};
 use gridel_host::blob::Blob;
@@ -93,7 +93,7 @@ fn blob(text: &str) -> Blob {
     compile(&read(text), &options).expect("compiles").blob
 }
 
-/// What a stack of layers reflects on its near side, transmits, and reflects on its far side.
+/// The parts that a stack of layers reflects on its near side, transmits, and reflects on its far side.
 #[derive(Clone, Copy)]
 struct Stack([f64; 3]);
 
@@ -141,7 +141,7 @@ fn check(name: &str, blob: &Blob, exact: f64) {
         let (mean, _) = measured(blob, format, 1);
         eprintln!("{name} {format:?}: {mean:.6}, exact {exact:.6}");
         let off = (mean - exact).abs();
-        // The depth ends what is reflected very often.
+        // The depth ends light that is reflected very often.
         assert!(off <= 5e-4, "{name} {format:?}: {mean}, {exact}");
     }
 }
@@ -222,7 +222,7 @@ fn a_camera_within_begins_in_the_medium_that_it_leaves() {
     );
 }
 
-/// Other glass within a medium takes up its own share, and the medium what is left of the way.
+/// Other glass within a medium absorbs its own share, and the medium absorbs along the rest of the way.
 #[test]
 fn glass_without_a_priority_absorbs_as_itself() {
     let [glass, water] = [0.5, 0.1].map(|absorption| Medium {
@@ -334,7 +334,7 @@ fn a_medium_that_a_program_makes_opaque_is_none() {
     assert_eq!(changed.effects(), scene.effects());
     let job = Job::whole(Format::F32, Structure::List, Settings::of(&changed));
     let picture = render(&changed, &job, &|| ()).expect("a picture");
-    // No light reaches what is opaque and does not glow.
+    // No light reaches an opaque surface that does not glow.
     assert!(picture.pixels.iter().all(|&pixel| pixel == [0; 3]));
 }
 

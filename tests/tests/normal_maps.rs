@@ -19,7 +19,7 @@ const TRIANGLES: [[u32; 3]; 2] = [[0, 1, 2], [0, 2, 3]];
 
 const SIDE: u16 = 48;
 
-/// How an image lies on the square: from the place of a point, 0 to 1 to the right and up, to u and v.
+/// The map from a point of the square, 0 to 1 to the right and up, to u and v of the image.
 #[derive(Clone, Copy)]
 struct Lies(DAffine2);
 
@@ -116,7 +116,7 @@ fn red(blob: &Blob, format: Format, structure: Structure) -> Vec<f64> {
     red.collect()
 }
 
-/// The places of the square that pixels show, but for those at its border and at its diagonal.
+/// Returns the places of the square that pixels show, except at its border and at its diagonal.
 fn places() -> impl Iterator<Item = (usize, DVec2)> {
     let side = usize::from(SIDE);
     let scale = 4.0 * 15_f64.to_radians().tan();
@@ -198,7 +198,7 @@ fn surfaces_are_lit_as_if_they_had_the_normals_of_the_image() {
     }
 }
 
-/// A flat image, and one without a scale, changes nothing but for rounding.
+/// A flat image, and one without a scale, change only roundings.
 #[test]
 fn flat_normals_are_those_of_the_mesh() {
     let plain = |smooth: bool| {
@@ -341,7 +341,7 @@ fn light_behind_a_triangle_does_not_reach_its_front() {
     }
 }
 
-/// What a bumpy mirror reflects is before it, and never what is behind.
+/// A ray off a bumpy mirror shows objects before the mirror, and never those behind it.
 #[test]
 fn mirrored_rays_stay_before_the_surface() {
     for smooth in [false, true] {

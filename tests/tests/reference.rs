@@ -131,8 +131,9 @@ fn answers_agree_with_brute_force() {
     }
 }
 
-/// Flags must agree; t within what snapping moves a surface by, seen at a slant; and nearly always
-/// the triangle, which at an edge or where two coincide is a matter of taste.
+/// Flags must agree. t must agree within the distance that snapping moves a surface, seen at a
+/// slant. The triangle must nearly always agree; at an edge or where two coincide either one is
+/// right.
 fn compare(mesh: &str, format: Format, step: f64, answers: &[Answer], hits: &[SceneHit]) {
     let (mut flags, mut others, mut worst) = (0, 0, 0.0_f64);
     for (answer, hit) in answers.iter().zip(hits) {

@@ -1,8 +1,8 @@
 //! Pictures: the same bytes however they are made, and what physics demands of them.
 //!
 //! `fixtures/check.toml` holds a hash of a small picture of every fixture in every number format,
-//! and what it costs. After a change that is meant to change these, `gridel check --bless
-//! fixtures/check.toml` writes them anew; the difference belongs into the same commit.
+//! and its costs. After an intended change of these, `gridel check --bless fixtures/check.toml`
+//! writes them again; the difference belongs into the same commit.
 
 use glam::DVec3;
 use gridel_core::format::limits::MAX_STACK_DEPTH;
@@ -93,7 +93,7 @@ fn threads_rows_and_structures_do_not_matter() {
     }
 }
 
-/// No format is far from another, and none has a black pixel where another has light: a NaN would
+/// No format is far from another, and none has a black pixel where another has light. A NaN would
 /// be black.
 #[test]
 fn formats_agree() {
@@ -169,8 +169,8 @@ fn bytes<N: Number, const EFFECTS: u32>(scene: &Scene<'_>) -> Vec<[u8; 3]> {
     pixels
 }
 
-/// A picture made a few rays at a time is the one made row by row, whatever the steps; and no step
-/// traces more rays than it may.
+/// A picture made a few rays at a time equals the one made row by row, whatever the steps. No step
+/// traces more rays than its limit.
 fn steps_do_not_matter<N: Number>(name: &str, scene: &Scene<'_>) {
     let settings = small(scene);
     let renderer = Renderer::<N, Flagged, { Effects::ALL.0 }>::with_settings(scene, settings);
@@ -253,8 +253,8 @@ fn pictures_are_the_same_a_few_rays_at_a_time() {
     }
 }
 
-/// An abandoned cursor leaves rays in the workspace, which must not reach the next picture; and
-/// rectangles end at the last pixel that there is.
+/// An abandoned cursor leaves rays in the workspace, which must not reach the next picture.
+/// Rectangles end at the last pixel.
 #[test]
 fn cursors_can_be_dropped_and_ends_are_ends() {
     let fixture = scenes::read(&scenes::fixture_folder().join("glass-chess.toml"));

@@ -1,6 +1,6 @@
-//! Light at surfaces (hard cases F): glass is left as often as it is entered, contact is
-//! kept, lights do not shadow themselves. Laws of single surfaces are tested beside `glass` in the
-//! core, self-hits in `shapes`, pictures in `render`.
+//! Light at surfaces (hard cases F): rays leave glass as often as they enter it, contact is kept,
+//! lights do not shadow themselves. Laws of single surfaces are tested with `glass` in the core,
+//! self-hits in `shapes`, pictures in `render`.
 
 use glam::DVec3;
 use gridel_core::{Flagged, Format, Hit, List, NoCount, Number, Scene, Settings, Structure};
@@ -221,8 +221,8 @@ fn shadows_reach_up_to_the_contact() {
     every_format!(judge());
 }
 
-/// A light as near to a floor as its error bound, or far away, is not in the floor's shadow, and
-/// the floor is not in its own (F4).
+/// A light as near to a floor as its error bound, or far away, is not in the floor's shadow. The
+/// floor is not in its own (F4).
 #[test]
 fn lights_near_a_surface_shine_on_it() {
     for format in Format::ALL {

@@ -1,7 +1,7 @@
 //! Every structure against the plain list, ray by ray, to the last bit.
 //!
-//! By default 20,000 rays per scene and format, three times as many with `GRIDEL_FULL=1`;
-//! `cargo test -- --ignored --nocapture` traces the 10^6 that the project promises, and takes some
+//! By default 20,000 rays per scene and format, three times as many with `GRIDEL_FULL=1`. `cargo
+//! test -- --ignored --nocapture` traces the 10^6 that the project promises, and takes some
 //! minutes.
 
 use glam::DVec3;

@@ -1,11 +1,10 @@
 //! The paper's tables, as counts: what each structure tests per ray, over the rays of three pictures.
 //!
-//! Each scene has about as many objects as the paper's: a glass chessboard and two crystals in place
-//! of molecules. `fixtures/recorded/structures.json` holds what was counted last, beside the paper's
-//! figures, and the README prints it. Counts must not drift: in integers they are the same on every
-//! machine. The ordinary test casts the rays of a picture of 64 by 64 pixels; with `--ignored` those
-//! of the paper's 256 by 256. `GRIDEL_RECORD_TABLES=1` records anew; read the difference before it
-//! is committed.
+//! Each scene has about as many objects as the paper's: a glass chessboard and two crystals in place of molecules.
+//! `fixtures/recorded/structures.json` holds the last counts with the paper's figures, and the README prints it. Counts
+//! must not drift: in integers they are the same on every machine. The ordinary test casts the rays of a picture of 64
+//! by 64 pixels; with `--ignored` those of the paper's 256 by 256. `GRIDEL_RECORD_TABLES=1` records again; read the
+//! difference before it is committed.
 
 use gridel_core::{Format, Structure};
 use gridel_host::compare::{Comparison, Options, compare};
@@ -20,8 +19,8 @@ use std::{env, fs};
 struct Paper {
     objects: u32,
     rays: u32,
-    /// Its times: of the hierarchy in the ordinary way and with flagged sides, of the grid, and of
-    /// the cylinder cube, which ran out of memory on the last scene.
+    /// The paper's times of the plain hierarchy, of the flagged one, of the grid, and of the cylinder cube. The
+    /// cylinder cube ran out of memory on the last scene.
     plain: u32,
     flagged: u32,
     grid: u32,
@@ -56,7 +55,7 @@ const PAPER: [Paper; 3] = [
     },
 ];
 
-/// The structures that the paper compares, those that it names, and what was made of them.
+/// The structures that the paper compares, those that it names, and their successors.
 const STRUCTURES: [Structure; 13] = [
     Structure::Bvh,
     Structure::Flagged,

@@ -1,4 +1,4 @@
-//! Texture levels: what is far away shows copies of an image whose texels are as large as what a sample sees.
+//! Texture levels: distant surfaces show copies of an image whose texels are as large as the area that a sample sees.
 
 use glam::{DAffine2, DQuat, DVec2, DVec3};
 use gridel_core::{
@@ -387,7 +387,7 @@ fn normal_maps_are_flat_from_afar() {
 fn levels_take_a_third_of_the_image_more() {
     let bytes = |levels| blob_of(&scene(levels)).bytes().len();
     let [with, without] = [true, false].map(bytes);
-    // Of one byte each: grays are few. Sections begin at multiples of 16 bytes.
+    // Texels take one byte each, because grays are few. Sections begin at multiples of 16 bytes.
     let [width, height] = TEXELS;
     let level = |number: u32| (width >> number).max(1) * (height >> number).max(1);
     let texels: u32 = (1..7).map(level).sum();

@@ -69,7 +69,7 @@ fn scene_file() -> Scene {
     scene
 }
 
-/// What moves from 0 to 2 seconds, evenly and to numbers that integers hold.
+/// Returns a scene that moves from 0 to 2 seconds, evenly and to numbers that integers hold.
 fn moving() -> Scene {
     use Interpolation::Linear;
     let mut scene = scene_file();

@@ -1,4 +1,4 @@
-//! A scene elsewhere (hard cases G, and E4 and E8 of fixed point): scaled by powers of two,
+//! A scene elsewhere (hard cases G, and E4 and E8 of fixed point). Scaled by powers of two,
 //! shifted, mirrored and turned, it gives the same bits, up to the mirror, until it is rejected.
 
 use glam::DVec3;
@@ -73,7 +73,7 @@ fn a_scene_that_is_shifted_is_the_same() {
         assert_eq!(apart, shift);
         same_hits(&plain, &blob, &rays, &format!("{shift}"));
     }
-    // Beyond what a double's digits hold, there is no scene any more.
+    // Beyond the digits of a double the scene does not compile.
     let gone = moved::with(&soup, |p| p, 1.0, DVec3::splat(1e18));
     assert!(compile(&gone, &Options::default()).is_err());
 }

@@ -1,4 +1,4 @@
-//! `verify` finds nothing wrong with what is right, and everything that is made wrong on purpose.
+//! `verify` finds no fault in right answers, and every fault that is made on purpose.
 
 use glam::{DQuat, DVec3, EulerRot};
 use gridel_core::accel::{Space, StackView, StructureViews, Traverse};
@@ -99,8 +99,8 @@ fn real_scenes_keep_their_promises() {
     }
 }
 
-/// Two closed pyramids, base on base, whose corners the lattice rounded apart: a ray that leaves the one
-/// may report the other, and meets the first no more, because it goes on behind both.
+/// Two closed pyramids, base on base, whose corners the lattice rounded apart. A ray that leaves the one may report the
+/// other. Then it does not hit the first again, because it continues behind both.
 #[test]
 fn closed_meshes_that_touch_do_not_leak() {
     for turn in 0..8 {
@@ -139,8 +139,8 @@ fn cuboid(min: [f64; 3], max: [f64; 3]) -> Shape {
     })
 }
 
-/// A ray that starts inside of several solids leaves them where they end, be it at one place or at
-/// several; and reporting the later one is wrong.
+/// A ray that starts inside of several solids leaves them where they end, at one place or at several. Reporting the
+/// later one is wrong.
 #[test]
 fn surfaces_that_a_ray_leaves_are_judged_as_those_it_enters() {
     // All share the face x = 1; one of them reaches further on the other sides.
@@ -179,7 +179,7 @@ fn surfaces_that_a_ray_leaves_are_judged_as_those_it_enters() {
             assert_eq!(outcome.faults, [], "{ray:?}");
             let hit = heard[0].hit.expect("a hit");
             shared += usize::from(hit.normal[0] == N::ONE);
-            // The second box is left last wherever it is not left at the shared face.
+            // The ray leaves the second box last wherever it does not leave it at the shared face.
             let rounded = RoundedRay::of(&ready);
             let outer = |k: usize| {
                 let sides = scene.primitive_bounds(Kind::Box, second).expect("a box").0[k];
@@ -265,7 +265,7 @@ fn with_hit(change: impl Fn(&mut Hit<f64>)) -> impl Fn(&mut StructureAnswer<f64>
 #[test]
 fn mutated_answers_are_caught() {
     assert_eq!(broken_by(|_| ()), []);
-    // Of one structure.
+    // One structure is broken.
     let flagged = |heard: &StructureAnswer<f64>| heard.structure == Structure::Flagged;
     let lost = broken_by(|heard| {
         if flagged(heard) {
@@ -281,7 +281,7 @@ fn mutated_answers_are_caught() {
     assert_eq!(last_bit, [Property::Structures]);
     let no_shadow = broken_by(|heard| heard.any = false);
     assert_eq!(no_shadow, [Property::AnyHit]);
-    // Of all of them.
+    // All structures are broken.
     let blind = broken_by(|heard| (heard.hit, heard.any) = (None, false));
     assert_eq!(blind, [Property::Answers]);
     assert_eq!(

@@ -69,8 +69,8 @@ fn vertices_and_edges(scene: &Scene<'_>) -> Vec<[f64; 3]> {
     points
 }
 
-/// How many rays from a point inside a convex mesh are sent to points of it, and how many of them
-/// meet nothing, or the mesh a second time.
+/// Returns how many rays from a point inside a convex mesh are sent to points of it. Also returns
+/// how many of them hit nothing, or hit the mesh a second time.
 fn leaks<N: Number>(
     structure: Structure,
     scene: &Scene<'_>,
@@ -85,8 +85,8 @@ fn leaks<N: Number>(
         let Some(hit) = through::<N>(structure, scene, &ray).0 else {
             return (rays + 1, leaks + 1);
         };
-        // At an edge two triangles are met at one place, each known to within its error bound, which
-        // a flat angle makes longer along the ray.
+        // At an edge a ray hits two triangles at one place. Each place is known to within its error
+        // bound, which a flat angle makes longer along the ray.
         let blur = |ray: &Ray<N>, hit: &Hit<N>| {
             let cosine: f64 = (0..3)
                 .map(|k| hit.normal[k].ratio_to_f64() * ray.slope()[k].ratio_to_f64())
@@ -141,8 +141,8 @@ fn no_leaks_anywhere<N: Number>(name: &str, scene: &Scene<'_>, rays: usize) {
     }
 }
 
-/// Closed meshes, aimed at from within: a ball, and boxes stretched by 65536 : 1 : 1/1024, each
-/// with 10^7 rays in every format in the full run.
+/// Rays from inside closed meshes: a ball, and boxes stretched by 65536 : 1 : 1/1024. The full run
+/// has 10^7 rays per mesh in every format.
 #[test]
 fn closed_meshes_have_no_hole_and_no_double_edge() {
     let meshes = [
@@ -164,7 +164,7 @@ fn closed_meshes_have_no_hole_and_no_double_edge() {
     }
 }
 
-/// Counts leaks of a closed mesh; the list is asked for every `list_step`th ray.
+/// Counts leaks of a closed mesh; brute force traces every `list_step`th ray.
 fn no_leaks<N: Number>(name: &str, scene: &Scene<'_>, from: [f64; 3], list_step: usize) {
     let targets = vertices_and_edges(scene);
     let all = || targets.iter().copied().step_by(step());
@@ -284,7 +284,7 @@ fn axis_parallel_rays_through_vertices_hit() {
     }
 }
 
-/// A ray enters a closed mesh as often as it leaves it, counted by going on behind every hit.
+/// A ray enters a closed mesh as often as it leaves it, counted by continuing behind every hit.
 #[test]
 fn rays_enter_as_often_as_they_leave() {
     fn parity<N: Number>(name: &str, scene: &Scene<'_>, rays: usize) {

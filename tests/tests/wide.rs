@@ -36,8 +36,8 @@ fn some_scenes() -> Vec<(String, Scene)> {
     all
 }
 
-/// Hits through the list of an ordinary blob, and through the list and the hierarchy of one that
-/// has nothing but clusters.
+/// Compares hits of three: brute force of an ordinary blob, and brute force and the hierarchy of one with clusters
+/// only.
 fn agrees<N: Number>(name: &str, ordinary: &gridel_core::Scene<'_>, own: &gridel_core::Scene<'_>) {
     let total: usize = Kind::ALL.iter().map(|&kind| own.count(kind)).sum();
     let rays = 3_000_000 / (total + 200);

@@ -3,8 +3,8 @@
 use gridel_core::{Kind, Scene};
 use std::collections::HashMap;
 
-/// For each object of a scene and its parts, whether it is closed: solids are, and meshes each of whose edges an even
-/// number of triangles share.
+/// Returns for each object of a scene and its parts whether it is closed. Solids are closed, and so are meshes each of
+/// whose edges an even number of triangles share.
 pub fn closed(scene: &Scene<'_>) -> Vec<bool> {
     let objects = scene.header().objects as usize;
     let mut closed = vec![false; objects];

@@ -21,10 +21,10 @@ const BATCH: usize = 16;
 /// Rays or points that a thread takes at a time.
 const CHUNK: usize = 2048;
 
-/// What is not there.
+/// The number of a missing item.
 pub const NONE: u32 = u32::MAX;
 
-/// How to ask.
+/// The settings of a query.
 #[derive(Clone, Copy)]
 pub struct How {
     pub format: Format,
@@ -41,7 +41,7 @@ pub struct Found {
     pub object: u32,
     pub primitive: u32,
     pub instance: u32,
-    /// Whether the ray leaves a solid.
+    /// True if the ray leaves a solid.
     pub leaves: bool,
     pub normal: [f32; 3],
 }
@@ -78,7 +78,7 @@ pub use all_hits::{all, count, locations};
 pub use columns::{Columns, cast};
 pub use inside::contains;
 
-/// Calls a function with all threads, or in a pool of so many.
+/// Calls a function with all threads, or in a pool of `threads`.
 pub fn with_threads<T: Send>(threads: usize, work: impl FnOnce() -> T + Send) -> T {
     if threads == 0 {
         return work();
@@ -90,7 +90,7 @@ pub fn with_threads<T: Send>(threads: usize, work: impl FnOnce() -> T + Send) ->
     }
 }
 
-/// Works on chunks, by all threads or so many.
+/// Works on chunks, with all threads or a given number.
 fn each_chunk<C: Send, T: Send>(
     how: How,
     chunks: Vec<C>,
@@ -126,19 +126,19 @@ fn fill<T: Send + Clone>(
     answers
 }
 
-/// What is asked about each ray, and what the answers are.
+/// A query for each ray, and its answers.
 pub trait Question: Sync {
     type Answer: Send + Sync + Clone;
-    /// Whether any hit will do.
+    /// True if any hit suffices.
     const ANY: bool = false;
     const MISS: Self::Answer;
-    /// Of a ray that is none.
+    /// The answer for an invalid ray.
     const REJECTED: Self::Answer;
     /// The answer of a hit; `None` for any hit.
     fn hit<N: Number>(met: Met<'_, '_, N>) -> Self::Answer;
 }
 
-/// A first hit, where the first hit was asked for.
+/// A first hit, where the query is for the first hit.
 pub struct Met<'m, 'a, N: Number> {
     scene: &'m Scene<'a>,
     ray: &'m Ray<N>,
@@ -160,7 +160,7 @@ impl Question for FirstPrimitive {
     }
 }
 
-/// Whether there is any hit.
+/// The query whether there is any hit.
 pub struct Any;
 
 impl Question for Any {
@@ -269,7 +269,7 @@ fn ask_some<Q: Question>(
     how: How,
     (start, answers): (usize, &mut [Q::Answer]),
 ) {
-    // What most ask, with the instructions of newer processors all along.
+    // The most frequent case, compiled entirely for the instructions of newer processors.
     #[cfg(target_arch = "x86_64")]
     if let (Format::F32, Structure::Wide, SimdLevel::Avx2(avx2)) =
         (how.format, how.structure, simd::level())

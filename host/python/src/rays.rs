@@ -176,7 +176,7 @@ impl<'a> Rays<'a> {
     }
 }
 
-/// A ray in the core's form, or why it is none.
+/// A ray in the core's form, or the reason why it is invalid.
 pub type Ready<N> = Result<(Ray<N>, DirectionScale), Rejection>;
 
 #[inline(never)]

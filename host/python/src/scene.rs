@@ -37,7 +37,7 @@ self_cell::self_cell!(
 #[pyclass(frozen, name = "NativeScene")]
 pub struct NativeScene {
     held: Held,
-    /// What it was compiled from; `None` of a blob.
+    /// The model that it was compiled from; `None` for a blob.
     model: Option<scene::Scene>,
     /// The number of the first primitive of each object of `model`.
     firsts: Vec<u32>,
@@ -232,7 +232,7 @@ impl NativeScene {
             .into_pyarray(py))
     }
 
-    /// Whether each ray of two arrays meets anything.
+    /// Returns whether each ray of two arrays hits anything.
     fn any_of<'py>(
         &self,
         py: Python<'py>,
@@ -253,7 +253,7 @@ impl NativeScene {
             .into_pyarray(py))
     }
 
-    /// Whether each ray meets anything.
+    /// Returns whether each ray hits anything.
     fn any<'py>(
         &self,
         py: Python<'py>,
@@ -381,7 +381,7 @@ impl NativeScene {
         Ok((places.reshape([length, 3])?, numbers, triangles))
     }
 
-    /// Whether each point lies in a closed object, or with `closed_only` false in any object by parity.
+    /// Returns whether each point lies in a closed object, or with `closed_only` false in any object by parity.
     #[expect(clippy::too_many_arguments, reason = "keyword arguments of Python")]
     fn contains<'py>(
         &self,
@@ -439,7 +439,7 @@ impl NativeScene {
         pixels.into_pyarray(py).reshape(shape)
     }
 
-    /// The scene as a blob, compiled anew where structures or bits are given.
+    /// Returns the scene as a blob, compiled again where structures or bits are given.
     fn to_blob<'py>(
         &self,
         py: Python<'py>,

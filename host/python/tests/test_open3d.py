@@ -1,4 +1,4 @@
-"""The class for Open3D by itself, and beside Open3D's own where that is installed."""
+"""Tests the class for Open3D alone, and against Open3D's own where that is installed."""
 
 import numpy as np
 import pytest

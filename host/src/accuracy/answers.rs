@@ -1,11 +1,11 @@
-//! The answers at the top of the page: which setting for a given error, what the number format changes, and what to
-//! give up first.
+//! The answers at the top of the page: the setting for a given error, the effect of the number format, and what to
+//! leave out.
 
 use super::{Cost, Parameter, Point, Results, Truth, cheapest};
 use crate::table::{counted, significant};
 use gridel_core::Format;
 
-/// Errors that are asked for, the largest first.
+/// Error bounds for the answers, the largest first.
 const BOUNDS: [f64; 9] = [0.1, 0.05, 0.03, 0.02, 0.01, 0.005, 0.002, 0.001, 0.0005];
 
 /// Three sentences, or fewer where the results do not have the figures.
@@ -27,7 +27,7 @@ fn setting_answer(results: &Results) -> Option<String> {
         .filter_map(|&bound| Some((bound, cheapest(&results.points, bound, None)?)));
     let mut found: Vec<(f64, &Point)> = found.collect();
     found.dedup_by(|later, earlier| later.1.name == earlier.1.name);
-    // The two smallest bounds that settings keep: what is coarser is rarely wanted.
+    // The two smallest bounds that settings keep; coarser ones are rarely useful.
     let kept = found.split_off(found.len().saturating_sub(2));
     let clauses: Vec<String> = kept
         .into_iter()
@@ -63,7 +63,7 @@ fn setting_text(results: &Results, point: &Point) -> String {
     }
 }
 
-/// What the other formats change at the scene file's own setting.
+/// Returns what the other formats change at the scene file's own setting.
 fn format_answer(results: &Results, all: &Point) -> Option<String> {
     let truth = results.reference.truth;
     let from = match truth {

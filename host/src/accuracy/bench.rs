@@ -1,4 +1,4 @@
-//! Builds and renders settings, and measures what is wrong with the pictures and what they cost.
+//! Builds and renders settings, and measures the errors of the pictures and their cost.
 
 use super::setting::Setting;
 use super::truth::{Truth, exact_pixels};
@@ -159,7 +159,7 @@ pub struct Bench<'s> {
     pub size: [u16; 2],
     /// Instances of the scene file that were [copied](crate::scene::Imported::copied), for the report.
     pub copied: usize,
-    /// What stands for the truth.
+    /// The pictures that errors are measured against.
     pub truth: Truth,
     blobs: HashMap<(u8, u64, u32), Blob>,
     hits: HashMap<(u8, u64, u32, &'static str), Vec<Option<FirstHit>>>,
@@ -217,7 +217,7 @@ impl<'s> Bench<'s> {
         Ok(checksum(self.blob(&base)?.bytes()))
     }
 
-    /// Returns what became of the scene's instances; `None` without any.
+    /// Returns the treatment of the scene's instances; `None` without any.
     pub fn instances(&mut self) -> Result<Option<InstanceCount>, MeasureError> {
         let (base, copied) = (self.base(), self.copied);
         Ok(InstanceCount::of(&self.blob(&base)?.scene()?, copied))
@@ -305,7 +305,7 @@ impl<'s> Bench<'s> {
         Ok(exact)
     }
 
-    /// Measures a setting but for its time; its pixels, too.
+    /// Measures a setting without its time; returns its pixels, too.
     pub fn measure(
         &mut self,
         setting: &Setting,

@@ -1,5 +1,4 @@
-//! What each effect of a scene is worth: what the picture loses without it, what it costs, and in which order to give
-//! effects up.
+//! The worth of each effect of a scene: the loss without it, its cost, and the order in which to leave effects out.
 
 use super::{Bench, MeasureError, Parameter, Point, Results, Setting};
 use crate::measure::board::{Board, MemoryReport, Target, instructions};
@@ -8,13 +7,13 @@ use crate::scene::shown_without;
 use gridel_core::Effects;
 use serde::{Deserialize, Serialize};
 
-/// An effect, what is lost without it, and what it costs in the picture that the scene file states.
+/// An effect, the loss without it, and its cost in the picture that the scene file states.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Worth {
     pub effect: String,
     /// The name of the setting without it.
     pub without: String,
-    /// What shows where it was.
+    /// The part of a sentence about the picture without it.
     pub shown_without: String,
     /// The picture without it against the same picture with it.
     pub lost: Errors,
@@ -29,7 +28,7 @@ pub struct Worth {
     pub time_range: Option<[f64; 2]>,
     /// Bytes of the blob.
     pub blob_bytes: i64,
-    /// Instructions per pixel, the least and the most, on [`BOARD`] in its best number format; `None` where the format
+    /// The least and the most instructions per pixel on [`BOARD`] in its best number format; `None` where the format
     /// was not measured there.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub instructions: Option<[f64; 2]>,
@@ -41,15 +40,15 @@ pub struct Worth {
     pub ram: i64,
 }
 
-/// The board whose figures are given where none is asked for.
+/// The board for figures when no board is given.
 pub const BOARD: &str = "mps2-an386";
 
 /// The least part of the work that counts as saved, so that effects that cost no rays are compared, too.
 const LEAST_SAVING: f64 = 0.01;
 
 impl Worth {
-    /// The error that giving it up adds for each part of the rays and tests that it saves: the smaller, the sooner it
-    /// is to be given up.
+    /// The error that leaving the effect out adds, per part of the rays and tests that it saves. The effect with the
+    /// smallest price is left out first.
     fn price(&self, all: &Point) -> f64 {
         let pixels = all.cost.pixels.max(1) as f64;
         let work = (all.cost.rays + all.cost.tests) as f64 / pixels;
@@ -58,8 +57,8 @@ impl Worth {
     }
 }
 
-/// What every effect of a scene is worth, in the order in which to give them up: first those that change the picture
-/// least for the rays and tests that they save.
+/// Returns the worth of every effect of a scene, in the order in which to leave them out. First are those that change
+/// the picture least for the rays and tests that they save.
 ///
 /// # Errors
 /// If a setting cannot be built.

@@ -1,10 +1,10 @@
-//! What a reader of the figures has to know about the instances of a scene.
+//! Notes for readers of the figures about the instances of a scene.
 
 use crate::measure::InstanceCount;
 use crate::measure::board::programs::Programs;
 use crate::table::{counted, grouped};
 
-/// Sentences about what became of instances, and about costs that they have beside those of the table.
+/// Returns sentences about the treatment of instances, and about costs that are not in the table.
 pub fn instance_notes(instances: &InstanceCount) -> Vec<String> {
     let mut notes = vec![format!("{}.", instances.text())];
     if let Some(parts) = instances.parts {

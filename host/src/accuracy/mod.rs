@@ -1,5 +1,5 @@
-//! The cost of accuracy in time: settings are swept, their pictures measured against a reference, and
-//! the results are printed as a table, as sentences and as plots.
+//! The cost of accuracy in time. Sweeps settings, measures their pictures against a reference, and prints the results
+//! as a table, as sentences and as plots.
 //!
 //! | file | what it does |
 //! |---|---|
@@ -42,12 +42,12 @@ pub struct Results {
     /// Identifies the sweep: the program's version, the scene, the picture's size, the structure, the reference.
     pub key: String,
     pub base: Setting,
-    /// What became of the scene's instances; `None` without any.
+    /// The treatment of the scene's instances; `None` without any.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub instances: Option<InstanceCount>,
     pub reference: Reference,
     pub points: Vec<Point>,
-    /// What each effect is worth, in the order in which to give them up; empty until all is measured.
+    /// The worth of each effect, in the order in which to leave them out; empty until all is measured.
     #[serde(default)]
     pub effects: Vec<Worth>,
 }
@@ -59,8 +59,8 @@ impl Results {
     }
 }
 
-/// Which points nothing beats: no other is as right at a cost that is surely no higher, and better in one
-/// of the two. Costs are those of [`Cost::is_below`].
+/// Returns which points are not beaten. A point beats another if its error is no larger, its cost certainly no higher,
+/// and one of the two is better. Costs are those of [`Cost::is_below`].
 pub fn frontier(points: &[Point]) -> Vec<bool> {
     frontier_by(points, |point| point.errors.rmse)
 }
@@ -78,8 +78,8 @@ pub fn frontier_by(points: &[Point], error: impl Fn(&Point) -> f64) -> Vec<bool>
 }
 
 impl Point {
-    /// Returns whether it surely costs less: by time where the repeats of both are distinct, else by rays and
-    /// tests, which repeat exactly and compare within a number format.
+    /// Returns whether the point certainly costs less: by time where the repeats of both are distinct. Otherwise rays
+    /// and tests decide, which repeat exactly and compare within a number format.
     fn is_cheaper(&self, other: &Self) -> bool {
         if self.cost.is_below(&other.cost) {
             return true;
@@ -142,8 +142,8 @@ pub fn most_accurate<'p>(points: &'p [Point], rays: f64, board: Option<&str>) ->
         })
 }
 
-/// The cheapest point whose root mean square error is within a bound: by time on this machine, or
-/// by instructions on a board, at the most that they may be.
+/// Returns the cheapest point whose root mean square error is within a bound. The cost is time on this machine, or the
+/// upper estimate of instructions on a board.
 pub fn cheapest<'p>(points: &'p [Point], most: f64, board: Option<&str>) -> Option<&'p Point> {
     cheapest_within(points, Limits::of_error(most), board)
 }
@@ -166,7 +166,7 @@ pub fn cheapest_within<'p>(
         .map(|(_, point)| point)
 }
 
-/// One sentence for each parameter that was changed: what it costs and what it saves.
+/// Returns one sentence for each parameter that was changed: its cost and its saving.
 pub fn sentences(base: &Setting, points: &[Point]) -> Vec<String> {
     let Some(start) = points.iter().find(|point| point.setting == *base) else {
         return Vec::new();
@@ -260,7 +260,7 @@ pub fn sentences(base: &Setting, points: &[Point]) -> Vec<String> {
     sentences
 }
 
-/// A ratio of times, and between what it lies by the repeats of both; `None` where one was timed once.
+/// A ratio of times, and its range by the repeats of both; `None` where one was timed once.
 #[derive(Clone, Copy, Debug)]
 struct Ratio {
     median: f64,

@@ -124,7 +124,7 @@ fn image([width, height]: [u16; 2], pixels: &[u8]) -> io::Result<String> {
     Ok(format!("data:image/png;base64,{data}"))
 }
 
-/// What distinguishes a setting from the scene file's, as the page's colors call it.
+/// Returns the parameter that differs from the scene file's setting, as the page's colors name it.
 fn lever(setting: &Setting, base: &Setting) -> &'static str {
     match setting.differs(base)[..] {
         [] => "base",
@@ -188,7 +188,7 @@ fn data(size: [u16; 2], results: &Results, pictures: &[PagePicture]) -> io::Resu
         "pictures": images.images,
         "reference": reference,
     });
-    // A script ends at the first end mark, wherever it stands.
+    // A script ends at the first end mark, also within a text.
     Ok(data.to_string().replace('<', "\\u003c"))
 }
 
@@ -300,7 +300,7 @@ fn effects(results: &Results) -> String {
 }
 
 impl Worth {
-    /// The part of the time that is saved, or between what it lies.
+    /// Returns the part of the time that is saved, or its range.
     pub fn time_text(&self) -> String {
         let percent = |part: f64| (100.0 * part).round();
         match self.time_range {

@@ -51,7 +51,7 @@ pub fn plot(results: &Results) -> io::Result<String> {
             .y_label_formatter(&|y| format!("{y:.1e}"))
             .light_line_style(RGBColor(240, 240, 240))
             .draw()?;
-        // The front goes by this plot's own error.
+        // The front uses this plot's own error.
         let unbeaten = frontier_by(&results.points, error);
         fastest_first.extend((0..places.len()).filter(|&number| unbeaten[number]));
         fastest_first.sort_by(|&a, &b| places[a].0.total_cmp(&places[b].0));

@@ -178,9 +178,9 @@ fn cutoff_text(cutoff: f64) -> String {
         .map_or_else(|_| cutoff.to_string(), |x| x.to_string())
 }
 
-/// The settings of a sweep around the one that the scene file states: first that one, then each parameter
-/// alone, then together. `effects` are those of the scene, each of which is left out alone. Where none of them
-/// sends rays on, depth and cut-off change nothing and are left alone.
+/// Returns the settings of a sweep around the one that the scene file states. First comes that one, then each parameter
+/// alone, then combinations. `effects` are those of the scene; each is left out alone. Where none of them sends rays
+/// on, depth and cut-off change nothing and are left alone.
 pub fn sweep(base: Setting, effects: Effects) -> Vec<Setting> {
     let secondary = effects.work_depth(1) > 0;
     let mut settings = vec![base];
@@ -218,7 +218,7 @@ pub fn sweep(base: Setting, effects: Effects) -> Vec<Setting> {
             });
         }
     }
-    // Together: what a board can choose between, and what raises samples at less depth.
+    // Combinations: the choices of a board, and more samples at less depth.
     for format in [Format::Fixed, Format::F32] {
         for lattice_bits in [12, 16] {
             add(Setting {
@@ -252,8 +252,8 @@ pub fn sweep(base: Setting, effects: Effects) -> Vec<Setting> {
     settings
 }
 
-/// The fewest samples per pixel of a reference that is better than every setting of a sweep: twice the
-/// most of theirs, as far as pictures can have so many.
+/// Returns the fewest samples per pixel of a reference that is better than every setting of a sweep. That is twice
+/// their maximum, up to the limit of a picture.
 pub fn least_reference_samples(settings: &[Setting]) -> u16 {
     let most = settings.iter().map(|setting| setting.samples).max();
     let most = most.unwrap_or(1);

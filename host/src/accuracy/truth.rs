@@ -1,11 +1,11 @@
-//! What pictures are measured against: `f64`, or the exact picture.
+//! The pictures that errors are measured against: `f64`, or the exact picture.
 
 use crate::certify::{Unknown, World, linear};
 use gridel_core::{Scene, Settings};
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 
-/// The pictures that stand for the truth: of the reference, and of each setting.
+/// The pictures that errors are measured against: that of the reference, and that of each setting.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Truth {
@@ -35,7 +35,8 @@ impl Truth {
     }
 }
 
-/// The exact picture, linear, 65535 being white, and how many of its pixels are open: of those the middle is taken.
+/// Returns the exact picture, linear, 65535 being white, and how many of its pixels are open. Open pixels have the
+/// middle of their interval.
 pub(super) fn exact_pixels(
     scene: &Scene<'_>,
     settings: &Settings,

@@ -1,4 +1,4 @@
-//! Where lights are seen from a surface, and what of them arrives without anything in the way.
+//! The directions to lights from a surface, and the light that arrives without anything in the way.
 
 use super::crossing::exact;
 use super::number::*;
@@ -14,16 +14,16 @@ use gridel_core::format::record::Light;
 /// The way to a light, or to the point of it that a sample sees.
 #[derive(Clone, Copy, Debug)]
 pub struct Aim<N> {
-    /// The way; of infinitely far lights its length means nothing.
+    /// The way to the light. For infinitely far lights its length has no meaning.
     pub way: Three<N>,
     pub is_far: bool,
-    /// Where the light is a sphere, how it is seen.
+    /// The cone of the light, where it is a sphere.
     cone: Option<Cone<N>>,
     /// The light's color.
     pub color: Three<N>,
 }
 
-/// The cone in which a sphere is seen.
+/// The cone of directions to a sphere.
 #[derive(Clone, Copy, Debug)]
 struct Cone<N> {
     /// The distance of the sphere's middle.
@@ -41,7 +41,7 @@ impl Tracer<'_, '_> {
     /// The way to a light; `None` where it does not shine on a point.
     ///
     /// # Errors
-    /// If it is open which way that is.
+    /// If the way is open.
     pub fn aim<N: Enclosure>(
         &self,
         (number, light): (u32, &Light),
@@ -88,7 +88,7 @@ impl Tracer<'_, '_> {
                 let radius = length::<N>(form.edges[0][0].into());
                 let beyond = positive(norm2(way).sqrt() - radius);
                 if !self.known(beyond, Reason::Terminator, place, point)? {
-                    // From within a sphere nothing is seen of it.
+                    // From within a sphere its light is invisible.
                     return Ok(None);
                 }
                 let found = on_sphere(radius, aim, path.point(dimension));
@@ -102,7 +102,7 @@ impl Tracer<'_, '_> {
     }
 }
 
-/// The way to where a random direction meets a sphere from outside of it; `None` where it is open which way that is.
+/// Returns the way to where a random direction meets a sphere from outside of it; `None` where the way is open.
 fn on_sphere<N: Enclosure>(radius: N, aim: Aim<N>, [u, v]: [u32; 2]) -> Option<Aim<N>> {
     let one = N::one();
     let distance = norm2(aim.way).sqrt();
@@ -145,7 +145,7 @@ fn within<N: Enclosure>(form: &LightForm, [u, v]: [u32; 2]) -> Three<N> {
     plus(scale(first, along), scale(second, across))
 }
 
-/// What arrives of a light with a form, given the direction to it; `None` where that is open.
+/// Returns the light that arrives from a light with a form, given the direction to it; `None` where that is open.
 pub fn arriving<N: Enclosure>(
     form: &LightForm,
     aim: &Aim<N>,

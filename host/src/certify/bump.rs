@@ -16,9 +16,10 @@ pub struct Bumped<N> {
     pub is_open: bool,
 }
 
-/// The normal of a hit with the bumps of its material, on the side of another one; `None` of a surface without bumps.
+/// Returns the normal of a hit with the bumps of its material, on the side of another one; `None` for a surface without
+/// bumps.
 ///
-/// `None` outside where it is known too badly.
+/// The outer `None` means that the bounds are too wide.
 pub fn bumped<N: Enclosure>(
     world: &World<'_>,
     hit: &Hit<N>,
@@ -82,7 +83,8 @@ pub fn bumped<N: Enclosure>(
     }))
 }
 
-/// The direction in which u grows over a triangle, of any length, and whether the image is seen mirrored from its front.
+/// Returns the direction in which u grows over a triangle, of any length, and whether the image appears mirrored from
+/// its front.
 fn along_u(corners: [[i64; 3]; 3], coordinates: [[i32; 2]; 3]) -> Option<([i64; 3], bool)> {
     let [a, b, c] = corners;
     let apart = |corner: usize| {

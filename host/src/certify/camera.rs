@@ -14,7 +14,7 @@ use gridel_core::{RayKind, Settings};
 /// Steps that a pixel is divided into on each axis.
 const SUBPIXELS: i64 = 256;
 
-/// What points of the lens are drawn by.
+/// The dimension of points of the lens.
 const LENS: u16 = 0x1000;
 
 /// The place of a sample in its pixel, in subpixels: the first two dimensions of Sobol's sequence, in the middle of

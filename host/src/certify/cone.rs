@@ -1,7 +1,7 @@
 //! Cylinders, cones and frusta: the part of a double cone between two caps on which the radius is not negative.
 //!
-//! With `q` a point as seen from the base, `w` the axis, `h = w.w` and `a = q.w`, the mantle is where
-//! `h (h q.q - a^2) = (r0 h + (r1 - r0) a)^2`, of which only the nappe counts where the right side's root is positive.
+//! Let `q` be a point relative to the base, `w` the axis, `h = w.w` and `a = q.w`. The mantle is where `h (h q.q - a^2)
+//! = (r0 h + (r1 - r0) a)^2`. Only the nappe where the right side's root is positive counts.
 
 use super::crossing::{APEX, BASE, Crossing, Grazes, MANTLE, Ray, compare, exact, flat_normal};
 use super::number::*;
@@ -84,7 +84,7 @@ pub fn crossings<N: Enclosure>(
     let across = |v: Three<N>, axial: N| -> Three<N> { [0, 1, 2].map(|k| v[k] * h - w[k] * axial) };
     let q_axial = q_axial + shift * d_axial;
     let (q_across, d_across) = (across(q, q_axial), across(d, d_axial));
-    // Of vectors that are h times as long: |v|^2 is h (h v.v - a^2).
+    // For vectors that are h times as long: |v|^2 is h (h v.v - a^2).
     let a = norm2(d_across) - e.square();
     let b = dot(q_across, d_across) - g * e;
     let c = if at[0] {
@@ -177,7 +177,7 @@ pub fn crossings<N: Enclosure>(
     Ok(())
 }
 
-/// Adds the last of what a ray enters, or the first of what it leaves.
+/// Adds the last crossing where a ray enters, or the first where it leaves.
 fn ends<N: Enclosure>(
     all: &[Crossing<N>],
     sign: Ordering,
@@ -225,8 +225,8 @@ fn roots<N: Enclosure>([a, b, c]: [N; 3], root: N) -> Option<(N, N)> {
     })
 }
 
-/// What to say where the ray nearly runs along a line of the mantle or across the axis: that it misses, if it stays
-/// away from the sphere around the solid.
+/// Decides rays that run nearly along a line of the mantle or across the axis. They miss if they stay away from the
+/// sphere around the solid.
 fn grazes<N: Enclosure>(form: &Form, ray: &Ray<N>) -> Result<(), Grazes> {
     let Form::Cone {
         base,

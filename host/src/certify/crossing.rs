@@ -16,20 +16,20 @@ pub struct Ray<N> {
     pub start: Start,
 }
 
-/// What a ray starts on.
+/// The surface that a ray starts on.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Start {
     Free,
     On {
         instance: u32,
-        /// The first primitive of its form: of those, each is left alike.
+        /// The first primitive of its form. A ray leaves all primitives of one form equally.
         twin: u32,
         part: u8,
         /// The surface that the start lies in, if primitives may share it.
         surface: u32,
         /// Planes that it lies in exactly, too.
         also: [u32; 2],
-        /// Whether it goes to the other side than that of the normal.
+        /// True if it goes to the other side than that of the normal.
         inward: bool,
     },
 }
@@ -42,9 +42,9 @@ pub struct Crossing<N> {
     pub fraction: Option<[N; 2]>,
     /// The face of a box; mantle, base and other cap of a cone.
     pub part: u8,
-    /// Whether the ray leaves a solid.
+    /// True if the ray leaves a solid.
     pub leaves: bool,
-    /// Whether it is certain that the ray crosses here.
+    /// True if it is certain that the ray crosses here.
     pub sure: bool,
 }
 
@@ -72,7 +72,7 @@ pub fn exact<N: Enclosure>(v: [i64; 3]) -> Three<N> {
 }
 
 impl<N: Enclosure> Crossing<N> {
-    /// Adds a crossing if its t is above 0, as far as is known.
+    /// Adds a crossing if its t may be above 0.
     pub fn keep(mut self, found: &mut Vec<Self>) {
         match positive(self.t) {
             Some(true) => found.push(self),

@@ -1,10 +1,11 @@
 //! Balls around numbers of 128 or 256 bits.
 //!
-//! A ball is a middle of many bits and a radius of double precision. What an operation rounds is added to the radius,
-//! which is rounded up; what is exact stays exact, so that sums and products of a blob's integers are compared exactly.
+//! A ball is a middle of many bits and a radius of double precision. The rounding of an operation is added to the
+//! radius, which is rounded up. Exact results stay exact, so that sums and products of a blob's integers are compared
+//! exactly.
 //!
-//! The numbers lie in a table of the thread, which [`with_bits`] begins anew, so that a ball is an index and kernels
-//! copy it as they copy floats.
+//! The numbers lie in a table of the thread, which [`with_bits`] clears. So a ball is an index, and kernels copy it as
+//! they copy floats.
 
 use super::number::Enclosure;
 use dashu_float::round::mode::HalfEven;
@@ -89,7 +90,7 @@ impl Balls {
         Context::new(self.bits)
     }
 
-    /// A bound of what rounding a number takes or adds.
+    /// Returns a bound of the rounding of a number.
     fn rounding(&self, rounded: &Big) -> f64 {
         magnitude(rounded) * f64::powi(2.0, 2 - self.bits as i32)
     }
@@ -173,7 +174,7 @@ impl Enclosure for Ball {
     }
 
     fn float(value: f64) -> Self {
-        // No number of a scene comes near the ends of the range: an infinite bound stands for the largest float.
+        // No number of a scene comes near the ends of the range: an infinite bound becomes the largest float.
         let value = value.clamp(-f64::MAX, f64::MAX);
         let exact = Big::try_from(value).unwrap_or(zero());
         on_balls(|balls| balls.push(exact, 0.0))

@@ -7,13 +7,13 @@ use super::shade;
 use gridel_core::Scene;
 use gridel_core::format::record::Light;
 
-/// What the point of a facet is drawn by.
+/// The dimension of the point of a facet.
 pub const DIMENSION: u16 = 0x1010;
 
 /// The α from which lights that rays could meet are reflected by the formula.
 const WIDE: i32 = 96_636_764;
 
-/// Whether lights are reflected by the formula in place of by rays that meet them.
+/// Returns whether lights are reflected by the formula, and not by rays that hit them.
 pub fn is_wide(alpha: i32) -> bool {
     alpha >= WIDE
 }
@@ -32,11 +32,11 @@ pub struct Facets<N> {
 /// How much of a ray leaves by a facet.
 pub struct Unmasked<N> {
     pub part: N,
-    /// Whether it is open if the ray leads to the right side of the surface.
+    /// True if it cannot be decided whether the ray leads to the right side of the surface.
     pub is_open: bool,
 }
 
-/// A ratio, of which roundings took nothing beyond 0 and 1.
+/// Limits a ratio to 0 to 1, which only roundings exceed.
 fn limited<N: Enclosure>(ratio: N) -> N {
     ratio.at_least(N::zero()).at_most(N::one())
 }
@@ -118,7 +118,8 @@ impl<N: Enclosure> Facets<N> {
         cos_out * self.slant_in + self.cos_in * self.slant(cos_out)
     }
 
-    /// What the facets reflect of a light `cos_out` above the surface, if each of them reflects all.
+    /// Returns the part that the facets reflect of a light `cos_out` above the surface, if each of
+    /// them reflects all.
     fn reflect(&self, cos_out: N, halfway: Three<N>) -> Option<N> {
         let sine2 = norm2(cross(self.normal, halfway));
         let cos = dot(self.normal, halfway);
@@ -132,7 +133,7 @@ impl<N: Enclosure> Facets<N> {
     }
 }
 
-/// Whether a light is reflected by the formula of a surface's facets.
+/// Returns whether a light is reflected by the formula of a surface's facets.
 pub fn reflects(scene: &Scene<'_>, alpha: i32, light: &Light) -> bool {
     let is_met = match light.directional {
         Light::ENVIRONMENT => true,
@@ -142,7 +143,7 @@ pub fn reflects(scene: &Scene<'_>, alpha: i32, light: &Light) -> bool {
     !is_met
 }
 
-/// What facets mirror of a light.
+/// Returns the mirrored light of a light by facets.
 pub fn mirrored<N: Enclosure>(
     alpha: i32,
     seen: &Seen<'_, N>,

@@ -38,7 +38,7 @@ impl<N: Enclosure> Hit<N> {
         }
     }
 
-    /// What a ray starts on that goes on from here.
+    /// Returns the start of a ray that continues from here.
     pub fn start(&self, outward: bool) -> Start {
         Start::On {
             instance: self.instance,
@@ -57,7 +57,7 @@ pub struct Seen<'h, N> {
     pub path: &'h Path<N>,
     pub hit: &'h Hit<N>,
     pub material: &'h Material,
-    /// Whether it is a boundary, and not within a medium of a higher priority.
+    /// True if it is a boundary, and not within a medium of a higher priority.
     pub is_there: bool,
     pub normal: Three<N>,
     /// That of the ray, of length 1.
@@ -68,7 +68,7 @@ pub struct Seen<'h, N> {
     /// The ratio of the light from behind that passes straight on.
     pub passing: Three<N>,
     pub interface: Interface<N>,
-    /// What a ray on the far side is inside of.
+    /// The media that a ray on the far side is inside of.
     pub beyond: Inside,
     /// Diffuse reflections that led here.
     pub reflections: u8,

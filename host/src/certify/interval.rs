@@ -1,8 +1,7 @@
 //! Intervals of double precision, rounded outward.
 //!
-//! A rounded result is off by less than the distance to the next float, so the floats beside it enclose the exact one.
-//! Sums tell on which side of the rounded one the exact one lies, and are widened to that side alone: integers stay
-//! exact.
+//! A rounded result is off by less than the distance to the next float, so its neighboring floats enclose the exact
+//! one. For sums, the side of the exact result is known, and they are widened to that side alone: integers stay exact.
 
 use super::number::Enclosure;
 use std::cmp::Ordering;
@@ -33,7 +32,7 @@ fn up(value: f64) -> f64 {
     value.next_up()
 }
 
-/// What a rounded sum lacks, exactly; NaN where the sum is not finite.
+/// Returns the exact error of a rounded sum; NaN where the sum is not finite.
 #[inline(always)]
 fn lacks(a: f64, b: f64, sum: f64) -> f64 {
     let b_part = sum - a;
@@ -119,7 +118,7 @@ impl Mul for Interval {
         let high = products[0]
             .max(products[1])
             .max(products[2].max(products[3]));
-        // What has no negative factor has no negative product.
+        // Without a negative factor there is no negative product.
         let low = if low == 0.0 && a.low >= 0.0 && b.low >= 0.0 {
             0.0
         } else {
@@ -241,7 +240,7 @@ impl Enclosure for Interval {
     }
 
     fn half(self) -> Self {
-        // Exact, but for numbers that are hardly floats.
+        // Exact, except for numbers near the smallest floats.
         let half = |x: f64| x * 0.5;
         let is_exact = |x: f64| x == 0.0 || x.abs() > 1e-300;
         if is_exact(self.low) && is_exact(self.high) {

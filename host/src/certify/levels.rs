@@ -1,4 +1,4 @@
-//! Levels of textures: how much of an image a sample sees, by the integers with which a blob defines it.
+//! Levels of textures: the area of an image that a sample covers, by the integers with which a blob defines it.
 
 use super::hit::Hit;
 use super::log2::Log2;
@@ -15,7 +15,7 @@ const PLACE_BITS: i32 = 8;
 /// Fraction bits of lengths.
 const LENGTH_BITS: i32 = 13;
 
-/// How far the rays of neighboring samples are apart, per distance from the eye.
+/// Returns the distance of rays of neighboring samples, per distance from the eye.
 pub fn spread(world: &World<'_>, settings: &Settings) -> i32 {
     let view = world.scene.view();
     let [up, forward] = [view.up, view.forward].map(|it| log2_of_length(it.map(i64::from)));
@@ -46,7 +46,8 @@ pub fn length<N: Enclosure>(path: &Path<N>, hit: &Hit<N>) -> Option<Log2> {
     Some(whole.at_least(0))
 }
 
-/// The side of a square as large as what a sample sees of an image; `None` where there is no image, or no size.
+/// Returns the side of a square as large as the area of an image that a sample sees. `None` where there is no image, or
+/// no size.
 pub fn footprint<N: Enclosure>(
     world: &World<'_>,
     (path, hit): (&Path<N>, &Hit<N>),
@@ -61,7 +62,7 @@ pub fn footprint<N: Enclosure>(
     Some(width.plus(stretched.half()).and(density))
 }
 
-/// How far texture coordinates are apart per unit of length.
+/// Returns the distance of texture coordinates per unit of length.
 fn density<N: Enclosure>(world: &World<'_>, hit: &Hit<N>) -> Option<i32> {
     let solid = &world.space(hit.instance).solids[hit.solid as usize];
     let (Form::Triangle { normal, .. }, Some([a, b, c])) = (solid.form, solid.paint.coordinates)

@@ -45,7 +45,7 @@ impl Tracer<'_, '_> {
         if is_nothing(arriving) {
             return Ok(black);
         }
-        // The way may start elsewhere, and lights reached or not.
+        // The way may start elsewhere, and the light may be reached or not.
         let mut ways = vec![Some((hit.point, aim.way, hit.start(hit.front)))];
         if self.has(Effects::SMOOTH.with(Effects::SHADOW)) {
             let geometric = dot(hit.facing(), to_light);
@@ -53,7 +53,7 @@ impl Tracer<'_, '_> {
                 let (reached, step) = shade::lift(self.world, hit).ok_or(Stop)?;
                 let from = plus(hit.point, step);
                 if reached != Some(false) {
-                    // Of what is no point, the way stays as it is.
+                    // For lights other than points the direction stays as it is.
                     let way = match light.directional {
                         0 => minus(aim.way, step),
                         _ => aim.way,
@@ -142,7 +142,7 @@ impl Tracer<'_, '_> {
         let depth = path.depth;
         let (black, white) = ([N::zero(); 3], [N::one(); 3]);
         let scene = self.world.scene;
-        // What light may pass, and what may lie in a surface of that.
+        // Surfaces that light may pass, and surfaces that may coincide with them.
         let mut surfaces: Vec<Candidate<N>> = Vec::new();
         let mut is_dark = false;
         let mut may_be_dark: Option<(u32, N)> = None;
@@ -323,7 +323,7 @@ impl Tracer<'_, '_> {
     }
 }
 
-/// Whether a color is black for certain.
+/// Returns whether a color is black for certain.
 fn is_nothing<N: Enclosure>(color: Three<N>) -> bool {
     color.iter().all(|channel| channel.bounds() == [0.0; 2])
 }

@@ -1,4 +1,4 @@
-//! Binary logarithms of integers, with 8 fraction bits: the ends of what one may be, where it is open to which integer a
+//! Binary logarithms of integers, with 8 fraction bits. A value is an interval where it is open to which integer a
 //! number is rounded.
 
 use super::number::Enclosure;
@@ -8,7 +8,7 @@ use gridel_core::scene::Footprint;
 /// The most footprints that are looked up for a point.
 const MOST: i32 = 8;
 
-/// The ends of what a binary logarithm may be.
+/// The ends of the interval of a binary logarithm.
 #[derive(Clone, Copy, Debug)]
 pub struct Log2([i32; 2]);
 
@@ -17,7 +17,7 @@ impl Log2 {
         Self([self.0[0] + other.0[0], self.0[1] + other.0[1]])
     }
 
-    /// With another one that is known.
+    /// Adds a number that is known.
     pub fn and(self, known: i32) -> Self {
         Self(self.0.map(|it| it + known))
     }

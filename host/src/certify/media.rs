@@ -10,7 +10,7 @@ use gridel_core::format::record::Material;
 pub struct Interface<N> {
     /// The lower index of refraction over the higher one.
     pub k: N,
-    /// Whether the ray goes to the one with the higher index.
+    /// True if the ray goes to the one with the higher index.
     pub to_denser: bool,
 }
 
@@ -57,12 +57,12 @@ impl Inside {
 pub struct Boundary {
     from: Option<u8>,
     to: Option<u8>,
-    /// What a ray on the far side is inside of.
+    /// The media that a ray on the far side is inside of.
     pub beyond: Inside,
 }
 
 impl Boundary {
-    /// That of an object; `None` of what is no medium.
+    /// Returns the boundary of an object; `None` if it is not a medium.
     pub fn at(scene: &Scene<'_>, inside: Inside, object: u32, enters: bool) -> Option<Self> {
         let place = scene.place_among_media(object)?;
         let (near, beyond) = if enters {
@@ -79,12 +79,12 @@ impl Boundary {
         })
     }
 
-    /// Whether different media fill the two sides.
+    /// Returns whether different media fill the two sides.
     pub fn is_there(&self) -> bool {
         self.from != self.to
     }
 
-    /// What meets there.
+    /// Returns the two media that meet there.
     pub fn interface<N: Enclosure>(&self, scene: &Scene<'_>) -> Option<Interface<N>> {
         let [from, to] = [self.from, self.to]
             .map(|place| medium(scene, place).map_or(1 << 30, |it| it.inverse_ior));

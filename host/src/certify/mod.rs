@@ -4,9 +4,9 @@
 //! arithmetic. Here every number is an interval that contains the exact one, so a pixel whose interval gives one 8-bit
 //! value is *proved*. Pixels that stay open are evaluated again with 128 and 256 bits.
 //!
-//! The exact picture is the *sampled* one, with the stated samples per pixel, and not the integral behind it. Where a
-//! kernel starts a ray beside a surface, by the error bound of the hit, the exact ray starts on it, and does not meet it
-//! there again. Of hits at one and the same t, the one that comes first in the scene file counts.
+//! The exact picture is the *sampled* one, with the stated samples per pixel, and not the integral behind it. A kernel
+//! starts a ray off a surface, by the error bound of the hit. The exact ray starts on it, and does not hit it there
+//! again. If hits have the same t, the one that comes first in the scene file counts.
 //!
 //! | file | what is in it |
 //! |---|---|

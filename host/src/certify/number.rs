@@ -3,7 +3,7 @@
 use std::cmp::Ordering;
 use std::ops::{Add, Mul, Neg, Sub};
 
-/// A number that is known to lie between two others.
+/// A number with a lower and an upper bound.
 ///
 /// Every operation returns an enclosure of all results that the enclosed numbers can have.
 pub trait Enclosure:
@@ -53,7 +53,7 @@ pub trait Enclosure:
         low + (high - low) * 0.5
     }
 
-    /// How far apart the bounds are, at most.
+    /// Returns the largest distance of the bounds.
     fn width(self) -> f64 {
         let [low, high] = self.bounds();
         (high - low).next_up()
@@ -88,7 +88,7 @@ pub trait Enclosure:
         match (self - other).sign() {
             Some(Ordering::Less) => other,
             Some(_) => self,
-            // What is below `other` is enclosed too, which does no harm.
+            // Values below `other` are enclosed too, which does no harm.
             None => self.hull(other),
         }
     }
@@ -162,7 +162,8 @@ pub fn opposite<N: Enclosure>(a: Three<N>) -> Three<N> {
 
 /// The vector at length 1; `None` if it may have no length.
 pub fn unit<N: Enclosure>(v: Three<N>) -> Option<Three<N>> {
-    // Of very long and very short ones squares would leave the range of floats: scaled by a power of two.
+    // Squares of very long and very short vectors would leave the range of floats, so they are scaled by a power of
+    // two.
     let largest = v.iter().fold(0.0_f64, |most, x| {
         let [low, high] = x.bounds();
         most.max(high.abs()).max(low.abs())

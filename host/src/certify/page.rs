@@ -120,7 +120,8 @@ fn reasons(report: &Report, explain: &str) -> String {
     table + "</table></div>\n"
 }
 
-/// Bars of the widths of intervals; their lengths are logarithmic, so that few pixels are seen too.
+/// Bars of the widths of intervals; their lengths are logarithmic, so that few pixels are visible
+/// too.
 fn widths(report: &Report) -> String {
     let mut chart = String::from(
         "<h2>Widths of the intervals</h2>\n<p>Pixels by the width of their widest channel, of linear values from 0 \

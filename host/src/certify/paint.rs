@@ -1,7 +1,7 @@
 //! Colors of vertices and textures, in exact arithmetic.
 //!
-//! A color of vertices is interpolated in real arithmetic. A texture is defined at multiples of 2^-20 of the image, at or
-//! below the coordinates, by integers: where several of them are possible, all are looked up.
+//! A vertex color is interpolated in real arithmetic. A texture is defined by integers at multiples of 2^-20 of the
+//! image, at or below the coordinates. Where several multiples are possible, all are looked up.
 
 use super::hit::Hit;
 use super::log2::Log2;
@@ -14,13 +14,13 @@ use gridel_core::scene::Footprint;
 /// The most places of a texture that are looked up for a point.
 const MOST_PLACES: i64 = 64;
 
-/// What weights the diffuse color, and whether it is open what of a texture is shown.
+/// The weight of the diffuse color, and whether the texture's color is open.
 pub struct Weight<N> {
     pub color: Three<N>,
     pub is_open: bool,
 }
 
-/// Colors of vertices and a texture at a hit; `None` where the point is known too badly.
+/// Returns colors of vertices and a texture at a hit; `None` where the bounds of the point are too wide.
 pub fn weight<N: Enclosure>(
     world: &World<'_>,
     hit: &Hit<N>,
@@ -66,7 +66,7 @@ pub struct Alpha<N> {
     pub is_open: bool,
 }
 
-/// The alpha of a surface at a hit; `None` where the point is known too badly.
+/// Returns the alpha of a surface at a hit; `None` where the bounds of the point are too wide.
 pub fn alpha<N: Enclosure>(
     world: &World<'_>,
     hit: &Hit<N>,
@@ -125,8 +125,8 @@ fn mixed<N: Enclosure>(weights: Three<N>, roots: [u8; 3]) -> N {
     ratio.at_least(N::zero()).at_most(N::one())
 }
 
-/// Calls a function with the multiples at which a texture may be looked up, for what a sample may see of it; returns
-/// whether there are few enough.
+/// Calls a function with the multiples at which a texture may be looked up, for each possible footprint of a sample.
+/// Returns whether there are few enough.
 pub fn at_places<N: Enclosure>(
     weights: Three<N>,
     coordinates: [[i32; 2]; 3],

@@ -1,4 +1,4 @@
-//! Rays on their way from the eye, and what they have been through.
+//! Rays on their way from the eye, and their history.
 
 use super::crossing::Ray;
 use super::log2::Log2;
@@ -11,14 +11,14 @@ use gridel_core::shade::sampler::Sampler;
 #[derive(Clone, Copy, Debug)]
 pub struct Path<N> {
     pub ray: Ray<N>,
-    /// The ratio of what it brings that arrives at the eye.
+    /// The part of its light that arrives at the eye.
     pub weight: Three<N>,
     /// Reflections and refractions that led to it.
     pub depth: u8,
     pub kind: RayKind,
     /// The random points of its sample.
     pub points: Sampler,
-    /// Diffuse reflections that led to it, but for the last.
+    /// Diffuse reflections that led to it, without the last.
     pub reflections: u8,
     pub inside: Inside,
     /// How long the rays before it are, where textures have levels.

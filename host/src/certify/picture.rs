@@ -25,7 +25,7 @@ const BRANCHES: [u32; 3] = [12, 48, 192];
 /// An open comparison of 256 bits whose numbers differ by less than this is one of equals.
 const EQUAL: f64 = 1e-40;
 
-/// What is known of a pixel: 80 bytes, as they are kept between runs.
+/// The known bounds of a pixel: 80 bytes, as they are kept between runs.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
 #[repr(C)]
 pub struct Enclosed {
@@ -44,7 +44,7 @@ pub struct Enclosed {
     pub reason: u8,
     /// How many reflections and refractions lead to an open comparison.
     pub depth: u8,
-    /// 1 where the exact picture lies on a boundary, as far as 256 bits tell.
+    /// 1 where the exact picture lies on a boundary, as far as 256 bits can decide.
     pub on_boundary: u8,
     /// 1 once it is evaluated.
     pub done: u8,
@@ -57,7 +57,7 @@ impl Enclosed {
         (self.done == 1 && self.low == self.high).then_some(self.low)
     }
 
-    /// How far apart the bounds are, of the worst channel.
+    /// Returns the distance of the bounds of the worst channel.
     pub fn width(&self) -> f64 {
         let widths = self.linear.iter().map(|[low, high]| high - low);
         widths.fold(0.0, f64::max)
@@ -67,8 +67,8 @@ impl Enclosed {
         Reason::of_number(self.reason)
     }
 
-    /// What the values of a format are by: 0 if they are the exact ones; `None` if that is open. A value outside of
-    /// the bounds is wrong by its distance at least.
+    /// Returns the error of the values of a format: 0 if they are the exact ones; `None` if that is open. A value
+    /// outside of the bounds is wrong by its distance at least.
     pub fn error_of(&self, values: [u8; 3]) -> Option<u8> {
         let off = |k: usize| {
             let (low, high) = (self.low[k], self.high[k]);
@@ -173,7 +173,7 @@ fn evaluate<N: Enclosure>(
 
 /// The 16-bit values of the bounds.
 fn rounded(world: &World<'_>, linear: &[[f64; 2]; 3]) -> [[u16; 3]; 2] {
-    // What the sum and the product round does not reach the value that is cut off.
+    // The rounding of the sum and of the product does not reach the value that is cut off.
     let value = |x: f64, by: f64| {
         let value = ((x + by).clamp(0.0, 1.0) * 65535.0 + 0.5).clamp(0.0, 65535.0) as u16;
         if world.scene.view().encoding == View::DISPLAY_VALUES {
@@ -197,8 +197,8 @@ fn narrow(known: &mut [[f64; 2]; 3], evaluated: &Evaluated) {
     }
 }
 
-/// The linear values of a pixel as a picture has them, 65535 being white, and whether they are proved: of those that
-/// are not, the middle.
+/// Returns the linear values of a pixel as a picture has them, 65535 being white, and whether they are proved. Values
+/// that are not proved are the middle of their interval.
 pub fn linear(world: &World<'_>, settings: &Settings, pixel: [u16; 2]) -> ([u16; 3], bool) {
     let mut known = [[0.0, 1.0]; 3];
     for level in 0..LEVELS.len() {
@@ -243,7 +243,7 @@ pub fn enclose(world: &World<'_>, settings: &Settings, pixel: [u16; 2], levels: 
         enclosed.point = open.map_or([0.0; 3], |open| open.point.map(|x| x as f32));
         let is_last = level + 1 == LEVELS.len();
         let is_narrow = enclosed.width() < EQUAL;
-        // What 256 bits cannot tell apart is equal, as far as any of this can say.
+        // Values that 256 bits cannot distinguish count as equal.
         enclosed.on_boundary = u8::from(is_last && (reason != Reason::Rounding || is_narrow));
     }
     enclosed

@@ -4,17 +4,17 @@ use super::number::*;
 use gridel_core::Angle;
 use std::cmp::Ordering;
 
-/// A coordinate of a point with 32 fraction bits, of which 30 count.
+/// Returns a coordinate of a point with 32 fraction bits as a ratio; 30 of the bits count.
 pub fn ratio<N: Enclosure>(coordinate: u32) -> N {
     N::scaled((coordinate >> 2).into(), 30)
 }
 
-/// The sine and the cosine of a coordinate that stands for a turn.
+/// Returns the sine and the cosine of a turn, given by a coordinate.
 pub fn turn<N: Enclosure>(coordinate: u32) -> [N; 2] {
     Angle(coordinate).sin_cos().map(ratio_of)
 }
 
-/// Two directions that are perpendicular to one of length 1 and to each other; `None` where it is open which ones.
+/// Returns two directions that are perpendicular to one of length 1 and to each other; `None` where they are open.
 pub fn beside<N: Enclosure>([x, y, z]: Three<N>) -> Option<[Three<N>; 2]> {
     let one = N::one();
     let is_below = z.sign()? == Ordering::Less;
@@ -27,7 +27,7 @@ pub fn beside<N: Enclosure>([x, y, z]: Three<N>) -> Option<[Three<N>; 2]> {
     ])
 }
 
-/// A direction given by its part along an axis of length 1, and by its parts along two others beside it.
+/// Returns a direction with given parts along an axis of length 1, and along two others.
 pub fn combined<N: Enclosure>(
     axis: Three<N>,
     along: N,

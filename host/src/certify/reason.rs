@@ -9,15 +9,15 @@ use serde::{Deserialize, Serialize};
 pub enum Reason {
     /// Which surface a ray hits: at an edge, or where surfaces meet.
     Hit = 1,
-    /// Whether a surface is in a shadow.
+    /// It is open whether a surface is in a shadow.
     Shadow,
     /// On which side of a surface a light is that it faces edge on.
     Terminator,
-    /// Whether light is totally reflected.
+    /// It is open whether light is totally reflected.
     CriticalAngle,
     /// Which cell of a checkerboard a point lies in.
     Checker,
-    /// Whether a ray brings enough to be traced.
+    /// It is open whether a ray's weight suffices to trace it.
     Cutoff,
     /// To which side of a triangle a ray leaves that its smooth normal sends.
     Smooth,
@@ -31,7 +31,7 @@ pub enum Reason {
     Texture,
     /// In which direction a random ray leaves, or a random point lies.
     Sampling,
-    /// Whether a random facet sends a ray off its surface.
+    /// It is open whether a random facet sends a ray off its surface.
     Facet,
 }
 

@@ -1,4 +1,4 @@
-//! What certifying a picture found: for the command, for manifests and for the page.
+//! The result of certifying a picture: for the command, for manifests and for the page.
 
 use super::picture::{Enclosed, LEVELS, code, enclose};
 use super::reason::Reason;
@@ -70,7 +70,7 @@ pub struct OpenPixels {
     pub reason: Reason,
     pub text: &'static str,
     pub pixels: usize,
-    /// Of those, pixels whose ray lies on the boundary as far as 256 bits tell.
+    /// Open pixels whose ray lies on the boundary as far as 256 bits can decide.
     pub on_boundary: usize,
     /// The first of them.
     pub examples: Vec<OpenPixel>,
@@ -200,8 +200,8 @@ impl Report {
     }
 }
 
-/// A picture of what is known: gray where all formats are proved equal, orange where one is proved different, blue where
-/// a pixel is open. As sRGB pixels.
+/// Returns a picture of the results: gray where all formats are proved equal, orange where one is proved different,
+/// blue where a pixel is open. As sRGB pixels.
 pub fn map(pixels: &[Enclosed], pictures: &[(Format, Vec<[u16; 3]>)]) -> Vec<u8> {
     let color = |index: usize, it: &Enclosed| -> [u8; 3] {
         let errors = pictures
@@ -219,7 +219,7 @@ pub fn map(pixels: &[Enclosed], pictures: &[(Format, Vec<[u16; 3]>)]) -> Vec<u8>
     all.flat_map(|(index, it)| color(index, it)).collect()
 }
 
-/// The exact picture: proved values, and the middle of what is known elsewhere. As sRGB pixels.
+/// Returns the exact picture: proved values, and the middle of the bounds elsewhere. As sRGB pixels.
 pub fn exact_picture(pixels: &[Enclosed]) -> Vec<u8> {
     let middle = |it: &Enclosed| [0, 1, 2].map(|k| it.low[k].midpoint(it.high[k]));
     pixels.iter().flat_map(middle).collect()

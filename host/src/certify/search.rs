@@ -38,7 +38,7 @@ pub struct Step {
     pub primitive: Option<u32>,
     #[serde(skip_serializing_if = "Option::is_none")]
     pub object: Option<u32>,
-    /// What the event is about, each number between two.
+    /// The numbers of the event, each with its bounds.
     pub values: Vec<(&'static str, Vec<[f64; 2]>)>,
 }
 
@@ -56,9 +56,9 @@ pub struct Candidate<N> {
 pub struct Tracer<'w, 's> {
     pub world: &'w World<'s>,
     pub depth: u8,
-    /// How far the rays of neighboring samples are apart, where textures have levels.
+    /// The distance of rays of neighboring samples, where textures have levels.
     pub spread: i32,
-    /// Whether numbers are so slow that intervals are asked first.
+    /// True if numbers are so slow that intervals are evaluated first.
     pub is_slow: bool,
     /// How many outcomes may still be followed.
     pub left: Cell<u32>,
@@ -83,7 +83,7 @@ impl Tracer<'_, '_> {
         }
     }
 
-    /// What was found.
+    /// Returns the result if it is known.
     ///
     /// # Errors
     /// If it is open, with the reason and the place.
@@ -161,7 +161,7 @@ impl Tracer<'_, '_> {
             (surface != NONE).then_some((it.instance, surface))
         };
         let primitive = |it: &Candidate<N>| (solid(it).primitive, it.solid);
-        // What lies in one surface is met at one t, and the first in the scene file counts.
+        // Crossings in one surface have one t, and the first in the scene file counts.
         let order = |a: &Candidate<N>, b: &Candidate<N>| {
             let is_one = a.instance == b.instance
                 && solid(a).meets_at_one_t(solid(b), [&a.crossing, &b.crossing]);
@@ -196,7 +196,7 @@ impl Tracer<'_, '_> {
             .map(|index| found[index])
             .collect();
         let may_miss = !found.iter().any(|it| it.crossing.sure);
-        // Faces of one object in one plane look alike at their common edge.
+        // Faces of one object in one plane look the same at their common edge.
         let alike = |a: &Candidate<N>, b: &Candidate<N>| {
             let is_plain = |it: &Candidate<N>| {
                 let is_painted = !solid(it).paint.is_plain();
@@ -246,7 +246,7 @@ impl Tracer<'_, '_> {
         Ok((left, may_miss))
     }
 
-    /// Calls a function with every crossing up to an end, which the function may bring nearer.
+    /// Calls a function with every crossing before an end. The function may move the end nearer.
     pub fn search<N: Enclosure>(
         &self,
         ray: &Ray<N>,

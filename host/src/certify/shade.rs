@@ -21,7 +21,7 @@ pub fn absorbed<N: Enclosure>(material: &Material, length: N) -> Three<N> {
         .map(|coefficient| (length * N::scaled(coefficient.into(), 40)).exp_neg())
 }
 
-/// Whether a point lies in an odd cell, looked up just beneath the surface; `None` if that is open.
+/// Returns whether a point lies in an odd cell, looked up just beneath the surface; `None` if that is open.
 pub fn is_odd<N: Enclosure>(hit: &Hit<N>, material: &Material) -> Option<bool> {
     let size = N::scaled(material.checker_size.into(), 5);
     let mut is_odd = false;
@@ -39,7 +39,7 @@ pub fn is_odd<N: Enclosure>(hit: &Hit<N>, material: &Material) -> Option<bool> {
                     return None;
                 }
             }
-            // Exactly between two cells, the normal decides what is beneath.
+            // Exactly between two cells, the normal decides which cell is beneath.
             Ordering::Equal => {
                 if hit.normal[k].sign()? == Ordering::Greater {
                     number -= 1;
@@ -66,7 +66,7 @@ pub struct Split<N> {
     pub reflected: N,
     /// The direction of the rest; `None` where all is reflected.
     pub refracted: Option<Three<N>>,
-    /// Whether it is open if all is reflected.
+    /// True if it cannot be decided whether all is reflected.
     pub is_open: bool,
 }
 
@@ -81,7 +81,7 @@ fn fresnel<N: Enclosure>(k: N, cos_in: N, cos_out: N) -> N {
     (part(k * cos_in, cos_out).half() + part(cos_in, k * cos_out).half()).at_most(N::one())
 }
 
-/// What both enclose, where that is known to be so.
+/// Returns `whole` if it lies within the number's bounds, else the number, which is known to lie in `whole`.
 fn within<N: Enclosure>(number: N, whole: N) -> N {
     let ([low, high], [least, most]) = (number.bounds(), whole.bounds());
     if low < least && high > most {
@@ -160,7 +160,7 @@ pub fn filtered<N: Enclosure>(
     Some(scale(transmit, passed))
 }
 
-/// Adds the highlight of a light to what a surface reflects.
+/// Adds the highlight of a light to the reflected light of a surface.
 pub fn highlight<N: Enclosure>(
     seen: &Seen<'_, N>,
     to_light: Three<N>,
@@ -207,7 +207,7 @@ fn unfolded([x, y]: [i16; 2]) -> [i64; 3] {
     }
 }
 
-/// A corner's normal as it is weighted: of nearly length 1, by the line and the step that define its length.
+/// Returns a corner's normal for interpolation: nearly of length 1, by the line and the step that define its length.
 fn corner_normal<N: Enclosure>(stored: [i16; 2]) -> Three<N> {
     let v = unfolded(stored).map(|x| N::scaled(x, 15));
     let square = norm2(v);
@@ -245,7 +245,7 @@ pub fn weights<N: Enclosure>(
 ) -> Option<(Three<N>, Three<N>)> {
     let placed = world.placed.get(hit.instance as usize);
     let point = placed.map_or(hit.point, |placed| placed.point(hit.point));
-    // Weights are areas, as they are seen along the largest component of the normal.
+    // Weights are areas, projected along the largest component of the normal.
     let size = normal.map(i64::abs);
     let (i, j, across) = if size[0] >= size[1] && size[0] >= size[2] {
         (1, 2, normal[0])
@@ -265,7 +265,7 @@ pub fn weights<N: Enclosure>(
     Some((point, weights))
 }
 
-/// The interpolated normal on the side of the ray; `None` of what is not smooth.
+/// Returns the interpolated normal on the side of the ray; `None` if the surface is not smooth.
 ///
 /// `None` outside where the normals may cancel out.
 pub fn smooth_normal<N: Enclosure>(world: &World<'_>, hit: &Hit<N>) -> Option<Option<Three<N>>> {
@@ -283,7 +283,7 @@ pub fn smooth_normal<N: Enclosure>(world: &World<'_>, hit: &Hit<N>) -> Option<Op
     Some(Some(if hit.front { normal } else { opposite(normal) }))
 }
 
-/// The way from a hit out to the curved surface that its triangle stands for, and whether that lies above it.
+/// Returns the way from a hit out to the curved surface of its triangle, and whether that lies above it.
 pub fn lift<N: Enclosure>(world: &World<'_>, hit: &Hit<N>) -> Option<(Option<bool>, Three<N>)> {
     let nowhere = [N::zero(); 3];
     let Some(smooth) = smooth(world, hit) else {
@@ -305,7 +305,7 @@ pub fn lift<N: Enclosure>(world: &World<'_>, hit: &Hit<N>) -> Option<(Option<boo
         if way.iter().all(|x| x.bounds() == [0.0, 0.0]) {
             return Some((Some(false), nowhere));
         }
-        // The transposed matrix serves as the inverse, as it does in the kernels.
+        // The transposed matrix is used as the inverse, as in the kernels.
         let length = norm2(way).sqrt();
         let direction = unit(way)?;
         let mapped = placed.normal(direction);
@@ -321,6 +321,6 @@ struct Smooth<N> {
     corners: [[i64; 3]; 3],
     normals: [[i16; 2]; 3],
     point: Three<N>,
-    /// Of the corners; their sum is 1.
+    /// Weights of the corners; their sum is 1.
     weights: Three<N>,
 }

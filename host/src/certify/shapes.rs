@@ -1,7 +1,7 @@
 //! Where a ray crosses a primitive, and the surface there, by the formulas that define the shapes.
 //!
-//! Solids are closed. A ray that starts on a surface starts beside it by nothing: the t of its start is left out by
-//! what is known of it, not by a comparison.
+//! Solids are closed. A ray from a surface starts exactly on it. The t of its start is excluded by what is known of the
+//! start, not by a comparison.
 
 use super::cone;
 use super::crossing::{
@@ -241,7 +241,7 @@ fn sphere<N: Enclosure>(
     crossing(closest + half, true, sure).keep(found);
 }
 
-/// Of several crossings the last, or the first if `sign` is less, each that may be it.
+/// Returns the last of several crossings, or the first if `sign` is less. Returns each crossing that may be it.
 fn extreme<N: Enclosure>(all: &[Crossing<N>], sign: Ordering) -> Vec<Crossing<N>> {
     let beaten = |index: usize| {
         (0..all.len()).any(|other| {
@@ -385,7 +385,7 @@ pub fn face(form: &Form, part: u8) -> Option<(usize, i64)> {
 }
 
 impl Form {
-    /// Whether it has no inside.
+    /// Returns whether the shape has no inside.
     pub fn is_flat(&self) -> bool {
         matches!(
             self,

@@ -6,10 +6,10 @@ use super::random;
 use gridel_core::format::environment::Environment;
 use gridel_core::{RayKind, Scene};
 
-/// What the points of the map are drawn by.
+/// The dimension of points of the map.
 pub const DIMENSION: u16 = 0x1020;
 
-/// How far apart the ends of a place may lie: less than what one weight covers, so that there is nothing between them.
+/// Largest distance between the ends of a place: less than the range of one weight, so that nothing lies between them.
 const NARROW: i64 = 1 << 13;
 
 /// Radiance, and whether it is open what of the environment it is.
@@ -18,7 +18,7 @@ pub struct Sky<N> {
     pub is_open: bool,
 }
 
-/// What a ray of a kind brings that hits nothing; `None` where that is known too badly.
+/// Returns the light of a ray that hits nothing, by its kind; `None` where its bounds are too wide.
 pub fn seen<N: Enclosure>(
     scene: &Scene<'_>,
     record: &Environment,
@@ -105,7 +105,7 @@ fn map<N: Enclosure>(scene: &Scene<'_>, [x, y, z]: Three<N>) -> Option<Sky<N>> {
     })
 }
 
-/// A direction of the map as a light, of any length, and what it brings.
+/// Returns a direction of the map as a light, of any length, and its radiance.
 pub fn from_map<N: Enclosure>(scene: &Scene<'_>, point: [u32; 2]) -> Option<(Three<N>, Three<N>)> {
     let one = 1_i64 << 30;
     let place = scene.environment_place(point)?;
@@ -129,7 +129,7 @@ pub fn from_map<N: Enclosure>(scene: &Scene<'_>, point: [u32; 2]) -> Option<(Thr
     Some((direction, radiance))
 }
 
-/// A direction of the sun: the squares of lengths from its middle, on a sphere, are all alike.
+/// Returns a direction of the sun. The squares of lengths from its middle, on a sphere, are uniform.
 pub fn in_sun<N: Enclosure>(record: &Environment, [u, v]: [u32; 2]) -> Option<Three<N>> {
     let half = ratio_of::<N>(record.sun_radius).half() * random::ratio::<N>(u).sqrt();
     let square = half.square();

@@ -1,4 +1,4 @@
-//! A surface as a ray sees it: its normal, its color, and how much of it is there.
+//! A surface at a ray's hit: its normal, its color, and the part of it that is present.
 
 use super::bump;
 use super::hit::{Hit, Seen};
@@ -18,7 +18,7 @@ impl Tracer<'_, '_> {
     /// The surface of a hit.
     ///
     /// # Errors
-    /// If it is known too badly.
+    /// If its bounds are too wide.
     pub fn seen<'h, N: Enclosure>(
         &self,
         hit: &'h Hit<N>,
@@ -94,7 +94,7 @@ impl Tracer<'_, '_> {
         direction: Three<N>,
         depth: u8,
     ) -> Result<Three<N>, Stop> {
-        // What reflects or refracts does not show its back.
+        // A mirror or glass does not show its back.
         let turns = material.transmit != [0; 3] || material.mirror != [0; 3];
         let turned = |normal| match turns {
             true => shade::turned_to_ray(normal, direction).ok_or(Stop),

@@ -1,10 +1,10 @@
-//! From the mean of samples to what is shown, in exact arithmetic.
+//! From the mean of samples to display values, in exact arithmetic.
 
 use super::number::*;
 use gridel_core::Effects;
 use gridel_core::format::record::View;
 
-/// The effects because of which samples count that are brighter than display white.
+/// The effects that let samples brighter than display white count.
 const DEVELOPING: [Effects; 3] = [
     Effects::TONE_MAPPING,
     Effects::INDIRECT,

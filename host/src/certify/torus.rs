@@ -1,8 +1,8 @@
 //! Tori: the solid that a disc sweeps along a circle.
 //!
-//! With `q` a point as seen from the center, `w` the axis, `h = w.w`, `G = q.q + R^2 - r^2` and `S = |q x w|^2`, h times
-//! the square of the distance from the axis, the surface is where `F = h G^2 - 4 R^2 S` is 0 and G is not negative. (Where
-//! G is negative lies the inner sheet of a spindle torus, which is inside of the solid.)
+//! Let `q` be a point relative to the center, `w` the axis, `h = w.w` and `G = q.q + R^2 - r^2`. Let `S = |q x w|^2`,
+//! which is h times the square of the distance from the axis. The surface is where `F = h G^2 - 4 R^2 S` is 0 and G is
+//! not negative. (Where G is negative lies the inner sheet of a spindle torus, which is inside of the solid.)
 //!
 //! Along a ray F is a quartic. Its roots are isolated by subdivision: coefficients of Bernstein's polynomials whose signs
 //! are known count the roots of a stretch, none or one. Newton's steps narrow each root, and halving where they do not.
@@ -16,11 +16,11 @@ use std::cmp::Ordering;
 /// A polynomial; its first coefficient is that of 1.
 type Quartic<N> = [N; 5];
 
-/// Most stretches that are looked at along a ray.
+/// Most stretches that are examined along a ray.
 const STRETCHES: usize = 1500;
 /// Most times that a stretch is halved.
 const HALVINGS: u32 = 280;
-/// Most of Newton's steps: each doubles the digits, but for the first ones, which halve the stretch.
+/// Most of Newton's steps. Each doubles the digits, except the first ones, which halve the stretch.
 const STEPS: usize = 64;
 /// Most stretches with crossings: numbers of parts.
 const PARTS: u8 = 6;
@@ -247,7 +247,7 @@ fn isolated<N: Enclosure>(quartic: &Quartic<N>, ends: [N; 2]) -> Result<Vec<Piec
             grows = false;
             continue;
         }
-        // Halves of what is all open are open.
+        // If all of a stretch is open, its halves are open.
         if all.iter().all(|it| it.sign().is_none()) || stretch.halvings >= HALVINGS {
             match pieces.last_mut() {
                 Some(Piece::Open { last: end, .. }) if grows => *end = last,
@@ -270,7 +270,7 @@ fn isolated<N: Enclosure>(quartic: &Quartic<N>, ends: [N; 2]) -> Result<Vec<Piec
     Ok(pieces.into_iter().map(|it| closed(quartic, it)).collect())
 }
 
-/// A root, if an open stretch holds exactly one, of which only the place was open.
+/// Returns a root, if an open stretch holds exactly one whose place alone was open.
 fn closed<N: Enclosure>(quartic: &Quartic<N>, piece: Piece<N>) -> Piece<N> {
     let Piece::Open { first, last } = piece else {
         return piece;
@@ -308,7 +308,7 @@ fn narrowed<N: Enclosure>(quartic: &Quartic<N>, between: N) -> N {
             root = next;
             continue;
         }
-        // In the half where the quartic changes its sign, as it goes one way.
+        // The root is in the half where the quartic, which is monotonic, changes its sign.
         let is_before = match (here.sign(), slope.sign()) {
             (Some(here), Some(slope)) if here.is_ne() => here == slope,
             _ => {

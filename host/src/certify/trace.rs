@@ -1,8 +1,8 @@
 //! The exact picture, enclosed: the rules of a blob evaluated with numbers that hold the exact ones.
 //!
-//! Where a comparison is open, both outcomes are followed and their results joined, as long as there are few; where
-//! and why is recorded. The kernels of the core are not used: their answers depend on what their numbers round (where
-//! a ray starts beside a surface, what is culled), and here nothing is rounded away.
+//! Where a comparison is open, both outcomes are followed and their results joined, as long as there are few. The place
+//! and the reason are recorded. The kernels of the core are not used. Their answers depend on their rounding (where a
+//! ray starts off a surface, which nodes are culled), and here nothing is rounded away.
 
 use super::crossing::Ray;
 use super::deep;
@@ -18,20 +18,20 @@ use super::sky;
 use super::world::NONE;
 use gridel_core::{Effects, RayKind};
 
-/// What directions of indirect light are drawn by.
+/// The dimension of directions of indirect light.
 const INDIRECT: u16 = 0x1030;
 
 /// A ray that leaves a surface.
 struct Leaving<N> {
     kind: RayKind,
     direction: Three<N>,
-    /// Whether it leaves on the side of the geometric normal.
+    /// True if it leaves on the side of the geometric normal.
     outward: bool,
     weight: Three<N>,
 }
 
 impl Tracer<'_, '_> {
-    /// What a ray brings, times its weight.
+    /// Returns the light of a ray, times its weight.
     pub fn radiance<N: Enclosure>(&self, path: &Path<N>) -> Result<Three<N>, Stop> {
         let Path { ray, depth, .. } = path;
         let (found, may_miss) = self.nearest(ray, *depth)?;
@@ -60,7 +60,7 @@ impl Tracer<'_, '_> {
         result.ok_or(Stop)
     }
 
-    /// What a ray brings that hits nothing.
+    /// Returns the light of a ray that hits nothing.
     fn background<N: Enclosure>(&self, path: &Path<N>) -> Result<Three<N>, Stop> {
         let scene = self.world.scene;
         let Some(record) = scene.environment() else {
@@ -73,7 +73,7 @@ impl Tracer<'_, '_> {
         Ok(sky.ok_or(Stop)?.radiance)
     }
 
-    /// What a surface sends along a ray.
+    /// Returns the light that a surface sends along a ray.
     fn surface<N: Enclosure>(
         &self,
         candidate: &Candidate<N>,
@@ -243,7 +243,7 @@ impl Tracer<'_, '_> {
         })
     }
 
-    /// What a ray brings that leaves a surface, unless it would bring too little.
+    /// Returns the light of a ray that leaves a surface, unless its weight is too small.
     fn send<N: Enclosure>(
         &self,
         seen: &Seen<'_, N>,
@@ -295,7 +295,7 @@ impl Tracer<'_, '_> {
             (RayKind::Reflected, _) if alpha.is_some_and(facets::is_wide) => {
                 kind = RayKind::Glossy;
             }
-            // Lights shine through glass and what is not there, too.
+            // Lights shine through glass and ignored surfaces, too.
             (RayKind::Refracted, RayKind::Glossy | RayKind::Diffuse) => kind = seen.path.kind,
             _ => {}
         }

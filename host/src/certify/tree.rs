@@ -115,7 +115,7 @@ impl<Item: Copy> Tree<Item> {
         self.split(first + 1, right);
     }
 
-    /// Calls a function with every item whose box a ray may meet before an end, which the function may bring nearer.
+    /// Calls a function with every item whose box a ray may meet before an end. The function may move the end nearer.
     pub fn walk(&self, ray: &Slabs, mut end: f64, mut visit: impl FnMut(Item, f64) -> f64) {
         let mut stack = Vec::with_capacity(64);
         if let Some(root) = self.nodes.first()

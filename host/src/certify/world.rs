@@ -1,4 +1,4 @@
-//! A blob as exact arithmetic sees it: integers, and boxes that hold what they are the boxes of.
+//! A blob for exact arithmetic: integers, and boxes around primitives.
 //!
 //! Lengths are in steps of the storage lattice, 1/256 unit.
 
@@ -54,8 +54,8 @@ pub struct Solid {
     /// Its number in scene-file order, which decides between hits at one place; of a part's with those before it.
     pub primitive: u32,
     pub object: u32,
-    /// The surfaces that its parts lie in, planes and cylinders without ends: a ray meets primitives that share one at
-    /// one t.
+    /// The surfaces that its parts lie in, planes and cylinders without ends. A ray hits primitives that share one at
+    /// the same t.
     pub surfaces: [u32; 6],
     /// The first primitive of the very same form.
     pub twin: u32,
@@ -63,19 +63,19 @@ pub struct Solid {
 }
 
 impl Solid {
-    /// Whether crossings of this and of another primitive of the space lie in one surface, at one t.
+    /// Returns whether crossings of this and of another primitive of the space lie in one surface, at one t.
     pub fn meets_at_one_t<N>(&self, other: &Self, [own, its]: [&Crossing<N>; 2]) -> bool {
         let same_way = own.leaves == its.leaves;
         let surface = self.surfaces[usize::from(own.part)];
         let is_shared = surface != NONE && surface == other.surfaces[usize::from(its.part)];
-        // A ray crosses a plane once, and what is curved once into it and once out of it.
+        // A ray crosses a plane once; it crosses a curved surface once inward and once outward.
         let is_curved = matches!(self.form, Form::Cone { .. }) && own.part == MANTLE;
         let twins = self.twin == other.twin && own.part == its.part;
         is_shared && (same_way || !is_curved) || twins && same_way
     }
 }
 
-/// What the corners of a triangle carry beside places and normals, as it is stored.
+/// The attributes of a triangle's corners other than positions and normals, as stored.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Paint {
     pub colors: Option<[[u8; 4]; 3]>,
@@ -84,7 +84,7 @@ pub struct Paint {
 }
 
 impl Paint {
-    /// Whether a triangle has the same color everywhere.
+    /// Returns whether a triangle has the same color everywhere.
     pub fn is_plain(&self) -> bool {
         self.colors.is_none() && self.coordinates.is_none()
     }
@@ -95,7 +95,7 @@ impl Paint {
 pub enum Form {
     Triangle {
         corners: [[i64; 3]; 3],
-        /// Of any length, exactly.
+        /// A normal of any length, exactly.
         normal: [i64; 3],
         /// Those of the corners, as they are stored.
         smooth: Option<[[i16; 2]; 3]>,
@@ -124,7 +124,7 @@ pub enum Form {
         base_radius: i64,
         apex_radius: i64,
     },
-    /// Of a major radius above 0.
+    /// A torus with a major radius above 0.
     Torus {
         center: [i64; 3],
         axis: [i64; 3],
@@ -142,7 +142,7 @@ pub struct Placed {
     pub exponent: i32,
 }
 
-/// What a space holds that has a box.
+/// The content of a space that has a box.
 #[derive(Clone, Copy, Debug)]
 pub enum Item {
     Solid(u32),
@@ -156,7 +156,7 @@ pub struct Space {
     /// Those without a box.
     pub unbounded: Vec<u32>,
     pub tree: Tree<Item>,
-    /// Surfaces and forms of which light may pass one: see [`Space::may_be_hidden`].
+    /// Surfaces and forms that light may pass: see [`Space::may_be_hidden`].
     passed: [HashSet<u32>; 2],
 }
 
@@ -226,13 +226,14 @@ impl<'s> World<'s> {
     }
 }
 
-/// Whether light may pass a material.
+/// Returns whether light may pass a material.
 pub fn passes(material: &Material) -> bool {
     material.transmit != [0; 3] || material.maps & Material::MAPS_ALPHA != 0
 }
 
 impl Space {
-    /// Whether a crossing may be hidden by one of a primitive that light may pass and that comes first in the scene file.
+    /// Returns whether a crossing may be hidden by one of a primitive that light may pass and that comes first in the
+    /// scene file.
     pub fn may_be_hidden<N>(&self, solid: &Solid, crossing: &Crossing<N>) -> bool {
         let [surfaces, twins] = &self.passed;
         let surface = solid.surfaces[usize::from(crossing.part)];
@@ -413,7 +414,7 @@ impl Surfaces {
     }
 }
 
-/// The shortest vector of integers on the line of another one, whichever way that points.
+/// Returns the shortest vector of integers on the line of another one, of either sign.
 fn line(vector: [i64; 3]) -> [i64; 3] {
     let first = vector.iter().find(|&&x| x != 0).map_or(1, |x| x.signum());
     reduced(vector).map(|x| x * first)

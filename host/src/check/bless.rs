@@ -1,4 +1,4 @@
-//! Records what was found in place of what was expected, where that is broken.
+//! Records the found figures in place of the expected ones, where these are broken.
 
 use super::manifest::Manifest;
 use super::report::{Figure, Key, Record, Report};

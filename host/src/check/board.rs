@@ -147,7 +147,7 @@ fn build(
         .args(["--features", &features.join(",")])
         .env("GRIDEL_BLOB", &scene)
         .env("GRIDEL_BOARD", &board.machine);
-    // What is meant for the host's programs would change what is measured.
+    // Variables for the host's programs would change the measured figures.
     for (variable, _) in std::env::vars_os() {
         let name = variable.to_string_lossy();
         if name.ends_with("RUSTFLAGS") || name.starts_with("CARGO_PROFILE_") {
@@ -185,7 +185,7 @@ fn build(
     Ok(program)
 }
 
-/// Runs a program in the emulator; what it printed.
+/// Runs a program in the emulator, and returns its output.
 fn emulate(board: &Board, program: &Path, folder: &Path) -> Result<String, Obstacle> {
     let [printed, complaints] = ["stdout", "stderr"].map(|name| folder.join(name));
     let file = |path: &Path| File::create(path).map_err(failed("a temporary file cannot be made"));
@@ -225,7 +225,7 @@ fn emulate(board: &Board, program: &Path, folder: &Path) -> Result<String, Obsta
             end_of(&said)
         )));
     }
-    // QEMU prints on standard error what a program prints letter by letter.
+    // QEMU prints to standard error the letters that a program prints one by one.
     let lines = [text(&printed), text(&complaints)].join(&b'\n');
     Ok(String::from_utf8_lossy(&lines).into_owned())
 }

@@ -1,4 +1,4 @@
-//! Pixels that exact arithmetic proves, against what a manifest asks for.
+//! Pixels that exact arithmetic proves, compared with a manifest's requirements.
 
 use super::report::{Figure, Key, Outcome};
 use super::run::{Compared, Run};

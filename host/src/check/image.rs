@@ -1,4 +1,4 @@
-//! Pictures as people compare them: 8 bits per channel, beside each other.
+//! Pictures as people compare them: 8 bits per channel, side by side.
 
 use crate::picture::write_png;
 use crate::render;
@@ -19,7 +19,7 @@ pub struct Image {
 pub(super) struct Difference {
     /// The most that any channel differs, in codes of 255.
     pub(super) largest: u8,
-    /// Pixels of which a channel differs by more than was allowed.
+    /// Pixels with a channel that differs by more than the tolerance.
     pub(super) beyond: u64,
 }
 

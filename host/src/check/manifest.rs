@@ -1,4 +1,4 @@
-//! The manifest, read: every key is known, every value in its range.
+//! The parsed manifest: every key is known, every value in its range.
 
 mod board;
 mod named;
@@ -27,16 +27,16 @@ pub struct Manifest {
     pub checks: Vec<Check>,
 }
 
-/// One scene, and what is expected of it.
+/// One scene, and the expected figures.
 #[derive(Clone, Debug)]
 pub struct Check {
     pub name: String,
     pub scene: Named,
     pub accel: Option<Structure>,
     pub lattice_bits: Option<u8>,
-    /// Whether the scene file may name files outside of its folder.
+    /// True if the scene file may name files outside of its folder.
     pub allow_outside: bool,
-    /// What becomes of instances; `None` for a blob, which holds them or does not.
+    /// The treatment of instances; `None` for a blob, which has them or not.
     pub instances: Option<Instances>,
     /// Which assembly of a PDB or mmCIF file.
     pub assembly: Option<String>,
@@ -56,7 +56,7 @@ pub struct Check {
     /// The board whose memory the scene must fit.
     pub target: Option<&'static Target>,
     pub boards: Vec<Board>,
-    /// Names for pictures of what is broken: of each format, and behind them of each board.
+    /// Names for pictures of failures: of each format, and then of each board.
     pub(super) evidence: Vec<String>,
 }
 
@@ -87,9 +87,9 @@ impl Manifest {
     /// Reads a manifest.
     ///
     /// # Errors
-    /// If it cannot be read, is not TOML, holds a key or a value that means nothing, or has a
-    /// reference that would be recorded over another file that is read; the error shows file, line
-    /// and remedy.
+    /// If it cannot be read, is not TOML, or has an unknown key or an invalid value. Also if a
+    /// reference would be recorded over another file that is read. The error shows file, line and
+    /// remedy.
     pub fn read(path: &Path) -> Result<Self, SceneError> {
         let source = Source::read(path)?;
         let document = source.parse()?;
@@ -288,14 +288,14 @@ impl Check {
         Ok(check)
     }
 
-    /// Returns whether there is nothing that could be held or broken.
+    /// Returns whether no expectation could pass or fail.
     fn expects_nothing(&self) -> bool {
         let Budget {
             blob_bytes,
             working_bytes,
             stack_entries,
             tests_per_ray,
-            // These need a target, which is an expectation by itself.
+            // These need a target, which alone is an expectation.
             flash: _,
             ram: _,
             call_stack: _,
@@ -372,8 +372,8 @@ impl Budget {
     }
 }
 
-/// Names the pictures that show what is broken, as the checks are named and what they run on; with
-/// a number where that makes two names equal.
+/// Names the pictures that show what is broken, by the check and what it runs on. A number is
+/// appended where two names would be equal.
 fn name_evidence(checks: &mut [Check]) {
     let mut taken = BTreeSet::new();
     let plain = |c: char| match c {

@@ -1,5 +1,5 @@
-//! The memory of a scene on a board that is not emulated: figures of the memory report, held to the board's
-//! memory and to budgets.
+//! The memory of a scene on a board that is not emulated. Compares figures of the memory report with the board's memory
+//! and with budgets.
 
 use super::manifest::Budget;
 use super::report::{Figure, Key, Outcome};

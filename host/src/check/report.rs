@@ -57,7 +57,7 @@ pub enum Figure {
     Hash(String),
 }
 
-/// A change of the manifest, or of a reference beside it.
+/// A change of the manifest, or of a reference in its folder.
 #[derive(Clone, Debug)]
 pub(super) enum Record {
     /// A value in the manifest, below the check of this number.
@@ -70,14 +70,14 @@ pub(super) enum Record {
     Picture(std::path::PathBuf, Image),
 }
 
-/// A step on the way to a value.
+/// A step of the path to a value.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) enum Key {
     Name(String),
     Item(usize),
 }
 
-/// Pictures that show what is wrong.
+/// Pictures that show a failure.
 #[derive(Clone, Debug)]
 pub struct Evidence {
     /// A name for the file, without extension; no other picture of the manifest has it.

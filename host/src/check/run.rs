@@ -1,4 +1,4 @@
-//! Measures what a manifest asks for.
+//! Measures the figures that a manifest requires.
 
 use super::board::{self, BoardRun};
 use super::explained::explained;
@@ -69,7 +69,7 @@ pub(super) struct Compared<'c> {
 }
 
 impl Run<'_> {
-    /// Everything; an error is one that leaves nothing to measure.
+    /// Runs everything. An error is one after which nothing can be measured.
     fn all(&mut self, progress: &dyn Fn()) -> Result<(), String> {
         let check = self.check;
         let blob = self.blob()?;
@@ -283,7 +283,7 @@ impl Run<'_> {
         image: Image,
         name: &str,
     ) {
-        // What is there and no picture was not meant to become one.
+        // A file that exists and is not a picture was not meant to become one.
         let may_be_recorded = match &expected {
             Ok(_) => true,
             Err(error) => error.kind() == io::ErrorKind::NotFound,
@@ -486,7 +486,7 @@ impl Run<'_> {
     }
 }
 
-/// The structure asked for, or else the best that the blob holds.
+/// Returns the requested structure, or else the best that the blob holds.
 fn structure(check: &Check, scene: &Scene<'_>) -> Result<Structure, String> {
     match check.accel {
         None => Ok(best_structures(scene).next().unwrap_or(Structure::List)),

@@ -41,9 +41,9 @@ struct Printed<'t> {
     points: &'t [Point],
     /// Which points nothing beats in cost and RMSE.
     frontier: Vec<bool>,
-    /// Which setting for a given error, what the number format changes, what to give up first.
+    /// Which setting for a given error, the effect of the number format, what to leave out first.
     answers: Vec<String>,
-    /// What each effect is worth, in the order in which to give them up.
+    /// The worth of each effect, in the order in which to leave them out.
     effects: &'t [Worth],
     sentences: Vec<String>,
     #[serde(skip_serializing_if = "Option::is_none")]

@@ -239,7 +239,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
             }),
         ]);
         if written.is_err() && is_new {
-            // Nothing of what failed stays; a folder that somebody else uses by now does.
+            // Removes the files of a failed run, but not a folder that another program uses by now.
             let _ = fs::remove_dir(folder);
         }
         written?;
@@ -280,7 +280,7 @@ fn reject_foreign(
         Ok(there) if there.is_file() && there.len() > 0 => {
             !is_one(path).map_err(|error| Failure::reading(path, &error))?
         }
-        // What is written to devices and pipes replaces nothing.
+        // Output to devices and pipes replaces nothing.
         _ => false,
     };
     if is_foreign {

@@ -172,7 +172,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     }
 }
 
-/// What is certified, so that the state of another picture is not continued.
+/// Returns a key of the certified picture, so that the state of another picture is not continued.
 fn key(checksum: u32, settings: &Settings) -> String {
     let Settings {
         width,

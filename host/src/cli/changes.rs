@@ -1,4 +1,4 @@
-//! What options put in place of a blob's own values.
+//! Values of options that replace a blob's own values.
 
 use super::arguments::SceneOptions;
 use super::failure::Failure;
@@ -8,7 +8,7 @@ use gridel_host::compile::{self, CompileError};
 use gridel_host::scene::{Light, ToneMapping};
 use gridel_host::state::Poses;
 
-/// What is to be otherwise than in a blob.
+/// The changes to a blob.
 pub struct Changes {
     pub view: View,
     pub lights: Vec<record::Light>,
@@ -43,7 +43,7 @@ impl Changes {
         }
     }
 
-    /// What options change.
+    /// Returns the changes that options make.
     pub fn of(scene: &Scene<'_>, options: &SceneOptions) -> Result<Self, Failure> {
         let mut view = options.view.in_blob(scene)?;
         if let Some(cutoff) = options.cutoff {

@@ -1,4 +1,4 @@
-//! `gridel check`: scenes and their memory, held to what is recorded.
+//! `gridel check`: compares scenes and their memory with recorded figures.
 
 use super::failure::Failure;
 use super::output::{check_writable, print, print_json, reject_inputs, warn, write_file};
@@ -85,8 +85,8 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     if blessed.is_some() && staged.is_ok() {
         report.take_as_recorded();
     }
-    // All of it is done, whatever fails: findings are not lost for a report that cannot be written,
-    // and they make the exit code, whoever reads them. The changes to recorded figures were printed before.
+    // Everything runs, whatever fails. A report that cannot be written does not lose findings, and the findings set the
+    // exit code in either case. The changes to recorded figures were printed before.
     let printed = print_findings(arguments, &report, blessed.as_ref());
     let shown = match &arguments.diff {
         Some(folder) => write_evidence(folder, &report),
@@ -106,7 +106,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     recorded.and(reported).and(shown).and(printed).and(failure)
 }
 
-/// Rejects outputs that would destroy what is read or cannot be written, before any work.
+/// Rejects outputs that cannot be written or would overwrite an input, before any work.
 fn prove_outputs(arguments: &Arguments, manifest: &Manifest) -> Result<(), Failure> {
     let (folder, junit) = (&arguments.diff, &arguments.junit);
     let pictures = folder.iter().flat_map(|folder| {
@@ -124,7 +124,7 @@ fn prove_outputs(arguments: &Arguments, manifest: &Manifest) -> Result<(), Failu
     Ok(())
 }
 
-/// Prints the findings, and what is recorded of them.
+/// Prints the findings, and the figures that are recorded of them.
 fn print_findings(
     arguments: &Arguments,
     report: &Report,

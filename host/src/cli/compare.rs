@@ -182,7 +182,7 @@ pub fn run(arguments: &Arguments, memory: &PeakAlloc) -> Result<(), Failure> {
             "this is a fault of gridel: report it with the scene file",
         ));
     }
-    // Of all structures some may not fit; one that was asked for must.
+    // If all structures are compared, some may not fit; a requested one must.
     match comparison.rejected.first() {
         Some(rejected) if !arguments.accel.is_empty() => Err(Failure::rejected(
             rejected.why.clone(),
@@ -252,7 +252,7 @@ fn text(report: &Report<'_>) -> String {
     text
 }
 
-/// The table of what rays of one sort take.
+/// Returns the table of the work of rays of one sort.
 fn tests(title: &str, comparison: &Comparison, of: fn(&Works) -> Option<Work>) -> String {
     let with_instances = comparison.keeps_instances();
     let columns = [

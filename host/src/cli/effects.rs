@@ -9,7 +9,7 @@ use gridel_host::table::grouped;
 use serde::Serialize;
 use std::fmt;
 
-/// An effect, and the names of what requires it.
+/// An effect, and the names of the parts that require it.
 #[derive(Serialize)]
 pub struct CalledFor {
     effect: String,
@@ -36,7 +36,7 @@ impl CalledFor {
             .collect()
     }
 
-    /// Adds what it costs on a board.
+    /// Adds its costs on a board.
     pub fn add_costs(&mut self, scene: &Scene<'_>, report: &MemoryReport) {
         self.code = report.code_of(&self.effect);
         let (all, depth) = (scene.effects(), scene.view().depth);
@@ -77,7 +77,7 @@ impl CalledFor {
     }
 }
 
-/// What the vertices of a scene's own meshes require.
+/// Returns the effects that the vertices of a scene's own meshes require.
 fn of_meshes(scene: &Scene<'_>) -> Effects {
     let normals = Effects::SMOOTH.only_if(scene.normals() > 0);
     normals.with(Effects::VERTEX_COLORS.only_if(!scene.vertex_colors().is_empty()))

@@ -116,7 +116,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         }
         (Some(pixel), _) => Subject::Pixel(pixel),
         (None, Some(ray)) => Subject::Ray(ray),
-        // The command line asks for one of them.
+        // The command line requires one of them.
         (None, None) => return Ok(()),
     };
     if let (true, Subject::Pixel(pixel)) = (arguments.interval, subject) {
@@ -142,7 +142,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     })
 }
 
-/// Explains what is known of the exact pixel.
+/// Explains the intervals of the exact pixel.
 fn intervals(
     arguments: &Arguments,
     scene: &Scene<'_>,
@@ -172,11 +172,11 @@ fn intervals(
     print(intervals.text())
 }
 
-/// What is known of the exact pixel.
+/// The intervals of the exact pixel.
 #[derive(Serialize)]
 struct Intervals {
     pixel: [u16; 2],
-    /// Of the numbers that decided the pixel, or were the last.
+    /// Bits of the numbers that decided the pixel, or were the last.
     bits: usize,
     linear: [[f64; 2]; 3],
     low: [u8; 3],

@@ -1,4 +1,4 @@
-//! Why a command ends before its work is done, and the exit code that says so.
+//! The reasons why a command ends early, and their exit codes.
 
 use gridel_host::compile::CompileError;
 use miette::{Diagnostic, MietteHandlerOpts, Report};
@@ -16,7 +16,7 @@ Exit codes:
   3    the scene does not fit the given memory
   130  interrupted; no output is incomplete";
 
-/// Keeps whole what one may want to copy: lines of an error break at spaces, not within a path or a flag.
+/// Breaks lines of an error at spaces, and not within a path or a flag, so that these can be copied.
 pub fn break_lines_at_spaces() {
     // Fails only where a handler has been set before, and then lines break as that one has it.
     let _ = miette::set_hook(Box::new(|_| {

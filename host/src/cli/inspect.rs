@@ -1,4 +1,4 @@
-//! `gridel inspect`: what is in a blob, and what it takes to work with it.
+//! `gridel inspect`: the content of a blob, and its requirements.
 
 mod joints;
 mod parts;
@@ -52,13 +52,13 @@ struct Inspection {
     memory_map: MemoryMap,
     limits: Limits,
     contents: Contents,
-    /// What instances place.
+    /// The parts that instances place.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     parts: Vec<PartLine>,
     /// Where something moves.
     #[serde(skip_serializing_if = "Option::is_none")]
     tracks: Option<TrackList>,
-    /// What instances hang on.
+    /// The joints that instances hang on.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     joints: Vec<JointLine>,
     /// Where vertices have room to move.
@@ -92,7 +92,7 @@ struct Limits {
     bounds: [[f64; 3]; 2],
 }
 
-/// The names in a blob, in the order of what they name. An empty one is none.
+/// The names in a blob, in the order of the named items. An empty text means no name.
 #[derive(Serialize)]
 struct NameLists {
     objects: Vec<String>,
@@ -119,7 +119,7 @@ impl From<Names> for NameLists {
 /// Names that the text shows of each list; JSON has all.
 const SHOWN: usize = 8;
 
-/// The first names of a list, each with its number where there is none.
+/// Returns the first names of a list; an item without a name has its number.
 fn first_names(names: &[String]) -> String {
     let shown = names.iter().enumerate().take(SHOWN);
     let shown = shown.map(|(number, name)| match name.as_str() {
@@ -145,7 +145,7 @@ struct Contents {
     materials: usize,
 }
 
-/// Shows what is in a blob.
+/// Shows the content of a blob.
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let compiling = compile::Options {
         names: arguments.target.target().is_none(),

@@ -1,4 +1,4 @@
-//! Names beside traced rays: what an object's number in the hits stands for.
+//! Names for traced rays: the names of the objects whose numbers the hits have.
 
 use gridel_core::Scene;
 use gridel_host::compile::Names;

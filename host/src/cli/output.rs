@@ -31,7 +31,7 @@ fn reject_terminal() -> Result<(), Failure> {
     Ok(())
 }
 
-/// Writes all at once, so that an error on the way leaves nothing written.
+/// Writes all at once, so that an error leaves nothing written.
 fn write_standard(write: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> Result<(), Failure> {
     reject_terminal()?;
     let mut bytes = Vec::new();
@@ -39,7 +39,7 @@ fn write_standard(write: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> Resul
     to_standard_output(&bytes)
 }
 
-/// Proves that a file can be written, before any work that it shall hold.
+/// Checks that a file can be written, before the work for its content.
 pub fn check_writable(path: &Path) -> Result<(), Failure> {
     if is_standard(path) {
         return reject_terminal();
@@ -173,8 +173,8 @@ pub fn json(value: &impl Serialize) -> Result<String, Failure> {
     Ok(text + "\n")
 }
 
-/// Prints a report about what was written to `output`: on standard output, or on standard error if the
-/// output itself is there.
+/// Prints a report about `output`: on standard output, or on standard error if the output itself goes to standard
+/// output.
 pub fn print_about(output: &Path, text: impl Display) -> Result<(), Failure> {
     if is_standard(output) {
         // Standard error may be closed; the output is written.
@@ -188,7 +188,7 @@ fn to_standard_output(text: &[u8]) -> Result<(), Failure> {
     let mut out = io::stdout().lock();
     let written = out.write_all(text).and_then(|()| out.flush());
     match written {
-        // A reader that has seen enough is nobody's fault, and changes nothing of what was found.
+        // A reader that closes the pipe early is no failure, and changes no finding.
         Err(error) if error.kind() != io::ErrorKind::BrokenPipe => Err(Failure::failed(
             format!("standard output cannot be written: {error}"),
             "check where it leads; files that were asked for are written",

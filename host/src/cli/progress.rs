@@ -1,5 +1,5 @@
-//! The sign of life of long work: a bar on standard error, if that is a terminal and the work
-//! takes longer than a moment.
+//! Progress of long work: a bar on standard error, if that is a terminal and the work takes longer
+//! than a moment.
 
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use std::io::IsTerminal;

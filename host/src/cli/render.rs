@@ -112,14 +112,14 @@ struct Stats {
     rays_per_second: f64,
 }
 
-/// What is written.
+/// The output.
 enum Target<'a> {
     Frames(Output, Range<u32>),
     Picture(Outputs<'a>),
 }
 
 impl<'a> Target<'a> {
-    /// What was asked for; an error for names that cannot be written to.
+    /// Returns the requested output, or an error for names that cannot be written to.
     fn of(arguments: &'a Arguments) -> Result<Self, Failure> {
         let Some(frames) = &arguments.time.frames else {
             return Ok(Self::Picture(Outputs::of(
@@ -136,7 +136,7 @@ impl<'a> Target<'a> {
         Ok(Self::Frames(output, frames.clone()))
     }
 
-    /// Pixels that are held at once.
+    /// Returns the largest number of pixels in memory at once.
     fn most_pixels(&self) -> usize {
         match self {
             Self::Frames(..) => MOST_PIXELS,
@@ -250,7 +250,7 @@ struct Blurred {
     /// When the shutter opens, in ticks.
     time: i32,
     exposure: Exposure,
-    /// What is otherwise at each moment.
+    /// The changes at each moment.
     changes: Vec<Changes>,
 }
 

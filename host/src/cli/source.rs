@@ -20,7 +20,7 @@ use gridel_host::table::{counted, grouped, printable, significant};
 use std::path::Path;
 use warnings::{far_moved, leave_out, names_changed};
 
-/// A blob, from wherever it came.
+/// A blob, from a file or from the compiler.
 pub struct Source {
     input: Input,
     pub blob: Blob,
@@ -28,7 +28,7 @@ pub struct Source {
     pub report: Option<compile::Report>,
     /// The importer's warnings, and those about objects that the lattice moves far.
     pub warnings: Vec<String>,
-    /// What is to be otherwise than in a blob.
+    /// The changes to a blob.
     changes: Option<Changes>,
     /// The options for a blob's pictures, if some were given.
     for_pictures: Option<SceneOptions>,
@@ -45,8 +45,7 @@ pub struct Source {
 }
 
 impl Source {
-    /// Reads a blob, or compiles a scene file for the structure that is asked for, or else for
-    /// `usual`.
+    /// Reads a blob, or compiles a scene file for the requested structure, or else for `usual`.
     pub fn to_trace(
         path: &Path,
         options: &SceneOptions,
@@ -56,8 +55,7 @@ impl Source {
         Self::to_view(path, options, with, &[usual])
     }
 
-    /// Reads a blob, or compiles a scene file for the structure that is asked for, or else for all of
-    /// `usual`.
+    /// Reads a blob, or compiles a scene file for the requested structure, or else for all of `usual`.
     pub fn to_view(
         path: &Path,
         options: &SceneOptions,
@@ -92,8 +90,8 @@ impl Source {
         Ok(source)
     }
 
-    /// Reads a blob, or compiles a scene file; the lattice's bits are those of `options`. A blob is
-    /// rejected with options for scene files, of which `other` is one more that was given.
+    /// Reads a blob, or compiles a scene file; the lattice's bits are those of `options`. A blob is rejected with
+    /// options for scene files; `other` is one more that was given.
     pub fn open(
         path: &Path,
         options: &SceneOptions,
@@ -237,7 +235,7 @@ impl Source {
         }
     }
 
-    /// Whether a time concerns more than instances that were copied where they are at it.
+    /// Returns whether a time concerns more than instances that were copied at their places at that time.
     fn moves_otherwise(&self) -> bool {
         self.posed != Some(Posed::AtTime) || self.tracks().is_ok()
     }
@@ -281,7 +279,7 @@ impl Source {
         Tracks::from_bytes(self.blob.bytes()).map_or(0, |tracks| tracks.joints().len())
     }
 
-    /// What of a scene is otherwise at a time of its tracks; options that were given come before the tracks.
+    /// Returns the changes of a scene at a time of its tracks. Given options take precedence over the tracks.
     pub fn changes_at(
         &self,
         scene: &Scene<'_>,
@@ -320,7 +318,7 @@ impl Source {
         self.changes.as_ref()?.time
     }
 
-    /// The checked view of the blob, whose names and tracks are valid as well, with what is to be otherwise.
+    /// Returns the checked view of the blob with the changes. Its names and tracks are valid as well.
     pub fn scene(&self) -> Result<Scene<'_>, Failure> {
         let checked = self.blob.scene().and_then(|scene| {
             gridel_core::Names::from_bytes(self.blob.bytes())?;
@@ -339,7 +337,7 @@ impl Source {
         self.names.clone().unwrap_or_else(in_blob)
     }
 
-    /// The structure asked for, or else the best that the blob holds.
+    /// Returns the requested structure, or else the best that the blob holds.
     pub fn structure(
         &self,
         scene: &Scene<'_>,
@@ -424,7 +422,7 @@ impl Source {
     }
 }
 
-/// Reads a scene file, warns of what its importer passed over, and changes what was asked for.
+/// Reads a scene file, warns of the parts that its importer ignored, and applies the options.
 pub fn import(path: &Path, options: &SceneOptions) -> Result<Imported, Failure> {
     import_from(&Input::open(path)?, options)
 }

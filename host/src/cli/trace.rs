@@ -204,7 +204,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
             .iter()
             .fold(Counters::default(), |sum, part| sum.plus(part))
     });
-    // Of the last pass; all reject the same.
+    // The rejections of the last pass; all passes reject the same rays.
     let mut parts: Vec<Rejections> = Vec::new();
     let seconds: Vec<f64> = (0..arguments.repeat)
         .map(|_| {

@@ -48,11 +48,11 @@ pub struct Arguments {
     target_point: TargetPoint,
 }
 
-/// Hierarchies that a scene file is compiled for, among which a key changes: those that take little more time to
-/// build together than one alone.
+/// Hierarchies that a scene file is compiled for, among which a key switches. They take little more time to build
+/// together than one alone.
 const STRUCTURES: [Structure; 3] = [Structure::Wide, Structure::Flagged, Structure::Bvh];
 
-/// Pixels that are held at once.
+/// Largest number of pixels in memory at once.
 const MOST_PIXELS: usize = 1 << 26;
 
 /// Shows a scene.

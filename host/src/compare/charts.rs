@@ -4,7 +4,8 @@ use super::findings::{bounced_rate, primary_rate, shadow_rate};
 use super::{Comparison, Growth, Row};
 use crate::report::chart::{ChartError, Curve, Series, bars, curves};
 
-/// Draws all charts: names of files, and what is in them. `name` is the scene's, for the titles.
+/// Draws all charts, and returns the names of files and their content. `name` is the scene's, for
+/// the titles.
 ///
 /// # Errors
 /// If the drawing library has one.

@@ -19,8 +19,8 @@ pub struct Comparison {
     #[serde(skip_serializing_if = "Option::is_none")]
     pub instances: Option<InstanceCount>,
     pub rays: RayCounts,
-    /// Rays about which the plain list was asked; on the others the contenders were compared with
-    /// each other, and the list was asked where they differed.
+    /// Rays that brute force traced, too. On the others the structures were compared with each other, and brute force
+    /// decided where they differed.
     pub listed: usize,
     pub rows: Vec<Row>,
     /// Structures whose tables do not fit their budget.

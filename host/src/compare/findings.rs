@@ -78,8 +78,8 @@ fn times(factor: f64) -> String {
     }
 }
 
-/// For each structure, by what it is beaten, in times only where these were repeated; the list,
-/// which takes nothing to make and to hold, is passed over where it comes to that.
+/// Returns a sentence per structure: which others are better, and in times only if these were
+/// repeated. The list needs no time to build and no memory, so its zeros do not count.
 pub fn findings(comparison: &Comparison) -> Vec<String> {
     let list = Structure::List.name();
     let rejected = comparison.rejected.iter();

@@ -1,8 +1,8 @@
 //! Compares the contenders' answers with brute force: primitive, instance, and t to the last bit.
 //!
-//! The list tests every primitive, which takes long where there are many. So it is asked about as
-//! many rays as fit a budget, spread evenly over the picture, and about every ray on which two
-//! contenders differ. What all of them have in common on the other rays is not doubted.
+//! Brute force tests every primitive, which takes long where there are many. So it traces as many rays as fit a budget,
+//! spread evenly over the picture, and every ray on which two structures differ. On the other rays a common answer is
+//! taken as right.
 //!
 //! All contenders find instances by the same hierarchy above them. Brute force tests every primitive of a part that a
 //! ray enters.
@@ -25,7 +25,7 @@ pub struct Mismatch {
 
 /// The result of the comparison.
 pub struct Verdict {
-    /// Rays about which the list was asked.
+    /// Rays that brute force traced.
     pub listed: usize,
     /// For each contender.
     pub wrong: Vec<Option<Mismatch>>,
@@ -43,7 +43,7 @@ pub fn judge<N: Number>(
         .par_iter()
         .map(|&(scene, &structure)| {
             if structure == Structure::List {
-                // The list is not judged by itself.
+                // Brute force is not compared with itself.
                 return Vec::new();
             }
             all_answers((scene, structure), &rays)
@@ -151,7 +151,7 @@ mod tests {
         compile(&scene, &options).unwrap().blob
     }
 
-    /// A structure of another scene stands in for a broken one.
+    /// A structure of another scene acts as a broken one.
     #[test]
     fn a_row_that_differs_is_wrong_and_no_other() {
         let (right, other) = (spheres([0.5, 0.5]), spheres([0.5, 0.45]));

@@ -1,9 +1,9 @@
-//! Acceleration structures side by side: what each takes to make, to hold and to ask.
+//! Acceleration structures side by side: the cost to build, to store and to query each.
 //!
-//! Every contender is compiled into a blob of its own, and all of them trace the same rays: those of
-//! the scene's own picture, as the ray loop casts them, with all that mirrors, glass and shadows
-//! cause. Their answers are compared to the last bit before anything is measured (see `judge.rs`).
-//! Times are medians of repeats in which the contenders take turns, on one thread.
+//! Every structure is compiled into a blob of its own, and all of them trace the same rays. These are the rays of the
+//! scene's own picture, as the ray loop casts them, including those of mirrors, glass and shadows. The answers are
+//! compared bit for bit before anything is measured (see `judge.rs`). Times are medians of repeats on one thread, in
+//! which the structures take turns.
 //!
 //! Instances are kept as the scene has them: each part is compiled for the contender's structure, too.
 
@@ -118,7 +118,7 @@ fn compare_in<N: Number>(
     let is_opaque = Effects(OPAQUE).contains(list_scene.effects());
     let questions = Questions {
         rays: &picture_rays,
-        // Through glass a shadow ray asks for what it meets first.
+        // Through glass a shadow ray searches for the first hit.
         shadow: if is_opaque {
             Question::Any
         } else {
@@ -195,7 +195,7 @@ fn build(
         memory.peak_usage().saturating_sub(before)
     });
     let mut setup = compiled.report.setup;
-    // What takes no time is repeated, so that the first run's page faults do not count.
+    // Fast runs are repeated, so that the first run's page faults do not count.
     let repeats = if options.repeats == 0 { 0 } else { 4 };
     for _ in 0..repeats {
         if setup > Duration::from_millis(100) {

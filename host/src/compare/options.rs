@@ -21,8 +21,8 @@ pub struct Options<'o> {
     pub copied: usize,
     /// How often everything is timed; 0 for counts alone.
     pub repeats: usize,
-    /// Tests of primitives that a row may spend on one pass over the rays. A row that would take
-    /// more traces every second ray, or every third, and so on; the list decides about so many.
+    /// Tests of primitives that a row may spend on one pass over the rays. A row that would need more traces every
+    /// second ray, or every third, and so on. Brute force decides about as many.
     pub tests: u64,
     /// The program's allocator, to measure the memory of builders with.
     pub memory: Option<&'o PeakAlloc>,

@@ -11,8 +11,8 @@ use gridel_core::{Angle, Camera as Placed};
 
 /// The camera in the integer coordinates of a header.
 ///
-/// Its direction is that of the scene file's numbers, which can be finer than coordinates are. Where they are
-/// multiples of the step, it is that of [`Placed::look_at`] to the bit.
+/// Its direction is that of the scene file's numbers, which can be finer than coordinates are. Where they are multiples
+/// of the step, it equals that of [`Placed::look_at`], bit for bit.
 pub fn place(camera: &Camera, header: &Header) -> Result<Placed, CompileError> {
     let eye = position(header, camera.eye).ok_or(CameraError::EyeOutOfRange);
     let placed = eye.and_then(|eye| {
@@ -39,7 +39,7 @@ pub fn integers(direction: DVec3) -> [i32; 3] {
     direction.to_array().map(scaled)
 }
 
-/// The nearest angle at which something can be seen.
+/// Returns the nearest angle at which a camera sees something.
 pub fn angle(degrees: f64) -> Angle {
     let steps = (degrees / 360.0 * exp2(32)).round() as u32;
     Angle(steps.clamp(2, Angle::HALF.0 - 1))

@@ -1,4 +1,4 @@
-//! Builds the regular grid, and what it shares with the octree: which primitives reach into which cells.
+//! Builds the regular grid, and code that it shares with the octree: which primitives reach into which cells.
 
 use super::CompileError;
 use super::estimate::{Rays, ordinary_tests};
@@ -12,7 +12,7 @@ use gridel_core::{Kind, Structure};
 
 /// Most bytes that a grid or an octree may take while it is built, its part of the blob included.
 pub const MOST_BYTES: u64 = 256 << 20;
-/// Cells that a grid has for each primitive, where no other number is asked for.
+/// Cells that a grid has per primitive by default.
 const CELLS_PER_PRIMITIVE: f64 = 4.0;
 /// A grid or an octree as a blob holds it.
 #[derive(Debug, Default)]
@@ -30,7 +30,7 @@ pub fn longest(starts: &[u32]) -> usize {
     lengths.max().unwrap_or(0) as usize
 }
 
-/// Divisions of a grid's axes: cells as nearly cubes as can be, so many in all.
+/// Returns divisions of a grid's axes: `cells` cells in all, as nearly cubes as possible.
 fn usual_divisions(bounds: &UnitBox, cells: f64) -> [u32; 3] {
     let extents = bounds
         .0
@@ -65,8 +65,8 @@ pub fn slot_boxes(flat: &Flat, boxes: &[super::hierarchy::Primitive]) -> Vec<Uni
         .collect()
 }
 
-/// Divisions with which rays test fewer primitives than with `counts`, if that is more than in
-/// ordinary scenes: axes are halved or doubled as long as that saves tests.
+/// Returns divisions with which rays test fewer primitives than with `counts`, if that is more than in ordinary scenes.
+/// Halves or doubles axes as long as that saves tests.
 ///
 /// Long primitives lie in many cells one behind the other, and a ray tests them in each.
 fn best_divisions(bounds: &UnitBox, boxes: &[UnitBox], mut counts: [u32; 3]) -> [u32; 3] {
@@ -103,11 +103,11 @@ fn best_divisions(bounds: &UnitBox, boxes: &[UnitBox], mut counts: [u32; 3]) -> 
     }
 }
 
-/// Builds a grid, with as many divisions as are asked for or as many cells as are usual; with fewer
-/// where these would exceed [`MOST_BYTES`], or rays would test the same primitives too often.
+/// Builds a grid with the given divisions, or with the usual number of cells. There are fewer where these would exceed
+/// [`MOST_BYTES`], or where rays would test the same primitives too often.
 ///
 /// # Errors
-/// If the divisions that are asked for exceed it.
+/// If the given divisions exceed it.
 pub fn grid(
     bounds: &UnitBox,
     boxes: &[UnitBox],

@@ -14,8 +14,8 @@ pub(super) fn has_large_cells(material: &Material, lattice: &Lattice) -> bool {
 /// A corner of a checkerboard's cells on one axis, in units, no farther than [`LARGEST_CELL`] from the lattice's middle.
 /// The pattern is that of the given corner: everywhere, or, where cells are larger than that, in the scene's box.
 ///
-/// A corner that is near enough is kept, as cells of another one would be off by roundings: a face that lies between two
-/// layers of cells, as the ground often does, must stay there.
+/// A corner that is near enough is kept, because cells of another one would be off by roundings. A face that lies
+/// between two layers of cells, as the ground often does, must stay there.
 pub(super) fn checker_origin(corner: f64, size: f64) -> f64 {
     if size <= LARGEST_CELL {
         if corner.abs() <= LARGEST_CELL {

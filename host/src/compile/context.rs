@@ -22,7 +22,7 @@ pub struct BuildContext<'g> {
     /// The hierarchy, if a structure takes it.
     pub root: Option<&'g Node>,
     pub flat: &'g Flat,
-    /// Empty unless it is asked for.
+    /// Empty unless it is requested.
     pub wide: &'g Wide,
     /// In the order of the hierarchy's leaves.
     pub order: &'g [Primitive],

@@ -8,7 +8,7 @@ use gridel_core::Position;
 use gridel_core::format::limits::MAX_COORDINATE_SHIFT;
 use gridel_core::format::record::Header;
 
-/// How many times as far as the scene and its eye coordinates reach, so that both can move.
+/// How many times farther coordinates reach than the scene and its eye, so that both can move.
 const ROOM: f64 = 4.0;
 
 /// How many powers of two coarser the step may be for coordinates that are counted from the scene's own
@@ -18,14 +18,14 @@ const COARSER: u8 = 4;
 /// Scene coordinates as integers.
 #[derive(Clone, Copy, Debug)]
 pub struct Coordinates {
-    /// The fields of a blob's header that say so; the others are 0.
+    /// The fields of a blob's header that state it; the others are 0.
     pub header: Header,
 }
 
 impl Coordinates {
-    /// The finest step of which the scene's box, the eye, the lights and the places on their ways are few enough
-    /// multiples, counted
-    /// from the scene's own origin where that costs little precision, else from the lattice's.
+    /// Chooses the finest step of which the scene's box, the eye, the lights and the positions on their paths are few
+    /// enough multiples. They are counted from the scene's own origin where that costs little precision, otherwise from
+    /// the lattice's.
     pub fn choose(
         lattice: &Lattice,
         bounds: [DVec3; 2],
@@ -40,8 +40,8 @@ impl Coordinates {
         let ways = ways.iter().copied();
         let still = bounds.into_iter().chain([eye]).chain(lights);
         let places: Vec<DVec3> = still.chain(ways).collect();
-        // The smallest shift of which all places, counted from `origin`, are few enough multiples; the largest
-        // leaves less room.
+        // Returns the smallest shift at which all places, counted from `origin`, are few enough multiples. The largest
+        // shift leaves less room.
         let shift = |origin: DVec3| {
             let far = places
                 .iter()
@@ -75,7 +75,7 @@ pub fn position(header: &Header, place: DVec3) -> Option<Position> {
         _ => DVec3::ZERO,
     };
     let steps = ((place - origin) / exp2(header.coordinate_exponent())).round();
-    // The farthest place of all is one step beyond the last coordinate, which stands for it.
+    // The farthest place of all is one step beyond the last coordinate, which is used for it.
     let reach = -f64::from(i32::MIN);
     (steps.abs().max_element() <= reach).then(|| Position(steps.to_array().map(|x| x as i32)))
 }

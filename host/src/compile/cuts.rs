@@ -1,16 +1,14 @@
 //! Keeps closed meshes closed where triangles collapse on the lattice.
 //!
-//! A triangle whose corners a, b, c are rounded onto a line, b between a and c, is left out. What
-//! was its neighbor across the edge a-c then meets those across a-b and b-c, and has no vertex at b:
-//! a T-junction, and rays slip through, because only an edge that two triangles share is watertight.
-//! So the neighbor is cut at b into two triangles. b lies on the edge exactly, so the surface is the
-//! same.
+//! A triangle whose corners a, b, c are rounded onto a line, b between a and c, is left out. Its neighbor across the
+//! edge a-c then meets those across a-b and b-c, and has no vertex at b. That is a T-junction. Rays slip through it,
+//! because only an edge that two triangles share is watertight. So the neighbor is cut at b into two triangles. b lies
+//! on the edge exactly, so the surface is the same.
 //!
-//! Slivers that share edges make up a cluster, which lies on one line. The edges that an odd number
-//! of its slivers share are its border: there a closed mesh has an odd number of other triangles. Each
-//! edge of the border is cut at all ends of others that lie on it. The border is a cycle, because it
-//! is that of the slivers; so its parts between neighboring points are there an even number of
-//! times each, and the mesh is closed again.
+//! Slivers that share edges form a cluster, which lies on one line. The edges that an odd number of its slivers share
+//! are its border: there a closed mesh has an odd number of other triangles. Each edge of the border is cut at all ends
+//! of others that lie on it. The border is a cycle, because it is that of the slivers. So each of its parts between
+//! neighboring points occurs an even number of times, and the mesh is closed again.
 
 use std::collections::HashMap;
 
@@ -42,7 +40,7 @@ pub struct Cuts {
 impl Cuts {
     /// The cuts that slivers make necessary.
     pub fn around(slivers: &[Sliver]) -> Self {
-        // Of each edge how often slivers have it, and a sliver that does.
+        // For each edge, how many slivers have it, and one of them.
         let mut shared: HashMap<Edge, (usize, usize)> = HashMap::new();
         let mut clusters = Clusters::new(slivers.len());
         for (number, &sliver) in slivers.iter().enumerate() {
@@ -79,8 +77,7 @@ impl Cuts {
         self.points.is_empty()
     }
 
-    /// The pieces that a triangle is cut into, turned as it is: the triangle alone where no edge of
-    /// it is cut.
+    /// Returns the pieces that a triangle is cut into, wound as it is. It is the triangle alone where no edge is cut.
     pub fn pieces(&self, corners: [Point; 3]) -> Vec<[Point; 3]> {
         let cut_edges = [0, 1, 2].map(|side: usize| {
             let (from, to) = (corners[side], corners[(side + 1) % 3]);
@@ -126,7 +123,7 @@ impl Clusters {
         }
     }
 
-    /// The sliver that stands for a sliver's cluster: the first one of it.
+    /// Returns the first sliver of a sliver's cluster, which represents it.
     fn of(&mut self, mut sliver: usize) -> usize {
         while self.leads_to[sliver] != sliver {
             self.leads_to[sliver] = self.leads_to[self.leads_to[sliver]];

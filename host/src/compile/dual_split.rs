@@ -1,9 +1,9 @@
 //! Lays a hierarchy out as dual-split nodes: chooses on which axes nodes are carved and split.
 //!
-//! A node's *region* is what the planes on the way down have left of the scene's box. It is at
+//! A node's *region* is the part of the scene's box that the planes above the node leave. It is at
 //! least as large as the node's own box, and how much larger depends on the choices above. The
-//! surface area heuristic on regions weighs what a plane costs against the visits that it saves;
-//! each choice looks ahead as far as the children's.
+//! surface area heuristic on regions weighs the cost of a plane against the visits that it saves.
+//! Each choice looks ahead as far as the choices of the children.
 
 use super::hierarchy::{Node, area};
 use gridel_core::format::NodeWord;
@@ -91,9 +91,9 @@ pub fn lay_out(root: &mut Node) -> Vec<DualNode> {
 /// Levels below a node whose choices a choice takes into account.
 const LOOK_AHEAD: u32 = 1;
 
-/// The cheapest way to deal with a node whose region is given.
+/// Returns the cheapest treatment of a node whose region is given.
 fn choose(node: &Node, region: &UnitBox, look_ahead: u32) -> Choice {
-    // What does not cut anything is not worth a thought.
+    // A plane that does not cut anything is not considered.
     let cuts = |carves: &&&[usize]| carves.iter().all(|&k| region.0[k] != node.bounds().0[k]);
     let choices = CARVES.iter().filter(cuts).flat_map(|&carves| {
         let mut left = *region;
@@ -112,7 +112,7 @@ fn choose(node: &Node, region: &UnitBox, look_ahead: u32) -> Choice {
     cheapest.expect("there is always the choice to carve nothing")
 }
 
-/// The ways to go on from a node whose carved region is given, with their costs.
+/// Returns the choices after a node whose carved region is given, with their costs.
 fn choices_of_split(
     node: &Node,
     region: UnitBox,

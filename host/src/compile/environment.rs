@@ -1,6 +1,6 @@
 //! The light around a scene as a map: resampled, and with what part of its light comes from where.
 //!
-//! The map is octahedral: see `gridel_core::format::environment`. Every texel is the mean of what lies in it.
+//! The map is octahedral: see `gridel_core::format::environment`. Every texel is the mean of the radiance in it.
 
 use super::CompileError;
 use super::exposure::Exposure;
@@ -47,7 +47,7 @@ pub struct EnvironmentFigures {
     /// Rows of the map.
     pub size: u32,
     pub bytes: usize,
-    /// What part of the light is lost because texels are brighter than a blob holds.
+    /// The part of the light that is lost because texels are brighter than a blob holds.
     pub lost: f64,
 }
 
@@ -87,7 +87,7 @@ struct Texel {
 }
 
 impl EnvironmentData {
-    /// Of an environment in a scene with a direction up.
+    /// Compiles an environment in a scene with a direction up.
     pub fn of(
         environment: &Environment,
         up: Up,
@@ -112,7 +112,7 @@ impl EnvironmentData {
             }
         }
         let packed: Vec<u32> = texels.iter().map(|texel| packed(texel.radiance)).collect();
-        // What is drawn is what is stored.
+        // Directions are drawn by the stored values.
         for (texel, packed) in texels.iter_mut().zip(&packed) {
             texel.radiance = unpacked(*packed);
         }
@@ -160,7 +160,7 @@ impl EnvironmentData {
         ]
     }
 
-    /// What requires its effect.
+    /// Returns its effect and what requires it.
     pub fn required_by() -> (Effects, String) {
         (Effects::ENVIRONMENT, String::from("the environment"))
     }
@@ -185,7 +185,7 @@ fn sun_of(
     let record = Record {
         sun_direction: towards.round().to_array().map(|x| x as i32),
         sun_radius: (sun.radius() * f64::from(1 << 30)).round() as i32,
-        // What is brighter than a record holds is seen as bright as that.
+        // A brighter sun is limited to what a record holds.
         sun_radiance: super::radiance(color.map(|channel| channel / sun.solid_angle_over_pi())),
         ..plain
     };
@@ -197,7 +197,7 @@ fn sun_of(
     Ok((record, (color != [0.0; 3]).then_some(light)))
 }
 
-/// An error where a sample of the map as a light, L over π times the density, is beyond the range of `fixed`.
+/// Returns an error where a sample of the map as a light, L over π times the density, is beyond the range of `fixed`.
 fn check_brightness(texels: &[Texel], all: f64) -> Result<(), CompileError> {
     let area = 4.0 / texels.len() as f64;
     let samples = texels.iter().flat_map(|texel| {
@@ -237,8 +237,8 @@ fn unpacked(texel: u32) -> Color {
     [channel(0), channel(9), channel(18)]
 }
 
-/// What part of `whole` comes before each weight. One above 0 gets a part above 0, and so does the last, before which
-/// the others must end; others get none. All are alike if all are 0.
+/// Returns the part of `whole` that comes before each weight. A weight above 0 gets a part above 0, and so does the
+/// last, before which the others must end; others get none. All are equal if all weights are 0.
 fn starts(weights: &[f64], whole: u64) -> Vec<u64> {
     let sum: f64 = weights.iter().sum();
     let is_drawn = |index: usize| sum <= 0.0 || weights[index] > 0.0 || index + 1 == weights.len();
@@ -253,7 +253,7 @@ fn starts(weights: &[f64], whole: u64) -> Vec<u64> {
         u64::from(is_drawn(index)) + (part * shared).floor() as u64
     };
     let mut widths: Vec<u64> = (0..weights.len()).map(width).collect();
-    // What rounding left goes to the widest.
+    // The remainder of rounding goes to the widest.
     let left = whole.saturating_sub(widths.iter().sum());
     if let Some(widest) = widths.iter_mut().max() {
         *widest += left;
@@ -343,8 +343,8 @@ fn gradient(sky: &Sky, towards: DVec3, up: Up) -> Color {
     [0, 1, 2].map(|channel| horizon[channel] + part * (zenith[channel] - horizon[channel]))
 }
 
-/// The means of a picture over texels: each pixel is cut into as many parts as give every texel some, and each part
-/// counts with its solid angle in the texel that it lies in.
+/// Returns the means of a picture over texels. Each pixel is cut into enough parts that every texel gets some. Each
+/// part counts with its solid angle in the texel that it lies in.
 fn resampled(side: usize, picture: &Panorama, rotation: f64, up: Up) -> Vec<Texel> {
     let [width, height] = picture.size();
     let across = (2 * POINTS_OF_PICTURE * side).div_ceil(width);

@@ -144,7 +144,7 @@ pub enum CompileError {
         /// Such as ` with 4 gridels per side` or ` with 8 by 8 by 2 cells`.
         size: String,
         needed: u64,
-        /// `at least ` where the whole was not worth counting.
+        /// `at least ` where the whole was not counted.
         at_least: &'static str,
         budget: u64,
         remedy: &'static str,

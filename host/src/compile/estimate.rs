@@ -1,16 +1,16 @@
 //! Estimates how many primitives rays test in the cells of a grid or an octree.
 //!
-//! Rays are taken to run through the scene's box in its own proportions, as they do through the cube
-//! that it is once each axis is scaled: along a needle as well as across it. So long triangles count
-//! in every cell that they lie in one behind the other.
+//! Rays are assumed to run through the scene's box in its own proportions, as they run through a cube if each axis is
+//! scaled. So they run along a needle as well as across it. A long triangle counts in every cell of a row that it lies
+//! in.
 
 use gridel_core::format::record::UnitBox;
 
-/// Tests per ray and cube root of the number of primitives that are no reason for fewer cells: a grid
-/// of ordinary scenes has about 2 for each, as rays pass through so many cells.
+/// Tests per ray and cube root of the number of primitives below which the number of cells is kept. A grid of ordinary
+/// scenes has about 2 for each, as rays pass through so many cells.
 const ORDINARY: f64 = 16.0;
 
-/// Tests per ray that ordinary scenes of so many primitives stay below.
+/// Returns a number of tests per ray that ordinary scenes with this many primitives stay below.
 pub fn ordinary_tests(primitives: usize) -> f64 {
     ORDINARY * libm::cbrt(primitives as f64)
 }

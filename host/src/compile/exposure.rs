@@ -1,4 +1,4 @@
-//! Exposure: all light of a scene is multiplied when it is compiled, so that pictures cost no more for it.
+//! Exposure. The compiler multiplies all light of a scene, so that pictures cost no more.
 
 use super::CompileError;
 use crate::scene::{Color, Light, Scene, Track};
@@ -7,7 +7,7 @@ use gridel_core::format::track::TrackTarget;
 /// The largest radiance of a record.
 const MOST: f64 = 2047.0;
 
-/// What all light is multiplied with.
+/// The factor of all light.
 pub struct Exposure {
     pub factor: f64,
 }

@@ -11,7 +11,7 @@ use glam::DVec3;
 pub struct Shapes<'s> {
     scene: &'s Scene,
     parts: Vec<PreparedPart<'s>>,
-    /// Whether any shape has a box: then only these make up the extent.
+    /// True if any shape has a box. Then only these make up the extent.
     any_bounded: bool,
 }
 
@@ -20,7 +20,7 @@ pub struct Shapes<'s> {
 struct PreparedPart<'s> {
     tree: SupportTree<'s>,
     faces: Vec<DVec3>,
-    /// Whether it has flat faces and nothing else.
+    /// True if it has only flat faces.
     is_flat: bool,
 }
 
@@ -45,7 +45,7 @@ impl<'s> PreparedPart<'s> {
     }
 }
 
-/// Faces, or, of many, one for all that look nearly the same way.
+/// Returns faces. If there are many, faces with nearly the same normal are joined.
 fn joined(faces: Vec<DVec3>) -> Vec<DVec3> {
     const SIDE: usize = 16;
     if faces.len() <= MOST_FACES {
@@ -99,7 +99,7 @@ impl<'s> Shapes<'s> {
         instances.map(|instance| (&self.parts[instance.part], &instance.placement))
     }
 
-    /// The largest `point.dot(direction)` over all points; negative infinity where there are none.
+    /// Returns the largest `point.dot(direction)` over all points; negative infinity without points.
     pub fn support(&self, direction: DVec3) -> f64 {
         let own = self.own().map(|shape| shape.support(direction));
         let placed = self
@@ -108,7 +108,7 @@ impl<'s> Shapes<'s> {
         own.chain(placed).fold(f64::NEG_INFINITY, f64::max)
     }
 
-    /// Calls `visit` with the normals of all that is flat, as long as twice its area.
+    /// Calls `visit` with the normals of all flat faces, twice as long as the face's area.
     pub fn each_face(&self, mut visit: impl FnMut(DVec3)) {
         for object in &self.scene.objects {
             object.shape.faces().into_iter().for_each(&mut visit);
@@ -125,8 +125,8 @@ impl<'s> Shapes<'s> {
         own.all(|shape| !shape.faces().is_empty()) && self.placed().all(|(part, _)| part.is_flat)
     }
 
-    /// The box of everything that has one, or else of points of what has none and of the camera; a point for an empty
-    /// scene.
+    /// Returns the box of all shapes that have one, or else of points of the other shapes and of the camera. It is a
+    /// point for an empty scene.
     pub fn extent(&self) -> (DVec3, DVec3) {
         let mut lowest = DVec3::INFINITY;
         let mut highest = DVec3::NEG_INFINITY;

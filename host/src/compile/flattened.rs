@@ -1,4 +1,4 @@
-//! Finds closed meshes that the lattice leaves no inside.
+//! Finds closed meshes that have no inside on the lattice.
 
 use glam::DVec3;
 use std::collections::HashMap;
@@ -54,8 +54,7 @@ fn is_closed(triangles: impl Iterator<Item = [Point; 3]>) -> bool {
     odd.into_values().all(|is_odd| !is_odd)
 }
 
-/// Returns whether the given vertices of triangles lie in no plane with a normal, but for what an `f64`
-/// rounds.
+/// Returns whether the given vertices of triangles do not lie in one plane, within the rounding of an `f64`.
 fn has_thickness(vertices: &[DVec3], triangles: &[[u32; 3]], normal: DVec3) -> bool {
     /// Relative to the largest coordinate.
     const ROUNDED: f64 = 16.0 * f64::EPSILON;

@@ -4,8 +4,8 @@ use super::extent::Shapes;
 use crate::scene::{Camera, Color, Scene};
 use glam::DVec3;
 
-/// The background of a scene that states neither a camera nor a background: a light
-/// gray, against which what is white is seen by its shades, and what is black by its outline.
+/// The background of a scene that states neither a camera nor a background. On light gray, white objects are visible by
+/// their shades, and black ones by their outline.
 pub const BACKGROUND: Color = [0.9, 0.92, 0.95];
 
 /// The part of the picture's width or height that the scene takes.
@@ -21,9 +21,9 @@ const NEAREST: f64 = 1.0 / 16.0;
 /// Returns a camera that looks at a scene from its front. The scene takes 80 % of the picture's width or height,
 /// and no more of the other; the picture's shape is that of `scene.render`.
 ///
-/// The front is that of the scene's [up](Scene::up): the camera looks along -z where y is up, and along +y where z
-/// is up. A flat scene that would be seen from its edge is seen from above or from its right. Unbounded shapes do
-/// not count beside bounded ones.
+/// The front is that of the scene's [up](Scene::up): the camera looks along -z where y is up, and along +y where z is
+/// up. A flat scene that would be seen from its edge is seen from above or from its right. Unbounded shapes do not
+/// count if there are bounded ones.
 ///
 /// ```
 /// # let file = "[[object]]\nkind = 'sphere'\ncenter = [0, 0, 0]\nradius = 1\nname = 'ball'";
@@ -69,8 +69,8 @@ pub(super) fn framing_of(shapes: &Shapes<'_>, fov_degrees: Option<f64>) -> Camer
     let aspect = f64::from(scene.render.width) / f64::from(scene.render.height);
     let slope = SHARE * libm::tan(fov_degrees.to_radians() / 2.0);
     let from_middle = |direction: DVec3| support(direction) - middle.dot(direction);
-    // The eye lies where two planes of this slope meet that touch the scene from opposite sides: its distance from
-    // the middle of the scene, and how far aside it is.
+    // The eye lies where two planes of this slope meet that touch the scene from opposite sides. The result is its
+    // distance from the middle of the scene, and its offset aside.
     let touching = |axis: DVec3, slope: f64| {
         let [one, other] = [axis, -axis].map(|side| from_middle(side - slope * forward));
         ((one + other) / (2.0 * slope), (one - other) / 2.0)
@@ -133,8 +133,8 @@ mod tests {
         }
     }
 
-    /// The picture's part that the projected corners of the scene's box take, across and along, and
-    /// how far their middle is from the picture's.
+    /// Returns the part of the picture that the projected corners of the scene's box take, across and along. Also
+    /// returns how far their middle is from the picture's.
     fn share(scene: &Scene, camera: &Camera) -> ([f64; 2], [f64; 2]) {
         let (lowest, highest) = Shapes::of(scene).extent();
         let forward = (camera.target - camera.eye).normalize();

@@ -1,12 +1,12 @@
 //! Builds the bounding volume hierarchy: top down, by the surface area heuristic over bins.
 //!
 //! The heuristic is MacDonald and Booth's ("Heuristics for ray tracing using space subdivision",
-//! 1990); bins are Wald's ("On fast construction of SAH-based bounding volume hierarchies", 2007).
+//! 1990). Bins are Wald's ("On fast construction of SAH-based bounding volume hierarchies", 2007).
 //! A node with few primitives is swept exactly instead.
 //!
-//! The builder cannot run away: where all centroids are equal, or where the depth that is left
-//! would not do otherwise, a node is cut in two halves of equal count. So the depth never exceeds
-//! [`MAX_LEVELS`], and time is `O(n log n)` a level at the most.
+//! The builder always ends. A node is cut in two halves of equal count where all centroids are
+//! equal, or where the remaining depth would otherwise not suffice. So the depth never exceeds
+//! [`MAX_LEVELS`], and the time is at most `O(n log n)` per level.
 
 use crate::shape::test_cost;
 use gridel_core::Kind;
@@ -14,7 +14,7 @@ use gridel_core::format::Leaf;
 use gridel_core::format::limits::MAX_LEVELS;
 use gridel_core::format::record::UnitBox;
 
-/// A primitive as the builder sees it.
+/// A primitive for the builder.
 #[derive(Clone, Copy, Debug)]
 pub struct Primitive {
     pub bounds: UnitBox,
@@ -81,8 +81,8 @@ pub enum Splits {
 
 /// Builds a hierarchy and puts the primitives in the order of its leaves. `None` without primitives.
 ///
-/// With `leaf_size` not 0, so many primitives of one kind make a leaf, whatever rays pay for it;
-/// the heuristic decides about more than that.
+/// With `leaf_size` not 0, up to that many primitives of one kind make a leaf, whatever the cost.
+/// The heuristic decides about more than that.
 pub fn build(primitives: &mut [Primitive], splits: Splits, leaf_size: usize) -> Option<Node> {
     if primitives.is_empty() {
         return None;
@@ -181,7 +181,7 @@ fn build_node(
 struct Split {
     cost: f64,
     axis: usize,
-    /// Centroids below this (or, for a sweep, the first so many in order) go left.
+    /// Centroids below this (or, for a sweep, this many in order) go left.
     rule: Rule,
 }
 

@@ -53,8 +53,8 @@ pub fn build(instances: &[UnitBox]) -> Tree {
     tree
 }
 
-/// Divides two or more instances in two, neither empty, by the cheapest split along any axis; in halves where the levels
-/// that are left need that. Returns how many come first.
+/// Divides two or more instances in two, neither empty, by the cheapest split along any axis. Divides them in halves
+/// where the remaining levels require it. Returns how many come first.
 fn split(instances: &[UnitBox], numbers: &mut [u32], levels: usize) -> usize {
     let count = numbers.len();
     let bounds = |number: &u32| instances[*number as usize];
@@ -63,7 +63,7 @@ fn split(instances: &[UnitBox], numbers: &mut [u32], levels: usize) -> usize {
         (i32::from(low) + i32::from(high), *number)
     };
     let mut best = (f64::INFINITY, 0, count / 2);
-    // A level below must hold each side: so many instances at most.
+    // A level below must hold each side, so the number of instances is limited.
     let most = 1_usize << (levels - 1).min(30);
     let mut areas = vec![0.0; count];
     for axis in 0..3 {

@@ -18,7 +18,7 @@ use gridel_core::format::track::Joint;
 use gridel_core::format::{SectionKind, instance};
 use std::sync::Arc;
 
-/// What a blob is made for.
+/// The purpose of a blob.
 #[derive(Clone, Copy, Debug)]
 pub enum Role<'p> {
     /// To be loaded, with these parts in it.
@@ -44,7 +44,7 @@ pub struct Parts {
     pub object_first: Vec<u32>,
     /// Parts with meshes whose vertices require effects, by name.
     pub required_by: Vec<(Effects, String)>,
-    /// For each part, its first primitive, counted likewise; then how many there are.
+    /// For each part, its first primitive, counted in the same way. The total follows.
     first_primitive: Vec<u32>,
     /// The bytes of their structures.
     pub sizes: Sizes,
@@ -64,8 +64,8 @@ pub struct Placed {
 }
 
 impl Parts {
-    /// Compiles all parts of a scene by a function that returns a part's blob and by how much its surfaces are moved at
-    /// most, in the part's units of length.
+    /// Compiles all parts of a scene. `compile` returns a part's blob and the largest displacement of its surfaces, in
+    /// the part's units of length.
     pub fn compile(
         scene: &Scene,
         mut compile: impl FnMut(&Scene) -> Result<(Blob, f64), CompileError>,
@@ -231,7 +231,7 @@ impl Parts {
         })
     }
 
-    /// The sections of parts, whose primitives come after so many of the scene's own.
+    /// Returns the sections of parts, whose primitives come after the scene's own `own_primitives`.
     pub fn sections(&self, own_primitives: u32) -> Vec<Section> {
         let (mut start, mut words) = (0, Vec::new());
         let mut directory = Vec::with_capacity(self.blobs.len());
@@ -286,7 +286,7 @@ fn alone(part: &Part, scene: &Scene) -> Result<Scene, CompileError> {
     let plain = |object: &Object| {
         let texture = scene.materials[object.material].placing();
         Object {
-            // What is on coordinates already has no transform.
+            // A material that is on coordinates already has no transform.
             material: usize::from(texture.is_some()),
             attributes: object.attributes.placed_on(texture),
             ..object.clone()

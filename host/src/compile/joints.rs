@@ -13,8 +13,8 @@ use gridel_core::format::track as records;
 /// Most joints that hang on each other, so that a chain takes little time.
 const MOST_LEVELS: usize = 1024;
 
-/// Proves that joints hang on joints before them, not too many on each other, and that instances and tracks name joints
-/// that there are.
+/// Checks that joints hang on joints before them, not too many on each other, and that instances and tracks name joints
+/// that exist.
 pub fn check(scene: &Scene) -> Result<(), CompileError> {
     let mut levels: Vec<usize> = Vec::with_capacity(scene.joints.len());
     let error = |name: &str, cause: String| CompileError::Joint {
@@ -73,7 +73,7 @@ pub fn kept_tracks(scene: &Scene) -> Vec<Track> {
     scene.tracks.iter().filter(kept).cloned().collect()
 }
 
-/// The places that joints lead to, for the choice of coordinates.
+/// Returns the positions that joints reach, for the choice of coordinates.
 pub fn places(scene: &Scene) -> impl Iterator<Item = DVec3> {
     let shifts = scene
         .tracks

@@ -8,8 +8,8 @@ use glam::DVec3;
 pub const BITS: std::ops::RangeInclusive<u8> = 10..=24;
 
 impl Lattice {
-    /// The finest lattice of a number of bits that holds the box from `lowest` to `highest`, or one
-    /// so many powers of two coarser.
+    /// Returns the finest lattice of a number of bits that holds the box from `lowest` to
+    /// `highest`. With `coarser` above 0 it is coarser by that many powers of two.
     pub fn around(
         [lowest, highest]: [DVec3; 2],
         bits: u8,

@@ -35,7 +35,7 @@ impl Layout {
         }
     }
 
-    /// A structure that leads to primitives by itself.
+    /// Returns a structure with lists of primitives of its own.
     pub fn apart(structure: Structure, cells: Cells) -> Self {
         Self {
             structure,

@@ -16,8 +16,8 @@ const BRIGHTEST: f64 = 2047.0;
 /// How far light may vary across the scene by a range that is too long for a record.
 const UNEVEN: f64 = 0.05;
 
-/// By how many steps of the lattice light starts above a surface of the scene: more than the lattice moves that, and
-/// than arithmetic errs.
+/// Steps of the lattice by which light starts above a surface of the scene. More than the lattice moves the surface,
+/// and than the error of arithmetic.
 const LIFT: f64 = 4.0;
 
 fn lift_length(form: &LightForm, lattice: &Lattice) -> f64 {
@@ -28,8 +28,8 @@ fn lift_length(form: &LightForm, lattice: &Lattice) -> f64 {
     }
 }
 
-/// From the position of a light to where it shines from: above the surface that it has in the scene, which must not
-/// stand in its way.
+/// Returns the offset from the position of a light to the point from which it shines. That point lies above the light's
+/// surface in the scene, which must not block the light.
 pub fn lift(form: &LightForm, lattice: &Lattice) -> DVec3 {
     let normal = match form.shape {
         LightShape::Point | LightShape::Sphere { .. } => return DVec3::ZERO,
@@ -116,7 +116,7 @@ pub fn form_record(
     for edge in edges {
         limited("edge or radius", edge.abs().max_element(), LONGEST_EDGE)?;
     }
-    // The color is as precise as it can be, and the distance at which the light has it makes up for that.
+    // The color is as precise as possible, and the distance at which the light has it compensates.
     let (peak, mut color) = (color.into_iter().fold(0.0, f64::max), color);
     if reference > 0.0 && peak > 0.0 {
         if !light.has_color_track {

@@ -7,8 +7,8 @@ use gridel_core::Effects;
 use gridel_core::format::limits::MAX_MEDIA;
 use std::cmp::Reverse;
 
-/// The numbers of the materials with a priority, from the highest on, of which `numbers` are those that objects have. Of
-/// equal ones the first of the scene file comes first.
+/// Returns the numbers of the materials with a priority, from the highest on. `numbers` are the materials that objects
+/// have. Of equal ones the first of the scene file comes first.
 pub fn media(
     scene: &Scene,
     numbers: &[Option<u32>],

@@ -86,7 +86,7 @@ use sizes::Sizes;
 use std::time::{Duration, Instant};
 use wide::Wide;
 
-/// A blob, and what is worth knowing about how it came to be.
+/// A blob, and a report about its compilation.
 #[derive(Clone, Debug)]
 pub struct Compiled {
     pub blob: crate::blob::Blob,
@@ -359,7 +359,7 @@ fn check(scene: &Scene, options: &Options) -> Result<(), CompileError> {
     Ok(())
 }
 
-/// Structures that are asked for, and those that they need.
+/// Returns the requested structures, and those that they need.
 fn held(asked: &[Structure]) -> Vec<Structure> {
     let mut structures = asked.to_vec();
     structures.extend(asked.iter().filter_map(|&it| structures::leads_to(it)));
@@ -403,7 +403,7 @@ impl Hierarchies {
         };
         // The eight-wide hierarchy holds triangles and spheres itself; alone it needs no slots of them.
         let has_wide = structures.contains(&Structure::Wide);
-        // What vertices carry is found by slots.
+        // The attributes of vertices are found by slots.
         let wide_alone = has_wide
             && snapped.corners.is_empty()
             && structures
@@ -424,7 +424,7 @@ impl Hierarchies {
         if wide_alone {
             flat.slots.clone_from(&wide.slots);
         }
-        // What has no box is in no structure, and stays in the order of the scene file.
+        // Shapes without a box are in no structure, and stay in the order of the scene file.
         for kind in Kind::ALL.into_iter().filter(|kind| !kind.is_bounded()) {
             let count = snapped.numbers[kind as usize].len() as u32;
             flat.slots[kind as usize] = (0..count).collect();
@@ -438,8 +438,8 @@ impl Hierarchies {
     }
 }
 
-/// Counts what the cylinder cube of a scene takes, with a number of gridels per side (1 to 64); instances are
-/// flattened. Builds nothing, so it takes time and no memory.
+/// Counts the size of a scene's cylinder cube, with a number of gridels per side (1 to 64); instances are flattened.
+/// Builds nothing, so it takes time and no memory.
 ///
 /// # Errors
 /// If the scene does not fit a lattice, or its instances are too many to be flattened.

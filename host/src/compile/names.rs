@@ -7,8 +7,8 @@ use gridel_core::format::SectionKind;
 use gridel_core::format::limits::MAX_NAME_BYTES;
 use serde::Serialize;
 
-/// The names of objects, materials and lights, as a blob counts them: it has only materials that an
-/// object has. A name is empty, or missing at the end, where there is none.
+/// The names of objects, materials and lights, as a blob counts them: it has only materials that an object has. An item
+/// without a name has an empty one, or is missing at the end.
 ///
 /// ```
 /// # use gridel_host::compile::{Options, compile};
@@ -47,7 +47,7 @@ pub struct KeptNames {
     pub bytes: usize,
     /// Names that were cut to 255 bytes.
     pub shortened: usize,
-    /// Whether the names do not fit the largest size of the blob.
+    /// True if the names do not fit the largest size of the blob.
     pub left_out: bool,
 }
 
@@ -130,8 +130,7 @@ impl Names {
         given(&self.instances, number)
     }
 
-    /// The sections of a blob with so many lights, and what is in them. No section where nothing has a
-    /// name.
+    /// Returns the sections of a blob with this many lights, and their content. No section where nothing has a name.
     pub(super) fn sections(&self, lights: usize) -> (Vec<Section>, KeptNames) {
         let mut kept = KeptNames {
             shortened: self.shortened,

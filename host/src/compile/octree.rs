@@ -10,19 +10,17 @@ use gridel_core::format::{OctreeNode, SectionKind};
 use gridel_core::shared::MOST_LEVELS;
 use gridel_core::shared::{cells_of, divide};
 
-/// Primitives in a cell of an octree that are not worth a split.
+/// Largest number of primitives in a cell of an octree that is not split.
 const FEW: usize = 6;
 
-/// Most bytes that are needed for each entry of an octree's finest cells while it is built: an inner
-/// node has more than [`FEW`] entries, so that there is hardly a child more than there are entries in
-/// its level, and arrays that grow may be twice as long as they are full.
+/// Most bytes that an octree's build needs per entry of its finest cells. An inner node has more than [`FEW`] entries,
+/// so a level has hardly more children than entries. Arrays that grow may be twice as long as they are full.
 const OCTREE_ENTRY_BYTES: u64 = 192;
 
-/// Units that the margins of culling take up on both sides of a cell: rays visit it so much earlier
-/// and later.
+/// Units by which the margins of culling widen a cell on both sides: rays visit it earlier and leave it later.
 const CULLING: f64 = 5.0;
-/// Units that a cell of the finest level has at least along each axis with an extent, so that it is
-/// not lost in the margins of culling.
+/// Least units of a cell of the finest level, along each axis with an extent. A smaller cell would be lost in the
+/// margins of culling.
 const THINNEST_CELL: i32 = 8;
 
 /// Levels of an octree that is twice as fine as one of even leaves.
@@ -30,9 +28,9 @@ fn usual_levels(primitives: usize) -> u32 {
     MOST_LEVELS.min(primitives.max(1).ilog2() / 3 + 2)
 }
 
-/// The scene's box as an octree divides it: larger along the axes on which a scene is so thin that
-/// cells would be thinner than the margins of culling, if rays would test the same primitives too
-/// often there.
+/// Returns the scene's box as an octree divides it. It is larger along axes on which a thin scene would make cells
+/// thinner than the margins of culling. It is larger only if rays would otherwise test the same primitives too often
+/// there.
 pub fn bounds(bounds: &UnitBox, boxes: &[UnitBox]) -> UnitBox {
     let count = boxes.len();
     let divisions = [1 << usual_levels(count); 3];
@@ -65,7 +63,7 @@ pub fn bounds(bounds: &UnitBox, boxes: &[UnitBox]) -> UnitBox {
 /// Builds an octree.
 ///
 /// # Errors
-/// If not even an octree of one cell keeps to [`MOST_BYTES`].
+/// If even an octree of one cell exceeds [`MOST_BYTES`].
 pub fn build(bounds: &UnitBox, boxes: &[UnitBox]) -> Result<Cells, CompileError> {
     // No finer than memory allows.
     let mut levels = usual_levels(boxes.len());
@@ -122,8 +120,7 @@ struct Nodes {
 }
 
 impl Nodes {
-    /// Builds an octree of at most so many levels over primitives that reach into ranges of the
-    /// finest cells.
+    /// Builds an octree of at most `most_levels` levels over primitives that reach into ranges of the finest cells.
     fn build(ranges: &[Range], most_levels: u32) -> Self {
         let mut octree = Self::default();
         octree.starts.push(0);
@@ -180,8 +177,8 @@ impl Nodes {
         tests.sum()
     }
 
-    /// The octree with leaves in place of all nodes in whose children rays test no fewer primitives
-    /// than the node has.
+    /// Returns the octree with leaves in place of nodes in whose children rays test no fewer primitives than in the
+    /// node.
     fn without_worthless_splits(&self, share: impl Fn(u32) -> f64) -> Self {
         let mut tests: Vec<f64> = self
             .contents

@@ -29,7 +29,7 @@ pub struct Options {
     /// Bits that coordinates are snapped to: see [`LATTICE_BITS`](crate::compile::LATTICE_BITS).
     pub lattice_bits: u8,
     /// The scene units by which vertices of meshes can move along each axis, for a
-    /// [`Deformation`](gridel_core::Deformation): the box of a scene, and of each part, is wider by as much. Only the
+    /// [`Deformation`](gridel_core::Deformation). The box of a scene, and of each part, is wider by as much. Only the
     /// structure [`Bvh`](gridel_core::Bvh) can be refitted.
     pub room: f64,
     /// Primitives that make a leaf of a hierarchy whatever rays pay for it, at most
@@ -45,10 +45,9 @@ pub struct Options {
     pub grid: Option<[u32; 3]>,
     /// Reject a blob that would be larger. Names that make it larger are left out.
     pub max_bytes: Option<u64>,
-    /// Most bytes of all textures' texels, which are stored more coarsely to fit; without it nothing is lost but for
-    /// rounding.
+    /// Most bytes of all textures' texels, which are stored more coarsely to fit. Without it only rounding is lost.
     pub texture_bytes: Option<u64>,
-    /// Whether the blob has the names of objects, materials and lights.
+    /// True if the blob has the names of objects, materials and lights.
     pub names: bool,
     /// Gridels along a side of a cylinder cube's faces, 1 to 64; otherwise as many as the budget
     /// holds.
@@ -79,6 +78,6 @@ impl Default for Options {
     }
 }
 
-/// Called now and then, from any thread, with the number of finished cells of a structure's table, and
-/// of all its cells. A table is tried in several sizes where none is asked for.
+/// Called now and then, from any thread. The arguments are the structure, the number of finished cells of its table,
+/// and the number of all its cells. A table is tried in several sizes where none is given.
 pub type OnProgress<'t> = &'t (dyn Fn(Structure, u64, u64) + Sync);

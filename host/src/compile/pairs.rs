@@ -15,7 +15,7 @@ pub struct Flat {
     pub leaves: Vec<u32>,
     /// The primitives in the order of their slots, kind by kind.
     pub slots: [Vec<u32>; Kind::ALL.len()],
-    /// Levels of pairs: what a walk's stack must hold.
+    /// Levels of pairs. The stack of a walk must hold as many entries.
     pub depth: usize,
     /// Primitives of the longest leaf.
     pub longest_leaf: usize,
@@ -24,7 +24,7 @@ pub struct Flat {
 /// Flattens a hierarchy over `primitives` in the order of its leaves.
 pub fn flatten(root: &Node, primitives: &[Primitive]) -> Flat {
     let mut flat = Flat::default();
-    // Nodes by level; leaves take their slots in the order in which they are met.
+    // Nodes by level; leaves take their slots in the order in which they are reached.
     let mut level = vec![root];
     let mut pairs_before = 0;
     while !level.is_empty() {
@@ -82,7 +82,7 @@ impl Flat {
         let [left, right] = children;
         let link = Link::new(first_pair, is_leaf(left), is_leaf(right));
         let boxes = [left.bounds(), right.bounds()];
-        // Of the nodes that were numbered before, all that are not pairs are leaves.
+        // All nodes with lower numbers that are not pairs are leaves.
         let mut next_pair = first_pair;
         let mut next_leaf = 2 * self.pairs.len() as u32 + 1 - first_pair;
         self.pairs.push(Pair {

@@ -20,7 +20,7 @@ use serde::{Serialize, Serializer};
 const MOST: usize = 1 << 24;
 /// Primitives that are left out or moved far and named; the rest are counted.
 const NAMED: usize = 20;
-/// Steps of the lattice that a surface may be moved before that is worth a warning.
+/// Displacement of a surface, in steps of the lattice, from which a warning is given.
 const FAR_MOVED: f64 = 4.0;
 
 /// Primitives of all kinds, each in scene-file order.
@@ -28,7 +28,7 @@ const FAR_MOVED: f64 = 4.0;
 pub struct Primitives {
     /// Distinct vertices of all meshes, in 1/256 unit. Those that carry something else differ.
     pub vertices: Vec<[i32; 3]>,
-    /// What each vertex carries beside its place; empty where none carries anything.
+    /// The attributes of each vertex other than its position; empty where no vertex has any.
     pub corners: Vec<Corner>,
     /// Objects whose vertices require effects, by name.
     pub required_by: Vec<(Effects, String)>,
@@ -44,8 +44,8 @@ pub struct Primitives {
     pub collapsed: LeftOut,
     /// Triangles without area.
     pub without_area: LeftOut,
-    /// For each primitive in scene-file order, how far apart the given and the snapped surface are at
-    /// most, in 1/256 unit; 0 for those that are left out.
+    /// For each primitive in scene-file order, the largest distance between the given and the snapped surface, in 1/256
+    /// unit. 0 for those that are left out.
     pub displacements: Vec<f32>,
     /// Primitives whose surface was moved by more than [`FAR_MOVED`] steps.
     pub far_moved: LeftOut,
@@ -81,7 +81,7 @@ impl LeftOut {
         self.count
     }
 
-    /// At most so many names, and how many there are beside them.
+    /// Returns at most `most` names, and the number of the others.
     pub fn names(&self, most: usize) -> Vec<String> {
         let mut names: Vec<_> = self.names.iter().take(most).cloned().collect();
         if self.count > names.len() {
@@ -175,8 +175,8 @@ impl Primitives {
         })
     }
 
-    /// The groups that a primitive is in, the largest first, as the parts of its object's name say
-    /// (`A/CYS 3/CA` is the atom CA of the residue CYS 3 of the chain A), and its number.
+    /// Returns the groups that a primitive is in, the largest first, and its number. The groups are the parts of its
+    /// object's name (`A/CYS 3/CA` is the atom CA of the residue CYS 3 of the chain A).
     pub fn groups<'s>(&self, scene: &'s Scene, primitive: &Primitive) -> (Vec<&'s str>, u32) {
         let number = self.numbers[primitive.kind as usize][primitive.index as usize];
         let behind = self.object_first.partition_point(|&first| first <= number);
@@ -304,15 +304,14 @@ impl Primitives {
         Ok(())
     }
 
-    /// Gives the primitive that was just added its number; its surface was moved by so many 1/256
-    /// units.
+    /// Gives the primitive that was just added its number. `displacement` is that of its surface in 1/256 unit.
     fn keep(&mut self, kind: Kind, displacement: f64) {
         self.numbers[kind as usize].push(self.total);
         self.displacements.push(rounded_up(displacement));
         self.total += 1;
     }
 
-    /// Passes over a primitive that the lattice leaves nothing of.
+    /// Leaves out a primitive that collapses on the lattice.
     fn leave_out(&mut self) {
         self.displacements.push(0.0);
         self.total += 1;

@@ -1,7 +1,7 @@
 //! How far instances move: a box that holds a placed part at all times of the tracks of its joints.
 //!
 //! Each joint has a range of rotations, scales and shifts, and all of them are taken together, at rest and at any time.
-//! Keys bound what lies between them: those of a spline together with its Bézier control points. Rotations about one
+//! Keys bound the values between them: those of a spline together with its Bézier control points. Rotations about one
 //! axis sweep a cylinder about it, others a sphere about the pivot.
 
 use crate::scene::{
@@ -11,7 +11,7 @@ use crate::shape::Lattice;
 use glam::{DQuat, DVec3, DVec4};
 use gridel_core::format::record::UnitBox;
 
-/// How far the axes of rotations about one axis can be apart.
+/// Largest difference of the axes of rotations about one axis.
 const SAME_AXIS: f64 = 1e-6;
 
 /// By what part of its size room is widened: some units for the rounding of boxes.
@@ -20,7 +20,7 @@ const MARGIN: f64 = 1.0 / 4096.0;
 /// How far the instances of a scene move.
 #[derive(Debug, Default)]
 pub struct Reach {
-    /// The box around all that moves, and the room that the scene asks for.
+    /// The box around all that moves, and the room that the scene states.
     pub bounds: Option<[DVec3; 2]>,
     /// For each instance, its least and its greatest scale relative to that at rest.
     pub scales: Vec<[f64; 2]>,
@@ -186,7 +186,7 @@ impl Region {
         }
     }
 
-    /// What a joint makes of it.
+    /// Returns the region after a joint's motion.
     fn moved(&self, range: &Range) -> Self {
         let Range {
             pivot,
@@ -216,7 +216,7 @@ impl Region {
         .trimmed()
     }
 
-    /// As seen from a place.
+    /// Returns the region relative to a place.
     fn seen_from(&self, place: DVec3) -> Self {
         Self {
             corners: self.corners.map(|corner| corner - place),
@@ -225,7 +225,7 @@ impl Region {
         }
     }
 
-    /// What rotations about the origin sweep.
+    /// Returns the region that rotations about the origin sweep.
     fn turned(&self, turn: Turn) -> Self {
         let [low, high] = self.corners;
         let corner = |number: usize| {
@@ -278,7 +278,7 @@ impl Region {
         .trimmed()
     }
 
-    /// With no more of the box than the sphere holds.
+    /// Returns the region without the parts of the box outside of the sphere.
     fn trimmed(self) -> Self {
         let [low, high] = self.corners;
         Self {

@@ -10,9 +10,9 @@ use gridel_core::{Kind, geometry};
 /// The result of adding a shape.
 pub struct Added {
     pub kind: Kind,
-    /// How far apart the given and the snapped surface are at most, in 1/256 unit.
+    /// Largest distance between the given and the snapped surface, in 1/256 unit.
     pub displacement: f64,
-    /// Whether its box lies in the range of box coordinates.
+    /// True if its box lies in the range of box coordinates.
     pub fits: bool,
 }
 
@@ -106,7 +106,7 @@ pub fn in_order<T: Copy>(records: &[T], slots: &[u32]) -> Vec<T> {
     slots.iter().map(|&index| records[index as usize]).collect()
 }
 
-/// Spheres in the narrowest form that a lattice of so many bits allows.
+/// Returns spheres in the narrowest form that a lattice of this many bits allows.
 fn spheres(bits: u8, spheres: &[SnappedSphere]) -> Section {
     if bits <= 16 {
         let narrow = spheres.iter().map(|sphere| Sphere16 {

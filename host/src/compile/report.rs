@@ -12,9 +12,9 @@ use std::time::Duration;
 pub struct Report {
     /// Scene units of a lattice step.
     pub step: f64,
-    /// The farthest that snapping moved a surface, in scene units: no point of the given surface of
-    /// any primitive is farther from its snapped one, and the other way round. For instances it is counted from their
-    /// rotations: a matrix of a scene file becomes the nearest one when it is read.
+    /// The largest displacement of a surface by snapping, in scene units. No point of a given surface is farther from
+    /// its snapped one, and the other way round. For instances it is counted from their rotations: a matrix of a scene
+    /// file becomes the nearest one when it is read.
     pub largest_displacement: f64,
     /// The displacement of each primitive in scene-file order, in steps of the lattice; 0 for those that are
     /// left out.
@@ -22,7 +22,7 @@ pub struct Report {
     pub displacements: Vec<f32>,
     /// Primitives whose surface was moved by more than four steps of the lattice.
     pub far_moved: LeftOut,
-    /// Primitives that the lattice leaves nothing of; they keep their numbers.
+    /// Primitives that collapse on the lattice; they keep their numbers.
     pub collapsed: LeftOut,
     /// Triangles that have no area in the scene file already; they keep their numbers, too.
     pub without_area: LeftOut,
@@ -33,7 +33,7 @@ pub struct Report {
     pub bytes: usize,
     /// Primitives of the longest list that a ray can be led to.
     pub longest_list: usize,
-    /// Effects and the names of what requires each.
+    /// Effects and the names of the parts that require each.
     pub effects: Vec<(String, Vec<String>)>,
     /// How each image of a texture is stored.
     pub textures: Vec<TextureFigures>,
@@ -46,7 +46,7 @@ pub struct Report {
     pub setup: Duration,
     /// Structures with tables of candidate lists.
     pub tables: Vec<TableStats>,
-    /// The names in the blob; `None` if they are not asked for, or there are none.
+    /// The names in the blob; `None` if they are not requested, or there are none.
     pub names: Option<KeptNames>,
 }
 
@@ -59,7 +59,7 @@ pub struct TableStats {
 }
 
 impl Report {
-    /// Adds what a part has to report, whose primitives come after those before it.
+    /// Adds a part's report. Its primitives come after those before it.
     pub(super) fn add_part(&mut self, part: &Report) {
         let steps = (part.step / self.step) as f32;
         let displacements = part.displacements.iter().map(|it| it * steps);

@@ -5,12 +5,13 @@ use glam::DVec3;
 use gridel_core::Kind;
 use gridel_core::format::record::UnitBox;
 
-/// An extent that is wider by so much on all sides.
+/// Returns an extent that is wider by `room` on all sides.
 pub fn widened((lowest, highest): (DVec3, DVec3), room: f64) -> (DVec3, DVec3) {
     (lowest - room, highest + room)
 }
 
-/// The box around all primitives, and around all places to which vertices can move by so many units.
+/// Returns the box around all primitives, and around all places to which vertices can move by
+/// `room` units.
 pub fn around(primitives: &[Primitive], room: f64) -> Option<UnitBox> {
     let own = bounds(primitives)?;
     let meshes = primitives.iter().filter(|it| it.kind == Kind::Triangle);

@@ -46,8 +46,8 @@ pub fn three_bytes(value: u32) -> [u8; 3] {
     [low, middle, high]
 }
 
-/// Bytes of a blob that a section takes: its place in the table, and its records up to the next place
-/// where a section can begin.
+/// Returns the bytes of a blob that a section takes: its place in the table, and its records, padded to the next
+/// section's alignment.
 pub fn taken(bytes: usize) -> usize {
     match bytes {
         0 => 0,

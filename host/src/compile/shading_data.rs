@@ -36,11 +36,11 @@ pub struct ShadingData {
     pub view: View,
     pub coordinates: Coordinates,
     pub lights: Vec<record::Light>,
-    /// What makes lights more than points.
+    /// Properties of lights other than plain points.
     pub light_forms: Vec<LightForm>,
-    /// What each material that an object has sends out; empty where none glows.
+    /// The emission of each material that an object has; empty where none glows.
     pub emissions: Vec<record::Emission>,
-    /// What the camera has in place of a pinhole: one, or none.
+    /// The lens of the camera, in place of a pinhole: one, or none.
     pub lens: Vec<Lens>,
     /// How often light may be reflected diffusely: one number, or none.
     pub bounces: Vec<u32>,
@@ -57,7 +57,7 @@ pub struct ShadingData {
     /// For each object, its place in `materials`.
     pub object_material: Vec<u32>,
     pub effects: Effects,
-    /// The names of the effects, and of what requires each.
+    /// The names of the effects, and of the parts that require each.
     pub required_by: Vec<(String, Vec<String>)>,
     /// Parts that the scene lacks and the compiler supplied.
     pub supplied: Vec<String>,
@@ -65,12 +65,12 @@ pub struct ShadingData {
     pub textures: Vec<Section>,
     /// How each texture is stored.
     pub texture_figures: Vec<TextureFigures>,
-    /// What moves, and joints.
+    /// Tracks and joints.
     pub tracks: Vec<Section>,
 }
 
 impl ShadingData {
-    /// Of a scene, in which these meshes require these effects.
+    /// Compiles the shading data of a scene in which these meshes require these effects.
     pub fn of(
         shapes: &Shapes<'_>,
         lattice: &Lattice,
@@ -304,8 +304,8 @@ impl ShadingData {
     }
 }
 
-/// The way of a light from above the camera's left shoulder, or from above its right one where what is
-/// flat and faces the camera would be dark: the shoulder's name, too.
+/// Returns the direction of a light from above the camera's left shoulder, and the shoulder's name. The light comes
+/// from the right one where flat surfaces that face the camera would otherwise be dark.
 fn over_a_shoulder(shapes: &Shapes<'_>, camera: &Camera) -> (DVec3, &'static str) {
     /// By how many times more the right one must light.
     const CLEARLY: f64 = 2.0;

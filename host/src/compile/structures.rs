@@ -107,14 +107,14 @@ pub fn lay_out(structure: Structure, context: &BuildContext<'_>) -> Result<Layou
     })
 }
 
-/// The rays of the scene's own picture, through a blob with nothing but the hierarchy.
+/// Traces the rays of the scene's own picture, through a blob with the hierarchy only.
 fn picture_rays(context: &BuildContext<'_>) -> Result<Vec<ClassPoint>, CompileError> {
     let hierarchy = lay_out(Structure::Flagged, context)?;
     let options = Options {
         structures: vec![Structure::Flagged],
         ..context.options.clone()
     };
-    // Parts have the structures of what holds them.
+    // Parts have the structures of the scene that holds them.
     let parts = match context.role {
         Role::Whole(parts) if parts.primitives() > 0 => Some((context.parts_with)(&options)?),
         _ => None,
@@ -164,7 +164,7 @@ pub const fn leads_to(structure: Structure) -> Option<Structure> {
 pub const fn usual_budget(structure: Structure) -> u64 {
     const MEGABYTE: u64 = 1 << 20;
     match structure {
-        // What the paper's machine had.
+        // The memory of the paper's machine.
         Structure::CylinderCube => 48 * MEGABYTE,
         Structure::CylinderCubeEntry => 2 * MEGABYTE,
         // For each point and each direction.

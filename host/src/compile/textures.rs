@@ -1,9 +1,9 @@
 //! Textures as a blob holds them, within a budget of bytes.
 //!
 //! Without a budget an image of at most 256 colors becomes a palette, and any other RGB888. With one, the image that
-//! takes the most bytes is made coarser until all fit: RGB565 (not where alpha is used), then a palette of 256 colors, then half the size, again and
-//! again. Images wider or higher than 4096 are halved in any case. Levels are smaller copies of what is left, and count; their colors come from the
-//! palette, which has more where there is room.
+//! takes the most bytes is made coarser until all fit. The steps are RGB565 (not where alpha is used), then a palette
+//! of 256 colors, then half the size, again and again. Images wider or higher than 4096 are halved in any case. Levels
+//! are smaller copies of the result, and count. Their colors come from the palette, which has more where there is room.
 
 mod stored;
 
@@ -28,7 +28,7 @@ pub struct TextureFigures {
     pub height: u32,
     /// `palette`, `rgb565`, `rgb888` or `rgba8888`.
     pub form: &'static str,
-    /// Whether smaller copies of the image follow it.
+    /// True if smaller copies of the image follow it.
     pub levels: bool,
     pub bytes: u64,
 }
@@ -52,7 +52,8 @@ impl fmt::Display for TextureFigures {
     }
 }
 
-/// A channel of linear light as a blob holds it; of scenes whose colors are display values, the channel itself counts.
+/// Returns a channel of linear light as a blob holds it. In scenes whose colors are display values, the channel itself
+/// counts.
 pub fn root(linear: f64, display_values: bool) -> u8 {
     let channel = linear.clamp(0.0, 1.0);
     let channel = if display_values {
@@ -78,7 +79,7 @@ pub struct Textures {
 }
 
 impl Textures {
-    /// What a material's record says of its maps.
+    /// Returns the field of a material's record about its maps.
     pub fn maps(&mut self, material: &Material) -> u16 {
         let alpha = material.alpha.filter(|_| material.transmit == [0.0; 3]);
         let color = material.texture.as_ref();
@@ -120,7 +121,7 @@ impl Textures {
             let of_65535 = |it: f64| (it.clamp(0.0, 1.0) * 65_535.0).round() as u16;
             normal_map = record::NormalMap {
                 texture: limit(self.number(&map.texture, true, false)),
-                // What counts is the ratio of both.
+                // Only the ratio of both matters.
                 across: of_65535(map.scale),
                 along: of_65535(1.0 / map.scale.max(1.0)),
             };

@@ -12,8 +12,8 @@ use gridel_core::format::track::{
     self as records, Interpolation, Timeline, TrackTarget, ValueKind,
 };
 
-/// The sections of a scene's tracks; none where nothing moves. `camera` stands for what its tracks leave out, and
-/// `materials` has the number in the blob of each material that an object has.
+/// Returns the sections of a scene's tracks; none where nothing moves. `camera` has the values that its tracks leave
+/// out. `materials` has the number in the blob of each material that an object has.
 pub fn sections(
     tracks: Vec<Track>,
     camera: &Camera,
@@ -26,7 +26,7 @@ pub fn sections(
     let mut numbered: Vec<(TrackTarget, u32, &Track)> = Vec::new();
     for track in &all {
         let index = match track.target.is_of_material() {
-            // Nothing of such a material is seen.
+            // Such a material is not visible.
             true => match materials[track.index] {
                 Some(number) => number,
                 None => continue,
@@ -136,7 +136,7 @@ fn complete(tracks: &mut Vec<Track>, camera: &Camera) {
     tracks.extend(missing.into_iter().flatten());
 }
 
-/// The places that a track leads to, for the choice of coordinates.
+/// Returns the positions that a track reaches, for the choice of coordinates.
 pub fn places(tracks: &[Track], camera: &Camera) -> Vec<DVec3> {
     let of = |target| {
         let tracks = tracks.iter().filter(move |track| track.target == target);
@@ -225,7 +225,7 @@ fn keys(track: &Track, header: &Header) -> Result<Vec<(i32, Vec<i32>)>, CompileE
     Ok(all)
 }
 
-/// What is too large at a key: a value, or the change that a tangent stands for. And what helps.
+/// Names the number that is too large at a key: a value, or the change of a tangent. Also names the remedy.
 fn too_large(kind: ValueKind, is_value: bool) -> (&'static str, &'static str) {
     match (kind, is_value) {
         (_, false) => (
@@ -243,7 +243,7 @@ fn too_large(kind: ValueKind, is_value: bool) -> (&'static str, &'static str) {
 /// The angle between two quaternions as a part of a turn with 32 bits.
 fn between(one: [f64; 4], other: [f64; 4]) -> i32 {
     let [one, other] = [one, other].map(|it| DQuat::from_array(it).normalize());
-    // Of small angles the sine is more exact than the cosine.
+    // For small angles the sine is more exact than the cosine.
     let difference = one.inverse() * other;
     let angle = libm::atan2(difference.xyz().length(), difference.w.abs());
     let part = angle / std::f64::consts::TAU * exp2(32);
@@ -257,7 +257,7 @@ enum Scale {
         offset: DVec3,
         factor: f64,
     },
-    /// Directions of light, made as long as 1.
+    /// Directions of light, brought to length 1.
     Towards,
     /// Quaternions.
     Rotation,
@@ -316,7 +316,7 @@ impl Scale {
         }
     }
 
-    /// What the components of a key's changes are multiplied by.
+    /// Returns the factors of the components of a key's changes.
     fn factors(&self, key: &Key) -> [f64; 4] {
         match *self {
             Self::Linear { factor, .. } | Self::Color { factor, .. } => [factor; 4],
@@ -342,7 +342,7 @@ impl Scale {
             }
             Self::Rotation => {
                 let mut rotation = DQuat::from_array(key.value).normalize();
-                // Of the two quaternions of a rotation, the one on the shorter way. Splines state their way.
+                // A rotation has two quaternions. This takes the one on the shorter way. Splines state their way.
                 let linear = track.interpolation == Interpolation::Linear;
                 let turns_back = before.is_some_and(|before| rotation.dot(before) < 0.0);
                 if linear && turns_back {

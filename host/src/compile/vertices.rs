@@ -13,7 +13,7 @@ type Place = [i32; 3];
 /// A normal as a blob holds it.
 pub type Stored = [i16; 2];
 
-/// What a vertex carries beside its place.
+/// The attributes of a vertex other than its position.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub struct Corner {
     pub normal: Option<Stored>,
@@ -30,7 +30,7 @@ impl Corner {
         coordinates: None,
     };
 
-    /// What comes first among the vertices of a blob has the lowest rank.
+    /// Returns the rank. The first vertices of a blob have the lowest rank.
     pub fn rank(&self) -> usize {
         usize::from(self.normal.is_none()) << 2
             | usize::from(self.coordinates.is_none()) << 1
@@ -82,7 +82,7 @@ impl Vertices {
     }
 }
 
-/// What the corners of a mesh's triangles carry beside their places.
+/// The attributes of the corners of a mesh's triangles other than their positions.
 #[derive(Debug, Default)]
 pub struct Corners {
     normals: Vec<Option<[Stored; 3]>>,
@@ -119,12 +119,12 @@ impl Corners {
         })
     }
 
-    /// Whether no corner carries anything.
+    /// Returns whether no corner has attributes.
     pub fn is_plain(&self) -> bool {
         self.normals.is_empty() && self.colors.is_empty() && self.coordinates.is_empty()
     }
 
-    /// Whether vertices have colors.
+    /// Returns whether vertices have colors.
     pub fn is_colored(&self) -> bool {
         !self.colors.is_empty()
     }
@@ -155,7 +155,7 @@ fn stored(normals: &Normals) -> Vec<Option<[Stored; 3]>> {
         .collect()
 }
 
-/// What a point on an edge of a triangle carries, or at a corner.
+/// Returns the attributes of a point on an edge of a triangle, or at a corner.
 pub fn corner_at(point: Place, places: [Place; 3], corners: [Corner; 3]) -> Corner {
     if let Some(corner) = places.iter().position(|it| *it == point) {
         return corners[corner];
@@ -186,7 +186,7 @@ pub fn corner_at(point: Place, places: [Place; 3], corners: [Corner; 3]) -> Corn
         }),
         color: color.map(|(from, to)| {
             [0, 1, 2, 3].map(|k: usize| {
-                // Roots of linear light, but for alpha.
+                // Roots of linear light, except for alpha.
                 let power = if k < 3 { 2.0 } else { 1.0 };
                 let light = |it: u8| libm::pow(f64::from(it), power);
                 libm::pow(mixed(light(from[k]), light(to[k])), 1.0 / power).round() as u8
@@ -198,7 +198,7 @@ pub fn corner_at(point: Place, places: [Place; 3], corners: [Corner; 3]) -> Corn
     }
 }
 
-/// The direction of length 1 that a stored normal stands for.
+/// Returns the direction of length 1 of a stored normal.
 fn decoded([x, y]: Stored) -> DVec3 {
     let [x, y] = [x, y].map(|it| f64::from(it) / f64::from(LARGEST));
     let z = 1.0 - x.abs() - y.abs();

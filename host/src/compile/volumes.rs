@@ -131,7 +131,7 @@ fn range(node: &Node) -> Range<usize> {
     }
 }
 
-/// Steps towards the farthest primitive; after so many the radius is within some percent of the
+/// Steps towards the farthest primitive. After this many the radius is within some percent of the
 /// least (Badoiu and Clarkson, "Smaller core-sets for balls", 2003).
 const STEPS: usize = 24;
 
@@ -189,7 +189,7 @@ fn enclosing(reaches: &[Reach]) -> BoundingSphere {
         }
     }
     let center = best_center.round().to_array().map(|x| x as i16);
-    // From below what is needed up to what is: the proof's own words decide.
+    // From below the required radius up to it. The proof's own comparison decides.
     let mut radius = best.floor().clamp(0.0, f64::from(u16::MAX)) as u16;
     while radius < u16::MAX && !reaches.iter().all(|reach| reach.in_sphere(center, radius)) {
         radius += 1;

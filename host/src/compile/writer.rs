@@ -34,8 +34,8 @@ pub struct Parts {
 }
 
 impl Parts {
-    /// Adds names, unless that makes the blob larger than `max_bytes`. Returns what became of them;
-    /// `None` where nothing has a name.
+    /// Adds names, unless that makes the blob larger than `max_bytes`. Returns the kept names; `None` where nothing has
+    /// a name.
     pub fn add_names(&mut self, names: &Names, max_bytes: Option<u64>) -> Option<KeptNames> {
         let lights = self.records(SectionKind::Lights);
         let (sections, mut kept) = names.sections(lights);
@@ -127,7 +127,7 @@ pub fn parts(context: &BuildContext<'_>, layouts: Vec<Layout>) -> Parts {
     if objects != total && objects > 1 {
         sections.push(indices(SectionKind::ObjectFirst, &object_first, 2));
     }
-    // A part's objects that are not told apart have no materials, either.
+    // A part's objects that are not distinguished have no materials, either.
     let has_all = shading_data.object_material.len() == objects as usize;
     if shading_data.materials.len() > 1 && has_all {
         sections.push(indices(
@@ -260,7 +260,7 @@ fn geometry(lattice: &Lattice, primitives: &Primitives, flat: &Flat) -> Vec<Sect
     sections
 }
 
-/// What vertices carry beside their places. Behind the last one that has something, nothing is stored.
+/// Returns the attributes of vertices other than positions. Nothing is stored after the last vertex that has some.
 fn carried(corners: &[Corner]) -> Vec<Section> {
     let until = |has: fn(&Corner) -> bool| {
         let count = corners.iter().rposition(has).map_or(0, |last| last + 1);
@@ -274,7 +274,7 @@ fn carried(corners: &[Corner]) -> Vec<Section> {
     let coordinates: Vec<_> = coordinates
         .map(|it| it.coordinates.unwrap_or([i32::MIN; 2]))
         .collect();
-    // With 14 fraction bits; the lowest number stands for none.
+    // With 14 fraction bits; the lowest number means no coordinates.
     let short = |it: i32| {
         let rounded = i16::try_from((i64::from(it) + (1 << 5)) >> 6).ok();
         rounded.filter(|it| *it != i16::MIN)

@@ -47,7 +47,7 @@ pub struct Ray {
     /// `None` where its direction vanished, so that it was not traced.
     pub walk: Option<Walk>,
     pub hit: Option<Hit>,
-    /// The weight that absorption on the way leaves.
+    /// The weight after absorption on the way.
     pub absorbed: Option<[f64; 3]>,
     /// The smooth normal that the surface is shaded with.
     pub smooth: Option<[f64; 3]>,
@@ -62,13 +62,13 @@ pub struct Ray {
     /// surroundings.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub media: Option<[Option<u32>; 2]>,
-    /// How much of the surface is there, where the alpha of a texture says so.
+    /// The part of the surface that is present, where the alpha of a texture says so.
     pub alpha: Option<f64>,
     pub lights: Vec<Lighting>,
     /// The point of the lens from which a ray of the camera starts, in scene units.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub from_lens: Option<[f64; 3]>,
-    /// Whether the surface sends out light that its lights have brought already.
+    /// True if the surface sends out light that its lights have already brought.
     #[serde(skip_serializing_if = "std::ops::Not::not")]
     pub is_emitted_by_light: bool,
     /// The radiance that the surface sends out.
@@ -76,7 +76,7 @@ pub struct Ray {
     pub emitted: Option<[f64; 3]>,
     /// The radiance that it adds to the sample, its weight included.
     pub added: [f64; 3],
-    /// Whether that is the background.
+    /// True if that is the background.
     pub background: bool,
     /// The texel of the environment that it brings, column and row, and whether it brings the sun.
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -88,7 +88,7 @@ pub struct Ray {
     pub reflected: Option<f64>,
     /// Rays that it would cause if they could change anything.
     pub dropped: Vec<Weighted>,
-    /// Whether the ray depth ended it at a mirror or at glass.
+    /// True if the ray depth ended it at a mirror or at glass.
     pub too_deep: bool,
     /// Rays that it causes, by their places.
     pub children: Vec<usize>,
@@ -99,7 +99,7 @@ pub struct Ray {
 pub struct Textured {
     /// Where the texture is looked up, u to the right and v down.
     pub coordinates: [f64; 2],
-    /// How often the image is halved to what is looked up; a fraction lies between two of its levels.
+    /// How often the image is halved for the lookup; a fraction lies between two of its levels.
     pub level: f64,
     /// The nearest texel of the finer level, counted from the upper left one, or the upper left one of the four that are
     /// mixed.
@@ -133,7 +133,7 @@ pub struct Hit {
     pub distance_error: f64,
     pub point: [f64; 3],
     pub normal: [f64; 3],
-    /// Whether the ray came from the side to which the normal points.
+    /// True if the ray came from the side to which the normal points.
     pub front: bool,
     pub object: u32,
     pub primitive: u32,
@@ -179,7 +179,7 @@ pub enum LightOutcome {
     BehindTriangle,
     /// The surface lies outside of a spot, or behind an area.
     Outside,
-    /// Something stands in between.
+    /// Another object blocks it.
     Blocked {
         kind: &'static str,
         primitive: u32,

@@ -1,8 +1,8 @@
 //! Explains a ray or a pixel: the nodes that are visited, the hits, and the light that they bring.
 //!
-//! The renderer reports it through [`Observer::event`]; this module only puts it in order: `walk.rs`
-//! keeps a query's way through a structure, `reader.rs` finds the rays, `explanation.rs` has what they add up to,
-//! `text.rs` writes it down for people.
+//! The renderer reports events through [`Observer::event`]; this module only orders them. `walk.rs` records a query's
+//! path through a structure, and `reader.rs` finds the rays. `explanation.rs` has their sums, and `text.rs` writes them
+//! for people.
 
 mod explanation;
 mod reader;
@@ -27,7 +27,7 @@ use gridel_core::{
 /// The subject of an explanation.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Subject {
-    /// A pixel of the picture that the settings ask for, from its upper left corner.
+    /// A pixel of the picture of the settings, from its upper left corner.
     Pixel([u16; 2]),
     /// A ray of one's own.
     Ray(SceneRay),
@@ -47,8 +47,8 @@ pub enum ExplainError {
 
 /// Explains a pixel or a ray.
 ///
-/// The code that is watched is that of [`render`](crate::render), compiled for effects with glass or
-/// without: what else it is compiled for changes neither bits nor ways.
+/// The observed code is that of [`render`](crate::render), compiled for effects with glass or without. The other
+/// effects that it is compiled for change neither bits nor paths.
 ///
 /// # Errors
 /// If the blob lacks the structure, a setting is out of its range, or the ray is invalid.
@@ -134,8 +134,8 @@ struct Recorder {
     steps: usize,
 }
 
-/// Steps of a query that are kept, candidates that are met apart: a walk through a hierarchy has some
-/// hundreds, a list as many as there are primitives.
+/// Steps of a query that are kept, not counting hits of candidates. A walk through a hierarchy has some hundreds, brute
+/// force as many as there are primitives.
 const MOST_STEPS: usize = 20_000;
 
 impl Observer for Recorder {

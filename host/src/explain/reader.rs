@@ -32,12 +32,12 @@ struct Reader<'t> {
     scene: &'t Scene<'t>,
     frame: Frame,
     format: Format,
-    /// The rays from the camera, or the one that was asked for.
+    /// The rays from the camera, or the requested one.
     first: Given,
     sample: Sample,
     /// The rays that wait, by who sent them: the last is taken up first.
     waiting: Vec<usize>,
-    /// Whether the query that is going on is a light's.
+    /// True if the current query is a light's.
     light: bool,
 }
 
@@ -89,7 +89,7 @@ impl<'t> Reader<'t> {
                     light,
                     ..
                 } = self;
-                // The first ray of a sample is the one from the camera, or the one that was asked for.
+                // The first ray of a sample is the one from the camera, or the requested one.
                 let first = (current == 0 && !*light).then_some(self.first);
                 if let Some(ray) = self.sample.rays.last_mut() {
                     // Through a lens it starts from there.

@@ -14,7 +14,7 @@ use words::{bound, color, counted_were, peak, precise, vector};
 pub struct Shown<'s> {
     pub explanation: &'s Explanation,
     pub names: &'s Names,
-    /// Whether the ways of all rays through the structure are shown, and not only the first one's.
+    /// True if the walks of all rays through the structure are shown, and not only the first one's.
     pub all_walks: bool,
 }
 

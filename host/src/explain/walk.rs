@@ -1,4 +1,4 @@
-//! A query's way through a structure, in scene units, and why it left out what it left out.
+//! A query's path through a structure, in scene units, and why it skipped nodes.
 
 mod inside;
 mod planes;
@@ -10,7 +10,7 @@ use gridel_core::observe::event::NodeId;
 use gridel_core::{Event, Format, Scene};
 use serde::Serialize;
 
-/// One query: a ray and its way. Distances are scene units along the ray, counted from `origin`.
+/// One query: a ray and its walk. Distances are scene units along the ray, counted from `origin`.
 #[derive(Clone, Debug, Serialize)]
 pub struct Walk {
     /// The origin as it was given: the caller's, the camera's, or the point that a secondary ray
@@ -20,14 +20,14 @@ pub struct Walk {
     pub direction: [f64; 3],
     /// The interval of the ray that counts.
     pub interval: [f64; 2],
-    /// Where the kernels start: at `origin`, or where a ray from outside comes to the scene's box.
+    /// Where the kernels start: at `origin`, or where a ray from outside reaches the scene's box.
     pub start: [f64; 3],
     /// Distance of `start`: 0 unless the ray starts before the scene's box.
     pub moved: f64,
-    /// Whether any hit would do.
+    /// True if any hit suffices.
     pub any: bool,
     pub steps: Vec<Step>,
-    /// Nodes, leaves and cells that were gone into.
+    /// Nodes, leaves and cells that were entered.
     pub opened: usize,
     /// Those that were tested and left out.
     pub culled: usize,
@@ -70,7 +70,7 @@ impl From<&SceneRay> for Given {
     }
 }
 
-/// A direction, whatever its length, by its largest component, and the length of that.
+/// Returns a direction divided by its largest component, and the length of that.
 fn along_major(direction: DVec3) -> (DVec3, f64) {
     let slope = direction / direction.abs().max_element();
     (slope, slope.length())
@@ -104,7 +104,7 @@ struct InUnits {
 #[serde(tag = "step", rename_all = "kebab-case")]
 pub enum Step {
     Tested(Tested),
-    /// A node that was put off, and then lay behind a hit.
+    /// A node that was postponed, and then lay behind a hit.
     GivenUp {
         place: String,
         enters: f64,
@@ -113,8 +113,8 @@ pub enum Step {
     Opened {
         place: String,
     },
-    /// The ray goes into an instance. The planes of the steps up to `InstanceLeft` are in the part's own coordinates,
-    /// and its nodes are numbered apart; distances stay those of the ray.
+    /// The ray enters an instance. The planes of the steps up to `InstanceLeft` are in the part's own coordinates, and
+    /// its nodes have their own numbers. Distances stay those of the ray.
     InstanceEntered {
         /// In scene-file order.
         instance: u32,
@@ -122,7 +122,7 @@ pub enum Step {
     },
     InstanceLeft {
         instance: u32,
-        /// Whether the nearest hit so far is in it.
+        /// True if the nearest hit so far is in it.
         nearest: bool,
     },
     Candidate(Candidate),
@@ -153,7 +153,7 @@ pub struct Plane {
     /// Infinite where the ray runs along the plane.
     #[serde(serialize_with = "finite")]
     pub distance: f64,
-    /// Whether the ray goes into the slab here, and not out of it.
+    /// True if the ray enters the slab here; false if it leaves it.
     pub entry: bool,
 }
 
@@ -199,7 +199,7 @@ pub struct Candidate {
     pub object: u32,
     /// The instance in scene-file order; `None` for the scene's own objects.
     pub instance: Option<u32>,
-    /// Where the ray's line enters and leaves it.
+    /// The t where the ray's line enters and leaves it.
     pub crossing: Option<[f64; 2]>,
     pub verdict: Verdict,
 }
@@ -211,7 +211,7 @@ pub enum Verdict {
     Missed,
     /// The line meets it where the ray does not count.
     NotInInterval,
-    /// A nearer hit is known.
+    /// A nearer hit was found before.
     Farther,
     /// The nearest hit so far.
     Nearest,
@@ -283,8 +283,8 @@ impl Walk {
         t * self.ray.scale
     }
 
-    /// How far `origin + distance * direction` may be from the point that the kernels compute there:
-    /// what they round of the ray and of the point, and what double precision rounds of this sum.
+    /// Returns how far `origin + distance * direction` may be from the point that the kernels compute there. The
+    /// kernels round the ray and the point, and double precision rounds this sum.
     pub(super) fn rounding(&self, distance: f64, point: [f64; 3]) -> f64 {
         let ray = &self.ray;
         let inside = (distance - self.moved).abs();
@@ -292,7 +292,7 @@ impl Walk {
         let units = largest(point)
             .max(largest(ray.start))
             .max(distance.abs() / ray.frame.length(1.0));
-        // Of start, t from either place, and point, on three axes.
+        // The sum over start, t from either place, and point, on three axes.
         let kernels = 8.0 * ray.frame.length(rounded::step(ray.format, units));
         let sum = largest(self.origin) + largest(self.start) + distance.abs();
         ray.aside + ray.turned * inside + kernels + 8.0 * f64::EPSILON * sum
@@ -448,7 +448,7 @@ impl Culled {
     }
 }
 
-/// What the core calls an instance that the hierarchy above leads to.
+/// The core's name for an instance that the hierarchy above leads to.
 const INSTANCE: &str = "instance";
 
 fn instance_name(number: u32) -> String {

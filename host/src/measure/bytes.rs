@@ -1,4 +1,4 @@
-//! The memory map of a blob, and what must be writable beside it.
+//! The memory map of a blob, and the writable memory that it needs.
 
 use gridel_core::accel::Entry;
 use gridel_core::format::SectionKind;
@@ -93,7 +93,7 @@ impl MemoryMap {
     }
 }
 
-/// The memory that the caller provides in one number format, in bytes, beside the call stack.
+/// The memory that the caller provides in one number format, in bytes, besides the call stack.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 pub struct WorkingMemory {
     /// Name of the number format.
@@ -161,8 +161,8 @@ impl WorkingMemory {
     }
 }
 
-/// Sizes of a stack and of a workspace where a machine word has `word` bytes: both are arrays with
-/// a length, a word, behind each. Of rays that wait: how many, and the bytes of each.
+/// Returns the sizes of a stack and of a workspace where a machine word has `word` bytes. Both are arrays, each
+/// followed by its length, a word. `rays` is the number of waiting rays, and the bytes of each.
 fn bytes<N: Number>(word: usize, depth: usize, rays: [usize; 2]) -> (usize, usize) {
     let array = |count: usize, record: usize, alignment: usize| {
         (count * record + word).next_multiple_of(alignment.max(word))

@@ -90,8 +90,8 @@ impl fmt::Display for Deforming {
     }
 }
 
-/// Whether the box of a scene, or of a part of it, is larger than what is in it: the boxes of parts can hold the room of
-/// the scene's own objects.
+/// Returns whether the box of a scene, or of one of its parts, is larger than its content. Parts are checked too,
+/// because their boxes can cover the room of the scene's own objects.
 fn has_room(scene: &Scene<'_>) -> bool {
     let mut all = std::iter::once(scene).chain(scene.parts());
     all.any(is_wider)

@@ -15,7 +15,7 @@ pub struct Errors {
     pub rmse: f64,
     /// Largest difference of a display value.
     pub largest: f64,
-    /// Pixels of which a display value is off by more than 1/255.
+    /// Pixels with a display value that is off by more than 1/255.
     pub pixels_off: usize,
     /// Mean structural similarity of the gray pictures, in windows of 8 by 8 (Wang and others 2004);
     /// 1 is the same.

@@ -5,7 +5,7 @@ use gridel_core::render::RenderError;
 use gridel_core::{Format, Scene, Settings, Structure};
 use serde::{Deserialize, Serialize};
 
-/// What the ray through the middle of a pixel hits.
+/// The first hit of the ray through the middle of a pixel.
 ///
 /// Serialized as `[object, distance]`, and as `[object, distance, instance]` in an instance.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]

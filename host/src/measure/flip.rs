@@ -1,8 +1,8 @@
 //! How different two pictures look when one flips to the other on a display: LDR-FLIP.
 //!
-//! Andersson, Nilsson, Akenine-Möller, Oskarsson, Åström, Fairchild, "FLIP: A Difference Evaluator for
-//! Alternating Images", HPG 2020. Both pictures are filtered by what the eye can resolve, compared in
-//! a perceptual color space, and the difference is raised where edges or points differ.
+//! Andersson, Nilsson, Akenine-Möller, Oskarsson, Åström, Fairchild, "FLIP: A Difference Evaluator for Alternating
+//! Images", HPG 2020. Filters both pictures by what the eye can resolve, and compares them in a perceptual color space.
+//! Raises the difference where edges or points differ.
 
 use crate::srgb::linear_of_srgb;
 
@@ -24,7 +24,7 @@ struct Planes {
     pixels: Vec<[f64; 3]>,
 }
 
-/// The difference at every pixel, 0 to 1; its mean is what is reported for a picture.
+/// Returns the difference at every pixel, 0 to 1. The report for a picture is its mean.
 ///
 /// Cost: some 2,000 multiplications per pixel.
 pub fn flip(reference: Picture<'_>, test: Picture<'_>) -> Vec<f64> {
@@ -138,7 +138,7 @@ fn perceived(planes: &Planes) -> Vec<[f64; 3]> {
 }
 
 impl Planes {
-    /// A plane filtered along rows and then along columns; beyond its edges it goes on as it ends.
+    /// Returns a plane filtered along rows and then along columns; beyond its edges the last values repeat.
     fn filter(&self, plane: &[f64], across: &[f64], down: &[f64]) -> Vec<f64> {
         let (width, height) = (self.width as isize, self.height as isize);
         let at = |plane: &[f64], x: isize, y: isize| {

@@ -1,4 +1,4 @@
-//! What became of a scene's instances, and the primitives that it has with and without them.
+//! The treatment of a scene's instances, and the primitives that it has with and without them.
 
 use crate::scene::Instances;
 use crate::table::{counted, grouped};
@@ -39,7 +39,7 @@ pub fn primitives(scene: &Scene<'_>) -> [usize; 2] {
 }
 
 impl InstanceCount {
-    /// The instances of a scene for which so many were copied; `None` where it has none.
+    /// Returns the instances of a scene, of which `copied` were copied; `None` where it has none.
     ///
     /// ```
     /// # use gridel_host::compile::{Options, compile};
@@ -77,7 +77,7 @@ impl InstanceCount {
         self.choice == Instances::Keep
     }
 
-    /// Returns a sentence that says what became of them.
+    /// Returns a sentence about the treatment of instances.
     pub fn text(&self) -> String {
         let instances = counted(self.instances, "instance");
         let stored = counted(self.stored_primitives, "primitive");

@@ -1,5 +1,5 @@
-//! The measuring harness: errors, rays, time and bytes, alike for [`accuracy`](crate::accuracy),
-//! [`compare`](crate::compare) and [`check`](crate::check), and what a scene costs on boards.
+//! The measuring harness: errors, rays, time and bytes, the same for [`accuracy`](crate::accuracy),
+//! [`compare`](crate::compare) and [`check`](crate::check). Also the cost of a scene on boards.
 //!
 //! | file | what it measures |
 //! |---|---|

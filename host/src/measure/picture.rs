@@ -5,7 +5,7 @@ use gridel_core::render::RenderError;
 use gridel_core::{Format, Scene, Settings, Structure};
 use std::time::Instant;
 
-/// A picture, and what it took.
+/// A picture, and its cost.
 pub struct Rendered {
     pub picture: Picture,
     /// Seconds of rendering alone, on the threads of the pool that it was called in.

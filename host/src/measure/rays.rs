@@ -24,14 +24,14 @@ pub enum Question {
     Any,
 }
 
-/// The rays of a picture and what each is asked.
+/// The rays of a picture and the query for each.
 #[derive(Clone, Copy, Debug)]
 pub struct Questions<'q, N: Number> {
     pub rays: &'q PictureRays<N>,
     pub shadow: Question,
 }
 
-/// Rays that are measured together, and what they are asked.
+/// Rays that are measured together, and their query.
 type Group<'r, N> = (Question, &'r [Ray<N>]);
 
 impl Question {
@@ -49,13 +49,13 @@ impl Question {
 pub struct Answer {
     /// The primitive, or whether anything was met.
     primitive: u32,
-    /// The number of its instance, where that was asked for and there is one.
+    /// The number of its instance, where that was requested and it has one.
     instance: u32,
     /// The bits of t.
     t: u64,
 }
 
-/// Stands for the instance of what is in none.
+/// The number of the instance for objects that are in none.
 const NO_INSTANCE: u32 = u32::MAX;
 
 impl Answer {
@@ -82,7 +82,8 @@ impl Answer {
     }
 }
 
-/// The number of a hit's instance, by its surface: out of line, because timed queries ask for none.
+/// Returns the number of a hit's instance, by its surface. Out of line, because timed queries do
+/// not need it.
 #[cold]
 #[inline(never)]
 fn instance_of<N: Number>(scene: &Scene<'_>, ray: &Ray<N>, hit: &PrimitiveHit<N>) -> u32 {
@@ -116,7 +117,7 @@ impl<N: Number> Questions<'_, N> {
 /// Rays, one after the other.
 pub type Rays<'i, 'r, N> = &'i mut dyn Iterator<Item = &'r Ray<N>>;
 
-/// Asks rays through a structure of its own code, and hands over what comes of it.
+/// Traces rays through a structure's own code, and passes on the results.
 pub fn ask<N: Number>(
     (scene, structure): (&Scene<'_>, Structure),
     question: Question,
@@ -204,9 +205,9 @@ impl Work {
 #[derive(Clone, Copy, Debug, Serialize)]
 pub struct Works {
     pub primary: Work,
-    /// To lights; `None` where there are none.
+    /// Work of rays to lights; `None` without such rays.
     pub shadow: Option<Work>,
-    /// Mirrored and refracted; `None` where there are none.
+    /// Work of mirrored and refracted rays; `None` without such rays.
     pub bounced: Option<Work>,
     pub all: Work,
 }

@@ -19,7 +19,7 @@ pub fn median(seconds: &[f64]) -> Option<f64> {
     }
 }
 
-/// The least and the largest; `None` of a single repeat, which says nothing of others.
+/// Returns the least and the largest; `None` for a single repeat, which has no interval.
 ///
 /// ```
 /// use gridel_host::measure::time::interval;

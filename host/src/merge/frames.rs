@@ -1,6 +1,6 @@
 //! Puts the pictures of an animation in order.
 //!
-//! A picture says in its file which one it is and how it was made ([`FrameNote`]), so pictures may come from several
+//! The file of a picture states its number and how it was made ([`FrameNote`]). So pictures may come from several
 //! machines and in any order.
 
 use super::{PartError, difference, open_png, pixels, text};
@@ -8,7 +8,7 @@ use crate::picture::{Frame, FrameNote};
 use std::fmt;
 use std::io::{BufRead, Seek};
 
-/// What a file says of its picture.
+/// The note of a file about its picture.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct NumberedPicture {
     pub size: [u32; 2],
@@ -16,7 +16,7 @@ pub struct NumberedPicture {
 }
 
 impl NumberedPicture {
-    /// Reads what a PNG says, and none of its pixels.
+    /// Reads the notes of a PNG, and none of its pixels.
     ///
     /// # Errors
     /// If the file is no PNG that says which picture of an animation it is.

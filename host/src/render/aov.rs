@@ -1,4 +1,4 @@
-//! What the surfaces are like that a picture shows: depth, normals, colors and numbers, pixel by pixel. Renderers call
+//! Properties of the surfaces that a picture shows: depth, normals, colors and numbers, pixel by pixel. Renderers call
 //! these arbitrary output variables, AOVs.
 
 use super::Job;
@@ -13,8 +13,7 @@ use gridel_core::{Scene, Settings};
 pub enum Aov {
     /// Distance from the eye in scene units, infinite where nothing is hit.
     Depth,
-    /// The normal that the surface is shaded with, of length 1, in the scene's axes, on the side of the eye; 0 where
-    /// nothing is hit.
+    /// The shading normal of length 1, in the scene's axes, on the side of the eye; 0 where nothing is hit.
     Normal,
     /// Diffuse reflectance, linear, of the cell where there is a checkerboard; 0 where nothing is hit.
     Albedo,
@@ -62,12 +61,12 @@ pub enum Values {
     Coordinates(Vec<[f32; 2]>),
     /// Normals and colors.
     Vectors(Vec<[f32; 3]>),
-    /// Numbers of objects and the like.
+    /// Numbers, such as those of objects.
     Numbers(Vec<u32>),
 }
 
-/// Computes AOVs of some rows of a picture, in the order in which they are asked for. Of a job's settings, samples and
-/// ray depth do not count: there is one ray through the middle of each pixel.
+/// Computes AOVs of some rows of a picture, in the order of `aovs`. Ignores a job's samples and ray depth: there is one
+/// ray through the middle of each pixel.
 ///
 /// # Errors
 /// If the blob lacks the structure or a setting is out of its range.

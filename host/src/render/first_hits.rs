@@ -1,4 +1,4 @@
-//! What the rays through the middles of pixels hit first.
+//! The first hits of the rays through the middles of pixels.
 
 use super::{ALL, Job, chosen};
 use gridel_core::accel::DynAccel;
@@ -7,14 +7,14 @@ use gridel_core::render::RenderError;
 use gridel_core::{Fixed, Format, NoCount, Number, Renderer, Scene, Stack, closest_hit};
 use rayon::prelude::*;
 
-/// What the ray through the middle of a pixel hits first.
+/// The first hit of the ray through the middle of a pixel.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct PixelHit {
     /// From the eye, in scene units.
     pub distance: f64,
-    /// What the surface is shaded with, of length 1, on the side of the eye.
+    /// The shading normal, of length 1, on the side of the eye.
     pub normal: [f32; 3],
-    /// Texture coordinates, of what has them.
+    /// Texture coordinates, where the surface has them.
     pub uv: Option<[f32; 2]>,
     pub object: u32,
     pub primitive: u32,

@@ -18,8 +18,8 @@ pub struct LinearPicture {
     pub width: u16,
     /// Rows of the whole picture that these are.
     pub rows: Range<u16>,
-    /// Red, green and blue, row by row, 1 being display white: the sums of all that rays bring. In `fixed` what one ray
-    /// brings is at most 2,048.
+    /// Red, green and blue, row by row, 1 being display white: the sums of the light of all rays. In `fixed` one ray
+    /// brings at most 2,048.
     pub pixels: Vec<[f32; 3]>,
 }
 

@@ -12,7 +12,8 @@ pub(super) const HEIGHT: u16 = 25;
 /// The place of the pixel in the middle.
 pub(super) const MIDDLE: usize = WIDTH as usize * HEIGHT as usize / 2;
 
-/// What a picture is compared through: all that the blobs hold but for the one that [`job`] takes.
+/// The structures that a picture is compared through: all that the blobs hold except the one that
+/// [`job`] takes.
 pub(super) const OTHERS: [Structure; 3] = [Structure::List, Structure::Wide, Structure::Flagged];
 
 /// The blob of a scene file of this name.
@@ -26,7 +27,7 @@ pub(super) fn blob(name: &str, text: &str) -> Blob {
     compiled.expect("a blob").blob
 }
 
-/// A picture with so many samples per pixel.
+/// Returns a picture with this many samples per pixel.
 pub(super) fn job(scene: &Scene<'_>, format: Format, samples: u16) -> Job {
     let settings = Settings {
         width: WIDTH,

@@ -198,7 +198,7 @@ fn light_behind_a_sheet_does_not_leak_through() {
 
 #[test]
 fn mirrored_and_refracted_rays_do_not_go_to_the_wrong_side() {
-    // What is reflected off a convex ball misses it, and sees the white background.
+    // A ray that is reflected off a convex ball misses it, and sees the white background.
     let mut scene = ball(1);
     (scene.lights, scene.background) = (Vec::new(), Some([1.0; 3]));
     scene.ambient = [1e-9; 3];

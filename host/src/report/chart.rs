@@ -1,4 +1,4 @@
-//! Charts as SVG: bars beside each other, and curves on logarithmic axes.
+//! Charts as SVG: bars side by side, and curves on logarithmic axes.
 
 use crate::table::significant;
 use plotters::coord::Shift;
@@ -17,13 +17,12 @@ fn failed(error: impl Display) -> ChartError {
 }
 
 const SIZE: (u32, u32) = (1080, 540);
-/// Width of what is left of the legend.
+/// Width of the area left of the legend.
 const CHART: u32 = 900;
 /// Grid lines.
 const GRID: RGBColor = RGBColor(222, 222, 222);
-/// Colors that color-blind people can distinguish (Okabe and Ito, "Color universal
-/// design", 2008), in the order in which series take them; then they return, and curves have other
-/// dashes and marks.
+/// Colors that color-blind people can distinguish (Okabe and Ito, "Color universal design", 2008), in the order in
+/// which series take them. After the last color they repeat, and curves get other dashes and marks.
 const COLORS: [RGBColor; 7] = [
     RGBColor(0, 114, 178),
     RGBColor(213, 94, 0),
@@ -89,7 +88,7 @@ pub fn bars(
     };
     let largest = values().fold(1.0, f64::max);
     let smallest = values().filter(|&v| v > 0.0).fold(largest, f64::min);
-    // Half a decade below the smallest, so that it is seen.
+    // Half a decade below the smallest, so that it is visible.
     let low = f64::powf(10.0, (smallest.log10() - 0.5).floor());
     let mut svg = String::new();
     {
@@ -246,7 +245,7 @@ pub fn curves(title: &str, across: &str, up: &str, curves: &[Curve]) -> Result<S
 type Area<'s> = DrawingArea<SVGBackend<'s>, Shift>;
 type Drawn = Result<(), DrawingAreaErrorKind<std::io::Error>>;
 
-/// Names the series beside the chart, each behind a sample that is drawn at its height.
+/// Names the series next to the chart, each behind a sample that is drawn at its height.
 fn legend<'n>(
     area: &Area<'_>,
     names: impl Iterator<Item = &'n String>,

@@ -21,8 +21,9 @@ impl<'p> HeatMap<'p> {
         Self { picture, maximum }
     }
 
-    /// Writes the map as PNG: black is no work, white the maximum, which the file names. Colors go
-    /// by the square root of the work, or the few pixels with the most would leave all others black.
+    /// Writes the map as PNG: black is no work, white the maximum, which the file states. Colors
+    /// follow the square root of the work. Otherwise the few pixels with the most would leave all
+    /// others black.
     ///
     /// # Errors
     /// If `out` has one.
@@ -49,8 +50,8 @@ pub fn work_color(work: u32, maximum: u32) -> Rgb888 {
 /// The linear color for a place on the ramp, 0 to 1.
 ///
 /// A path through Oklab (Ottosson, "A perceptual color space for image processing", 2020), so that
-/// equal steps look equal: lightness rises evenly from black to white while the hue turns from blue
-/// over red to yellow, with as much chroma in between as sRGB can show.
+/// equal steps look equal. Lightness rises evenly from black to white while the hue turns from blue
+/// over red to yellow. The chroma in between is the largest that sRGB can show.
 fn color(share: f64) -> [u16; 3] {
     let lightness = share;
     let chroma = 0.72 * share * (1.0 - share);

@@ -19,7 +19,7 @@ impl Extent {
 
     pub(super) fn of(solid: &Solid) -> Self {
         if !solid.is_bounded() {
-            // It is near whatever lies in the box of a scene.
+            // It is near everything in the box of a scene.
             return Self {
                 lowest: DVec3::splat(f64::from(i16::MIN)),
                 highest: DVec3::splat(f64::from(i16::MAX)),
@@ -122,8 +122,9 @@ pub(super) fn bound(format: Format, solid: &Solid, place: DVec3) -> f64 {
     }
 }
 
-/// The error bound of an instance's surface, in units of the scene, as the table of `Hit::error` has it: from the bound
-/// in the part, and the largest coordinates of the place as seen from the instance's center and from the scene's middle.
+/// Returns the error bound of an instance's surface, in units of the scene, by the table of `Hit::error`. It depends on
+/// the bound in the part, and on the largest coordinates of the position. These are relative to the instance's center
+/// and to the scene's middle.
 pub(super) fn placed_bound(
     format: Format,
     map: &ExactMap,

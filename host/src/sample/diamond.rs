@@ -14,8 +14,9 @@ pub const DIAMOND_27_000: f64 = 33.2;
 /// A ball cut out of a diamond crystal around one of its atoms, space-filling; `radius` is in
 /// angstroms.
 pub fn diamond(radius: f64) -> Scene {
-    // All atoms lie at whole quarters of the cell's edge: on a face-centerd lattice where these
-    // are even, and on another, shifted by a quarter of the diagonal, where they are odd.
+    // All atoms lie at whole quarters of the cell's edge. Where these are even, they form a
+    // face-centered lattice. Where they are odd, they form another one, shifted by a quarter of the
+    // diagonal.
     let quarter = LATTICE_CONSTANT / 4.0;
     let reach = (radius / quarter).floor() as i64;
     let within = (radius / quarter) * (radius / quarter);

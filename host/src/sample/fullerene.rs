@@ -11,8 +11,8 @@ const HEXAGON_PENTAGON: f64 = 1.46;
 
 /// The football of 60 atoms and 90 bonds, as balls and sticks.
 ///
-/// It is an icosahedron whose corners are cut off. On each of its edges two atoms remain; those
-/// around a corner make a pentagon, and its edges are as long as what is cut off, since the faces
+/// It is a truncated icosahedron. On each of its edges two atoms remain, and the atoms around a
+/// corner form a pentagon. The pentagon's edges are as long as the cut-off pieces, since the faces
 /// are equilateral.
 pub fn c60() -> Scene {
     let edge = HEXAGON_HEXAGON + 2.0 * HEXAGON_PENTAGON;

@@ -8,8 +8,8 @@ use std::collections::HashMap;
 /// The most levels whose vertices a 32-bit index counts, with room to spare for memory.
 const MOST_LEVELS: u32 = 9;
 
-/// A closed sphere of radius 1 around the origin: an icosahedron whose triangles are cut in four
-/// `levels` times (at most 9), which makes 20 * 4^levels triangles, 20,480 at level 5.
+/// Returns a closed sphere of radius 1 around the origin. It is an icosahedron whose triangles are
+/// cut in four `levels` times (at most 9). That makes 20 * 4^levels triangles, 20,480 at level 5.
 ///
 /// ```
 /// use gridel_host::scene::Shape;

@@ -53,8 +53,8 @@ fn carbon(positions: Vec<DVec3>, style: MoleculeStyle) -> Scene {
     )
 }
 
-/// Adds a camera that sees all points with a margin, and lights that add up to display white
-/// where both of them and the ambient light fall.
+/// Adds a camera that sees all points with a margin, and two lights. A surface that both of them
+/// and the ambient light reach is display white.
 fn lit(scene: Scene, points: &[DVec3], margin: f64) -> Scene {
     let low = points
         .iter()

@@ -8,9 +8,10 @@ use std::f64::consts::TAU;
 /// The bond length of graphene in angstroms.
 const BOND: f64 = 1.421;
 
-/// A single-walled tube of graphene, open at its ends, along the z axis, space-filling: `(n, n)`
-/// is an armchair tube, `(n, 0)` a zigzag tube, all others are chiral. `length` is in angstroms;
-/// the tube (10, 10) has 16.3 atoms an angstrom, so that 172 angstroms are about 2,800 objects.
+/// Returns a single-walled tube of graphene, open at its ends, along the z axis, space-filling.
+/// `(n, n)` is an armchair tube, `(n, 0)` a zigzag tube, all others are chiral. `length` is in
+/// angstroms. The tube (10, 10) has 16.3 atoms per angstrom, so 172 angstroms are about 2,800
+/// objects.
 ///
 /// Bond lengths are those of the flat sheet, measured along the wall.
 ///
@@ -18,8 +19,8 @@ const BOND: f64 = 1.421;
 /// made. That index is at least 3, or there would be no room for a tube; a smaller one is raised.
 pub fn nanotube(n: u32, m: u32, length: f64) -> Scene {
     let (n, m) = (i64::from(n.max(m).max(3)), i64::from(n.min(m)));
-    // The tube rolls up the sheet along the chiral vector c = n a + m b, where a and b are the
-    // lattice vectors, at 60 degrees. Lengths are in units of a from here on.
+    // The tube rolls up the sheet along the chiral vector c = n a + m b. The lattice vectors a and
+    // b are at 60 degrees. Lengths are in units of a from here on.
     let lattice = BOND * 3.0_f64.sqrt();
     let square = n * n + n * m + m * m;
     let circumference = (square as f64).sqrt();

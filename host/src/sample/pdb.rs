@@ -19,8 +19,8 @@ pub enum PdbError {
 }
 
 /// Writes the spheres of a scene as atoms, to a thousandth of an angstrom. The names of their
-/// materials are their elements, as the importer of molecules and the samples have it; other
-/// shapes, such as the sticks of bonds, are left out.
+/// materials are their elements, as in scenes of molecules and in the samples. Other shapes, such
+/// as the sticks of bonds, are left out.
 ///
 /// # Errors
 /// If there are no spheres, or the fixed columns of the format do not hold what there is.

@@ -1,9 +1,9 @@
 //! Which files a scene file may name: those in its own folder and below, unless more is allowed.
 //!
-//! The folder is that of the file from which everything starts, so that a scene may keep imports in
-//! folders and these may name each other. What counts is where a file lies when all links are
-//! followed, so a link that leads outside is outside. Backslashes separate folders as slashes do,
-//! on every system.
+//! The folder is that of the file from which everything starts. So a scene may keep imports in
+//! folders, and these may name each other. All links are followed before a file's place is checked,
+//! so a link that leads outside is outside. Backslashes separate folders as slashes do, on every
+//! system.
 
 use super::SceneError;
 use super::files::{Files, lexical};
@@ -85,7 +85,7 @@ impl Access {
         }
     }
 
-    /// The path of the file that `name` stands for in `file`.
+    /// Returns the path of the file that `name` in `file` refers to.
     ///
     /// # Errors
     /// If it lies outside of the scene's folder: the cause, which names the folder, and the remedy.
@@ -120,7 +120,7 @@ impl Access {
             if !lexical(&path).starts_with(root) {
                 return Err(outside());
             }
-            // A file that is not there lies nowhere; reading says so.
+            // A file that does not exist has no place; reading reports it.
             if path
                 .canonicalize()
                 .is_ok_and(|real| !real.starts_with(root))

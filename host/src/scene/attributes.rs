@@ -1,4 +1,4 @@
-//! What meshes carry beside shape and normals: colors of vertices, and texture coordinates.
+//! Attributes of meshes other than shape and normals: colors of vertices, and texture coordinates.
 
 use super::normals::cofactors;
 use super::texture::Texture;

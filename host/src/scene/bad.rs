@@ -1,12 +1,12 @@
-//! Malformed and unusual files of other projects: each is read rightly, with a warning of what is
-//! not drawn, or rejected with its true cause.
+//! Malformed and unusual files of other projects. Each is read correctly, with a warning of the
+//! parts that are not drawn, or rejected with its true cause.
 
 use super::{MoleculeOptions, load, test_scenes};
 use std::collections::BTreeSet;
 
 /// The result of reading a file.
 enum Expected {
-    /// As many objects, and a warning with each of these words, no more.
+    /// The number of objects, and a warning with each of these words, no more.
     Read(usize, &'static [&'static str]),
     /// An error with these words.
     Rejected(&'static str),
@@ -135,7 +135,8 @@ fn malformed_files_are_read_rightly_or_rejected_with_their_cause() {
     assert!(unlisted.is_empty(), "{unlisted:?}");
 }
 
-/// The materials of Khronos' validator: what is valid is read, with warnings of what is not drawn.
+/// The materials of Khronos' validator: valid files are read, with warnings of the parts that are
+/// not drawn.
 #[test]
 fn valid_files_of_khronos_are_read() {
     for (name, words) in [

@@ -1,5 +1,5 @@
-//! Damaged scene files: whatever is cut off or overwritten, an importer answers with a scene that
-//! holds together or with an error that says what to do, and does so at once.
+//! Tests importers with scene files that are cut off or overwritten. The result is always a
+//! consistent scene or an error that says what to do, and it comes at once.
 
 use super::{IMPORTERS, Importer, MoleculeOptions, MoleculeStyle, Scene, Shape, load, test_scenes};
 use std::path::Path;
@@ -119,7 +119,7 @@ fn damaged_files() {
     damage("glb", &binary, binary.len(), 3000);
 }
 
-/// Formats whose files are never empty; what becomes of damaged TOML, its own tests say.
+/// Formats whose files are never empty. TOML has its own tests of damaged files.
 fn damageable() -> impl Iterator<Item = &'static Importer> {
     IMPORTERS.iter().filter(|it| it.name != "TOML")
 }

@@ -1,4 +1,4 @@
-//! Objects that glow as lights, and lights that are seen as objects.
+//! Objects that glow as lights, and lights that are visible as objects.
 
 use super::attributes::Attributes;
 use super::light_form::{LightForm, LightShape};
@@ -13,10 +13,10 @@ pub const MOST_FACES: usize = 32;
 const BLACK: Color = [0.0; 3];
 
 impl Scene {
-    /// The scene with a light for each sphere, disc, face of a box and triangle of a mesh that glows, unless its material
-    /// says that it does not light others; and with an object for each light that is seen. Two triangles that make a
-    /// parallelogram are one light. Lights and objects are added behind the others, once: a scene from here changes no
-    /// more.
+    /// Returns the scene with a light for each sphere, disc, face of a box and triangle of a mesh that glows. A
+    /// material can state that it does not light others; it gets no light. Each light that is visible gets an object.
+    /// Two triangles that form a parallelogram are one light. Lights and objects are appended once: a second call
+    /// changes nothing.
     ///
     /// ```
     /// # let file = "[material.lamp]\nemission = 5\n\
@@ -234,7 +234,7 @@ fn parallelogram(first: [DVec3; 3], second: [DVec3; 3]) -> Option<(DVec3, LightS
     is_one.then_some((a, LightShape::Rectangle { edges }))
 }
 
-/// The shape that is seen of a light with an area.
+/// Returns the visible shape of a light with an area.
 fn seen(position: DVec3, shape: &LightShape) -> Option<Shape> {
     let mesh = |vertices: Vec<DVec3>, triangles: Vec<[u32; 3]>| Shape::Mesh {
         vertices,

@@ -26,9 +26,9 @@ type Color = [f64; 3];
 #[derive(Clone, Debug, PartialEq)]
 pub struct Environment {
     pub sky: Sky,
-    /// What the radiance of the sky is multiplied with.
+    /// Factor of the sky's radiance.
     pub intensity: f64,
-    /// By how many degrees the picture is turned around the direction up, counterclockwise as seen from above.
+    /// Degrees by which the picture is turned around the direction up, counterclockwise as seen from above.
     pub rotation: f64,
     /// Rows of the map in a blob: 16, 32, 64, 128 or 256.
     pub size: u32,
@@ -41,8 +41,8 @@ pub enum Sky {
     /// A picture of all directions. Its middle lies where a camera looks that begins an orbit: at -z, or at y where z points
     /// up. Its right lies at x.
     Picture(Arc<Panorama>),
-    /// Radiance that depends on the height alone: with h the sine of the elevation, above the horizon that of the horizon
-    /// goes over to that of the zenith as h (2 - h).
+    /// Radiance that depends on the height alone. Above the horizon, the horizon's radiance blends into the zenith's by
+    /// h (2 - h), with h the sine of the elevation.
     Gradient {
         zenith: Color,
         horizon: Color,
@@ -53,9 +53,9 @@ pub enum Sky {
 /// A disc in the sky.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Sun {
-    /// The way that its light travels.
+    /// The direction in which its light travels.
     pub direction: DVec3,
-    /// The color of a directional light that gives as much light.
+    /// The color of a directional light of the same strength.
     pub color: Color,
     /// Degrees from edge to edge: above 0, up to 90.
     pub angle: f64,
@@ -80,7 +80,7 @@ impl Sun {
         2.0 * libm::sin(self.angle.to_radians() / 4.0)
     }
 
-    /// What a radiance is multiplied with for the [color](Self::color): the solid angle over π.
+    /// Returns the factor from a radiance to the [color](Self::color): the solid angle over π.
     pub fn solid_angle_over_pi(&self) -> f64 {
         self.radius() * self.radius()
     }
@@ -158,7 +158,7 @@ impl Panorama {
             .ok_or_else(|| fault("has no pixels", "save the picture again"))
     }
 
-    /// Reads the file that `name` stands for in a scene file.
+    /// Reads the file that `name` in a scene file refers to.
     pub(super) fn file(
         access: &super::access::Access,
         scene: &Path,

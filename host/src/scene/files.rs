@@ -4,8 +4,8 @@ use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-/// Files in memory, by the paths that they have beside each other. A scene that is [read among
-/// them](super::read_among) may name each of them, and nothing else.
+/// Files in memory, by their paths relative to each other. A scene that is [read among them](super::read_among) may
+/// name each of them, and no other file.
 #[derive(Clone, Debug, Default)]
 pub struct Files(BTreeMap<PathBuf, Arc<[u8]>>);
 
@@ -20,8 +20,8 @@ impl Files {
         self.0.insert(lexical(path.as_ref()), bytes.into());
     }
 
-    /// The path and the content of the file that a path stands for: the file of that path, or else the only file of
-    /// that name, because files that are given one by one have no folders.
+    /// Returns the path and the content of the file for a path. It is the file of that path, or else the only file of
+    /// that name. Files that are given one by one have no folders.
     pub(super) fn find(&self, path: &Path) -> Option<(&Path, &[u8])> {
         let path = lexical(path);
         let exact = self.0.get_key_value(&path);

@@ -9,13 +9,13 @@ use std::borrow::Cow;
 const KEEP: &str = "keep the instances with `--instances keep`, or place fewer of them";
 
 impl Scene {
-    /// Returns the scene with objects in place of parts and instances: those of each instance follow the
-    /// scene's own, and are named `INSTANCE/OBJECT`. They stand where the instances are at rest, and joints and their
-    /// tracks are left out.
+    /// Returns the scene with objects in place of parts and instances. Those of each instance follow the scene's own,
+    /// and are named `INSTANCE/OBJECT`. They stand where the instances are at rest, and joints and their tracks are
+    /// left out.
     ///
     /// # Errors
-    /// If the scene would have more than 16,777,216 primitives or take too much memory, or a placement
-    /// moves a shape out of the range of numbers.
+    /// If the scene would have more than 16,777,216 primitives or take too much memory. Also if a placement moves a
+    /// shape out of the range of numbers.
     ///
     /// ```
     /// use gridel_host::scene::read;
@@ -45,7 +45,7 @@ impl Scene {
         Ok(Cow::Owned(flat))
     }
 
-    /// As [`Self::flattened`], without a copy of what stays.
+    /// As [`Self::flattened`], without a copy of the unchanged parts.
     pub(super) fn into_flattened(mut self) -> Result<Self, SceneError> {
         if !self.instances.is_empty() {
             self.check_flattened()?;

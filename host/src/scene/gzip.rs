@@ -1,4 +1,4 @@
-//! Gzipped files (RFC 1952), which are known by their first bytes, whatever their names are.
+//! Gzipped files (RFC 1952), recognized by their first bytes, not by their names.
 
 use super::SceneError;
 use super::size::MOST_INPUT;
@@ -115,7 +115,7 @@ mod tests {
                 );
                 assert!(error.remedy.contains("only zeros"), "{}", error.remedy);
             }
-            // What begins as a member must be one.
+            // Data that begins as a member must be one.
             let error = inflate(path, [&whole[..], b"\x1f\x8b\x08"].concat()).unwrap_err();
             assert!(error.cause.contains("is damaged"), "{error}");
         }

@@ -1,4 +1,4 @@
-//! The table of importers: what is known of a scene format, and what an importer is given.
+//! The table of importers: the description of each scene format, and the input of an importer.
 
 use super::access::Access;
 use super::gzip;
@@ -18,9 +18,9 @@ pub struct Importer {
     /// Extensions of its files, in lower case and without a dot, the usual one first. Behind each of
     /// them `.gz` may stand.
     pub extensions: &'static [&'static str],
-    /// Which way is up in its scenes, where a file has no camera that says so.
+    /// The direction up in its scenes, where a file has no camera that states it.
     pub up: Up,
-    /// Whether its files may be binary; all formats have a text form.
+    /// True if its files may be binary; all formats have a text form.
     pub binary: bool,
     /// A small file in the format, which tests and fuzzers start from.
     pub example: &'static str,
@@ -99,14 +99,15 @@ impl Importers {
         }
     }
 
-    /// Reads a file, and finds its importer by its name, or by its content if the name says nothing.
+    /// Reads a file, and finds its importer by its name, or by its content if the name has no known
+    /// extension.
     pub(super) fn open<'a>(
         self,
         path: &'a Path,
         choices: Choices<'a>,
         access: &'a Access,
     ) -> Result<(&'static Importer, Input<'a>), SceneError> {
-        // A file that nothing can read is not worth reading.
+        // A file that no importer can read is not read.
         self.of_name(path)?;
         self.input(path, access.read(path)?, choices, access)
     }
@@ -157,7 +158,7 @@ fn dotted(extensions: &[&str]) -> Vec<String> {
     extensions.iter().map(|it| format!(".{it}")).collect()
 }
 
-/// What a file leaves open, as it is chosen.
+/// The choices that a file leaves open.
 #[derive(Clone, Copy)]
 pub(super) struct Choices<'a> {
     pub(super) molecule: &'a MoleculeOptions,

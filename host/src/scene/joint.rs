@@ -61,7 +61,7 @@ impl<'s> JointTracks<'s> {
 }
 
 impl Scene {
-    /// Returns the motion of each joint at a time: where what hangs on it moves from where it is at rest.
+    /// Returns the motion of each joint at a time. It moves what hangs on the joint away from its place at rest.
     ///
     /// This is computed in the precision of `f64`. A blob's tracks give the same in integers.
     ///

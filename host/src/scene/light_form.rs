@@ -1,4 +1,4 @@
-//! What makes a light more than a point: an area, a falloff, a spot.
+//! Properties of lights other than plain points: an area, a falloff, a spot.
 
 use glam::{DAffine3, DMat3, DVec3};
 
@@ -6,14 +6,15 @@ use glam::{DAffine3, DMat3, DVec3};
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LightForm {
     pub shape: LightShape,
-    /// Whether a point falls off with the square of the distance, and has its color at a distance of 1 scene unit.
+    /// True if a point falls off with the square of the distance, and has its color at a distance of 1 scene unit.
     pub falls_off: bool,
     /// The distance at which light ends, in scene units.
     pub range: Option<f64>,
     pub spot: Option<Spot>,
-    /// Whether a light with an area is seen: it gets an object, by [`Scene::with_emitters`](super::Scene::with_emitters).
+    /// True if a light with an area is visible. It gets an object, by
+    /// [`Scene::with_emitters`](super::Scene::with_emitters).
     pub is_visible: bool,
-    /// Whether an object has the same surface, in whose way light must not start.
+    /// True if an object has the same surface. Light must start above it.
     pub is_surface: bool,
 }
 
@@ -31,7 +32,7 @@ impl Default for LightForm {
     }
 }
 
-/// What shines.
+/// The shape that shines.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum LightShape {
     /// The position itself.

@@ -1,10 +1,9 @@
 //! The scene in memory: what every importer produces and the compiler reads.
 //!
-//! All coordinates are `f64` scene units in one right-handed world space: importers bake the transforms of
-//! groups and nodes into the geometry, so that nothing downstream knows of them. [Parts](Part) are the
-//! exception: they have coordinates of their own, and [instances](Instance) place them.
-//! [`Scene::flattened`] makes objects of these. Colors are linear RGB, 1.0 being full display white, unless
-//! [`Scene::display_values`] says otherwise.
+//! All coordinates are `f64` scene units in one right-handed world space. Importers bake the transforms of groups and
+//! nodes into the geometry, so later stages need not know them. [Parts](Part) are the exception: they have coordinates
+//! of their own, and [instances](Instance) place them. [`Scene::flattened`] makes objects of these. Colors are linear
+//! RGB, 1.0 being full display white, unless [`Scene::display_values`] says otherwise.
 
 mod access;
 mod attributes;
@@ -120,8 +119,8 @@ pub fn load(path: &Path, molecule: &MoleculeOptions) -> Result<Imported, SceneEr
 /// may be gzipped.
 ///
 /// # Errors
-/// If the file cannot be read, its format is unknown, its content is broken, or it names a file
-/// outside of its folder and may not.
+/// If the file cannot be read, its format is unknown, or its content is broken. Also if it names a file outside of its
+/// folder without permission.
 ///
 /// ```
 /// use gridel_host::scene::{ImportOptions, load_with};
@@ -144,7 +143,7 @@ pub fn load_with(path: &Path, options: &ImportOptions) -> Result<Imported, Scene
     finish(importer.import(input)?, options)
 }
 
-/// Shades and flattens what was read as it is asked for.
+/// Shades and flattens the scene as the options require.
 fn finish(mut imported: Imported, options: &ImportOptions) -> Result<Imported, SceneError> {
     let scene = &mut imported.scene;
     let in_parts = scene.parts.iter_mut().flat_map(|part| &mut part.objects);
@@ -189,8 +188,8 @@ fn finish(mut imported: Imported, options: &ImportOptions) -> Result<Imported, S
     Ok(imported)
 }
 
-/// Reads a scene from bytes as [`load_with`] reads a file of this name, which need not exist. Files
-/// that the scene names lie beside it: for a name without a folder in the current folder.
+/// Reads a scene from bytes as [`load_with`] reads a file of this name, which need not exist. Files that the scene
+/// names lie in the same folder; for a name without a folder that is the current folder.
 ///
 /// # Errors
 /// As [`load_with`].
@@ -212,8 +211,8 @@ pub fn read(name: &Path, bytes: Vec<u8>, options: &ImportOptions) -> Result<Impo
     finish(importer.import(input)?, options)
 }
 
-/// Reads a scene from files in memory, of which `name` is the scene's. Files that the scene names are found by their
-/// paths, or else by their names alone if no two files share them; disks are not read.
+/// Reads a scene from files in memory; `name` is the scene's file. Files that the scene names are found by their paths.
+/// A file is found by its name alone if no two files share it. Disks are not read.
 ///
 /// # Errors
 /// As [`load_with`], and if a file that the scene needs is not among them.

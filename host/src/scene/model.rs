@@ -21,15 +21,15 @@ pub struct Scene {
     /// Where the picture is taken from; without one [the compiler frames](fn@crate::compile::framing) the
     /// scene's bounds.
     pub camera: Option<Camera>,
-    /// What the camera has in place of a pinhole.
+    /// The lens of the camera, in place of a pinhole.
     pub lens: Option<Lens>,
-    /// Which way is up, for that frame.
+    /// The direction up, for that frame.
     pub up: Up,
     /// The color of rays that hit nothing; without one it is black, or light if there is no camera
     /// either.
     pub background: Option<Color>,
-    /// Whether colors and lights are display values, which are added up and shown as they are: what
-    /// ray tracers did before pictures were encoded. Linear without.
+    /// True if colors and lights are display values, which are added up and shown as they are. Ray tracers did so
+    /// before pictures were encoded. Otherwise they are linear.
     pub display_values: bool,
     /// Light that reaches every surface from everywhere, multiplied with its diffuse color.
     pub ambient: Color,
@@ -37,7 +37,7 @@ pub struct Scene {
     pub environment: Option<Environment>,
     /// Point and directional lights.
     pub lights: Vec<Light>,
-    /// Names of the lights, in their order; empty, or missing at the end, where there is none.
+    /// Names of the lights, in their order. A name is empty, or missing at the end, where a light has none.
     pub light_names: Vec<String>,
     /// For each light, what makes it more than a point; empty, or missing at the end, where there is nothing.
     pub light_forms: Vec<Option<LightForm>>,
@@ -49,24 +49,24 @@ pub struct Scene {
     pub parts: Vec<Part>,
     /// Placed parts. Checkerboards lie in the scene's coordinates on them too.
     pub instances: Vec<Instance>,
-    /// What moves instances.
+    /// The joints that move instances.
     pub joints: Vec<Joint>,
-    /// A box that the lattice takes in beside the scene and its motion, for instances that programs place.
+    /// A box that the lattice also covers, for instances that programs place.
     pub room: Option<[DVec3; 2]>,
     /// How camera, lights, materials and joints change with time, at most one track for each property.
     pub tracks: Vec<Track>,
     /// Defaults for rendering that the scene file states.
     pub render: RenderSettings,
-    /// Whether the format has no names, so that all are made of kinds and numbers; blobs leave them out.
+    /// True if the format has no names. Then all names are made of kinds and numbers, and blobs leave them out.
     pub unnamed: bool,
 }
 
-/// A thin lens around the eye: what is not in focus is blurred.
+/// A thin lens around the eye. Points that are not in focus are blurred.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Lens {
     /// Half of the aperture, in scene units: above 0.
     pub radius: f64,
-    /// The distance of the plane on which the picture is sharp, along the camera's axis; without one that of the camera's
+    /// The distance of the plane on which the picture is sharp, along the camera's axis. Default: that of the camera's
     /// target.
     pub focus: Option<f64>,
 }
@@ -87,7 +87,7 @@ pub struct Camera {
     pub eye: DVec3,
     /// A point in the middle of the picture; not equal to `eye`.
     pub target: DVec3,
-    /// Which way is up; not parallel to the view direction.
+    /// The direction up; not parallel to the view direction.
     pub up: DVec3,
     /// Full vertical field of view in degrees, in (0, 180).
     pub fov_degrees: f64,
@@ -118,12 +118,12 @@ impl Camera {
 pub enum Light {
     /// Shines from `position` in all directions, without falloff.
     Point { position: DVec3, color: Color },
-    /// Shines from infinitely far away; `direction` is the way the light travels.
+    /// Shines from infinitely far away; `direction` is that in which the light travels.
     Directional { direction: DVec3, color: Color },
 }
 
-/// The reflection and transmission of a surface. The parts add up: local light (diffuse and highlight), what
-/// a mirror ray brings, what glass lets through.
+/// The reflection and transmission of a surface. The parts add up: local light (diffuse and highlight), the light of a
+/// mirror ray, the light through glass.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Material {
     pub name: String,
@@ -138,7 +138,7 @@ pub struct Material {
     /// How rough a mirror or glass is: 0 for a smooth one, or [`LEAST_ROUGHNESS`](Self::LEAST_ROUGHNESS) to 1. Its
     /// square is the α of GGX.
     pub roughness: f64,
-    /// Weight of what glass brings (Fresnel-split reflection and refraction); black for opaque.
+    /// Weight of the light through glass (Fresnel-split reflection and refraction); black for opaque.
     pub transmit: Color,
     /// Index of refraction relative to the surroundings, 1 to 4; used when `transmit` is not black.
     pub ior: f64,
@@ -149,10 +149,10 @@ pub struct Material {
     pub absorption: Color,
     /// Radiance that leaves the front of the surface; black for none.
     pub emission: Color,
-    /// Whether objects that send out light are lights, too.
+    /// True if objects that send out light are lights, too.
     pub lights: bool,
-    /// Whether lights stand for all objects of this material, as [`Scene::with_emitters`] makes them: indirect light does
-    /// not bring its light again.
+    /// True if lights represent all objects of this material, as [`Scene::with_emitters`] makes them. Indirect light
+    /// does not bring their light again.
     pub is_sampled: bool,
     /// The image that weights the diffuse color of meshes with texture coordinates.
     pub texture: Option<Texture>,
@@ -165,7 +165,7 @@ pub struct Material {
 /// How the brightness of pixels is mapped to the range of a display.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum ToneMapping {
-    /// Not at all: what is brighter than white is white.
+    /// No mapping: values brighter than white are white.
     #[default]
     None,
     /// By x / (1 + x).
@@ -244,7 +244,7 @@ pub struct Object {
     pub normals: Normals,
     /// Colors of vertices, and texture coordinates. Other shapes have none.
     pub attributes: Attributes,
-    /// Where the scene file says so, for messages.
+    /// Its place in the scene file, for messages.
     pub place: SourceSpan,
 }
 
@@ -254,7 +254,7 @@ pub struct Part {
     pub name: String,
     /// At least one, each with a box; materials are the scene's.
     pub objects: Vec<Object>,
-    /// Where the scene file says so, for messages.
+    /// Its place in the scene file, for messages.
     pub place: SourceSpan,
 }
 
@@ -268,11 +268,11 @@ pub struct Instance {
     pub placement: Placement,
     /// Index into [`Scene::joints`]; `None` for one that stands still.
     pub joint: Option<usize>,
-    /// Where the scene file says so, for messages.
+    /// Its place in the scene file, for messages.
     pub place: SourceSpan,
 }
 
-/// What moves the instances and joints that hang on it.
+/// Moves the instances and joints that hang on it.
 ///
 /// A joint turns and scales about its pivot, and shifts: its own motion takes a place `p` to `pivot + shift +
 /// scale * rotation * (p - pivot)`, in the scene's coordinates at rest. Tracks give the three; without one they are 0,
@@ -284,7 +284,7 @@ pub struct Joint {
     pub parent: Option<usize>,
     /// The place about which it turns, at rest.
     pub pivot: DVec3,
-    /// Where the scene file says so, for messages.
+    /// Its place in the scene file, for messages.
     pub place: SourceSpan,
 }
 
@@ -298,13 +298,13 @@ pub struct RenderSettings {
     pub samples: u16,
     /// How many times a ray may be reflected or refracted: 0 to 32.
     pub depth: u8,
-    /// How many times light may be reflected diffusely on its way from a light to the eye, beside the last time: 0 to 32. 0 for
-    /// surfaces that do not light each other.
+    /// How many times light may be reflected diffusely on its way from a light to the eye, not counting the last time:
+    /// 0 to 32. 0 for surfaces that do not light each other.
     pub bounces: u8,
     /// A secondary ray that can change no channel by more than this (1.0 being display white) is
     /// not traced.
     pub cutoff: f64,
-    /// Whether objects stand in each other's light.
+    /// True if objects cast shadows on each other.
     pub shadows: bool,
     /// All light is multiplied with 2 to this power: -32 to 32.
     pub exposure: f64,
@@ -328,7 +328,7 @@ impl Default for RenderSettings {
 }
 
 impl Material {
-    /// The least roughness of what is rough.
+    /// The least roughness of rough materials.
     pub const LEAST_ROUGHNESS: f64 = 0.05;
 
     /// Returns the image that lies on texture coordinates: the texture, or else the normal map, which lies as it does.

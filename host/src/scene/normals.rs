@@ -18,7 +18,7 @@ use std::collections::HashMap;
 /// ```
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Normals {
-    /// Of length 1.
+    /// Normals of length 1.
     pub vectors: Vec<DVec3>,
     /// For each triangle, which of the vectors its corners have; [`Normals::FLAT`] for one that is flat. As many as the
     /// mesh has, or none.
@@ -37,7 +37,7 @@ pub enum NormalsChoice {
     Smooth(f64),
 }
 
-/// How far a normal of a file may be from that of its face to be that one: less than a step of a display.
+/// Largest angle in radians at which a normal of a file counts as that of its face: less than a step of a display.
 const SAME: f64 = 1.0 / 1024.0;
 
 impl Normals {
@@ -79,8 +79,9 @@ impl Normals {
         Self::unless_flat(vectors, corners)
     }
 
-    /// Normals that are smooth across edges where two faces meet at less than an angle in degrees: at each vertex the
-    /// mean of such faces, weighted by their angles there. Vertices are the same where their coordinates are.
+    /// Computes normals that are smooth across edges where two faces meet at less than `degrees`. The normal at a
+    /// vertex is the mean of such faces, weighted by their angles there. Vertices are the same where their coordinates
+    /// are.
     pub fn computed(vertices: &[DVec3], triangles: &[[u32; 3]], degrees: f64) -> Self {
         let places = same_places(vertices);
         let faces: Vec<DVec3> = triangles
@@ -152,8 +153,8 @@ impl Normals {
     }
 }
 
-/// The matrix that turns normals where another one moves points, outward staying outward, and whether that mirrors: the
-/// inverse transposed, times the magnitude of the determinant.
+/// Returns the matrix that turns normals where `matrix` moves points, and whether that mirrors. Outward stays outward.
+/// The matrix is the inverse transposed, times the magnitude of the determinant.
 pub(super) fn cofactors(matrix: DMat3) -> (DMat3, bool) {
     let DMat3 {
         x_axis: x,
@@ -166,7 +167,7 @@ pub(super) fn cofactors(matrix: DMat3) -> (DMat3, bool) {
     (cofactors * sign, mirrors)
 }
 
-/// Of length 1, or zero where it has no direction.
+/// Returns the vector at length 1, or zero where it has no direction.
 fn length_one(vector: DVec3) -> DVec3 {
     if vector == DVec3::ZERO || !vector.is_finite() {
         return DVec3::ZERO;
@@ -235,7 +236,7 @@ impl Groups {
         }
     }
 
-    /// The corner that stands for a corner's group: the first one of it.
+    /// Returns the first corner of a corner's group, which represents it.
     fn of(&mut self, corner: usize) -> usize {
         let mut corner = corner;
         while self.leads_to[corner] as usize != corner {

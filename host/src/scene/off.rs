@@ -1,9 +1,9 @@
 //! Reads OFF, the Object File Format of Geomview: the vertices and polygons of a mesh, as text.
 //!
-//! The keyword may be missing, and may have the prefixes `ST`, `C` and `N` of vertices with texture
-//! coordinates, colors and normals, which then stand on one line each. These are ignored, with a
-//! warning each, and so are the colors of faces. Vertices of other than three coordinates (`4OFF`,
-//! `nOFF`) and binary files are rejected. Comments begin with `#`.
+//! The keyword may be missing. It may have the prefixes `ST`, `C` and `N`, for vertices with
+//! texture coordinates, colors and normals on their lines. These are ignored, with a warning each,
+//! and so are the colors of faces. Vertices of other than three coordinates (`4OFF`, `nOFF`) and
+//! binary files are rejected. Comments begin with `#`.
 
 use super::importer::{Importer, Input, stem};
 use super::polygon::{self, MAX_CONCAVE};
@@ -18,7 +18,7 @@ pub(super) const IMPORTER: Importer = Importer {
     name: "OFF",
     about: "Geomview's meshes of polygons",
     extensions: &["off"],
-    // The format says nothing; Geomview's own camera has y up and looks along -z.
+    // The format does not state it; Geomview's own camera has y up and looks along -z.
     up: Up::Y,
     binary: false,
     example: "OFF\n# an arrowhead\n4 1 4\n1 0 0\n0 2 0\n-1 0 0\n0 .5 0\n4 0 1 2 3\n",
@@ -156,7 +156,7 @@ fn header<'a>(
     let vertices = words.count("the number of vertices")?;
     let line = words.line;
     let faces = words.count("the number of faces")?;
-    // Nobody uses the number of edges, and some files leave it out.
+    // No reader uses the number of edges, and some files leave it out.
     let left_out =
         words.rest_of_line().is_empty() && line == words.line && words.count_of_next_line() != 1;
     if !left_out {

@@ -1,4 +1,4 @@
-//! How a scene file is read, and what comes of it.
+//! The options for reading a scene file, and the result.
 
 use super::model::Scene;
 use super::normals::NormalsChoice;
@@ -32,21 +32,21 @@ impl Default for MoleculeOptions {
     }
 }
 
-/// A scene, and what its importer had to pass over to read it.
+/// A scene, and warnings of the parts that its importer ignored.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Imported {
     pub scene: Scene,
     /// Sentences for the user, each with file and line.
     pub warnings: Vec<String>,
-    /// Whether a molecule was read, which [`MoleculeOptions`] are for.
+    /// True if a molecule was read, to which [`MoleculeOptions`] apply.
     pub molecules: bool,
-    /// Whether a file with cameras or animations to choose from was read, which [`Choice`] is for.
+    /// True if a file with several cameras or animations was read, to which [`Choice`] applies.
     pub choices: bool,
-    /// Whether a file that can hold assemblies was read, which [`ImportOptions::assembly`] is for.
+    /// True if a file that can hold assemblies was read, to which [`ImportOptions::assembly`] applies.
     pub assemblies: bool,
     /// Where instances that move were copied, if they were.
     pub posed: Option<Posed>,
-    /// Number of instances that were copied, as [`ImportOptions::instances`] asks.
+    /// Number of instances that were copied, as [`ImportOptions::instances`] requires.
     pub copied: usize,
 }
 
@@ -68,11 +68,11 @@ pub struct Choice {
     pub animation: Option<String>,
 }
 
-/// What becomes of instances.
+/// The treatment of instances.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Instances {
-    /// Parts are held once, and instances place them.
+    /// Parts are stored once, and instances place them.
     #[default]
     Keep,
     /// Each instance becomes objects of its own.
@@ -84,18 +84,18 @@ pub enum Instances {
 pub struct ImportOptions {
     /// Choices that a molecule file leaves open.
     pub molecule: MoleculeOptions,
-    /// Which assembly of a PDB or mmCIF file, by its number or name; without one the asymmetric unit, which
-    /// is the atoms as the file lists them.
+    /// The assembly of a PDB or mmCIF file, by its number or name. Default: the asymmetric unit, which is the atoms as
+    /// the file lists them.
     pub assembly: Option<String>,
     /// Which camera and animation.
     pub choice: Choice,
-    /// Whether instances are kept.
+    /// The treatment of instances.
     pub instances: Instances,
     /// The time in seconds at which instances are copied where they move; without one they are copied at rest.
     pub at: Option<f64>,
     /// Which normals meshes are shaded with.
     pub normals: NormalsChoice,
-    /// Whether the file may name files outside of its folder: imports, materials, buffers. A scene
-    /// from elsewhere could read any file of the user's so.
+    /// True if the file may name files outside of its folder: imports, materials, buffers. A scene from elsewhere could
+    /// then read any file of the user.
     pub allow_outside: bool,
 }

@@ -1,9 +1,9 @@
 //! The columns of a PDB file (format 3.3): ATOM, HETATM, MODEL, ENDMDL, END, CONECT and REMARK 350. Atoms behind
 //! an END begin a model of their own, because programs of dynamics end their frames so.
 //!
-//! Columns are those of the format's description, counted from 1. What drawing does not need is
-//! not read, so that files that leave it out or bend its rules are welcome: serial numbers may be
-//! `*****` or hexadecimal, and everything after the coordinates may be missing.
+//! Columns are those of the format's description, counted from 1. The importer reads only what drawing needs, so it
+//! accepts files that omit the rest or break its rules. Serial numbers may be `*****` or hexadecimal, and everything
+//! after the coordinates may be missing.
 
 mod biomt;
 mod columns;
@@ -51,7 +51,7 @@ fn read(input: Input<'_>) -> Result<Imported, SceneError> {
 fn parse<'a>(source: &'a Source, warnings: &mut Warnings) -> Result<Parsed<'a>, SceneError> {
     let mut parsed = Parsed::default();
     let mut assemblies = Assemblies::default();
-    // Whether the next atom starts a model, and what number the file gives that.
+    // The number that the file gives the next model, if the next atom starts one.
     let mut next_model = Some("1");
     for (number, line) in source.lines() {
         match columns(line, 1, 6).trim_end() {
@@ -159,9 +159,8 @@ fn element_of_name(field: &str, hetero: bool) -> Option<Element> {
     );
     let is_symbol =
         |symbol: &str| symbol.len() == 2 && symbol.ends_with(|c: char| c.is_ascii_alphabetic());
-    // Many programs start all names in the first column. So two letters are a symbol only where
-    // the second is written small, or where no more letters follow and the atom is not part of a
-    // biopolymer, whose elements have one letter.
+    // Many programs start all names in the first column. So two letters are a symbol only in two cases. The second is a
+    // small letter; or no more letters follow and the atom is not in a biopolymer, whose elements have one letter.
     let written_small = two.ends_with(|c: char| c.is_ascii_lowercase());
     let no_biopolymer = hetero || !one.starts_with(['H', 'C', 'N', 'O', 'P', 'S']);
     let alone = letters.len() == field.len() && !rest.contains(|c: char| c.is_ascii_alphabetic());

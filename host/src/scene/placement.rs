@@ -18,7 +18,7 @@ use glam::{DAffine3, DMat3, DQuat, DVec3};
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Placement {
-    /// Of length 1.
+    /// A quaternion of length 1.
     pub rotation: DQuat,
     pub translation: DVec3,
     pub scale: f64,
@@ -99,8 +99,8 @@ impl Placement {
         self.translation.is_finite() && scaled && self.rotation.is_normalized()
     }
 
-    /// Reads a matrix and what is added to its product. `None` unless the matrix is a rotation times a
-    /// scale above 0, within 1e-6 of the scale; a mirror is none.
+    /// Reads a matrix and a translation. `None` unless the matrix is a rotation times a scale above 0, within 1e-6 of
+    /// the scale. A mirror is rejected, too.
     ///
     /// ```
     /// use glam::{DAffine3, DMat3, DVec3};

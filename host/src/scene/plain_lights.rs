@@ -8,7 +8,8 @@ use gridel_core::format::track::TrackTarget;
 use std::borrow::Cow;
 use std::f64::consts::PI;
 
-/// The light of an area that a point in its middle has instead: its color at a distance of 1 over its radiance.
+/// Returns the light of a point that replaces an area in its middle: its color at a distance of 1 over the area's
+/// radiance.
 fn brightness(shape: &LightShape) -> f64 {
     match *shape {
         LightShape::Point => 1.0,
@@ -68,7 +69,8 @@ pub(super) fn shrink_areas(scene: &mut Scene) {
     }
 }
 
-/// Makes points that shine alike in all directions and at all distances: as bright as where the camera looks.
+/// Makes points that shine equally in all directions and at all distances, as bright as at the point where the camera
+/// looks.
 pub(super) fn remove_falloff(scene: &mut Scene) {
     shrink_areas(scene);
     let looked_at = match scene.camera {

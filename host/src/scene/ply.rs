@@ -25,7 +25,7 @@ pub(super) const IMPORTER: Importer = Importer {
     name: "PLY",
     about: "the Stanford scans' meshes",
     extensions: &["ply"],
-    // The format says nothing; the Stanford scans stand along y.
+    // The format does not state it; the Stanford scans stand along y.
     up: Up::Y,
     binary: true,
     example: "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\n\
@@ -38,8 +38,8 @@ pub(super) const IMPORTER: Importer = Importer {
 /// Reads a PLY file. It has no camera and no lights; the compiler adds them.
 ///
 /// # Errors
-/// If the file has no faces, or its content is broken; the error names the line where there are lines,
-/// else the vertex or the face.
+/// If the file has no faces, or its content is broken. The error names the line of a text file, else the vertex or the
+/// face.
 fn read(input: Input<'_>) -> Result<Imported, SceneError> {
     let Input { path, bytes, .. } = input;
     check_encoding(path, &bytes)?;
@@ -206,7 +206,7 @@ fn mesh(
             "export a mesh; points and lines cannot be rendered",
         ));
     }
-    // Of those that the file lacks nothing is smooth.
+    // Where the file lacks some, nothing is smooth.
     let normals = read.iter().map(|vertex| DVec3::from_array(vertex.normal));
     let normals = Normals::given(
         normals.collect(),
@@ -220,8 +220,8 @@ fn mesh(
     Ok((shape, normals))
 }
 
-/// The triangles of a strip, of which every second one is turned. Vertices that come twice join
-/// strips, and make triangles that are none.
+/// Returns the triangles of a strip, of which every second one is turned. Vertices that come twice join strips, and
+/// make degenerate triangles.
 fn strip_triangles(corners: &[u32]) -> impl Iterator<Item = [u32; 3]> {
     let triangles = corners.windows(3).enumerate().map(|(number, c)| {
         let turned = number % 2 == 1;
@@ -234,7 +234,7 @@ fn strip_triangles(corners: &[u32]) -> impl Iterator<Item = [u32; 3]> {
     triangles.filter(|[a, b, c]| a != b && b != c && c != a)
 }
 
-/// A vertex; NaN where it says nothing.
+/// A vertex; NaN for missing numbers.
 struct Vertex {
     position: [f64; 3],
     normal: [f64; 3],

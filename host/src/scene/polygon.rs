@@ -1,16 +1,15 @@
 //! Cuts polygons into triangles: a fan where the polygon is strictly convex, ears otherwise.
 //!
-//! The polygon is looked at along the dominant axis of its normal, which drops a coordinate and
-//! rounds nothing, and all decisions are signs of exact determinants (Shewchuk's adaptive
-//! predicates). So a polygon may have collinear or repeated vertices, and may touch itself, as a
-//! face with holes does whose outlines are joined by a bridge that is walked twice: the triangles
-//! cover it exactly, because every one of them is a positively oriented piece of it.
+//! The polygon is projected along the dominant axis of its normal, which drops a coordinate and rounds nothing. All
+//! decisions are signs of exact determinants (Shewchuk's adaptive predicates). So a polygon may have collinear or
+//! repeated vertices, and may touch itself. A face with holes does so if a bridge joins its outlines and is walked
+//! twice. The triangles cover the polygon exactly, because each is a positively oriented piece of it.
 
 use glam::DVec3;
 use robust::{Coord, orient2d};
 
-/// Concave polygons beyond this many vertices are rejected: clipping ears takes quadratic time,
-/// which for the worst outlines of this size, those that cross themselves, is half a second.
+/// Concave polygons with more vertices are rejected, because clipping ears takes quadratic time. For the worst outlines
+/// of this size, those that cross themselves, that is half a second.
 pub(super) const MAX_CONCAVE: usize = 4_096;
 
 /// The triangles of a polygon, as indices into its vertices, in its own winding.
@@ -162,8 +161,7 @@ struct Clipper<'a> {
     triangles: Vec<[u32; 3]>,
 }
 
-/// How much is asked of an ear. Each kind is tried only where the polygon has none of the kind
-/// before it.
+/// The requirements of an ear. Each kind is tried only where the polygon has none of the kind before it.
 #[derive(Clone, Copy, PartialEq)]
 enum Ear {
     /// A corner that turns left and into which nothing reaches.
@@ -172,7 +170,7 @@ enum Ear {
     /// It comes after the clear ears, which use vertices on edges, so that neighbors that share
     /// them leave no gap.
     Flat,
-    /// Any corner that turns left; only an outline that crosses itself comes to this.
+    /// Any corner that turns left. Only an outline that crosses itself reaches this kind.
     Convex,
     /// Any corner.
     Any,

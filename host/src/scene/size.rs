@@ -1,15 +1,15 @@
-//! The memory that a scene takes, computed before it is made: a few lines of a file can stand for more
-//! objects than any machine holds.
+//! Computes the memory that a scene takes before it is made. A few lines of a file can describe more objects than any
+//! machine holds.
 
 use super::Shape;
 use crate::table::grouped;
 
-/// The most bytes that a scene may take until its blob is made: room for as many triangles as a
-/// blob holds, and less than 4 GB.
+/// The most bytes that a scene may take until its blob is made. That is room for as many triangles as a blob holds, and
+/// less than 4 GB.
 pub(super) const MOST_BYTES: u64 = 3_800_000_000;
 
-/// The most bytes of a file whose length is not known before it is read: a gzipped one, and standard
-/// input. With what is made of it, such a file stays in the memory that the largest scene takes.
+/// The most bytes of a file whose length is not known before it is read: a gzipped one, and standard input. Such a file
+/// and the scene made of it fit the memory that the largest scene takes.
 pub const MOST_INPUT: u64 = 1 << 30;
 
 /// Bytes that an object takes while it is read and compiled, without its name and its triangles.
@@ -18,7 +18,7 @@ const OBJECT: u64 = 512;
 /// Bytes that a triangle takes, with its share of the vertices; measured likewise, with the
 /// structure `wide`.
 const TRIANGLE: u64 = 224;
-/// How often a name is held: in the scene, and for messages.
+/// The number of copies of a name: in the scene, and for messages.
 const NAMES: u64 = 2;
 
 /// The most primitives that a scene may hold.
@@ -67,7 +67,7 @@ impl Size {
         }
     }
 
-    /// Returns the size with so many bytes more in each name.
+    /// Returns the size with `by` bytes more in each name.
     #[must_use]
     pub(super) fn with_longer_names(self, by: usize) -> Self {
         let more = self.objects.saturating_mul(by as u64);

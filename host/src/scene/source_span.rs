@@ -1,4 +1,4 @@
-//! Where something stands in a scene file.
+//! Places in a scene file.
 
 use std::path::{Path, PathBuf};
 use std::sync::Arc;

@@ -1,11 +1,11 @@
 //! Reads STL, binary and text: triangles, and nothing else.
 //!
-//! The parser is our own. The crate `stl_io` was looked at first, but of a text file with several
-//! solids it reads one and says nothing of the rest, and it never says in which line anything is.
+//! The parser is our own. The crate `stl_io` was tried first. It reads one solid of a text file and silently ignores
+//! the others, and its errors name no lines.
 //!
-//! Every solid of a text file is an object. Vertices are shared by their coordinates, so that
-//! triangles meet without a gap. Normals are passed over, since the order of the corners says the
-//! same, and so are the colors that some programs put into binary files, with a warning.
+//! Every solid of a text file is an object. Vertices are shared by their coordinates, so that triangles meet without a
+//! gap. Normals are ignored, since the order of the corners gives them. Colors, which some programs put into binary
+//! files, are ignored with a warning.
 
 use super::importer::{Importer, Input, stem};
 use super::text::{Source, Warnings, check_encoding};
@@ -24,7 +24,7 @@ pub(super) const IMPORTER: Importer = Importer {
     name: "STL",
     about: "triangles, as printers and CAD programs use them",
     extensions: &["stl"],
-    // The format says nothing; CAD programs and printers have the plate in x and y.
+    // The format does not state it; CAD programs and printers have the plate in x and y.
     up: Up::Z,
     binary: true,
     example: "solid tip\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\n\
@@ -41,7 +41,7 @@ fn announced(bytes: &[u8]) -> Option<u32> {
     Some(u32::from_le_bytes(*count))
 }
 
-/// How many bytes a binary file of so many triangles has.
+/// Returns the bytes of a binary file of this many triangles.
 fn length(triangles: u32) -> u64 {
     HEAD as u64 + TRIANGLE as u64 * u64::from(triangles)
 }

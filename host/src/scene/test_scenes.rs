@@ -1,5 +1,5 @@
-//! Helpers of all importers' tests: scenes from bytes and files, real scene files, which are not in
-//! the repository because of their size or licence, and the meshes that came of a file.
+//! Helpers of all importers' tests: scenes from bytes and files, and the meshes of a file. Real
+//! scene files are not in the repository because of their size or licence.
 
 use super::{ImportOptions, Imported, Object, SceneError, Shape};
 use flate2::Compression;
@@ -8,8 +8,8 @@ use glam::DVec3;
 use std::io::Write;
 use std::path::{Path, PathBuf};
 
-/// A file below the folder that the environment variable `GRIDEL_SCENES` names, or else below
-/// `../shared/scenes` beside the workspace; where it is missing, the test says that it is skipped.
+/// Returns a file below the folder in the environment variable `GRIDEL_SCENES`, or else below
+/// `../shared/scenes` beside the workspace. If it is missing, the test prints that it is skipped.
 pub(super) fn find(name: &str) -> Option<PathBuf> {
     let folder = match std::env::var_os("GRIDEL_SCENES") {
         Some(folder) => PathBuf::from(folder),

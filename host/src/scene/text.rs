@@ -8,8 +8,8 @@ use std::path::{Path, PathBuf};
 use std::string::FromUtf8Error;
 use std::sync::Arc;
 
-/// A text file in memory. Bytes that are not UTF-8 become U+FFFD: harmless in a comment or a
-/// name, and an error with its line wherever a number or a keyword is expected.
+/// A text file in memory. Bytes that are not UTF-8 become U+FFFD. That is harmless in a comment or
+/// a name. Where a number or a keyword is expected, it is an error with its line.
 pub(super) struct Source {
     pub(super) path: Arc<PathBuf>,
     pub(super) text: String,
@@ -88,10 +88,10 @@ impl Source {
     }
 }
 
-/// Rejects text in UTF-16 and UTF-32, which no scene format has: read as bytes, errors would quote
-/// words that nobody wrote.
+/// Rejects text in UTF-16 and UTF-32, which no scene format has. Read as bytes, errors would quote
+/// words that are not in the file.
 pub(crate) fn check_encoding(path: &Path, bytes: &[u8]) -> Result<(), SceneError> {
-    // Without a mark, every second byte of plain text is 0, of which other text has none.
+    // Without a mark, every second byte of plain text is 0; other text has no such byte.
     let head = &bytes[..bytes.len().min(64)];
     let zeros = |odd: usize| {
         let bytes = head.iter().skip(odd).step_by(2);
@@ -116,8 +116,8 @@ pub(crate) fn check_encoding(path: &Path, bytes: &[u8]) -> Result<(), SceneError
     ))
 }
 
-/// Warnings of an importer. A sentence is kept once, with the first line it applies
-/// to and how many lines follow it, so that a file of a million equal faults stays readable.
+/// Warnings of an importer. A sentence is kept once, with the first line it applies to and the
+/// number of further lines. So the warnings of a file with a million equal faults stay readable.
 #[derive(Default)]
 pub(super) struct Warnings {
     /// Sentence, first place, and the number of further places.
@@ -126,12 +126,13 @@ pub(super) struct Warnings {
 }
 
 impl Warnings {
-    /// `sentence` has neither capital nor full stop; a line of 0 stands for the whole file.
+    /// `sentence` has neither capital nor full stop; a line of 0 means the whole file.
     pub(super) fn add(&mut self, source: &Source, line: usize, sentence: impl Into<String>) {
         self.add_times(source.place(line), 1, sentence);
     }
 
-    /// A sentence that holds at this place first, and so many times in all, at least once.
+    /// Adds a sentence with the first place it applies to, and the number of times in all, at least
+    /// once.
     pub(super) fn add_times(
         &mut self,
         place: SourceSpan,

@@ -21,16 +21,16 @@ pub struct Texture {
     pub image: Arc<Image>,
     /// Beyond the image, along u and v.
     pub wrap: [Wrap; 2],
-    /// Whether four texels are mixed; otherwise the nearest one counts.
+    /// True if four texels are mixed; otherwise the nearest one is used.
     pub bilinear: bool,
-    /// Whether smaller copies of the image are shown where it is far away.
+    /// True if smaller copies of the image are shown where it is far away.
     pub levels: bool,
     /// Takes the coordinates of meshes to those of the image.
     pub transform: DAffine2,
 }
 
-/// An image whose colors are normals of a surface with bumps: red to the right along u, green up against v, blue out of
-/// it, of which 0 is -1, and 255 is 1.
+/// An image whose colors are normals of a bumpy surface: red to the right along u, green up against v, blue outward. A
+/// value of 0 is -1, and 255 is 1.
 #[derive(Clone, Debug, PartialEq)]
 pub struct NormalMap {
     pub texture: Texture,
@@ -43,7 +43,7 @@ impl NormalMap {
     pub const STEEPEST: f64 = 16.0;
 }
 
-/// How an image goes on beyond its edges.
+/// The continuation of an image beyond its edges.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub enum Wrap {
     /// It repeats.
@@ -51,7 +51,7 @@ pub enum Wrap {
     Repeat,
     /// It repeats, every second time mirrored.
     Mirror,
-    /// Its edge goes on.
+    /// Its edge is repeated.
     Clamp,
 }
 
@@ -93,7 +93,7 @@ impl<'a> Images<'a> {
         }
     }
 
-    /// The image in the file that `name` stands for in a scene file.
+    /// Returns the image in the file that `name` in a scene file refers to.
     ///
     /// # Errors
     /// If it lies outside of the scene's folder, or is no image: cause and remedy.

@@ -5,8 +5,8 @@ use glam::{DQuat, DVec3};
 use gridel_core::format::track::ValueKind;
 pub use gridel_core::format::track::{Interpolation, TrackTarget};
 
-/// Ticks per second of all blobs with tracks: whole numbers of them are frames at 24, 25, 30, 50, 60, 100 and 120 per
-/// second, and milliseconds.
+/// Ticks per second of all blobs with tracks. Frames at 24, 25, 30, 50, 60, 100 and 120 per second, and milliseconds,
+/// are whole numbers of ticks.
 pub const TICKS_PER_SECOND: u32 = 48_000;
 
 /// The values of one property at some times.
@@ -21,7 +21,7 @@ pub struct Track {
     pub interpolation: Interpolation,
     /// At least one, by rising times.
     pub keys: Vec<Key>,
-    /// Where the scene file says so, for messages.
+    /// Its place in the scene file, for messages.
     pub place: SourceSpan,
 }
 

@@ -1,7 +1,7 @@
 //! Scenes without some of their effects.
 //!
-//! An effect is what its scene calls for it with: a scene without that calls for nothing, and its blob has no byte
-//! and its program no instruction of it. Each effect has a row below, which takes away what calls for it.
+//! A scene calls for an effect by certain settings. Without these the effect adds no byte to the blob and no
+//! instruction to the program. Each effect has a row below, which removes the settings that call for it.
 
 use super::plain_lights::{remove_falloff, shrink_areas};
 use super::{Diffuse, Material, Normals, Object, Scene, ToneMapping};
@@ -165,8 +165,9 @@ fn remove_tracks(scene: &mut Scene, target: TrackTarget) {
 }
 
 impl Scene {
-    /// Takes away all that calls for some effects: the blob has no byte of them, and the program no code. What calls for
-    /// others stays, but for what depends on them: without glass nothing absorbs, and without a falloff lights have no area.
+    /// Removes all that calls for some effects: the blob has no byte of them, and the program no code. Settings for
+    /// other effects stay, except those that depend on them. Without glass nothing absorbs, and without a falloff
+    /// lights have no area.
     ///
     /// ```
     /// # let file = "[[object]]\nkind = 'sphere'\ncenter = [0, 0, 0]\nradius = 1\nname = 'ball'";
@@ -189,8 +190,8 @@ impl Scene {
     }
 }
 
-/// Leaves one effect out, and returns the names of the lights, materials and objects that lose it; `None` for a scene that does
-/// not call for it.
+/// Leaves one effect out, and returns the names of the lights, materials and objects that lose it. `None` for a scene
+/// that does not call for it.
 pub fn leave_out(scene: &mut Scene, effect: Effects) -> Option<Vec<String>> {
     let before = scene.clone();
     scene.remove_effects(effect);
@@ -214,7 +215,7 @@ pub fn leave_out(scene: &mut Scene, effect: Effects) -> Option<Vec<String>> {
     Some(names.collect())
 }
 
-/// What shows where a single effect was, as part of a sentence.
+/// Returns what the picture shows without a single effect, as part of a sentence.
 ///
 /// ```
 /// use gridel_core::Effects;

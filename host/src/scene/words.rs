@@ -71,7 +71,7 @@ impl<'a> Words<'a> {
         self.lines.peek().map_or(0, |(_, line)| count(line))
     }
 
-    /// The next word; `what` says in the message what it is.
+    /// Returns the next word; `what` names it in the message.
     pub(super) fn expect(&mut self, what: impl Display) -> Result<&'a str, SceneError> {
         self.next().ok_or_else(|| {
             self.source.error(

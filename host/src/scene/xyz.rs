@@ -1,9 +1,9 @@
 //! Reads XYZ: molecules as an element and a position for each atom, in angstroms.
 //!
-//! A frame is a line with its number of atoms, a line of comment, and a line for each atom: symbol or
-//! atomic number, x, y, z, and columns that are not needed. The frames of a trajectory are models, of
-//! which one is drawn; the others are counted, and not read further. Of extended XYZ, files whose
-//! first columns are others than these are rejected.
+//! A frame is a line with its number of atoms, a comment line, and a line per atom. That line has the symbol or atomic
+//! number, x, y, z, and columns that are not needed. The frames of a trajectory are models, of which one is drawn; the
+//! others are counted, and not read further. Files in extended XYZ are rejected if their first columns differ from
+//! these.
 
 use super::importer::{Importer, Input};
 use super::molecule::{self, Atom, Element, Model, Parsed, Site};

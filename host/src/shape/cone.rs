@@ -12,8 +12,8 @@ use glam::DVec3;
 use gridel_core::format::record::UnitBox;
 use gridel_core::geometry::cone;
 
-/// Steps that the surface of a cone may be moved before a better axis is searched for: what rounds
-/// its points and radii, and some lean.
+/// Steps by which the surface of a cone may move before a better axis is searched for. Rounding the points and radii
+/// moves it, and so does a lean of the axis.
 const GOOD: f64 = 2.0;
 
 /// A solid between two flat caps: a cylinder where the radii are equal, a cone where one is
@@ -67,14 +67,14 @@ struct Frame {
 }
 
 impl Frame {
-    /// How far a place is along the axis, and its way from the axis.
+    /// Returns a point's height along the axis, and its offset from the axis.
     fn parts(&self, from_middle: &Vector) -> (Real, Vector) {
         let y = dot(from_middle, &self.axis);
         let across = along(from_middle, &-&y, &self.axis);
         (y, across)
     }
 
-    /// The mantle's normal on the side of a way from the axis.
+    /// Returns the mantle's normal on the side of an offset from the axis.
     fn mantle(&self, across: &Vector, condition: f64) -> Normal {
         let radial = scaled(&unit(across), &self.cos);
         Normal {
@@ -236,7 +236,7 @@ impl Analytic for Cone {
         base.max(apex)
     }
 
-    /// They are convex, so as far as the farther pair of caps.
+    /// Both solids are convex, so it is the displacement of the farther pair of caps.
     fn displacement(&self, other: &Self) -> f64 {
         let (these, others) = (self.caps(), other.caps());
         these[0]
@@ -244,8 +244,8 @@ impl Analytic for Cone {
             .max(these[1].displacement(&others[1]))
     }
 
-    /// Where rounding both ends to the lattice moves the surface by more than `GOOD` steps, because a
-    /// short axis leans, the ends are those 1/256 units that move it least, whatever the lattice's step.
+    /// Rounding both ends to the lattice can move the surface by more than `GOOD` steps, because a short axis leans.
+    /// Then the ends are the 1/256 units that move it least, whatever the lattice's step.
     fn settled(&self, rounded: Self, lattice: &Lattice) -> (Self, f64) {
         let displacement = self.displacement(&rounded);
         if displacement > GOOD * lattice.fine_steps() {
@@ -287,10 +287,10 @@ impl Analytic for Cone {
 /// The cone with ends and radii in 1/256 unit that is the least displaced from the given one, or
 /// `best` if that is better.
 ///
-/// Tries axes of all lengths along the major axis of the given one, from its own length on, and
-/// rounds the other two components: a longer axis leans less, and moves the caps. So a length needs
-/// no trial once the caps alone are moved by more than in the best one so far. For a coin of radius
-/// r that bounds the number of trials by some multiple of the root of r, below 10,000.
+/// Tries axes of all lengths along the major axis of the given one, from its own length on, and rounds the other two
+/// components. A longer axis leans less, and moves the caps. So a length needs no trial once the caps alone move by
+/// more than in the best one so far. For a coin of radius r that bounds the number of trials by some multiple of the
+/// root of r, below 10,000.
 fn straightest(given: &Cone, mut best: (Cone, f64)) -> (Cone, f64) {
     let Cone { base, apex, .. } = *given;
     let (axis, middle) = (apex - base, (base + apex) * 0.5);

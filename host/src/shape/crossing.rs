@@ -2,7 +2,7 @@
 
 use super::exact::{Line, Real, Vector, dot, minus, norm};
 
-/// Where a line enters and leaves.
+/// The t where a line enters and leaves.
 pub type Span = Option<(Real, Real)>;
 
 /// Beyond everything.
@@ -57,8 +57,8 @@ pub fn within_plane(line: &Line, normal: &Vector, point: &Vector, grow: &Real) -
     (grow.is_positive() && apart <= *grow).then(|| (-far(), far()))
 }
 
-/// The span of a flat shape with a thickness. `inside` is how far inside its rim it is crossed; the
-/// rim's place is as uncertain as the plane's, times the tangent of the angle of incidence.
+/// Returns the span of a flat shape with a thickness. `inside` is how far inside its rim the line crosses it. The rim's
+/// position is as uncertain as the plane's, times the tangent of the angle of incidence.
 pub fn flat_span(t: Real, inside: Real, tilt: &Real, line: &Line, grow: &Real) -> Span {
     let across = norm(&line.slope) / tilt;
     let rim = grow * (Real::of(1.0) + across);

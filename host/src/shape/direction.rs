@@ -2,8 +2,8 @@
 
 use glam::DVec3;
 
-/// How far apart two lengths or angles may be, relatively, and still count as equal: far above
-/// what rounding does to a product of matrices, and far below what 24 bits of the lattice show.
+/// Largest relative difference at which two lengths or angles count as equal. Far above the
+/// rounding of a product of matrices, and far below the resolution of 24 lattice bits.
 pub const TOLERANCE: f64 = 1.0 / (1_u64 << 30) as f64;
 
 /// Largest magnitude of a component.
@@ -34,7 +34,7 @@ pub fn integers(vector: DVec3) -> [i32; 3] {
         .map(|component| component as i32)
 }
 
-/// The smallest integers with the given ratios, of which the largest is 1 or -1.
+/// Returns the smallest integers with the given ratios. The largest ratio is 1 or -1.
 fn common(ratios: DVec3) -> Option<DVec3> {
     let mut fractions = [(0, 1); 3];
     let mut denominator = 1;
@@ -51,8 +51,8 @@ fn common(ratios: DVec3) -> Option<DVec3> {
     Some(DVec3::from_array(magnitudes) * signs)
 }
 
-/// The fraction with the smallest denominator that `x` is when it is rounded a few times, for `x`
-/// from 0 to 1; `None` if the denominator exceeds [`MOST`].
+/// Returns the fraction with the smallest denominator that rounds to `x` in a few roundings, for
+/// `x` from 0 to 1. `None` if the denominator exceeds [`MOST`].
 ///
 /// Convergents of the continued fraction, in integers.
 fn simple_fraction(x: f64) -> Option<(u64, u64)> {

@@ -108,8 +108,8 @@ impl Analytic for Disc {
         vec![unit(self.normal) * (2.0 * std::f64::consts::PI * self.radius * self.radius)]
     }
 
-    /// How far two discs are apart at most: as far as their centers, their radii, and the smaller radius
-    /// times the sine of the angle between them.
+    /// The largest distance between two discs. It is the distance of their centers plus the difference of their radii
+    /// plus the smaller radius times the sine of their angle.
     fn displacement(&self, other: &Self) -> f64 {
         // Scaled, so that squares stay in range.
         let [n, m] = [self.normal, other.normal].map(|it| it / it.abs().max_element());

@@ -51,7 +51,7 @@ impl Real {
         }
     }
 
-    /// Returns whether this is zero but for the roundings of 320 bits.
+    /// Returns whether this is zero within the roundings of 320 bits.
     pub fn is_zero(&self) -> bool {
         self.abs() < Self::of(f64::powi(2.0, -200))
     }

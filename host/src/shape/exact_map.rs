@@ -8,7 +8,7 @@ use gridel_core::format::instance::{Instance, MATRIX_BITS};
 pub struct ExactMap {
     rows: [Vector; 3],
     center: Vector,
-    /// The same in double precision, in which single entries are exact.
+    /// These entries in double precision, which is exact for single entries.
     linear: [[f64; 3]; 3],
     middle: [f64; 3],
     /// Units of the part in one of the scene.

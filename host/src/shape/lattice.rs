@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-/// Snaps coordinates. The step is a power of two and the origin a multiple of it, so a coordinate
+/// Snaps coordinates. The step is a power of two and the origin a multiple of it. So a coordinate
 /// that already lies on the lattice is kept bit for bit.
 #[derive(Clone, Copy, Debug)]
 pub struct Lattice {

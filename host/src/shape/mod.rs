@@ -258,7 +258,7 @@ impl Shape {
         Some(first.midpoint(last))
     }
 
-    /// The normals of what is flat, as long as twice its area.
+    /// Returns the normals of flat faces. Their length is twice the face's area.
     pub(crate) fn faces(&self) -> Vec<DVec3> {
         of_shape!(self, it => it.faces(), Self::Mesh { vertices, triangles } => {
             let normal = |corners: &[u32; 3]| {

@@ -109,7 +109,7 @@ impl Analytic for Plane {
 
     fn transformed(&self, by: &DAffine3) -> Result<Self, Misfit> {
         orientation(by.matrix3)?;
-        // What is at right angles to the plane stays so.
+        // Vectors at right angles to the plane stay so.
         let turned = to_size_one(by.matrix3).1.inverse().transpose();
         Ok(Self {
             point: by.transform_point3(self.point),
@@ -127,8 +127,9 @@ impl Analytic for Plane {
         (apart + sine * reach) * ROUNDED_UP
     }
 
-    /// The coordinates that count are rounded: of a plane at right angles to an axis that on the axis; else all of
-    /// its point, or if that is far away, of the one that is the nearest to the lattice's middle.
+    /// Rounds only the coordinates that count. For a plane at right angles to an axis that is the one on the axis.
+    /// Otherwise it is all of the plane's point. If that point is far away, it is the point nearest to the lattice's
+    /// middle.
     fn settled(&self, rounded: Self, lattice: &Lattice) -> (Self, f64) {
         let along = rounded.normal.normalize();
         let tilts = along.abs().cmpgt(DVec3::ZERO);

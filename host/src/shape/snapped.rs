@@ -10,9 +10,9 @@ pub const ROUNDED_UP: f64 = 1.0 + 1e-12;
 #[derive(Clone, Copy, Debug)]
 pub struct Snapped<T> {
     pub record: T,
-    /// How far apart the given and the snapped surface are at most, in 1/256 unit.
+    /// Largest distance between the given and the snapped surface, in 1/256 unit.
     pub displacement: f64,
-    /// Whether its box lies in the range of box coordinates.
+    /// True if its box lies in the range of box coordinates.
     pub fits: bool,
 }
 
@@ -37,8 +37,8 @@ pub fn disc_reach(normal: DVec3) -> DVec3 {
         .map(f64::sqrt)
 }
 
-/// The box around points with a reach along each axis, rounded outward by more than the reach can
-/// be off, and whether it lies in the range of box coordinates.
+/// Returns the box around points with a reach along each axis, and whether it lies in the range of
+/// box coordinates. The box is rounded outward by more than the error of the reach.
 pub fn around(points: &[([i32; 3], DVec3)]) -> (UnitBox, bool) {
     const MOST: f64 = (i16::MAX as i32 * 256) as f64;
     let ends = points.iter().map(|&(center, reach)| {

@@ -1,4 +1,4 @@
-//! Tori: where a line crosses one is decided by the real roots of the textbook's quartic in arithmetic of 320 bits.
+//! Tori. The real roots of the textbook's quartic, in arithmetic of 320 bits, decide where a line crosses one.
 
 use super::analytic::{Analytic, Geometric, Map, Normal};
 use super::direction;
@@ -129,11 +129,11 @@ impl Analytic for Torus {
         self.center.dot(direction) + circle + self.minor_radius * direction.length()
     }
 
-    /// As far as their circles and their minor radii. Circles are at most
-    /// as far apart as their centers, their radii and the ends of their axes, of the smaller radius's length.
+    /// The displacement is that of the circles plus that of the minor radii. Circles are at most as far apart as their
+    /// centers, their radii and the ends of their axes, of the smaller radius's length.
     ///
-    /// From a point beneath a surface the way outward is as short, unless it comes to the axis before, in the
-    /// pit of a spindle torus: then it goes on along the axis.
+    /// From a point beneath a surface the path outward is equally short, except in the pit of a spindle torus. There it
+    /// reaches the axis first, and continues along the axis.
     fn displacement(&self, other: &Self) -> f64 {
         let (major, minor) = (self.major_radius, self.minor_radius);
         let turned = direction::unit(self.axis).distance(direction::unit(other.axis))
@@ -196,7 +196,7 @@ impl Ring {
         (&beyond * &beyond + &y * &y).sqrt()
     }
 
-    /// A point's height along the axis, and its way from it.
+    /// Returns a point's height along the axis, and its offset from it.
     fn parts(&self, point: &Vector) -> (Real, Vector) {
         let q = minus(point, &self.center);
         let y = dot(&q, &self.axis);
@@ -285,7 +285,7 @@ fn roots(polynomial: &[Real], reach: &Real) -> Vec<Real> {
         return Vec::new();
     }
     let slope = slope(polynomial);
-    // Between the roots of its slope it goes one way.
+    // Between the roots of its slope it is monotonic.
     let mut ends = vec![-reach];
     ends.extend(roots(&slope, reach));
     ends.push(reach.clone());

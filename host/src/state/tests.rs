@@ -8,7 +8,8 @@ use crate::shape::exp2;
 use glam::{DMat3, DVec3};
 use gridel_core::format::instance::MATRIX_BITS;
 
-/// How far the map of a posed instance is from its place: of a place near the part, in scene units.
+/// Returns how far the map of a posed instance is from its placement: for a point near the part, in
+/// scene units.
 fn error(posed: &Scene<'_>, record: &Record, expected: &Instance) -> f64 {
     let header = posed.header();
     let unit = exp2(header.unit_exponent.into());

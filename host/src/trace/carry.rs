@@ -12,9 +12,10 @@ fn two_sum(a: f64, b: f64) -> (f64, f64) {
     (sum, (a - (sum - part)) + (b - part))
 }
 
-/// The point of a line that is nearest to the lattice's middle along the line's largest component, and how
-/// far along that component it is from the origin: from the difference of two points in scene units and a
-/// direction. `None` where the difference is exact, so that the core itself loses nothing.
+/// Returns the point of a line that is nearest to the lattice's middle along the line's largest component. Also returns
+/// how far along that component the point is from the origin. The arguments are the two points whose difference is the
+/// origin, in scene units, and a direction. `None` where the difference is exact, so that the core itself loses
+/// nothing.
 pub(super) fn carry(
     [to, from]: [DVec3; 2],
     unit: f64,

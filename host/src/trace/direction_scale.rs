@@ -3,8 +3,8 @@
 use super::Rejection;
 use glam::DVec3;
 
-/// The largest component of a direction in units, by which t is larger in the core: a factor and a
-/// power of two, because units and directions may be as small and as large as numbers are.
+/// The largest component of a direction in units. `t` is larger in the core by this factor. It is a factor and a power
+/// of two, because units and directions can have any magnitude that numbers have.
 #[derive(Clone, Copy, Debug)]
 pub struct DirectionScale {
     factor: f64,
@@ -17,7 +17,7 @@ impl DirectionScale {
     /// Powers of two up to which no product with a length leaves the range of numbers.
     const ORDINARY: std::ops::Range<f64> = 1.0 / (1_u128 << 100) as f64..(1_u128 << 100) as f64;
 
-    /// The direction_scale of a direction, and the direction with its length brought near 1 where it is extreme.
+    /// Returns the scale of a direction, and the direction with its length brought near 1 where it is extreme.
     pub(super) fn of(direction: DVec3, unit: f64, per_unit: f64) -> (Self, DVec3) {
         Self::of_ordinary(direction, per_unit).map_or_else(
             || Self::of_extremes(direction, unit),
@@ -25,7 +25,7 @@ impl DirectionScale {
         )
     }
 
-    /// The direction_scale of a direction that is not extreme.
+    /// Returns the scale of a direction that is not extreme.
     #[inline(always)]
     pub(super) fn of_ordinary(direction: DVec3, per_unit: f64) -> Option<Self> {
         let largest = direction.abs().max_element();

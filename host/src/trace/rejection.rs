@@ -24,7 +24,7 @@ pub struct Rejections {
 }
 
 impl Rejections {
-    /// Adds a ray, and returns what it met.
+    /// Adds a ray, and returns its hit.
     #[cold]
     pub(super) fn add(&mut self, place: usize, why: Rejection) -> SceneHit {
         self.count += 1;
@@ -32,7 +32,7 @@ impl Rejections {
         SceneHit::REJECTED
     }
 
-    /// Those of two runs of rays, of which the second begins at a place.
+    /// Returns the rejections of two runs of rays; the second begins at `place`.
     pub fn followed_by(self, place: usize, next: Self) -> Self {
         let next_first = next.first.map(|(at, why)| (place + at, why));
         Self {

@@ -22,7 +22,7 @@ impl UnitRay {
         }
     }
 
-    /// The ray as the core takes it; `None` if it is none.
+    /// Returns the ray in the core's form; `None` if it is invalid.
     pub fn ready<N: Number>(&self, scene: &Scene<'_>) -> Option<Ray<N>> {
         let Self {
             origin,

@@ -16,14 +16,13 @@ use gridel_core::{
 pub enum Property {
     /// Every structure gives the list's answer, bit for bit.
     Structures,
-    /// Whether anything is met does not depend on how it is asked.
+    /// Any hit and closest hit agree on whether there is a hit.
     AnyHit,
     /// Hits are those of exact arithmetic, where it finds them, within [`STEPS`].
     Answers,
     /// Numbers of a hit are finite, its t lies in the interval, its normal has the length 1.
     Numbers,
-    /// A ray that starts beside a hit does not meet the same surface again, and one that starts inside
-    /// of a solid leaves it.
+    /// A ray that starts at a hit does not hit the same surface again, and one that starts inside of a solid leaves it.
     SelfHits,
     /// A point in shadow by `f64` is not lit in another format.
     Shadows,
@@ -70,9 +69,9 @@ pub struct Outcome {
     pub faults: Vec<Fault>,
     /// By how many steps t is off, against the same ray in double precision.
     pub error: f64,
-    /// Whether the ray grazes what it meets, see [`GRAZING`].
+    /// True if the ray grazes the surface that it hits, see [`GRAZING`].
     pub grazes: bool,
-    /// Whether exact arithmetic was asked.
+    /// True if exact arithmetic judged it.
     pub judged: bool,
 }
 
@@ -102,8 +101,8 @@ pub fn ask_all<N: Number>(scene: &Scene<'_>, ray: &Ray<N>) -> Vec<StructureAnswe
     std::iter::once(list).chain(others).collect()
 }
 
-/// Tests the properties of answers. The first is the list's answer. `control` asks exact
-/// arithmetic even where nothing seems to be wrong.
+/// Tests the properties of answers. The first is brute force's answer. `control` uses exact arithmetic even where
+/// nothing seems to be wrong.
 pub fn check<N: Number>(
     scene: &Scene<'_>,
     judge: &Judge,
@@ -163,7 +162,7 @@ pub fn check<N: Number>(
     let reference = reference.and_then(|ray| ask::<f64, List>(scene, &ray).hit);
     let close = match (answer, reference) {
         (None, None) => true,
-        // Of a solid, what is met where a ray enters it is not compared with where it leaves.
+        // A hit where a ray enters a solid is not compared with one where it leaves.
         (Some(answer), Some(reference))
             if answer.hit == HitId::of(&reference)
                 && list.hit.is_some_and(|hit| hit.front == reference.front) =>
@@ -257,7 +256,7 @@ fn numbers<N: Number>(ray: &RoundedRay, judge: &Judge, hit: &Hit<N>) -> Option<S
     None
 }
 
-/// Where a ray starts that leaves a hit on the normal's side, or else on the other.
+/// Returns where a ray starts that leaves a hit on the normal's side, or else on the other.
 pub fn depart<N: Number>(scene: &Scene<'_>, hit: &Hit<N>, outward: bool) -> [f64; 3] {
     let start = if outward {
         hit.outside()
@@ -267,8 +266,8 @@ pub fn depart<N: Number>(scene: &Scene<'_>, hit: &Hit<N>, outward: bool) -> [f64
     start.map(N::length_to_f64)
 }
 
-/// Lets rays leave a hit on both sides, as the ray loop does. Those that meet the same surface again, or never leave
-/// the solid that they are in, are faults.
+/// Lets rays leave a hit on both sides, as the ray loop does. Faults are rays that hit the same surface again, or never
+/// leave the solid that they are in.
 pub fn leave<N: Number>(
     scene: &Scene<'_>,
     judge: &Judge,
@@ -303,7 +302,7 @@ pub fn leave<N: Number>(
         let Ok(ray) = ray else { continue };
         let next = ask::<N, List>(scene, &ray).hit;
         let again = next.filter(|next| HitId::of(next) == itself);
-        // What is not convex can be met again elsewhere.
+        // A ray can hit a shape that is not convex again elsewhere.
         let elsewhere = again.is_some_and(|again| {
             let rounded = RoundedRay::of(&ray);
             let t = N::far_to_f64(again.t) - rounded.moved;
@@ -334,8 +333,7 @@ pub fn leave<N: Number>(
     faults
 }
 
-/// Follows a ray that starts inside of a closed mesh until it meets the mesh; a fault if it never
-/// does.
+/// Follows a ray that starts inside of a closed mesh until it hits the mesh. A ray that never does is a fault.
 pub fn sealed<N: Number, A: Accel>(
     scene: &Scene<'_>,
     judge: &Judge,

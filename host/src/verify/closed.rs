@@ -1,4 +1,4 @@
-//! Which meshes of a scene are closed, so that no ray can leave their inside unseen.
+//! Finds the closed meshes of a scene, whose inside no ray can leave unseen.
 
 use super::rounded::HitId;
 use crate::shape::ExactMap;
@@ -7,7 +7,7 @@ use std::collections::HashMap;
 use std::fmt;
 use std::sync::Arc;
 
-/// A mesh whose every edge belongs to two triangles that run along it in opposite ways.
+/// A mesh whose every edge belongs to two triangles with opposite directions along it.
 #[derive(Clone, Debug)]
 pub struct ClosedMesh {
     pub object: u32,
@@ -135,7 +135,7 @@ fn of_objects(scene: &Scene<'_>, object: impl Fn(u32) -> u32) -> Vec<ClosedMesh>
 }
 
 fn is_closed(triangles: &[[[i32; 3]; 3]]) -> bool {
-    // How often each edge is run along, in its one way and in the other.
+    // How often triangles use each edge in one direction, and in the other.
     let mut edges: HashMap<[[i32; 3]; 2], [u32; 2]> = HashMap::new();
     for &[a, b, c] in triangles {
         for (from, to) in [(a, b), (b, c), (c, a)] {

@@ -1,5 +1,5 @@
-//! Right answers, by arithmetic that owes nothing to the kernels: which primitive a ray hits first,
-//! within what a number format may be off by.
+//! Right answers by arithmetic that is independent of the kernels: which primitive a ray hits first, within the
+//! tolerance of a number format.
 
 use super::placed::{PlacedPart, PlacedSolid};
 use super::rounded::{Answer, HitId, RoundedRay};
@@ -9,12 +9,11 @@ use gridel_core::format::limits;
 use gridel_core::format::record::UnitBox;
 use gridel_core::{Format, Kind, Scene};
 
-/// How many rounding steps an answer may be off by: the shape that it is right for may be so much
-/// larger or smaller.
+/// How many rounding steps an answer may be off by. It is right for a shape that is larger or smaller by at most that.
 pub const STEPS: f64 = 8.0;
 
-/// The cosine between a surface's normal and a ray below which the ray grazes: t is off there by more
-/// than [`STEPS`] steps if the surface is off by one.
+/// The cosine between a surface's normal and a ray below which the ray grazes. There, t is off by more than [`STEPS`]
+/// steps if the surface is off by one.
 pub const GRAZING: f64 = 1.0 / STEPS;
 
 /// How far it is through a scene at the most, in units.
@@ -39,8 +38,8 @@ pub struct Judge {
     placed: Vec<PlacedPart>,
 }
 
-/// The primitives of a blob without its parts, in ascending order of their numbers, which the pieces of a cut triangle
-/// share.
+/// The primitives of a blob without its parts, in ascending order of their numbers. The pieces of a cut triangle share
+/// a number.
 struct Solids(Vec<(u32, Option<UnitBox>, Solid)>);
 
 impl Solids {
@@ -231,10 +230,10 @@ impl Nearest<'_> {
     }
 }
 
-/// Where a ray may cross a shape that is only known within a length: any of the shapes counts that
-/// are larger or smaller by no more than that.
+/// Where a ray may cross a shape that is known only up to a length. Any shape that is larger or smaller by at most that
+/// length counts.
 ///
-/// A ray meets a solid where it enters it; one that starts inside, where it leaves it.
+/// A ray hits a solid where it enters it. A ray that starts inside hits it where it leaves it.
 #[derive(Clone, Debug)]
 pub struct Crossings<'c> {
     solid: &'c Solid,
@@ -258,8 +257,8 @@ impl<'c> Crossings<'c> {
         if self.solid.is_flat() {
             return true;
         }
-        // What all of the shapes hold, no ray passes unseen; one that may have started inside of it, or of
-        // a larger one around it, leaves.
+        // No ray passes unseen through the region that all of the shapes contain. A ray that may start inside it, or
+        // inside a larger shape around it, hits where it leaves.
         let smallest = self.solid.spans(self.line, &-&self.off);
         smallest.iter().all(|(enter, leave)| {
             let is_around = first <= enter && leave <= last;
@@ -267,8 +266,8 @@ impl<'c> Crossings<'c> {
         })
     }
 
-    /// By where every one of the shapes is met by a ray that counts from `begin`; `None` if one of
-    /// them may not be met at all.
+    /// Returns the t by which a ray that counts from `begin` hits every one of the shapes. `None` if it may miss one of
+    /// them.
     pub fn are_met_by(&self, begin: &Real) -> Option<Real> {
         let smallest = self.solid.spans(self.line, &-&self.off);
         let largest = self.solid.spans(self.line, &self.off);

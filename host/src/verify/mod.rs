@@ -1,9 +1,9 @@
-//! Throws hard rays at a scene and holds every structure and number format to what is promised.
+//! Traces hard rays through a scene, and checks that every structure and number format keeps its promises.
 //!
-//! `rays.rs` makes the rays, `check.rs` puts one to all structures of a blob and compares, `judge.rs`
-//! decides by 320-bit arithmetic where they disagree, from the textbook's formulas of each shape.
-//! Every format is asked with the ray that it can hold, so what is judged is the kernels' arithmetic
-//! and not the rounding of the question. `placed.rs` maps rays by the integers of instances, exactly.
+//! `rays.rs` makes the rays, and `check.rs` traces each through all structures of a blob and compares the answers.
+//! Where they disagree, `judge.rs` decides by 320-bit arithmetic, from the textbook's formulas of each shape. Every
+//! format gets the ray that it can represent. So the test judges the kernels' arithmetic and not the rounding of the
+//! ray. `placed.rs` maps rays by the integers of instances, exactly.
 
 mod check;
 mod closed;
@@ -34,7 +34,7 @@ use std::collections::BTreeMap;
 /// The report of a verification.
 #[derive(Clone, Debug, Default, Serialize)]
 pub struct Report {
-    /// Rays that were put to every structure in every format.
+    /// Rays that were traced through every structure in every format.
     pub rays: u64,
     pub structures: Vec<&'static str>,
     pub formats: Vec<FormatReport>,
@@ -48,7 +48,7 @@ pub struct Report {
 pub struct FormatReport {
     pub format: &'static str,
     pub hits: u64,
-    /// Answers that exact arithmetic was asked about.
+    /// Answers that exact arithmetic judged.
     pub judged: u64,
     /// Rays that do not graze what they meet.
     pub worst: Worst,
@@ -87,7 +87,7 @@ impl Worst {
 pub struct PropertyReport {
     pub property: Property,
     pub text: &'static str,
-    /// Answers that were held to it.
+    /// Answers that were checked for it.
     pub checked: u64,
     pub broken: u64,
     /// The first that broke it.
@@ -111,12 +111,11 @@ impl Report {
     }
 }
 
-/// Rays of all sorts that a scene is verified with where nothing else is asked for.
+/// Default number of rays of all sorts that a scene is verified with.
 pub const RAYS: u64 = 10_000;
 /// Rays of a chunk of work.
 const CHUNK: u64 = 128;
-/// One ray in so many is judged by exact arithmetic whatever was answered, and one hit in so many is
-/// left by secondary rays.
+/// One ray in this many is judged by exact arithmetic whatever the answer. Secondary rays leave one hit in this many.
 const CONTROL: u64 = 16;
 /// Examples that are kept per property.
 const EXAMPLES: usize = 5;
@@ -126,8 +125,8 @@ pub fn steps(rays: u64) -> u64 {
     2 * rays.div_ceil(CHUNK)
 }
 
-/// Verifies a scene with so many rays of all sorts, and as many at the vertices and edges of closed
-/// meshes. Calls `progress` after every step, from any thread. The same rays are thrown every time.
+/// Verifies a scene with `rays` rays of all sorts, and as many at the vertices and edges of closed meshes. Calls
+/// `progress` after every step, from any thread. The rays are the same every time.
 ///
 /// ```
 /// # use gridel_host::compile::{Options, compile};
@@ -288,7 +287,7 @@ impl Work<'_> {
         }
     }
 
-    /// A point inside of a closed mesh, in units: halfway from a face to what is opposite of it.
+    /// Returns a point inside of a closed mesh, in units: halfway from a face to the opposite one.
     fn inside(&self, mesh: &ClosedMesh) -> Option<[f64; 3]> {
         const TRIED: usize = 64;
         let step = mesh.count().div_ceil(TRIED);

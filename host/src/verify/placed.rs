@@ -6,7 +6,7 @@ use crate::shape::{ExactMap, Solid};
 use gridel_core::format::record::UnitBox;
 use gridel_core::{Format, Hit, Number, Scene};
 
-/// How many times a step counts at an instance: the maps of a ray into the part and of its hit out of it round as well.
+/// How many times a step counts at an instance. The maps of a ray into the part and of its hit out of it round as well.
 pub const PLACED: f64 = 4.0;
 
 impl HitId {

@@ -41,8 +41,8 @@ pub fn rays(scene: &Scene<'_>, seed: u64) -> impl Iterator<Item = UnitRay> + use
     (0..).map(move |number: usize| targets.ray(number, &mut random))
 }
 
-/// Endless rays that go through a scene and, but for odd cases, touch nothing: neither edges nor the
-/// surface that they start from.
+/// Returns endless rays that go through a scene and, except in rare cases, touch neither edges nor
+/// the surface that they start from.
 pub fn plain_rays(scene: &Scene<'_>, seed: u64) -> impl Iterator<Item = UnitRay> + use<> {
     let targets = Targets::of(scene);
     let mut random = Random(seed);
@@ -283,7 +283,8 @@ fn with_a_window(targets: &Targets, random: &mut Random) -> UnitRay {
     ray
 }
 
-/// Along the side of what a box holds, at the distance of its round or flat side.
+/// Returns a ray along the side of the primitive in a box, at the distance of its round or flat
+/// side.
 fn grazing(targets: &Targets, random: &mut Random) -> UnitRay {
     let bounds = targets.a_box(random).0.map(|side| side.map(f64::from));
     let axis = random.below(3);
@@ -324,8 +325,8 @@ fn from_on_a_surface(targets: &Targets, random: &mut Random) -> UnitRay {
     UnitRay::new(origin, random.direction())
 }
 
-/// In a plane between two cells of the scene's box cut evenly, along it, across an edge of cells, or
-/// from corner to corner.
+/// Returns a ray in a plane between two cells of the scene's box cut evenly. It runs along the
+/// plane, across an edge of cells, or from corner to corner.
 fn in_a_cells_plane(targets: &Targets, random: &mut Random) -> UnitRay {
     let cells = [2, 3, 4, 8, 16, 64][random.below(6)];
     let corner = |random: &mut Random| {

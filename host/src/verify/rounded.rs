@@ -4,8 +4,8 @@ use crate::shape::Solid;
 use crate::shape::exact::Line;
 use gridel_core::{Format, Kind, Number, Ray, Scene};
 
-/// The step of a format: a sub-step of `fixed`, or the unit of rounding times the largest magnitude
-/// among the coordinates of ray, hit and shape.
+/// Returns the step of a format. For `fixed` it is a sub-step. For the others it is the unit of rounding times the
+/// largest magnitude among the coordinates of ray, hit and shape.
 pub fn step(format: Format, magnitude: f64) -> f64 {
     match format {
         Format::Fixed => f64::powi(2.0, -13),
@@ -72,8 +72,8 @@ impl RoundedRay {
         largest(self.start).max(t.abs()).max(self.moved.abs())
     }
 
-    /// The step of a format at a shape. A shape without bounds may be met nearer to where a ray begins far away than to
-    /// its start; slopes are rounded on the way between them.
+    /// Returns the step of a format at a shape. A ray that begins far away may hit a shape without bounds nearer to its
+    /// origin than to its start. Slopes are rounded on the path between the two.
     pub fn step(&self, format: Format, t: f64, solid: &Solid) -> f64 {
         let near = step(format, self.magnitude(t).max(solid.extent()));
         let from_origin = (t + self.moved).abs() < t.abs();

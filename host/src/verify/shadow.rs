@@ -43,7 +43,7 @@ pub fn at_a_shadow(scene: &Scene<'_>, random: &mut Random) -> Option<UnitRay> {
     };
     let light = &scene.lights()[random.below(scene.lights().len())];
     let travel = -to_light(light, from)?;
-    // What lies behind the object as the light sees it.
+    // A point behind the object as the light sees it.
     let mut ray = UnitRay::new(from.to_array(), travel.to_array());
     let hit = (0..8).find_map(|_| {
         let hit = ask::<f64, List>(scene, &ray.ready::<f64>(scene)?).hit?;
@@ -104,12 +104,12 @@ fn blocker<N: Number>(scene: &Scene<'_>, light: &Light, from: DVec3) -> Option<H
     ask::<N, List>(scene, &ray.ok()?).hit
 }
 
-/// Roundings of a shadow ray on its way past the edge of what casts the shadow.
+/// Roundings of a shadow ray on its way past the edge of the object that casts the shadow.
 const ROUNDINGS: f64 = 4.0;
 
-/// Shadows that a format loses where a ray strikes: `f64` has the place in the dark, and what is about it, and
-/// the format has it in the light. At the edge of a shadow formats may differ: what is about the place is as
-/// far from it as the format's shadow ray may start, but above it no more than a quarter of the way to what
+/// Returns the shadows that a format loses at a ray's hit. In `f64` the place and its surroundings are in the dark, and
+/// in the format the place is lit. At the edge of a shadow formats may differ. So the surroundings reach as far as the
+/// format's shadow ray may start from the place. Above it they reach at most a quarter of the way to the object that
 /// casts the shadow.
 pub fn lost<N: Number>(scene: &Scene<'_>, ray: &Ray<N>) -> Vec<Fault> {
     let rounded = RoundedRay::of(ray);

@@ -15,8 +15,8 @@ pub struct Drawn {
     pub work: Option<u32>,
 }
 
-/// Draws the pixels of some blocks on this thread, in the order of the blocks: for front ends that have no threads, or
-/// spread blocks over them by themselves. A pixel is that of [`render`](crate::render::render), to the bit.
+/// Draws the pixels of some blocks on this thread, in the order of the blocks. It is for front ends without threads, or
+/// with their own distribution of blocks. A pixel equals that of [`render`](crate::render::render), bit for bit.
 ///
 /// # Errors
 /// If the blob lacks the structure, a setting is out of its range, or the scene cannot be seen with the view.

@@ -17,7 +17,7 @@ pub struct Frame {
     maximum: Option<u32>,
 }
 
-/// Shares of the maximum up to this many are looked up, in place of computed for each pixel.
+/// Up to this maximum, colors come from a table and are not computed for each pixel.
 const MOST_LOOKED_UP: u32 = 1 << 12;
 
 impl Frame {

@@ -1,6 +1,6 @@
 //! Keys and what they do, in a window and in a terminal.
 
-/// A key, whatever reads it.
+/// A key, from any source.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Key {
     Character(char),
@@ -11,7 +11,7 @@ pub enum Key {
     Escape,
 }
 
-/// What a key asks for.
+/// The action of a key.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Action {
     /// Turn the camera around its target, in steps to the right and up.
@@ -118,7 +118,7 @@ pub const KEYS: [Line; 15] = [
     ),
 ];
 
-/// Returns what a key does; capital letters do as small ones.
+/// Returns the action of a key; capital letters do as small ones.
 pub fn action(key: Key) -> Option<Action> {
     let key = match key {
         Key::Character(c) => Key::Character(c.to_ascii_lowercase()),

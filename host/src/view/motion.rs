@@ -26,7 +26,7 @@ impl Camera {
         }
     }
 
-    /// This camera moved across its view, eye and target alike, in heights of the picture: to the right and up.
+    /// Returns this camera moved across its view, with eye and target, in heights of the picture: to the right and up.
     pub fn panned(&self, right: f64, up: f64) -> Self {
         let [across, upwards] = self.picture_axes();
         let step = right * across + up * upwards;
@@ -37,7 +37,7 @@ impl Camera {
         }
     }
 
-    /// This camera at so many times its distance from the target.
+    /// Returns this camera at a multiple of its distance from the target.
     pub fn zoomed(&self, factor: f64) -> Self {
         Self {
             eye: self.target + factor * (self.eye - self.target),

@@ -1,8 +1,8 @@
 //! Pictures from coarse to fine, drawn by threads of their own.
 //!
-//! Threads take blocks in the core's order ([`CoarseToFine`]) and draw them. A new picture takes the place of the
-//! one that is drawn as soon as that one's coarsest blocks are all there, so that a camera that moves all the
-//! time is seen moving; or after [`PATIENCE`], so that a slow scene does not keep anybody waiting.
+//! Threads take blocks in the core's order ([`CoarseToFine`]) and draw them. A new picture replaces the current one as
+//! soon as the current one's coarsest blocks are all drawn. So a camera that moves all the time is seen moving. It also
+//! replaces it after [`PATIENCE`], so that a slow scene keeps nobody waiting.
 
 use super::blocks::{Brush, with_brush};
 use super::frame::{Frame, packed};
@@ -17,14 +17,14 @@ use std::time::{Duration, Instant};
 /// How long coarse blocks may keep the next picture waiting.
 const PATIENCE: Duration = Duration::from_millis(250);
 
-/// How long a thread draws before it hands over what it has, and looks for something newer.
+/// How long a thread draws before it delivers its pixels, and looks for a newer picture.
 const TURN: Duration = Duration::from_millis(2);
 
 /// Draws pictures of a scene, one after the other, from coarse to fine.
 pub struct Refiner<'s> {
     scene: &'s Scene<'s>,
     state: Mutex<Progress>,
-    /// There is something to draw, or nothing any more.
+    /// Signals that there is something to draw, or that drawing ends.
     changed: Condvar,
 }
 
@@ -34,7 +34,7 @@ struct Progress {
     shot: Option<Shot>,
     number: u64,
     begun: Instant,
-    /// The blocks that nobody has taken yet, and how many were taken and are not drawn.
+    /// The order of the blocks that are not taken yet, and how many were taken and are not drawn.
     order: CoarseToFine,
     taken: usize,
     drawn: usize,
@@ -44,12 +44,12 @@ struct Progress {
     error: Option<ViewError>,
     /// The picture to draw next.
     next: Option<Shot>,
-    /// Whether the frame changed since somebody looked.
+    /// True if the frame changed since it was last read.
     is_new: bool,
     stopped: bool,
 }
 
-/// What a front end shows beside the frame.
+/// The status that a front end shows with the frame.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Status {
     /// The share of pixels that are drawn, 0 to 1.
@@ -80,8 +80,8 @@ impl<'s> Refiner<'s> {
         }
     }
 
-    /// Draws with one thread for each core while `front` runs, and returns what that returns. Calls `wake` from
-    /// any thread when there is something new to look at, and not again before somebody looked.
+    /// Draws with one thread for each core while `front` runs, and returns the result of `front`. Calls `wake` from any
+    /// thread when there is a new frame, and not again before it was read.
     pub fn run<R>(&self, wake: &(dyn Fn() + Sync), front: impl FnOnce() -> R) -> R {
         let threads = thread::available_parallelism().map_or(1, usize::from);
         thread::scope(|scope| {
@@ -94,7 +94,7 @@ impl<'s> Refiner<'s> {
         })
     }
 
-    /// Asks for a picture, in place of the one that is drawn and of any that waits.
+    /// Requests a picture, in place of the one that is drawn and of any that waits.
     pub fn show(&self, shot: Shot) {
         self.lock().next = Some(shot);
         self.changed.notify_all();
@@ -112,14 +112,14 @@ impl<'s> Refiner<'s> {
         with(&state.frame, &status)
     }
 
-    /// Waits until the last picture that was asked for is there, or cannot be.
+    /// Waits until the last requested picture is complete, or cannot be.
     pub fn wait(&self) {
         let is_busy = |state: &mut Progress| state.next.is_some() || !state.is_done();
         let state = self.lock();
         drop(self.changed.wait_while(state, is_busy));
     }
 
-    /// Takes part in the drawing until there will be nothing any more.
+    /// Takes part in the drawing until it ends.
     fn work(&self, wake: &(dyn Fn() + Sync)) {
         while let Some((number, shot)) = self.next_shot() {
             let Err(error) = self.draw(number, &shot, wake) else {
@@ -136,7 +136,7 @@ impl<'s> Refiner<'s> {
         }
     }
 
-    /// Waits for blocks that nobody has taken.
+    /// Waits for blocks that are not taken yet.
     fn next_shot(&self) -> Option<(u64, Shot)> {
         let mut state = self.lock();
         loop {
@@ -223,12 +223,12 @@ impl<'s> Refiner<'s> {
 }
 
 impl Progress {
-    /// Whether all blocks are drawn.
+    /// Returns whether all blocks are drawn.
     fn is_done(&self) -> bool {
         self.order.side() == 0 && self.taken == 0
     }
 
-    /// Whether the next picture may begin.
+    /// Returns whether the next picture may begin.
     fn is_superseded(&self) -> bool {
         let is_seen = self.drawn >= self.coarsest;
         self.next.is_some() && (is_seen || self.begun.elapsed() > PATIENCE)

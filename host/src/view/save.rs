@@ -9,7 +9,7 @@ use std::path::{Path, PathBuf};
 /// Files with cameras are numbered up to this.
 const MOST_FILES: u32 = 9999;
 
-/// The camera as a table of a scene file, with the options of `gridel render` that stand for it.
+/// Returns the camera as a table of a scene file, with the equivalent options of `gridel render`.
 pub fn saved(camera: &Camera) -> String {
     let Camera {
         eye,
@@ -28,7 +28,7 @@ pub fn saved(camera: &Camera) -> String {
     )
 }
 
-/// Writes a camera to a new file, `camera-1.toml` or the next number of which there is no file yet.
+/// Writes a camera to a new file, `camera-1.toml` or the next number that is free.
 ///
 /// # Errors
 /// If the file cannot be written.

@@ -1,4 +1,4 @@
-//! A picture to draw, and why there is none.
+//! A picture to draw, and the reasons why there is none.
 
 use gridel_core::format::record::View;
 use gridel_core::render::RenderError;
@@ -11,7 +11,7 @@ pub struct Shot {
     pub format: Format,
     pub structure: Structure,
     pub settings: Settings,
-    /// Whether pixels show the boxes and primitives that they had tested.
+    /// True if pixels show the number of tested boxes and primitives.
     pub heat_map: bool,
 }
 

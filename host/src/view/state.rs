@@ -17,7 +17,7 @@ const ZOOM: f64 = 0.8;
 /// The nearest distance to the target, in multiples of the first camera's. The furthest is where coordinates end.
 const NEAREST: f64 = 1e-4;
 
-/// What is shown of a scene. Everything that changes it is a function without other effects.
+/// The view of a scene. Everything that changes it is a function without other effects.
 pub struct State<'s> {
     scene: &'s Scene<'s>,
     camera: Camera,
@@ -29,7 +29,7 @@ pub struct State<'s> {
     heat_map: bool,
 }
 
-/// What is left to do after an action.
+/// The remaining work after an action.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Effect {
     Nothing,
@@ -61,7 +61,7 @@ impl<'s> State<'s> {
         }
     }
 
-    /// The scene from another camera, if it can be seen from there.
+    /// Returns the scene from another camera, if that camera is valid.
     pub fn seen_from(mut self, camera: Camera) -> Self {
         self.moved(camera);
         self
@@ -95,7 +95,7 @@ impl<'s> State<'s> {
         format!("{format}, {structure}, {samples}{heat_map}")
     }
 
-    /// Does what a key asks for.
+    /// Performs the action of a key.
     pub fn apply(&mut self, action: Action) -> Effect {
         match action {
             Action::Orbit(steps) => {
@@ -147,7 +147,7 @@ impl<'s> State<'s> {
         self.moved(self.camera.panned(-right, down))
     }
 
-    /// Brings the camera nearer by so many steps, or further away.
+    /// Moves the camera nearer by a number of steps, or further away.
     pub fn zoom(&mut self, steps: f64) -> Effect {
         let [first, now] = [self.first_camera, self.camera].map(|it| it.eye.distance(it.target));
         let wanted = (now * ZOOM.powf(steps)).max(NEAREST * first);
@@ -168,7 +168,7 @@ impl<'s> State<'s> {
         Effect::Redraw
     }
 
-    /// Takes another camera, unless the scene cannot be seen from there.
+    /// Takes another camera, unless it is invalid for the scene.
     fn moved(&mut self, camera: Camera) -> Effect {
         if camera.is_along_up() {
             return Effect::Nothing;

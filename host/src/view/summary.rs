@@ -4,7 +4,7 @@ use crate::compile::Names;
 use crate::explain::Explanation;
 use crate::table::{counted, printable, significant};
 
-/// The pixel's color, what it shows, and how many rays it took.
+/// Returns the pixel's color, the surface that it shows, and its number of rays.
 pub fn summary(explanation: &Explanation, names: &Names) -> String {
     let [red, green, blue] = explanation.srgb;
     let [x, y] = explanation.pixel.unwrap_or_default();

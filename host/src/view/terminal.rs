@@ -20,14 +20,14 @@ const COLUMNS: u16 = 80;
 /// The least time between two frames, which a terminal takes long to draw.
 const FRAME_TIME: Duration = Duration::from_millis(50);
 
-/// The time after which the terminal's size is looked at.
+/// The time after which the terminal's size is checked.
 const LOOK_TIME: Duration = Duration::from_millis(250);
 
 /// Lines below the picture, for the settings.
 const LINES_BELOW: u16 = 1;
 
-/// The size of a picture with the shape of another one, in pixels of the terminal, or of 80 columns where standard
-/// output is none.
+/// Returns the size of a picture with a given shape, in pixels of the terminal. Uses 80 columns where standard output
+/// is not a terminal.
 pub fn fitting_size(shape: [u16; 2]) -> [u16; 2] {
     let size = Term::stdout().size_checked();
     let (rows, columns) = size.unwrap_or((u16::MAX, COLUMNS));
@@ -85,7 +85,7 @@ pub fn one_frame(refiner: &Refiner<'_>, state: &State<'_>) -> Result<String, Vie
     })
 }
 
-/// Shows a scene until somebody quits. The picture fits the terminal, or keeps its size if `is_fixed`.
+/// Shows a scene until the user quits. The picture fits the terminal, or keeps its size if `is_fixed`.
 ///
 /// # Errors
 /// If standard output cannot be written.
@@ -94,7 +94,7 @@ pub fn live(refiner: &Refiner<'_>, state: State<'_>, is_fixed: bool) -> io::Resu
     let wake = sender.clone();
     thread::scope(|scope| {
         scope.spawn(move || read_keys(&sender));
-        // Nobody listens any more at the end.
+        // At the end the receiver is gone.
         let wake = || drop(wake.send(Event::Drawn));
         refiner.run(&wake, || {
             let _screen = Screen::open()?;
@@ -111,7 +111,7 @@ pub fn live(refiner: &Refiner<'_>, state: State<'_>, is_fixed: bool) -> io::Resu
     })
 }
 
-/// What happens while a scene is shown.
+/// The events while a scene is shown.
 enum Event {
     Key(Key),
     /// There is more of the picture.
@@ -171,12 +171,12 @@ fn write(text: &str) -> io::Result<()> {
 struct Live<'r, 's> {
     refiner: &'r Refiner<'s>,
     state: State<'s>,
-    /// The width and height of which the picture has the ratio.
+    /// The width and height whose ratio the picture has.
     shape: [u16; 2],
     is_fixed: bool,
     /// Shown in place of the settings until the next key.
     message: Option<String>,
-    /// Whether the keys are shown in place of the picture.
+    /// True if the keys are shown in place of the picture.
     shows_keys: bool,
 }
 
@@ -187,7 +187,7 @@ impl Live<'_, '_> {
         let mut last = Instant::now();
         loop {
             self.fit()?;
-            // Nothing tells of another size of the terminal, so it is looked at now and then.
+            // No event reports another size of the terminal, so it is checked now and then.
             let timeout = match is_drawn && !self.shows_keys {
                 true => FRAME_TIME.saturating_sub(last.elapsed()),
                 false => LOOK_TIME,

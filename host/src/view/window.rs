@@ -37,7 +37,7 @@ const CLICK_DISTANCE: f64 = 3.0;
 /// Pixels of a touchpad's motion that zoom as one step of a wheel.
 const PIXELS_PER_STEP: f64 = 40.0;
 
-/// What is shown in a window.
+/// The content of a window.
 #[derive(Clone, Copy)]
 pub struct Viewed<'v> {
     pub scene: &'v Scene<'v>,
@@ -74,7 +74,7 @@ fn without_place(error: &impl Display) -> String {
 pub fn run(refiner: &Refiner<'_>, state: State<'_>, viewed: Viewed<'_>) -> Result<(), WindowError> {
     let events = EventLoop::<Wake>::with_user_event().build()?;
     let proxy = events.create_proxy();
-    // Nobody listens any more at the end.
+    // At the end the receiver is gone.
     let wake = || drop(proxy.send_event(Wake::Drawn));
     thread::scope(|scope| {
         refiner.run(&wake, || {
@@ -96,7 +96,7 @@ pub fn run(refiner: &Refiner<'_>, state: State<'_>, viewed: Viewed<'_>) -> Resul
     })
 }
 
-/// What threads tell the window.
+/// The messages of threads to the window.
 enum Wake {
     /// There is more of the picture.
     Drawn,
@@ -117,7 +117,7 @@ struct Mouse {
     place: PhysicalPosition<f64>,
     /// The button that is down, and where it went down.
     down: Option<(MouseButton, PhysicalPosition<f64>)>,
-    /// Whether it has moved since, further than in a click.
+    /// True if it has moved since, further than in a click.
     is_drag: bool,
 }
 
@@ -245,7 +245,7 @@ impl<'env> App<'_, '_, 'env> {
         let [right, down] = way(start);
         let from = match self.mouse.is_drag {
             true => before,
-            // The way of what has only now become a drag counts whole.
+            // The way before it became a drag counts, too.
             false => start,
         };
         self.mouse.is_drag |= right.hypot(down) > CLICK_DISTANCE;

@@ -11,7 +11,7 @@ pub struct Drawing {
     pub slot: usize,
     shot: Shot,
     blocks: Box<dyn Iterator<Item = Block>>,
-    /// Whether all blocks of the coarsest size are drawn.
+    /// True if all blocks of the coarsest size are drawn.
     pub is_seen: bool,
 }
 
@@ -19,7 +19,7 @@ pub struct Drawing {
 const COARSEST: u16 = 8;
 
 impl Drawing {
-    /// The pixels that fall to a worker, of so many.
+    /// Returns the pixels of one worker, of `workers`.
     pub fn new(slot: usize, shot: Shot, [worker, workers]: [usize; 2]) -> Self {
         let size = [shot.settings.width, shot.settings.height];
         let blocks = CoarseToFine::new([0, 0], size);

@@ -1,9 +1,9 @@
 //! Gridel for web pages: the compiler and the core in WebAssembly, behind one function.
 //!
 //! A page writes a request to the memory that [`input`] returns, calls [`call`], and reads the answer at
-//! [`output_address`]. Requests and answers have the same form: the length of a JSON text in 4 bytes, little-endian, the
-//! text, and bytes that belong to it, such as a file or pixels. `page/worker.js` does this. An answer whose JSON has the
-//! key `error` is an error.
+//! [`output_address`]. Requests and answers have the same form. They begin with the length of a JSON text in 4 bytes,
+//! little-endian. The text follows, and bytes that belong to it, such as a file or pixels. `page/worker.js` does this.
+//! An answer whose JSON has the key `error` is an error.
 //!
 //! | file | what is in it |
 //! |---|---|
@@ -40,7 +40,7 @@ thread_local! {
     static STATE: RefCell<State> = RefCell::default();
 }
 
-/// Makes room for a request of so many bytes, and returns its address.
+/// Makes room for a request of `length` bytes, and returns its address.
 // SAFETY: no other function of the module has this name.
 #[unsafe(no_mangle)]
 pub extern "C" fn input(length: usize) -> *mut u8 {

@@ -46,7 +46,7 @@ impl Loaded {
         self.cell.borrow_owner().bytes()
     }
 
-    /// What a page shows of it.
+    /// Returns the data of it that a page shows.
     pub fn json(&self) -> Result<Value, Problem> {
         let scene = self.scene()?;
         let settings = Settings::of(scene);
@@ -77,7 +77,7 @@ impl Loaded {
         }
     }
 
-    /// The picture that is asked for.
+    /// Returns the requested picture.
     pub fn shot(&self, of: &ShotOf) -> Result<Shot, Problem> {
         Ok(Shot {
             view: self.view(of.camera)?,

@@ -17,7 +17,7 @@ fn pixels(bytes: &[u8]) -> Vec<[u16; 3]> {
     bytemuck::pod_collect_to_vec(bytes)
 }
 
-/// Two pictures of the same size: a reference, and what is compared with it.
+/// Returns two pictures of the same size: a reference, and one to compare with it.
 fn pair(bytes: &[u8]) -> [Vec<[u16; 3]>; 2] {
     let (reference, picture) = bytes.split_at(bytes.len() / 2);
     [pixels(reference), pixels(picture)]
@@ -48,7 +48,7 @@ pub fn difference(bytes: &[u8]) -> Answer {
     Ok((json!({}), difference_picture(&reference, &picture)))
 }
 
-/// Colors work; black is none.
+/// Colors work; black is no work.
 pub fn heat_map(bytes: &[u8]) -> Answer {
     let work: Vec<u32> = bytemuck::pod_collect_to_vec(bytes);
     let maximum = work.iter().copied().max().unwrap_or(0);
@@ -79,7 +79,7 @@ pub fn png(loaded: &Loaded, [width, height]: [u16; 2], bytes: &[u8]) -> Answer {
         counters: None,
         work: Vec::new(),
     };
-    // The file of a whole picture says nothing of these.
+    // The file of a whole picture states none of these.
     let job = Job::whole(Format::F32, Structure::List, settings);
     let metadata = RenderMetadata::of(scene, &job);
     let mut file = Vec::new();

@@ -9,7 +9,7 @@ use serde::{Deserialize, Deserializer, de::Error};
 #[derive(Deserialize)]
 #[serde(tag = "do", rename_all = "kebab-case")]
 pub enum Request {
-    /// What there is to choose from.
+    /// Returns the choices.
     About,
     /// Forgets all files.
     ClearFiles,
@@ -23,8 +23,8 @@ pub enum Request {
     Move(Move),
     /// Begins a picture.
     Begin(Begin),
-    /// Draws so many more of its pixels, four words of 32 bits each: column and row; color as 0x00BBGGRR, or work;
-    /// linear red and green; linear blue, and width and height of the block.
+    /// Draws so many more of its pixels. The answer has four words of 32 bits per pixel. They are column and row; color
+    /// as 0x00BBGGRR, or work; linear red and green; linear blue and the block's width and height.
     Step { blocks: usize },
     /// Compares two linear pictures, the first being the reference.
     Errors,
@@ -82,7 +82,7 @@ pub struct Move {
 #[derive(Deserialize)]
 pub struct Begin {
     pub shot: ShotOf,
-    /// Of so many workers, the number of this one.
+    /// The number of this worker, and the number of workers.
     pub share: [usize; 2],
 }
 

@@ -1,4 +1,4 @@
-//! What a worker holds, and the answers.
+//! The state of a worker, and the answers.
 
 use crate::drawing::Drawing;
 use crate::loaded::Loaded;
@@ -228,7 +228,7 @@ impl Session {
     }
 }
 
-/// What there is to choose from.
+/// Returns the choices.
 fn about() -> Value {
     let boards: Vec<_> = BOARDS
         .iter()

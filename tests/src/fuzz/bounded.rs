@@ -1,4 +1,4 @@
-//! Fuzzing of a fixed extent: so many mutations of a corpus, the same in every run.
+//! Fuzzing of a fixed extent: a number of mutations of a corpus, the same in every run.
 
 use crate::random::Random;
 use std::path::{Path, PathBuf};
@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 /// The inputs in a folder, in the order of the files' names.
 ///
 /// # Panics
-/// If there are none.
+/// If the corpus is empty.
 pub fn corpus(folder: &Path) -> Vec<Vec<u8>> {
     let entries = std::fs::read_dir(folder).expect("the corpus is committed");
     let mut paths: Vec<PathBuf> = entries.map(|it| it.expect("an entry").path()).collect();
@@ -16,7 +16,7 @@ pub fn corpus(folder: &Path) -> Vec<Vec<u8>> {
     paths.iter().map(read).collect()
 }
 
-/// Calls a target with every input of a corpus, and with so many mutations of them.
+/// Calls a target with every input of a corpus, and with `mutations` mutations of them.
 pub fn run(corpus: &[Vec<u8>], mutations: usize, target: fn(&[u8])) {
     for input in corpus {
         target(input);

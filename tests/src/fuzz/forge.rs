@@ -1,8 +1,7 @@
 //! A forger of blobs, which knows header, sections and records.
 //!
-//! Bits flipped at random are nearly always rejected. A forgery worth loading changes one field to a
-//! value that means something, or changes fields that belong together, and states what follows from
-//! that in the header, too.
+//! Bits flipped at random are nearly always rejected. A useful forgery changes one field to a
+//! meaningful value, or changes fields that belong together. It also changes the header to match.
 
 use super::parts::{Base, Parts, Section};
 use crate::random::Random;
@@ -203,7 +202,7 @@ fn change_integer(field: &mut [u8], random: &mut Random) {
     field.copy_from_slice(&new.to_le_bytes()[..field.len()]);
 }
 
-/// Makes forgeries of some blobs, and counts what becomes of them.
+/// Makes forgeries of some blobs, and counts the outcomes.
 #[derive(Clone, Debug)]
 pub struct Forger {
     bases: Vec<Base>,
@@ -225,7 +224,7 @@ impl Forger {
         }
     }
 
-    /// Makes a forgery, and hands it over if it loads: with the header's limits corrected if they
+    /// Makes a forgery, and passes it on if it loads. The header's limits are corrected if they
     /// alone were wrong.
     pub fn forge(&mut self, use_scene: impl FnOnce(&Scene<'_>, &[u8])) {
         let random = &mut self.random;

@@ -45,7 +45,7 @@ pub fn toml(data: &[u8]) {
     read("toml", data);
 }
 
-/// Reads an array of rays, and asks some of them in a small scene.
+/// Reads an array of rays, and traces some of them in a small scene.
 pub fn npy(data: &[u8]) {
     let Ok(rays) = read_rays(data) else {
         return;
@@ -65,8 +65,8 @@ pub fn npy(data: &[u8]) {
     agree(&blob.scene().expect("a scene"), &rays);
 }
 
-/// Reads a file of these bytes. An error says what is wrong and what to do; a scene compiles, or the
-/// compiler says why it does not; what was compiled loads.
+/// Reads a file of these bytes. An error says what is wrong and what to do. A scene compiles, or the compiler says why
+/// it does not. A compiled scene loads.
 fn read(extension: &str, bytes: &[u8]) {
     let folder = folder();
     let path = folder.path().join("scene").with_extension(extension);

@@ -1,8 +1,8 @@
 //! Fuzz targets: one function for each kind of input that comes from outside.
 //!
-//! Each function takes any bytes, and panics where a promise is broken. The fuzz targets of
-//! `tests/fuzz` call them through libFuzzer; [`bounded`] calls them a fixed number of times with
-//! mutations of the committed corpus, so that an ordinary test run needs no instrumented build.
+//! Each function takes any bytes, and panics where a promise is broken. The fuzz targets of `tests/fuzz` call them
+//! through libFuzzer. [`bounded`] calls them a fixed number of times with mutations of the committed corpus. So an
+//! ordinary test run needs no instrumented build.
 
 pub mod bounded;
 mod forge;
@@ -22,7 +22,7 @@ use gridel_host::blob::Blob;
 use gridel_host::state::{State, StateError};
 use std::mem::offset_of;
 
-/// Rays that a loaded blob is asked about, in each number format.
+/// Rays that are traced through a loaded blob, in each number format.
 const RAYS: usize = 15;
 
 /// Seals bytes as a blob, loads it, and holds every structure to brute force.
@@ -39,7 +39,7 @@ pub fn some_rays(scene: &Scene<'_>, seed: u64) -> Vec<UnitRay> {
     rays::rays(scene, seed).take(RAYS).collect()
 }
 
-/// Gives bytes a length and a checksum that fit, as far as they have room for them.
+/// Gives bytes a matching length and checksum, as far as they have room for them.
 pub fn sealed(bytes: &[u8]) -> Blob {
     let mut bytes = bytes.to_vec();
     let length = bytes.len() as u32;
@@ -104,8 +104,8 @@ fn agree_in<N: Number>(scene: &Scene<'_>, rays: &[UnitRay]) {
     }
 }
 
-/// Holds the tracks of a loaded scene's blob to what they promise: where they are accepted, the scene has a state at
-/// any time, or the camera is none.
+/// Checks the tracks of a loaded scene's blob. Where they are accepted, the scene has a state at any time, or the
+/// camera is invalid.
 ///
 /// Returns whether they were accepted.
 ///

@@ -95,8 +95,8 @@ impl Parts {
         sealed(&bytes)
     }
 
-    /// Makes boxes, planes and spheres of hierarchies as large as can be, so that any change of a
-    /// primitive stays inside of what holds it.
+    /// Makes boxes, planes and spheres of hierarchies as large as possible. Then any changed primitive stays inside of
+    /// its bounds.
     pub(super) fn loosen(&mut self) {
         const LOW: i16 = -i16::MAX;
         const HIGH: i16 = i16::MAX;

@@ -113,7 +113,7 @@ pub fn end(place: f64, sign: f64, radius: f64) -> Real {
     Real::of(sign * place) + Real::of(radius)
 }
 
-/// How far a disc reaches: as far as its plane is tilted against the axis.
+/// Returns how far a disc reaches, which depends on the tilt of its plane against the axis.
 pub fn rim(place: f64, sign: f64, normal: &Real, radius: f64) -> Real {
     let tilt = Real::of(1.0) - normal * normal;
     Real::of(sign * place) + Real::of(radius) * tilt.sqrt()

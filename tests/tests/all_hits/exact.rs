@@ -11,8 +11,8 @@ fn major_axis(slope: [i64; 3]) -> usize {
         .expect("an axis")
 }
 
-/// What a line crosses, by integers alone: a place of the half-open rule is moved by so little that no sign changes but
-/// those of zeros.
+/// Returns the triangles that a line crosses, by integers alone. The half-open rule moves a point by so little that
+/// only the signs of zeros change.
 fn crossed_exactly(
     triangles: &[[[i64; 3]; 3]],
     origin: [i64; 3],
@@ -60,7 +60,7 @@ fn crossed_exactly(
     crossed
 }
 
-/// Small integers, for which no format rounds what is projected: the hits are those that exact arithmetic finds, in its
+/// With small integers no format rounds what is projected. The hits are those that exact arithmetic finds, in its
 /// order, on edges and vertices as well.
 #[test]
 fn triangles_are_listed_as_exact_arithmetic_finds_them() {
@@ -83,7 +83,7 @@ fn triangles_are_listed_as_exact_arithmetic_finds_them() {
             let origin = [0, 1, 2].map(|k| corner[k] - 1024 * slope[k]);
             let mut moved = [1_i128 << 20, 1];
             if N::FORMAT == Format::Fixed {
-                // What is seen is turned into the ray's direction there.
+                // The projected point is turned into the ray's direction there.
                 for (place, moved) in moved.iter_mut().enumerate() {
                     if slope[(major_axis(slope) + 1 + place) % 3] < 0 {
                         *moved = -*moved;
@@ -112,7 +112,7 @@ fn triangles_are_listed_as_exact_arithmetic_finds_them() {
                 let found = f64::from_bits(hit.2);
                 assert!((found - t).abs() <= 0.01, "{found}, {t}: {}", about());
             }
-            // Places that rounding puts into another order, as hits at an edge.
+            // Hits that rounding puts into another order, as at an edge.
             let mut found = found;
             found.sort_unstable();
             as_expected.sort_unstable();

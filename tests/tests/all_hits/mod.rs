@@ -21,7 +21,7 @@ use gridel_tests::scenes;
 /// A hit, whether the ray leaves there, and the bits of its t.
 type Listed = (Option<HitBits>, bool, u64);
 
-/// All hits, listed so many at a time.
+/// Returns all hits, listed `SIZE` at a time.
 fn list<N: Number, const SIZE: usize>(scene: &Scene<'_>, ray: &Ray<N>) -> Vec<Listed> {
     let mut stack = Stack::<MAX_STACK_DEPTH>::new();
     let mut list = HitList::<N, SIZE>::new();
@@ -112,7 +112,7 @@ fn torus(number: u32) -> Shape {
     })
 }
 
-/// What the first hit is by both rules, where rays are not aimed at edges.
+/// The first hit is the same by both rules, where rays are not aimed at edges.
 #[test]
 fn the_first_of_all_hits_is_the_closest_one() {
     fn compare<N: Number>(scene: &Scene<'_>, count: usize) {
@@ -191,7 +191,7 @@ fn stacked_and_nested_surfaces_are_all_listed() {
             .bounds()
             .0
             .map(|[low, high]| (f64::from(low) + f64::from(high)) / 2.0);
-        // Through the diagonals that the squares' triangles share, and beside them.
+        // Through the diagonals that the squares' triangles share, and off them.
         for beside in [0.0, 300.0, -2.5] {
             let ray = UnitRay::new([x, y - beside, z + 1e5], [0.0, 0.0, -1.0]);
             let ready = ray.ready::<N>(scene).expect("a ray");

@@ -2,7 +2,7 @@
 
 use super::*;
 
-/// Points in and around solids and closed meshes, apart from those that lie next to a surface.
+/// Points in and around solids and closed meshes, except those that lie next to a surface.
 #[test]
 fn points_are_contained_where_geometry_says_so() {
     fn contained<N: Number>(scene: &Scene<'_>, count: usize) {
@@ -109,7 +109,7 @@ fn barycentric_coordinates_lead_back_to_the_point() {
             let Some((weights, slot)) = hit.barycentric(scene).zip(slot) else {
                 continue;
             };
-            // Where a ray runs along a triangle, the point may lie beside it.
+            // Where a ray runs along a triangle, the point may lie off it.
             let across: f64 = (0..3)
                 .map(|k| hit.normal[k].ratio_to_f64() * ready.slope()[k].ratio_to_f64())
                 .sum();

@@ -33,8 +33,8 @@ fn with_header(bytes: &[u8], header: &Header) -> Vec<u8> {
     [bytemuck::bytes_of(header), &bytes[size_of::<Header>()..]].concat()
 }
 
-/// Only the sections of a structure make it one. In a blob of `wide` alone triangles and spheres have no
-/// records, so that a grid or an octree without any cells would list them all.
+/// A blob has a structure only if it has the structure's sections. In a blob of `wide` alone triangles and spheres have
+/// no records, so a grid or an octree without any cells would list them all.
 #[test]
 fn structures_without_their_sections_are_rejected() {
     let ball = |x: f64| {
@@ -78,8 +78,8 @@ fn effects_that_nothing_calls_for_are_rejected() {
     works(&dark.sealed().scene().expect("a dark scene"), 20);
 }
 
-/// A radius of 65536 less what it was has the box of the old one, inside out, if coordinates wrap; among
-/// other spheres of the pack nobody sees it.
+/// If coordinates wrap, a radius of 65536 minus the old one has the old box, inside out. Among other spheres of the
+/// pack it goes unnoticed.
 #[test]
 fn pack_radii_that_wrap_are_rejected() {
     let spheres = (0..16).map(|number| {
@@ -103,8 +103,8 @@ fn pack_radii_that_wrap_are_rejected() {
     }
 }
 
-/// A vertex beyond 32767 units has a box that ends at -32768, if it wraps; among other triangles of the
-/// strip nobody sees it.
+/// A vertex beyond 32767 units has a box that ends at -32768, if it wraps. Among other triangles of the strip it goes
+/// unnoticed.
 #[test]
 fn strip_vertices_that_wrap_are_rejected_or_in_no_triangle() {
     let bytes = alone(Structure::Wide, &scenes::of([scenes::sheet(4)]), 24);
@@ -146,7 +146,7 @@ fn homes_of_triangles_without_records_are_rejected() {
     let shared = compile(&scene, &shared).expect("compiles").blob;
     works(&shared.scene().expect("a scene"), 20);
     assert!(section(shared.bytes(), SectionKind::SlotLocations).1.count > 0);
-    // The same without the pairs, the leaves and the triangles' records and slots.
+    // The blob without the pairs, the leaves and the triangles' records and slots.
     let mut base = Base::of(shared.bytes());
     base.remove(&[
         SectionKind::Pairs,

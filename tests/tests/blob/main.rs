@@ -116,8 +116,8 @@ fn small_blob(lattice_bits: u8) -> Vec<u8> {
     blob.bytes().to_vec()
 }
 
-/// Uses a scene that was accepted: all structures that loading proves agree, the others come to an
-/// end, and so do pictures.
+/// Uses a scene that was accepted. All structures that loading proves agree, and the others and
+/// pictures terminate.
 fn works(scene: &Scene<'_>, rays_each: usize) {
     every_format!(structures_agree(scene, rays_each));
     let samples = 1;
@@ -146,7 +146,7 @@ fn render_small(scene: &Scene<'_>, settings: Settings) {
 }
 
 fn structures_agree<N: Number>(scene: &Scene<'_>, rays_each: usize) {
-    // What a hit's place and primitive are; slots may share a number in a forged blob.
+    // The position and the primitive of a hit; slots may share a number in a forged blob.
     let answer =
         |hit: Option<Hit<N>>| hit.map(|hit| (N::far_to_f64(hit.t).to_bits(), hit.primitive));
     for ray in rays::rays(scene, 3).take(rays_each) {
@@ -172,7 +172,7 @@ fn structures_agree<N: Number>(scene: &Scene<'_>, rays_each: usize) {
     }
 }
 
-/// Counts of what became of forged blobs.
+/// Counts of the outcomes of forged blobs.
 #[derive(Debug, Default)]
 struct Fate {
     rejected: usize,

@@ -20,7 +20,7 @@ use gridel_tests::random::Random;
 use gridel_tests::scenes;
 use std::panic::{AssertUnwindSafe, catch_unwind, resume_unwind};
 
-/// One in so many must load, so that what loads is worth something.
+/// One in this many must load, so that the test covers loaded blobs.
 const LOADED: u64 = 100;
 
 fn forgeries() -> u64 {
@@ -164,7 +164,7 @@ fn forged_tracks_are_rejected_or_harmless() {
         let blob = compile(&scene, &options).expect("compiles").blob;
         assert!(moves(&blob.scene().expect("a scene"), blob.bytes()));
         let mut base = Base::of(blob.bytes());
-        // So that most of what is forged are tracks.
+        // Without names, most forgeries are of tracks.
         base.remove(&[SectionKind::NameStarts, SectionKind::NameText]);
         base
     });

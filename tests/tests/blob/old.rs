@@ -1,5 +1,5 @@
-//! Blobs of every version that was ever written: this build reads them and answers as recorded, or
-//! rejects them and says which versions are meant.
+//! Blobs of every version of the format. This build reads them and answers as recorded, or rejects them and names the
+//! supported versions.
 //!
 //! `fixtures/blobs` holds one of each structure, built from `scene.toml` there with `gridel build` as it
 //! was when the format had that version. These files stay as they are: when the format changes, its
@@ -14,7 +14,7 @@ use gridel_tests::{every_format, scenes};
 use std::mem::offset_of;
 use std::path::PathBuf;
 
-/// A ray in scene units, and what it meets.
+/// A ray in scene units, and its hit.
 struct Recorded {
     origin: [f64; 3],
     direction: [f64; 3],
@@ -22,7 +22,7 @@ struct Recorded {
     hit: Option<(u32, f64)>,
 }
 
-/// Largest difference of t: the 16-bit lattice moves surfaces by so much.
+/// Largest difference of t: the 16-bit lattice moves surfaces by at most this.
 const TOLERANCE: f64 = 1e-3;
 
 fn folder() -> PathBuf {
@@ -93,7 +93,7 @@ fn answers_as_recorded<N: Number>(name: &str, scene: &Scene<'_>, answers: &[Reco
             assert_eq!(found, primitive, "{}", described());
             assert_eq!(any, primitive.is_some(), "{}", described());
             if let (Some(hit), Some((_, t))) = (hit, recorded.hit) {
-                // Along the major axis, of which the direction is a multiple.
+                // The hit's t is along the major axis; the recorded one counts multiples of the direction.
                 let longest = direction.iter().fold(0.0, |most: f64, x| most.max(x.abs()));
                 let found = N::far_to_f64(hit.t) / longest;
                 assert!(

@@ -1,4 +1,4 @@
-//! Blobs that a program prevalidates: what is proved then, and that nothing depends on the rest.
+//! Blobs that a program prevalidates: which properties are proved then, and that nothing depends on the rest.
 
 use super::forged::section;
 use super::{render_small, small_scene};
@@ -99,7 +99,7 @@ fn disorder_is_found() {
             for bit in 0..8 * links {
                 let mut changed = bytes.clone();
                 changed[end - links + bit / 8] ^= 1 << (bit % 8);
-                // Owners of planes, and the axes of splits and carves, lead nowhere.
+                // Owners of planes, and the axes of splits and carves, are no links.
                 let leads = match kind {
                     SectionKind::FlaggedPairs => bit < 26,
                     SectionKind::DualNodes => bit < 24,
@@ -146,11 +146,11 @@ fn tables_cannot_be_prevalidated() {
     }
 }
 
-/// Every record but the words that lead from one to another, filled with anything: walks end, within
-/// the work that the order allows, and so do pictures.
+/// Fills every record with anything, except the words that lead from one record to another. Walks end within the work
+/// that the order allows, and so do pictures.
 #[test]
 fn nothing_depends_on_unproved_sections() {
-    // Numbers that nobody proves leave their ranges. One thread, so that rows of pictures are rendered on it as well.
+    // Numbers that are not proved leave their ranges. One thread, so that rows of pictures are rendered on it as well.
     let threads = rayon::ThreadPoolBuilder::new().num_threads(1).build();
     threads
         .expect("a thread")
@@ -168,7 +168,7 @@ fn spoil_unproved_sections() {
             if kind > SectionKind::DualNodes || random.below(3) == 0 {
                 continue;
             }
-            // The view is proved: what is no camera is rejected.
+            // The view is proved: an invalid camera is rejected.
             let changes = if kind == SectionKind::View {
                 1
             } else {
@@ -246,8 +246,8 @@ fn walks_end<N: Number>(scene: &Scene<'_>, leaves: u32, rays_each: usize) {
             closest_hit::<N, DynAccel, _>(&scene, &ready, stack, &mut first);
             any_hit::<N, DynAccel, _>(&scene, &ready, stack, &mut any);
             for count in [first, any] {
-                // Of a tree of leaves: fewer nodes than twice as many, each visited once, with two
-                // carves and a split; a pair has two boxes.
+                // A tree of leaves has fewer nodes than twice as many. Each is visited once, with two carves and a
+                // split; a pair has two boxes.
                 let leaves = u64::from(leaves);
                 assert!(count.boxes <= 1 + 8 * leaves, "{count:?}");
                 assert!(
@@ -289,7 +289,7 @@ fn demands_are_those_of_the_scene() {
     }
 }
 
-/// Whatever a blob was made of, reading its demand ends.
+/// Reading the requirements of any blob terminates.
 #[test]
 fn requirements_of_broken_blobs_are_read_or_rejected() {
     let whole = blob_for_boards(24);

@@ -142,7 +142,7 @@ fn orbited(scene: &Scene<'_>, format: Format) -> Vec<u8> {
     scenes::picture(&seen, Structure::List, format)
 }
 
-/// What the example prints of its rays, through brute force.
+/// Returns the lines that the example prints of its rays, through brute force.
 fn rays<N: Number>(scene: &Scene<'_>) -> String {
     let mut stack = Stack::<0>::new();
     let lines = (0..finder::RAYS).map(|turn| {

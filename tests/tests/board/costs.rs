@@ -98,8 +98,8 @@ fn shapes_and_effects_are_paid_for_one_by_one() {
         figures.add(&build.to_string(), &report);
     }
     figures.check();
-    // The code of effects that nothing requires costs next to nothing. That of shapes and wider
-    // storage does: leaves choose between them.
+    // The code of effects that nothing requires is negligible. That of shapes and wider storage is not: leaves choose
+    // between them.
     let base = &scenes[0];
     let build = Build::new(discovery, Format::Fixed, Structure::DualSplit, base);
     let effects = Effects::NAMED.map(|(_, name)| name);
@@ -121,8 +121,8 @@ fn shapes_and_effects_are_paid_for_one_by_one() {
     );
 }
 
-/// Costs per hit of what looks colors up, and of a sample of a light, on a processor with `f32`: a table of the page of
-/// memory.
+/// Measures the cost per hit of everything that looks colors up, and of a sample of a light, on a processor with `f32`.
+/// It is a table of the page of memory.
 fn hits_and_lights_cost_what_is_recorded() {
     let here = board("mps2-an386");
     let build = |scene| Build::new(here, Format::F32, Structure::DualSplit, scene);
@@ -155,8 +155,8 @@ fn hits_and_lights_cost_what_is_recorded() {
 /// The effects whose costs per hit are measured.
 const PER_HIT: [&str; 4] = ["vertex-colors", "texture", "texture-levels", "normal-map"];
 
-/// Costs of a product with every shape and effect on a board, fast or small, and on one of each kind
-/// of core with instances: by which the memory report scales.
+/// Measures a product with every shape and effect on a board, fast or small, and on one of each kind of core with
+/// instances. The memory report scales by these costs.
 fn everything_on_a_board(board: &'static Board, format: Format) {
     let mut linked = Linked::new();
     add_everything(&mut linked, board, format, Structure::DualSplit);
@@ -172,7 +172,7 @@ fn everything_on_a_board(board: &'static Board, format: Format) {
     linked.check();
 }
 
-/// The same through the other structures that boards prevalidate.
+/// Measures everything through the other structures that boards prevalidate.
 fn everything_through_other_structures(board: &'static Board, format: Format) {
     let mut linked = Linked::new();
     let others = Prevalidated::STRUCTURES.into_iter();
@@ -198,8 +198,8 @@ fn add_everything(
     }
 }
 
-/// Flash for all code that a diffuse scene of triangles and spheres with shadows needs, the vector table
-/// included: at most this where it shall be small.
+/// Largest flash for all code of a small build that a diffuse scene of triangles and spheres with shadows needs.
+/// Includes the vector table.
 const SMALL_CODE: u64 = 16 * 1024;
 
 /// Savings of the feature `small`, and its costs per ray: the README's table.

@@ -4,7 +4,7 @@ use crate::stack::{CallGraph, Path};
 use object::{File, Object, ObjectSection, ObjectSegment, ObjectSymbol, SectionKind, SymbolKind};
 use std::collections::BTreeSet;
 
-/// A linked program: its functions, and what it takes in flash and RAM.
+/// A linked program: its functions, and its bytes in flash and RAM.
 pub struct Elf {
     data: Vec<u8>,
 }
@@ -34,11 +34,11 @@ impl Elf {
         table.map_or(0, |section| section.size())
     }
 
-    /// Bytes in RAM beside the stack.
+    /// Returns the bytes in RAM besides the stack.
     pub fn static_bytes(&self) -> u64 {
         let file = self.file();
         let sections = file.sections().filter(|section| {
-            // `.stack` and `.heap` stand for what is left.
+            // `.stack` and `.heap` are the rest.
             let rest = section
                 .name()
                 .is_ok_and(|name| [".stack", ".heap"].contains(&name));
@@ -64,18 +64,18 @@ impl Elf {
     }
 }
 
-/// Whether a function is what a panic calls.
+/// Returns whether a panic calls a function.
 pub fn panics(name: &str) -> bool {
     name.contains("panic")
 }
 
-/// Whether a function hands out memory.
+/// Returns whether a function hands out memory.
 pub fn allocates(name: &str) -> bool {
     name.contains("__rust_alloc") || name.contains("__rustc::__rdl")
 }
 
-/// Whether a function is a routine of soft floats: of the Arm run-time ABI (4.1.2), or by the name
-/// that GCC's library and LLVM's give it.
+/// Returns whether a function is a routine of soft floats. The names are those of the Arm run-time
+/// ABI (4.1.2), and those of GCC's library and LLVM's.
 pub fn computes_in_floating_point(name: &str) -> bool {
     const CONVERSIONS: [&str; 9] = [
         "__aeabi_i2f",

@@ -30,8 +30,8 @@ pub fn plan(plan: &mut Plan) {
     }
 }
 
-/// A module of `gridel build --emit-rust` runs on a board; with a blob that is not the one that it
-/// was written for, or that has no room, it does not compile.
+/// A module of `gridel build --emit-rust` runs on a board. It does not compile with a blob other than the one that it
+/// was written for, or with one that has no room.
 fn emitted_modules_run_or_do_not_compile() {
     let discovery = board("stm32vldiscovery");
     let scene = parts::sphere_and_triangle();

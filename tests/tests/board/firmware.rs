@@ -164,7 +164,7 @@ impl<'b> Build<'b> {
         Self { memory, ..self }
     }
 
-    /// The board, and what it computes in and through.
+    /// Returns the board, the number format and the structure.
     pub fn place(&self) -> ProgramKey<'b> {
         (self.board, self.format, self.structure)
     }
@@ -177,7 +177,7 @@ impl<'b> Build<'b> {
         }
     }
 
-    /// Whether it is built so.
+    /// Returns whether it is built so.
     pub fn is_small(&self) -> bool {
         self.small
     }
@@ -219,7 +219,7 @@ impl<'b> Build<'b> {
                 .concat()
                 .join(","),
             );
-        // What is meant for the host's build would change what is measured.
+        // Variables for the host's build would change the measured figures.
         for (variable, _) in env::vars_os() {
             let name = variable.to_string_lossy();
             if name.ends_with("RUSTFLAGS") || name.starts_with("CARGO_PROFILE_") {
@@ -276,7 +276,7 @@ impl<'b> Build<'b> {
         })
     }
 
-    /// Where a program lies, what it is made from, and what it writes.
+    /// Returns the folder of a program, of its inputs and of its outputs.
     pub fn folder(&self, name: &str) -> PathBuf {
         let tmp = Path::new(env!("CARGO_TARGET_TMPDIR"));
         // Scenes of one name differ, and tests run at the same time.
@@ -302,7 +302,7 @@ impl Program<'_> {
         Elf::read(self.path())
     }
 
-    /// Where the program lies, and what it writes.
+    /// Returns the folder of the program and of its outputs.
     pub fn folder(&self) -> &Path {
         &self.folder
     }
@@ -317,7 +317,7 @@ impl Program<'_> {
         fs::read(self.folder.join(name)).expect("the program wrote it")
     }
 
-    /// Runs the program and returns what it measured.
+    /// Runs the program and returns its figures.
     pub fn run(&self) -> BTreeMap<String, u64> {
         self.lines().into_iter().collect()
     }
@@ -340,7 +340,7 @@ impl Program<'_> {
             .collect()
     }
 
-    /// Runs the program, which has to fail, and returns what it says.
+    /// Runs the program, which has to fail, and returns its message.
     pub fn failure(&self) -> String {
         let output = self.output();
         assert!(!output.status.success(), "{}", self.folder.display());

@@ -42,7 +42,7 @@ fn all() -> MutexGuard<'static, [Folder; FOLDERS]> {
     ALL.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-/// A target folder that is held for one build.
+/// A target folder that is reserved for one build.
 pub struct Claim {
     number: usize,
     folder: PathBuf,
@@ -105,7 +105,7 @@ impl Claim {
         while cores.len() > KEPT {
             let oldest = cores.pop_front().map(|oldest| oldest.files);
             for file in oldest.into_iter().flatten() {
-                // Cargo builds anew what is missing; what is still there only takes room.
+                // Cargo builds missing files again; the others only take room.
                 let _ = fs::remove_file(file);
             }
         }

@@ -144,7 +144,7 @@ fn range<N: Number>(scene: &Scene<'_>, place: Position, direction: [i32; 3]) -> 
     hit.map_or(0, |hit| N::narrow(hit.t).to_q13() as u64)
 }
 
-/// Suzanne as an instance against the same triangles in the scene itself, seen alike.
+/// Suzanne as an instance against the same triangles in the scene itself, in the same view.
 fn an_instance_costs_little(board: &'static Board, format: Format, most: f64) {
     let [placed, flat] = scenes::suzanne_as_an_instance().map(|scene| {
         let build = Build::new(board, format, Structure::DualSplit, &scene);

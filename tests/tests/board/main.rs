@@ -4,8 +4,8 @@
 //! (`rustup target add`). A test without what its board needs is ignored and says why; it fails if
 //! `GRIDEL_REQUIRE_BOARDS` is 1. The ordinary run has a picture of every board, `GRIDEL_FULL=1` all.
 //!
-//! `fixtures/recorded/board.json` holds what was measured last: nothing may grow by more than 2 %.
-//! `GRIDEL_RECORD_BOARDS=1` records anew; read the difference before it is committed.
+//! `fixtures/recorded/board.json` holds the last measurements: nothing may grow by more than 2 %.
+//! `GRIDEL_RECORD_BOARDS=1` records again; read the difference before it is committed.
 
 #[path = "../../firmware/src/arm.rs"]
 mod arm;
@@ -120,7 +120,7 @@ fn pictures(plan: &mut Plan) {
             .run(move || picture_is_the_hosts(board, format, &scenes::glass_chess()));
     }
 
-    // What 8 KiB of RAM and 128 KiB of flash are enough for, and 16 KiB and 256 KiB.
+    // Scenes that fit 8 KiB of RAM and 128 KiB of flash, and 16 KiB and 256 KiB.
     let discovery = board("stm32vldiscovery");
     type Make = fn() -> Compiled;
     let large: [(&str, &'static Board, Make); 4] = [
@@ -138,7 +138,7 @@ fn pictures(plan: &mut Plan) {
         test.run(move || picture_is_the_hosts(board, Format::Fixed, &scene()));
     }
 
-    // Small code gives the same bits, with every shape and effect, and holds no more that panics.
+    // A small build gives the same bits, with every shape and effect, and has no more code that panics.
     for (name, format) in [
         ("mps2-an386", Format::F32),
         ("mps2-an385", Format::Fixed),
@@ -171,8 +171,8 @@ fn pictures(plan: &mut Plan) {
     }
 }
 
-/// Every number format and every structure, where lanes are those of NEON or of none, is the host's to
-/// the bit. Where bytes lie the other way round, the blob is rejected.
+/// Every number format and structure, with lanes of NEON or without lanes, gives the host's bits. On a big-endian
+/// processor the blob is rejected.
 fn other_processors(plan: &mut Plan) {
     fn program<'b>(board: &'b Board, scene: &'b Compiled) -> Program<'b> {
         Build::new(board, Format::Fixed, Structure::DualSplit, scene)
@@ -208,8 +208,8 @@ fn other_processors(plan: &mut Plan) {
     });
 }
 
-/// Builds and runs a scene's picture, compares it with the host's, and looks at what was linked:
-/// nothing that panics or allocates, no soft floats in `fixed`, and no more memory than there is.
+/// Builds and runs a scene's picture, compares it with the host's, and checks the linked code. Nothing panics or
+/// allocates, `fixed` has no soft floats, and the program fits the memory.
 fn picture_is_the_hosts(board: &'static Board, format: Format, scene: &Compiled) {
     let mut figures = Figures::new();
     let (build, report) = compare_with_the_hosts(board, format, scene);
@@ -279,8 +279,8 @@ fn look_into(
     report.insert("flash-bytes".into(), elf.flash_bytes());
 }
 
-/// No sum, product or shift of the core leaves its type, and the compiler can check it: with all of them
-/// checked, nothing is linked that panics.
+/// No sum, product or shift of the core leaves its type, and the compiler can check it. With all of these checks
+/// enabled, no linked code panics.
 fn linked(plan: &mut Plan) {
     let everywhere = [
         ("microbit", Format::Fixed),

@@ -177,8 +177,8 @@ fn gradients(alpha: fn(u8) -> u8) -> Texture {
     Texture::of(image.expect("as many pixels").into())
 }
 
-/// The base, and a scene for every shape and effect beside it. Scenes for shapes have no effects,
-/// and those for effects no other shapes; absorption comes with the glass that it is in.
+/// The base, and a scene for every shape and effect. Scenes for shapes have no effects, and those for effects no other
+/// shapes; absorption comes with its glass.
 pub fn scenes() -> Vec<Compiled> {
     let mut all = vec![compile(BASE, base())];
     for (name, shape) in beside_triangles() {
@@ -206,7 +206,7 @@ pub fn every_shape() -> Compiled {
     compile("every-shape", scene)
 }
 
-/// Every shape and every effect, through a structure; all but planes placed by an instance if that is asked for.
+/// Returns every shape and every effect, through a structure. With `instances`, an instance places all but planes.
 pub fn everything(structure: Structure, instances: bool) -> Compiled {
     let mut scene = base();
     scene
@@ -247,8 +247,8 @@ pub fn everything(structure: Structure, instances: bool) -> Compiled {
     compiled
 }
 
-/// Shapes and effects that scenes often require together. Each takes eight builds, two on every kind
-/// of core, so the list is short; the memory report bounds what is not on it.
+/// Returns shapes and effects that scenes often require together. Each takes eight builds, two on every kind of core,
+/// so the list is short. The memory report bounds the combinations that are not on it.
 pub fn combinations() -> impl Iterator<Item = (Vec<&'static str>, Vec<&'static str>)> {
     const EVERY: &str = "shadow highlight mirror glass absorption checker";
     const EVERY_SMOOTH: &str = "shadow highlight mirror glass absorption checker smooth";
@@ -406,7 +406,7 @@ pub fn sphere_and_triangle() -> Compiled {
     compile("sphere, triangle, shadow", scene)
 }
 
-/// Scenes that each ask for one thing that [`sphere_and_triangle`] does not, with what is said of it.
+/// Returns scenes that each require one thing that [`sphere_and_triangle`] does not, with the error message for it.
 pub fn outgrown() -> [(&'static str, Compiled); 6] {
     let [mirrors, _] = deeper();
     let mut cuboid = base();

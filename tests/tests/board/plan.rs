@@ -1,5 +1,5 @@
-//! The list of tests, made when the program starts: a test whose board cannot be emulated here, or
-//! whose scene is missing, is ignored, with the reason.
+//! The list of tests, made when the program starts. A test is ignored, with the reason, if its board cannot be emulated
+//! here or its scene is missing.
 
 use crate::firmware::missing_for;
 use crate::scenes;

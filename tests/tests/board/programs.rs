@@ -1,4 +1,4 @@
-//! Code and call stacks of linked programs, which the memory report is made of, and whether it is right.
+//! Code and call stacks of linked programs, from which the memory report is made, and tests of the report.
 //!
 //! They are recorded in the package of the host, `host/src/measure/board/programs.json`.
 
@@ -110,7 +110,7 @@ impl Linked {
         let _one_at_a_time = FILE.lock().unwrap_or_else(|poison| poison.into_inner());
         let text = fs::read(path()).expect("a table of programs");
         let mut recorded: Programs = serde_json::from_slice(&text).expect("a table of programs");
-        // What once had code for all parts, before there were more, is built no more.
+        // Removes programs that once had code for all parts, before there were more; they are not built any more.
         let all: Vec<&str> = everything().collect();
         let has_all = |parts: &[&str]| all.iter().all(|part| parts.contains(part));
         recorded.retain(|parts| !parts.contains(&"display-values") || has_all(parts));
@@ -233,8 +233,8 @@ fn memory_report_is_within_5_percent(board: &'static Board, format: Format, all:
     assert!(wrong.is_empty(), "{}", wrong.join("\n"));
 }
 
-/// Programs that were not recorded are bounded. How far beyond the true figures the bounds lie stands in
-/// the host's documentation (`gridel_host::measure::board::programs`).
+/// Programs that were not recorded are bounded. The host's documentation states how far beyond the true figures the
+/// bounds lie (`gridel_host::measure::board::programs`).
 fn memory_report_bounds_programs_beyond(board: &'static Board, format: Format) {
     let mut wrong = Vec::new();
     for (shapes, effects) in [

@@ -72,8 +72,8 @@ pub fn plan(plan: &mut Plan) {
     }
 }
 
-/// The range finder prints what the host finds, to the step, and near to what double precision and brute force find.
-/// Nothing of it panics, and in `fixed` nothing computes in floating point.
+/// The range finder prints the host's distances, to the step, and nearly those of double precision and brute force.
+/// None of its code panics, and in `fixed` none computes in floating point.
 fn the_range_finder_measures_distances(board: &'static Board) {
     let compiled = scenes::torus_mesh();
     let format = board.format();
@@ -192,7 +192,7 @@ fn rays_without_a_camera(board: &'static Board, format: Format, scene: &Compiled
         "{build}"
     );
     let ram = report["cast-stack-bytes"] + report["cast-workspace-bytes"];
-    // With half of the registers, a Cortex-M0 puts down more.
+    // With half of the registers, a Cortex-M0 spills more.
     let is_bound = board.core != "Cortex-M0";
     assert!(!is_bound || ram <= CAST_RAM, "{build}: {ram} bytes of RAM");
     figures.add(&build.to_string(), &report);

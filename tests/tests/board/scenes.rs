@@ -212,8 +212,8 @@ pub fn small_suzanne() -> Compiled {
     compile_with(name, suzanne_scene(), size, options)
 }
 
-/// Suzanne turned by 30 degrees and scaled by 0.7, seen by a camera that was moved likewise, without light: as an instance
-/// of a part, and as an object.
+/// Suzanne turned by 30 degrees and scaled by 0.7, without light, as an instance of a part and as an object. The camera
+/// was moved likewise.
 pub fn suzanne_as_an_instance() -> [Compiled; 2] {
     let axis = DVec3::new(1.0, 2.0, 3.0).normalize();
     let placement = Placement {

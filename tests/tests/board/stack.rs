@@ -1,11 +1,11 @@
 //! The deepest call path of a linked program, from its instructions: how much stack it can take.
 //!
-//! Every direct call and jump is decoded (Thumb and RV32); the frame of a function is what the
-//! compiler stated in `.stack_sizes`, or, for the libraries that come compiled, what its prologue
-//! takes. The bound holds because nothing is called through a pointer that was handed on and nothing
-//! recurses: both are demanded here. Relocations show whose address is taken and where. Only code may
-//! take one, and counts as calling it: small code loads the address of what it calls more than twice,
-//! and calls the register. What calls a register without having taken an address is rejected.
+//! Every direct call and jump is decoded (Thumb and RV32). The frame of a function is what the compiler stated in
+//! `.stack_sizes`. For libraries that come compiled, it is what the prologue takes. The bound holds because nothing is
+//! called through a pointer that was passed on and nothing recurses; the test requires both. Relocations show whose
+//! address is taken and where. Only code may take one, and counts as calling it. Small code loads the address of a
+//! function that it calls more than twice, and calls the register. Code that calls a register without having taken an
+//! address is rejected.
 
 use object::elf::{
     R_ARM_ABS32, R_ARM_MOVT_ABS, R_ARM_MOVW_ABS_NC, R_ARM_THM_MOVT_ABS, R_ARM_THM_MOVW_ABS_NC,
@@ -43,7 +43,7 @@ impl CallGraph {
     /// Reads a program that was linked with `--emit-relocs`.
     ///
     /// # Errors
-    /// If a frame is unknown, or a function may be called through a pointer that was handed on.
+    /// If a frame is unknown, or a function may be called through a pointer that was passed on.
     pub fn read(file: &File<'_>) -> Result<Self, String> {
         let decoder: Decoder = match file.architecture() {
             Architecture::Arm => thumb,
@@ -65,7 +65,7 @@ impl CallGraph {
             let mut decoded = Decoded::default();
             code.decode(range.clone(), decoder, &mut decoded);
             let frame = match (stated.get(&range.start), decoded.frame) {
-                // What small code has in common; the compiler states no frame of it.
+                // Code that functions of a small build share; the compiler states no frame of it.
                 (Some(&stated), Some(found)) if name.starts_with("OUTLINED_FUNCTION_") => {
                     stated.max(found)
                 }
@@ -96,7 +96,7 @@ impl CallGraph {
     /// The deepest path from the program's entry.
     ///
     /// # Errors
-    /// If a function calls itself, directly or through others, or a call leads nowhere.
+    /// If a function calls itself, directly or through others, or the target of a call is unknown.
     pub fn deepest(&self) -> Result<Path, String> {
         let mut known = BTreeMap::new();
         self.deepest_from(self.entry, &mut Vec::new(), &mut known)
@@ -205,7 +205,7 @@ fn stated_frames(file: &File<'_>) -> BTreeMap<u64, u64> {
     frames
 }
 
-/// Functions that only the hardware calls, by an address that the start-up code hands to it.
+/// Functions that only the hardware calls, by an address that the start-up code sets.
 const TRAPS: [&str; 3] = ["_start_trap", "_default_start_trap", "_default_abort"];
 /// The steps of riscv-rt's start-up code, which jumps through registers from one to the next.
 const STEPS: [&str; 2] = ["_abs_start", "_start_rust"];
@@ -227,7 +227,7 @@ fn taken_addresses(
             SectionKind::Data,
         ];
         let allocated = kinds.contains(&section.kind());
-        // The hardware calls what the vector table names; nobody unwinds.
+        // The hardware calls the functions of the vector table; nothing unwinds.
         if !allocated || [".vector_table", ".ARM.exidx"].contains(&section_name) {
             continue;
         }
@@ -285,7 +285,7 @@ struct Decoded {
     /// Bytes by which the stack pointer falls; `None` if that is unknown.
     frame: Option<u64>,
     targets: Vec<u64>,
-    /// Whether it calls an address in a register.
+    /// True if it calls an address in a register.
     calls_register: bool,
     /// A register and an upper part that was put into it (RV32).
     upper: Option<(u32, u32)>,

@@ -49,9 +49,8 @@ fn flagged_is_ahead_of_plain(name: &str, format: Format) {
     figures.check();
 }
 
-/// The grid and lists of candidates on the paper's scenes, as far as a board's flash holds them, and
-/// on a molecule that fills the picture. What hierarchies take there `flagged_is_ahead_of_plain`
-/// records; the test `documents` compares.
+/// Runs the grid and lists of candidates on a molecule that fills the picture, and on the paper's scenes that fit a
+/// board's flash. `flagged_is_ahead_of_plain` records the cost of hierarchies there; the test `documents` compares.
 fn lists_of_candidates(name: &str, format: Format, is_measured: fn(&str) -> bool) {
     use Structure::{Apex, CylinderCube, CylinderCubeEntry, CylinderCubeTight, DualSplit, Grid};
     // Gridels a side are those that the builder would find for its budget.

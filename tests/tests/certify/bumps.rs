@@ -7,7 +7,8 @@ use super::placed::Met;
 use gridel_core::format::record::Material;
 use gridel_host::shape::exact::{Real, Vector, along, cross, dot, minus, scaled, unit};
 
-/// A normal without what of it is behind a ray, if that meets a surface that sends rays on: such do not show their back.
+/// Returns a normal without its part behind a ray, for a surface that sends rays on: such surfaces do not show their
+/// back.
 fn turned_to_ray(normal: Vector, material: &Material, direction: &Vector) -> Vector {
     let behind = dot(&normal, direction);
     let sends = material.transmit != [0; 3] || material.mirror != [0; 3];
@@ -17,8 +18,8 @@ fn turned_to_ray(normal: Vector, material: &Material, direction: &Vector) -> Vec
     normal
 }
 
-/// The direction in which u grows over a triangle, and whether its image is seen mirrored from the front; `None` where
-/// there are no coordinates, or they lie on a line.
+/// Returns the direction in which u grows over a triangle, and whether its image appears mirrored from the front.
+/// `None` where there are no coordinates, or they lie on a line.
 fn along_u(met: &Met<'_>) -> Option<(Vector, bool)> {
     let [a, b, c] = met.placed.coordinates?.map(|at| at.map(i128::from));
     let ([at_a, at_b, at_c], _) = met.corners()?;

@@ -1,4 +1,4 @@
-//! Pixels in 320 bits, by code that shares nothing with what it tests: no kernel, no shape's test and no rule of an
+//! Pixels in 320 bits, by code that shares nothing with the tested code: no kernel, no shape's test and no rule of an
 //! effect.
 
 use super::facets::{Facets, WIDE};
@@ -69,7 +69,7 @@ impl<'s> Exact<'s> {
         self.scene.material(met.object).expect("a material")
     }
 
-    /// What a ray and those that it causes bring.
+    /// Returns the light of a ray, with that of the rays that it causes.
     fn radiance(&self, ray: &Ray) -> Vector {
         let Some(mut met) = self.nearest(&ray.line, None) else {
             let brought = self.missed(ray.trail.kind, &ray.line.slope);
@@ -110,7 +110,7 @@ impl<'s> Exact<'s> {
         sum(&sum(&local, &behind), &self.bounced(&surface, &weight))
     }
 
-    /// What a surface sends back of the lights, and of its own.
+    /// Returns the light that a surface reflects of the lights, and its own.
     fn local(&self, surface: &Surface<'_>) -> Vector {
         let ambient = color(self.scene.view().ambient, 20);
         let mut local = product(&ambient, &surface.diffuse);
@@ -127,7 +127,7 @@ impl<'s> Exact<'s> {
         })
     }
 
-    /// What comes from behind a surface that is not there, or not wholly.
+    /// Returns the light from behind a surface that is absent, or partly transparent by alpha.
     fn straight_on(&self, surface: &Surface<'_>, weight: Vector) -> Vector {
         let leaving = Leaving {
             kind: RayKind::Refracted,
@@ -138,7 +138,7 @@ impl<'s> Exact<'s> {
         self.sent(surface, leaving)
     }
 
-    /// What mirrored, refracted and diffuse rays bring.
+    /// Returns the light of mirrored, refracted and diffuse rays.
     fn bounced(&self, surface: &Surface<'_>, weight: &Vector) -> Vector {
         let Surface {
             met,
@@ -187,7 +187,7 @@ impl<'s> Exact<'s> {
         sum(&result, &self.scattered(surface, weight))
     }
 
-    /// What a diffuse ray brings.
+    /// Returns the light of a diffuse ray.
     fn scattered(&self, surface: &Surface<'_>, weight: &Vector) -> Vector {
         let trail = &surface.trail;
         if trail.reflections >= self.scene.bounces() {
@@ -202,7 +202,7 @@ impl<'s> Exact<'s> {
         self.sent(surface, leaving)
     }
 
-    /// What a ray brings that leaves a surface, unless it is too weak or too deep.
+    /// Returns the light of a ray that leaves a surface, unless it is too weak or too deep.
     fn sent(&self, surface: &Surface<'_>, leaving: Leaving) -> Vector {
         let Surface { met, trail, .. } = surface;
         let most = peak(&leaving.weight);
@@ -218,7 +218,7 @@ impl<'s> Exact<'s> {
                     false => RayKind::Reflected,
                 }
             }
-            // Lights shine through glass and what is not there.
+            // Lights shine through glass and absent surfaces.
             (RayKind::Refracted, before @ (RayKind::Glossy | RayKind::Diffuse)) => before,
             (kind, _) => kind,
         };

@@ -34,7 +34,7 @@ impl Facets {
         (&square + (one() - &square) * cos * cos).sqrt()
     }
 
-    /// What masks the ways in and out together: `cos_out` slant_in + `cos_in` slant_out.
+    /// Returns the joint masking of the ways in and out: `cos_out` slant_in + `cos_in` slant_out.
     fn masking(&self, cos_out: &Real) -> Real {
         cos_out * self.slant(&self.cos_in) + &self.cos_in * self.slant(cos_out)
     }
@@ -48,7 +48,7 @@ impl Facets {
             self.cos_in.clone(),
         ];
         let [x, y, z] = unit(&seen);
-        // A point of the cap above -z of the sphere, all alike.
+        // A point of the cap above -z of the sphere, uniformly.
         let sag = part(u) * (one() + &z);
         let across = limited(&sag * (real(2.0) - &sag), 0.0, 1.0).sqrt();
         let [sine, cosine] = turn(v);
@@ -101,7 +101,8 @@ impl Facets {
 }
 
 impl Exact<'_> {
-    /// What the facets of a rough surface mirror of a light that rays do not meet; `None` of others.
+    /// Returns the light that the facets of a rough surface mirror, for a light that rays do not
+    /// hit; `None` for others.
     pub fn mirrored_light(
         &self,
         surface: &Surface<'_>,

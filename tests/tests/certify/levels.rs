@@ -1,4 +1,4 @@
-//! How much of an image a sample sees, by logarithms of integers with 8 fraction bits.
+//! The area of an image that a sample covers, by logarithms of integers with 8 fraction bits.
 
 use super::exact::Exact;
 use super::numbers::{floor, one, real};
@@ -11,7 +11,7 @@ use gridel_core::scene::Footprint;
 use gridel_host::shape::Solid;
 use gridel_host::shape::exact::{Real, Vector, dot};
 
-/// That of a ratio, of which 30 fraction bits count.
+/// Returns the logarithm of a ratio, of which 30 fraction bits count.
 fn of_ratio(ratio: &Real) -> i32 {
     log2(floor(&(ratio * real(f64::powi(2.0, 30)))).unsigned_abs()) - log2_of_power(30)
 }
@@ -22,7 +22,7 @@ pub fn stretch(instance: &Instance) -> i32 {
     row + log2_of_power(i32::from(instance.exponent) - MATRIX_BITS as i32)
 }
 
-/// The slopes of a direction, of which the largest is 1, and how many of them it is.
+/// Returns the slopes of a direction, the largest being 1, and the direction's largest component.
 fn slopes(direction: &Vector) -> (Vector, Real) {
     let [x, y, z] = direction.each_ref().map(|it| it.abs());
     let largest = x.max(y).max(z);
@@ -30,8 +30,8 @@ fn slopes(direction: &Vector) -> (Vector, Real) {
 }
 
 impl Exact<'_> {
-    /// The length of the rays that led to a hit, in 2^-13 units, with that of one of this direction; `None` where no
-    /// texture has levels.
+    /// Returns the length of the rays that led to a hit, in 2^-13 units, including that of one of this direction.
+    /// `None` where no texture has levels.
     pub fn length(&self, before: Option<i32>, met: &Met<'_>, direction: &Vector) -> Option<i32> {
         if !self.scene.effects().contains(Effects::TEXTURE_LEVELS) {
             return None;
@@ -43,7 +43,7 @@ impl Exact<'_> {
         Some(before.map_or(own, |before| log2_of_sum(before, own)).max(0))
     }
 
-    /// What a sample sees of the image of a material.
+    /// Returns the footprint of a sample on the image of a material.
     pub fn footprint(
         &self,
         (met, material): (&Met<'_>, &Material),
@@ -63,7 +63,7 @@ impl Exact<'_> {
         found().unwrap_or(Footprint::point())
     }
 
-    /// The distance of pixels, of which each has one sample, per distance from the eye.
+    /// Returns the distance of pixels per distance from the eye, at one sample per pixel.
     fn spread(&self) -> i32 {
         let view = self.scene.view();
         let of = |axis: [i32; 3]| log2_of_length(axis.map(i64::from));

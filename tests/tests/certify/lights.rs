@@ -9,7 +9,7 @@ use gridel_core::format::light_form::LightForm;
 use gridel_core::format::record::Light;
 use gridel_host::shape::exact::{Real, Vector, dot, minus, norm, scaled, unit};
 
-/// The cone in which a sphere is seen.
+/// The cone of directions to a sphere.
 pub struct Cone {
     /// How far its middle is.
     distance: Real,
@@ -117,12 +117,12 @@ fn is_flat(form: &LightForm) -> bool {
     )
 }
 
-/// Whether a spot ends at some angle.
+/// Returns whether a spot ends at some angle.
 fn has_cone(form: &LightForm) -> bool {
     form.shape == 0 && form.cone_cosine > -(1 << 30)
 }
 
-/// Whether a light shines towards a surface that lies in its range.
+/// Returns whether a light shines towards a surface that lies in its range.
 pub fn shines(form: &LightForm, aim: &Aim, to_light: &Vector) -> bool {
     let is_shone_on = if is_flat(form) {
         cos_from(form, to_light).is_positive()
@@ -133,7 +133,7 @@ pub fn shines(form: &LightForm, aim: &Aim, to_light: &Vector) -> bool {
     is_shone_on && (form.range == 0 || aim.distance().is_some_and(is_near))
 }
 
-/// What arrives of a light.
+/// Returns the light that arrives from a light.
 pub fn falling(form: &LightForm, aim: &Aim, to_light: &Vector) -> Vector {
     let middle = aim.cone.as_ref().map(|cone| cone.distance.clone());
     let Some(distance) = middle.or_else(|| aim.distance()) else {

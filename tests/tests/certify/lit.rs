@@ -1,4 +1,4 @@
-//! What lights bring to a surface.
+//! The light of lights at a surface.
 
 use super::exact::Exact;
 use super::lights::{Aim, falling, shines, toward};
@@ -31,7 +31,7 @@ fn highlight(surface: &Surface<'_>, to_light: &Vector) -> Vector {
     scaled(&color(material.highlight, 30), &power)
 }
 
-/// A surface in the way of light.
+/// A surface between a point and a light.
 struct Passed {
     left: Vector,
     beyond: Inside,
@@ -85,8 +85,8 @@ impl Exact<'_> {
         self.scene.effects().contains(Effects::SHADOW)
     }
 
-    /// Where the way to a light starts: on the curved surface that a triangle stands for, if the triangle faces away.
-    /// `None` if the light does not reach it.
+    /// Returns where the way to a light starts: on the triangle's curved surface, if the triangle faces away. `None` if
+    /// the light does not reach it.
     fn start(
         &self,
         light: &Light,
@@ -110,7 +110,7 @@ impl Exact<'_> {
         Some(origin)
     }
 
-    /// The part of light that is left on its way.
+    /// Returns the part of light that remains on its way.
     fn left(
         &self,
         mut line: Line,
@@ -138,7 +138,7 @@ impl Exact<'_> {
         black()
     }
 
-    /// What passes a surface after a length of the way to it; `None` if nothing does.
+    /// Returns the light that passes a surface after a length of the way to it; `None` if none does.
     fn passed(
         &self,
         met: &Met<'_>,

@@ -1,4 +1,4 @@
-//! Glass: what meets at its faces, how a ray is split there, and which medium fills a place that several take.
+//! Glass: the media at its faces, the split of a ray there, and the medium that fills a place that several take.
 
 use super::exact::Exact;
 use super::numbers::{fraction, one, real};
@@ -33,7 +33,7 @@ impl Inside {
 pub struct Interface {
     /// The lower index of refraction over the higher one.
     pub k: Real,
-    /// Whether the ray goes to the higher one.
+    /// True if the ray goes to the higher one.
     pub to_denser: bool,
 }
 
@@ -100,11 +100,11 @@ fn reflected(ratio: &Real, cos: &Real, cos_out: &Real) -> Real {
 pub struct Face<'e> {
     /// The glass that lies before it, if any does.
     pub before: Option<&'e Material>,
-    /// What meets there, if it is glass.
+    /// The two media that meet there, if it is glass.
     pub interface: Option<Interface>,
-    /// Whether it lies within a medium of a higher priority, and so is not there.
+    /// True if it lies within a medium of a higher priority, and so is ignored.
     pub is_hidden: bool,
-    /// What a ray is inside of behind it.
+    /// The media that a ray is inside of behind it.
     pub beyond: Inside,
 }
 
@@ -133,7 +133,7 @@ impl<'s> Exact<'s> {
         let (near, beyond) = if met.front {
             (inside, inside.entered(place))
         } else {
-            // A ray that leaves what it never entered began within.
+            // A ray that leaves a medium that it never entered began within.
             let beyond = inside.left(place);
             (beyond.entered(place), beyond)
         };

@@ -146,7 +146,7 @@ fn outward(placed: &Placed, (point, slope): (&Vector, &Vector), leaves: bool) ->
     })
 }
 
-/// Whether a line can meet a box in units, or one that is larger by a unit.
+/// Returns whether a line can meet a box in units, or one that is larger by a unit.
 fn may_meet(origin: [f64; 3], slope: [f64; 3], bounds: &[[f64; 2]; 3]) -> bool {
     let (mut first, mut last) = (f64::NEG_INFINITY, f64::INFINITY);
     for k in 0..3 {

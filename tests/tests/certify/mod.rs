@@ -1,4 +1,4 @@
-//! Certified pixels: every exact value lies in its interval, and what is made too narrow is noticed.
+//! Certified pixels: every exact value lies in its interval, and intervals that are too narrow are noticed.
 
 mod bumps;
 mod exact;
@@ -80,8 +80,8 @@ fn pixels_per_scene(scenes: usize) -> usize {
     all / scenes + 1
 }
 
-/// What an interval of a pixel leaves out, with the intervals of double precision and with more bits where pixels need
-/// it; and whether an interval that is made too narrow is noticed.
+/// Returns the exact values that an interval of a pixel misses, with the intervals of double precision and with more
+/// bits where pixels need it. Also returns whether an interval that is made too narrow is noticed.
 fn compared(world: &World<'_>, exact: &Exact<'_>, pixel: [u16; 2]) -> (Vec<String>, bool) {
     let value = exact.pixel(pixel);
     let [quick, precise] = [1, 3].map(|levels| enclose(world, &exact.settings, pixel, levels));
@@ -127,7 +127,8 @@ fn every_exact_value_lies_in_its_interval() {
     );
 }
 
-/// The picture of the kernel in double precision is that in 320 bits, but for pixels where a rounding decides what is met.
+/// The picture of the kernel in double precision equals that in 320 bits, except for pixels where a rounding decides
+/// the hit.
 #[test]
 fn the_kernels_picture_is_the_exact_one() {
     for (name, blob) in known() {
@@ -214,7 +215,7 @@ fn rays_exactly_on_a_boundary_are_decided_or_said_to_be_on_it() {
     assert_eq!(open, 0);
 }
 
-/// README's table of proved pixels is what is measured.
+/// README's table of proved pixels equals the measured one.
 #[test]
 fn the_table_in_the_readme_is_measured() {
     let readme = include_str!("../../../README.md");
@@ -254,8 +255,8 @@ fn the_table_in_the_readme_is_measured() {
     assert_eq!(table, rows, "paste this:\n{rows}");
 }
 
-/// What a blob is and what firmware runs know nothing of certified pixels: the enclosing numbers are the host's, which
-/// the core and its firmware do not depend on.
+/// Neither blobs nor firmware depend on certified pixels. The enclosing numbers are the host's, which the core and its
+/// firmware do not use.
 #[test]
 fn the_core_and_firmware_have_no_intervals() {
     use std::path::{Path, PathBuf};
@@ -263,7 +264,7 @@ fn the_core_and_firmware_have_no_intervals() {
     fn files(folder: &Path, found: &mut Vec<PathBuf>) {
         for entry in std::fs::read_dir(folder).expect("a folder") {
             let path = entry.expect("an entry").path();
-            // What was built there holds code of others.
+            // Build outputs hold code of others.
             if path.ends_with("target") {
                 continue;
             }

@@ -30,18 +30,18 @@ pub fn one() -> Real {
     real(1.0)
 }
 
-/// t of crossings of the surface that a ray starts on are 0, and those of what touches a light 1, but for the roundings
-/// of 320 bits.
+/// A number near 0 within the roundings of 320 bits. t of crossings of the surface that a ray starts on differs from 0
+/// by no more. t of crossings of the surface of a light differs from 1 by no more.
 pub fn nothing() -> Real {
     real(f64::powi(2.0, -150))
 }
 
-/// A number within the valid range: what leaves it does so by rounding alone.
+/// Returns a number within the valid range. Only rounding leaves it.
 pub fn limited(x: Real, low: f64, high: f64) -> Real {
     x.max(real(low)).min(real(high))
 }
 
-/// The largest integer that is not above a number below 2^52, but for the roundings of 320 bits.
+/// Returns the largest integer that is not above a number below 2^52, within the roundings of 320 bits.
 pub fn floor(x: &Real) -> i64 {
     let x = x + nothing();
     let near = x.to_f64().floor();

@@ -9,7 +9,7 @@ use gridel_host::shape::exact::{Real, Vector};
 /// The ratio 1.
 const ONE: i64 = 1 << 30;
 
-/// The mean of what corners have, by their parts of a triangle.
+/// Returns the mean of the corners' values, by their weights in a triangle.
 fn interpolated(met: &Met<'_>, corners: [i64; 3]) -> Option<Real> {
     let (_, parts) = met.corners()?;
     let mut sum = real(0.0);

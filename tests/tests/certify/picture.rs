@@ -1,4 +1,4 @@
-//! Where rays of the camera start, and what becomes of what they bring.
+//! Where rays of the camera start, and how their light becomes a pixel.
 
 use super::exact::Exact;
 use super::numbers::{color, fraction, limited, mixed, one, real, sum};
@@ -35,7 +35,7 @@ impl Exact<'_> {
         }
     }
 
-    /// What is shown of the radiance of the only sample.
+    /// Returns the display value of the radiance of the only sample.
     pub fn shown(&self, radiance: Vector) -> Vector {
         let of_the_mean = [
             Effects::ENVIRONMENT,

@@ -1,4 +1,4 @@
-//! Primitives where their parts stand, and what a line meets of them.
+//! Primitives where instances place them, and the hits of a line on them.
 
 use super::levels::stretch;
 use super::numbers::{black, fraction, one, real};
@@ -109,7 +109,7 @@ pub struct Met<'e> {
     pub normal: Vector,
     pub front: bool,
     pub object: u32,
-    /// What a sample sees of the image there.
+    /// The footprint of a sample on the image there.
     pub footprint: Footprint,
 }
 
@@ -149,7 +149,7 @@ impl Met<'_> {
         let (_, areas) = self.corners()?;
         let mut result = black();
         for (stored, area) in normals.into_iter().zip(areas) {
-            // Of nearly length 1, by a step of Newton's from a line: that is the rule.
+            // The rule is nearly length 1, by a step of Newton's from a line.
             let v = unfolded(stored).map(|x| fraction(x, 15));
             let square = dot(&v, &v);
             let root = fraction(2_128_961_606, 30) - fraction(1_114_232_640, 30) * &square;
@@ -162,7 +162,7 @@ impl Met<'_> {
         Some(self.turned(&normal))
     }
 
-    /// The way out to the curved surface that a triangle stands for; `None` if that does not lie above it.
+    /// Returns the way out to the curved surface of a triangle; `None` if that does not lie above it.
     pub fn lift(&self) -> Option<Vector> {
         let normals = self.placed.normals?;
         let (corners, areas) = self.corners()?;

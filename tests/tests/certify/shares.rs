@@ -1,5 +1,4 @@
-//! The share of pixels that are proved, for the fixtures and for scenes from elsewhere, and the table of them in
-//! EXACT.md.
+//! The share of proved pixels, for the fixtures and for scenes from elsewhere, and its table in EXACT.md.
 
 use super::{certified, fixtures, settings};
 use gridel_host::certify::{Enclosed, Reason};
@@ -25,9 +24,9 @@ const REAL: [(&str, bool); 13] = [
     ("molecules/3dqb.pdb", false),
 ];
 
-/// Of the fixtures and real scenes, the least part that is proved.
+/// The least proved part of the fixtures and real scenes.
 const LEAST: f64 = 0.99;
-/// Of the Standard Procedural Databases without glass.
+/// The least proved part of the Standard Procedural Databases without glass.
 const LEAST_WITHOUT_GLASS: f64 = 0.999;
 
 fn row(name: &str, [width, height]: [u16; 2], pixels: &[Enclosed]) -> String {
@@ -57,7 +56,7 @@ fn rows() -> Vec<&'static str> {
     table.lines().skip(2).collect()
 }
 
-/// With `GRIDEL_FULL=1` the table is measured anew; else small pictures stand for large ones.
+/// With `GRIDEL_FULL=1` the table is measured again; otherwise small pictures replace large ones.
 #[test]
 fn the_share_of_proved_pixels_is_as_large_as_promised() {
     let mut measured = Vec::new();
@@ -104,7 +103,7 @@ fn the_share_of_proved_pixels_is_as_large_as_promised() {
     }
 }
 
-/// The table has every scene, and no share below what is promised.
+/// The table has every scene, and no share below the promised one.
 #[test]
 fn the_table_of_proved_pixels_is_complete() {
     let rows = rows();

@@ -52,7 +52,7 @@ fn is_in_sun(record: &Environment, direction: &Vector) -> bool {
     record.sun_radius > 0 && dot(&off, &off) <= &radius * &radius
 }
 
-/// A direction of the sun: squares of lengths from its middle, on a sphere, are all alike.
+/// Returns a direction of the sun. Squares of lengths from its middle, on a sphere, are uniform.
 pub fn in_sun(record: &Environment, [u, v]: [u32; 2]) -> Vector {
     let half = fraction(record.sun_radius, 30) * real(0.5) * part(u).sqrt();
     let square = &half * &half;
@@ -77,12 +77,12 @@ impl Exact<'_> {
         Some(Aim::far(way, color(brought, 20)))
     }
 
-    /// What a ray of a kind brings that meets nothing.
+    /// Returns the light of a ray that hits nothing, by its kind.
     pub fn missed(&self, kind: RayKind, direction: &Vector) -> Vector {
         let Some(record) = self.scene.environment() else {
             return color(self.scene.view().background, 20);
         };
-        // What lights up a surface as a light of the scene, rays do not bring again.
+        // Rays do not bring the light again that reaches a surface as a light of the scene.
         let (sees_map, sees_sun) = match kind {
             RayKind::Primary | RayKind::Reflected | RayKind::Refracted => (true, true),
             RayKind::Glossy => (true, false),

@@ -1,4 +1,4 @@
-//! Small scenes, each of which has what the fixtures do not.
+//! Small scenes with the features that the fixtures lack.
 
 use gridel_host::scene::{Alpha, ImportOptions, Scene, read};
 use gridel_tests::scenes;
@@ -43,8 +43,8 @@ pub fn all() -> Vec<(String, Scene)> {
     all
 }
 
-/// Octahedra that are shaded as balls: one of glass on a mirror, one that is placed twice, and a light so low that it
-/// faces normals where it does not face their triangles.
+/// Octahedra that are shaded as balls. One of glass lies on a mirror, and one is placed twice. A low light faces
+/// normals where it does not face their triangles.
 fn smooth() -> String {
     format!(
         "background = [0.3, 0.4, 0.6]\nambient = 0.1\n{CAMERA}\
@@ -94,8 +94,8 @@ fn spots() -> String {
     )
 }
 
-/// A sphere that is seen, also in a mirror; a disc and a rectangle, of which one is seen; a triangle and a box that glow;
-/// and what glows and is no light.
+/// A visible sphere, also seen in a mirror; a disc and a rectangle, of which one is visible. A triangle and a box that
+/// glow, and an object that glows and is no light.
 fn lamps() -> String {
     format!(
         "{CAMERA}\
@@ -117,7 +117,7 @@ fn lamps() -> String {
     )
 }
 
-/// Rough glass by itself, and media that overlap, of which one is rough and one absorbs; glass and a stone within.
+/// Rough glass alone, and overlapping media, one rough and one absorbing. Glass and a stone lie within.
 fn rough_glass() -> String {
     format!(
         "background = [0.3, 0.5, 0.8]\nambient = 0.1\n{CAMERA}\
@@ -222,8 +222,8 @@ fn bumps(has_balls: bool) -> String {
     )
 }
 
-/// Images with alpha, blended and cut out, under a lamp: by themselves, within glass that has a priority, with colors of
-/// vertices, and in a part.
+/// Images with alpha, blended and cut out, under a lamp. They stand alone, within glass that has a priority, with
+/// colors of vertices, and in a part.
 fn blended() -> Scene {
     let quad = "vertices = [[-1, -1, 0], [1, -1, 0], [1, 1, 0], [-1, 1, 0]]\nfaces = [[0, 1, 2, 3]]\n\
         coordinates = [[-0.25, 1.5], [1.5, 1.25], [1.25, -0.5], [0, 0]]\n";

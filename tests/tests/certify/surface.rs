@@ -7,7 +7,7 @@ use gridel_core::format::record::Material;
 use gridel_core::shade::sampler::Sampler;
 use gridel_host::shape::exact::{Line, Vector};
 
-/// What a ray knows of the way to it.
+/// The history of a ray.
 #[derive(Clone, Copy)]
 pub struct Trail {
     pub pixel: [u16; 2],
@@ -39,7 +39,7 @@ pub struct Ray {
 pub struct Surface<'e> {
     pub met: Met<'e>,
     pub material: &'e Material,
-    /// What meets there, if it is glass.
+    /// The two media that meet there, if it is glass.
     pub interface: Option<Interface>,
     /// The normal for shading, on the side of the ray.
     pub normal: Vector,
@@ -47,7 +47,7 @@ pub struct Surface<'e> {
     pub direction: Vector,
     pub diffuse: Vector,
     pub trail: Trail,
-    /// What a ray is inside of that goes on behind the surface.
+    /// The media that a ray is inside of that continues behind the surface.
     pub beyond: Inside,
 }
 
@@ -56,7 +56,7 @@ pub struct Leaving {
     pub kind: RayKind,
     /// The direction, whose length counts where it is turned into a triangle's plane.
     pub slope: Vector,
-    /// Whether it leaves on the side of the geometric normal.
+    /// True if it leaves on the side of the geometric normal.
     pub outward: bool,
     pub weight: Vector,
 }

@@ -1,4 +1,4 @@
-//! Deforming meshes: hits are those of brute force and of a blob that is compiled with the moved vertices, closed
+//! Deforming meshes. Hits are those of brute force and of a blob that is compiled with the moved vertices. Closed
 //! meshes stay closed, and invalid poses are rejected.
 
 mod parts;
@@ -38,7 +38,7 @@ fn mesh<V: Vertex>(scene: &Loaded<'_>) -> Box<Mesh<V>> {
     Box::new(Deformation::of(scene).expect("a deformation"))
 }
 
-/// A mesh beside a sphere, between two boxes in the corners of a room.
+/// A mesh and a sphere, between two boxes in the corners of a room.
 fn in_a_room(mesh: Shape) -> Scene {
     let corner = |sign: f64| {
         let (a, b) = (DVec3::splat(sign), DVec3::splat(0.96 * sign));
@@ -95,7 +95,7 @@ fn shape(scene: &Loaded<'_>, triangles: &[[[i32; 3]; 3]]) -> Shape {
     }
 }
 
-/// Moves every vertex by at most so much on each axis, in 1/256 unit, within the room.
+/// Moves every vertex by at most `reach` on each axis, in 1/256 unit, within the room.
 fn shake<V: Vertex>(random: &mut Random, scene: &Loaded<'_>, vertices: &mut [V], reach: i32) {
     let room = scene.bounds().0;
     for vertex in vertices {
@@ -291,7 +291,7 @@ fn invalid_poses_are_rejected() {
     deformation.vertices_mut()[7] = rest;
     assert_eq!(deformation.refit(&scene), Ok(()));
 
-    // The first triangle becomes a needle: a corner comes to lie halfway between the others.
+    // The first triangle becomes a needle: a corner lies halfway between the others.
     let stored: &[Vertex24] = scene.stored_vertices().expect("vertices");
     let number = |corner: [i32; 3]| stored.iter().position(|it| it.position() == corner);
     let [a, b, c] = scene
@@ -366,7 +366,7 @@ fn scenes_that_cannot_deform_are_rejected() {
         let error = Mesh::<Vertex24>::of(&other).err();
         assert_eq!(error, Some(DeformError::Structures), "{structure:?}");
     }
-    // Of another scene, with as many vertices.
+    // A deformation of another scene, with as many vertices.
     let mut other = scene.clone();
     other.materials[0].mirror = [0.5; 3];
     let other = bvh(&other, 24);

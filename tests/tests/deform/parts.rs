@@ -1,4 +1,4 @@
-//! Parts that deform, and the room that the compiler leaves them.
+//! Parts that deform, and their room.
 
 use super::{ball, mesh, ray, shake};
 use glam::{DQuat, DVec3};
@@ -115,7 +115,7 @@ fn room_widens_the_box_and_nothing_else() {
         ..Options::default()
     };
     let narrow = compile(&scene, &options(0.0)).expect("compiles").blob;
-    // The same lattice holds as much.
+    // The lattice has room for this.
     let wide = compile(&scene, &options(1e-3)).expect("compiles").blob;
     let [narrow, wide] = [&narrow, &wide].map(|blob| blob.scene().expect("a scene"));
     assert!(Deforming::all(&narrow).is_empty());

@@ -151,7 +151,7 @@ fn memory_page_shows_recorded_pictures_and_rays() {
     holds_table(MEMORY, "rays", &rays);
 }
 
-/// Costs of programs with code for triangles and a part on the smallest board: the fast one, and that
+/// Returns the costs of programs with code for triangles and a part on the smallest board. There is a fast one, and one
 /// of small code if it was built.
 fn program(part: &str) -> Vec<Footprint> {
     let parts = match part {

@@ -2,7 +2,7 @@
 
 use super::{repository, text};
 
-/// Words in capitals that stand for a name of the reader's own.
+/// Words in capitals that the reader replaces by a name.
 const PLACEHOLDERS: [&str; 6] = ["SHAPE", "EFFECT", "FAMILY", "NAME", "FORMAT", "SCENE"];
 
 /// Text in backticks that has the form of a path. A path with a placeholder is cut at that part.
@@ -33,7 +33,7 @@ fn paths(page: &str) -> Vec<String> {
 fn contributing_page_names_paths_that_exist() {
     let paths = paths(&text("CONTRIBUTING.md"));
     assert!(paths.len() > 40, "{paths:?}");
-    // The real scenes lie beside the repository.
+    // The real scenes lie next to the repository.
     let own = paths.iter().filter(|path| *path != "shared/scenes");
     let missing: Vec<_> = own
         .filter(|path| !repository().join(path).exists())

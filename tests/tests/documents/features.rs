@@ -18,7 +18,7 @@ fn set<'n>(names: impl IntoIterator<Item = &'n str>) -> BTreeSet<String> {
 }
 
 fn shapes() -> BTreeSet<String> {
-    // Two wider forms of storage beside the kinds.
+    // Two wider forms of storage, besides the kinds.
     let kinds = Kind::ALL.into_iter().map(Kind::name);
     set(kinds.chain(["wide-lattice", "wide-indices"]))
 }

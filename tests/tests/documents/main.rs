@@ -73,7 +73,7 @@ fn the_formats_dump_is_what_the_compiler_writes() {
     assert!(dump.eq(compiled.blob.bytes().iter().copied()));
 }
 
-/// `GRIDEL_BLESS=1` writes the tables anew.
+/// `GRIDEL_BLESS=1` writes the tables again.
 #[test]
 fn the_accuracy_page_prints_the_bounds_that_tests_hold() {
     let path = "core/ACCURACY.md";
@@ -129,10 +129,10 @@ fn every_hard_case_has_its_test() {
     }
 }
 
-/// Compares a generated table of a document with what it shows; `GRIDEL_BLESS=1` writes it.
+/// Compares a generated table of a document with the measured one; `GRIDEL_BLESS=1` writes it.
 fn holds_table(document: &str, mark: &str, table: &str) {
     static DOCUMENTS: Mutex<()> = Mutex::new(());
-    // Tests that write it run at the same time; one that failed says so itself.
+    // Tests that write it run at the same time; a failed one reports its own failure.
     let _one_at_a_time = DOCUMENTS
         .lock()
         .unwrap_or_else(|poison| poison.into_inner());

@@ -87,8 +87,8 @@ fn paper_page_shows_recorded_counts() {
 const PAPER_BOARDS: [(&str, &str); 2] = [("mps2-an385", "fixed"), ("mps2-an386", "f32")];
 
 /// Instructions of a primary ray without the camera, of a shadow ray without the surface that it
-/// starts from, and of the picture, 0 where it takes too long to be counted, as the board tests
-/// recorded them.
+/// starts from, and of the picture. The board tests recorded them, with 0 where a picture takes too
+/// long to be counted.
 fn paper_on_board(
     boards: &serde_json::Value,
     scene: &str,

@@ -9,7 +9,7 @@ use gridel_host::render::{Job, Picture, render};
 use gridel_tests::scenes;
 use std::fs;
 
-/// Whoever copies the example of a manifest sees it pass.
+/// The example of a manifest passes for a reader who copies it.
 #[test]
 fn hashes_of_the_manifests_example_are_those_of_its_scene() {
     let manifest = text("host/docs/CHECK.md");
@@ -59,7 +59,7 @@ fn picture_of_the_board_is_the_one_that_fixed_renders() {
     holds_picture("board.png", &picture, ENLARGED);
 }
 
-/// Whoever follows the links sees what the effects look like.
+/// The links lead to pictures that show the effects.
 #[test]
 fn pictures_of_effects_are_those_of_their_files() {
     for (name, enlarged) in [("studio", 2), ("room", 2), ("sky", 2), ("tumbler", 2)] {

@@ -266,7 +266,7 @@ fn format_lists_every_field_of_every_record() {
     );
 }
 
-/// The offsets of the fields leave no byte out, so a reader in another language needs nothing but the table.
+/// The offsets of the fields leave no byte out, so a reader in another language needs only the table.
 #[test]
 fn fields_of_records_follow_each_other_without_padding() {
     for record in all() {

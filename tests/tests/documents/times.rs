@@ -69,7 +69,7 @@ fn paper_page_shows_recorded_times() {
     holds_table(PAPER, "paper-times", &table);
 }
 
-/// Rates and bytes of growing parts of one scene, but for one, which leaves eight columns.
+/// Rates and bytes of growing parts of one scene. One step is left out, so that eight columns remain.
 #[test]
 fn structures_page_shows_recorded_growth() {
     let report = recorded("growth");

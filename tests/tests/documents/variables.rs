@@ -31,8 +31,8 @@ fn names_in_folder(folder: &Path, into: &mut BTreeSet<String>) {
     }
 }
 
-/// Names of the C library's constants begin as those of variables do, and neither it nor the test of its header reads
-/// variables of the project.
+/// Names of the C library's constants begin as those of variables do. Neither the library nor the test of its header
+/// reads variables of the project.
 fn is_of_the_c_library(path: &Path) -> bool {
     path.ends_with("core/c") || path.ends_with("tests/tests/c_header.rs")
 }

@@ -8,7 +8,7 @@ use gridel_host::shape::{Cuboid, Sphere};
 use gridel_host::trace::SceneRay;
 use gridel_tests::scenes;
 
-/// An object in a light's way is named, and culled nodes say why.
+/// An object that blocks a light is named, and culled nodes have a reason.
 #[test]
 fn reasons_are_true() {
     let ball = |x: f64, y: f64| {
@@ -151,7 +151,7 @@ fn lights_with_forms_say_from_where_they_shine_and_how_they_fall_off() {
         };
         assert_eq!(area.outcome, LightOutcome::Lit, "{format:?}");
         let [arriving, ..] = area.arriving.expect("it falls off");
-        // At most what the area brings from straight above, which is 9 * 4 / (pi * 16).
+        // At most the light of the area from straight above, which is 9 * 4 / (pi * 16).
         assert!(arriving > 0.3 && arriving < 0.72, "{arriving}");
         let [x, y, z] = area.from_area.expect("a point of the area");
         assert!((y - 4.0).abs() < 1e-3 && x.abs() <= 1.001 && z.abs() <= 1.001);

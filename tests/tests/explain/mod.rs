@@ -19,7 +19,7 @@ fn explanation(
     explain(scene, format, structure, settings, Subject::Ray(ray)).expect("a explanation")
 }
 
-/// The way of the ray itself.
+/// Returns the walk of the ray itself.
 fn way(explanation: &Explanation) -> &Walk {
     explanation.samples[0].rays[0]
         .walk

@@ -68,7 +68,7 @@ fn hits_lie_on_their_rays(explanation: &Explanation, about: &dyn Fn() -> String)
     (hits, largest)
 }
 
-/// The origin in a explanation is the ray's own, wherever the kernels start, and distances count from it.
+/// The origin in an explanation is the ray's own, wherever the kernels start, and distances count from it.
 #[test]
 fn explain_gives_points_that_lie_on_the_given_ray() {
     let blob = scenes::blob(&scenes::soup(13, 150, 0.3), 24);

@@ -7,7 +7,7 @@ use gridel_host::scene::Color;
 use gridel_host::trace::{Query, SceneHit, SceneRay, trace};
 use gridel_tests::scenes;
 
-/// The sum of what the rays of a sample add, in the arithmetic of the format.
+/// Returns the sum of the light of a sample's rays, in the arithmetic of the format.
 fn sum(format: Format, sample: &Sample) -> Color {
     let mut sum = [0.0; 3];
     for ray in &sample.rays {
@@ -57,7 +57,7 @@ fn parts_add_up(name: &str, scene: &Scene<'_>, samples: u16) {
                         assert_eq!(sample.rays[child].parent, Some(number), "{}", about());
                         assert_eq!(sample.rays[child].depth, ray.depth + 1, "{}", about());
                     }
-                    // What was met is the last candidate that was the nearest.
+                    // The hit is the last candidate that was the nearest.
                     let met = ray.walk.as_ref().and_then(|walk| walk.met());
                     assert_eq!(
                         ray.hit.as_ref().map(|hit| hit.primitive),

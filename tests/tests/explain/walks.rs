@@ -7,7 +7,7 @@ use gridel_host::trace::{Frame, SceneRay};
 use gridel_tests::scenes;
 use std::collections::HashMap;
 
-/// Whether a hierarchy culls in integers or in lanes, it reports where a ray is in the same units.
+/// A hierarchy reports where a ray is in the same units, whether it culls in integers or in lanes.
 #[test]
 fn spans_are_reported_in_units() {
     let blob = scenes::blob(&scenes::soup(12, 120, 0.1), 24);
@@ -112,7 +112,7 @@ fn reported_walks_are_the_walks_of_queries() {
                 }
             }
             for place in entered {
-                // A grid has no node that stands for all of it.
+                // A grid has no node for all of it.
                 let done = opened.contains(&place) || place == "grid 0";
                 assert!(done, "{place} {}", about());
             }

@@ -1,4 +1,4 @@
-//! What a blob holds of parts and instances, and what loading rejects.
+//! The records of parts and instances in a blob, and what loading rejects.
 
 use super::{blob, instance, part, random_ray, random_scene, ray};
 use glam::DVec3;
@@ -130,7 +130,7 @@ fn blob_with_parts_is_rejected_without_them_and_with_others() {
     assert!(Parts::<1>::from_bytes(one.bytes()).is_err());
 }
 
-/// What only a part holds counts: its kinds of primitives, the depth of its hierarchy, and the parts themselves.
+/// The content of a part counts: its kinds of primitives, the depth of its hierarchy, and the parts themselves.
 #[test]
 fn requirements_hold_those_of_parts() {
     let random = &mut Random(8);

@@ -10,7 +10,7 @@ use gridel_tests::query::{held, through};
 use gridel_tests::random::Random;
 use gridel_tests::scenes;
 
-/// Of rays to and from points inside a closed part, how many miss it or meet the wrong side.
+/// Returns how many rays to and from points inside a closed part miss it or hit the wrong side.
 fn leaks<N: Number>(scene: &Loaded<'_>, random: &mut Random, count: usize) -> usize {
     let [low, high] = [0, 1].map(|side| scene.bounds().0.map(|axis| f64::from(axis[side])));
     let [low, high] = [low, high].map(DVec3::from_array);
@@ -125,7 +125,7 @@ fn rays_do_not_meet_the_instance_that_they_leave() {
     }
 }
 
-/// Whether a shape has an inside, and is convex.
+/// Convex solids with an inside, and other shapes.
 #[derive(PartialEq)]
 enum Solids {
     Closed,

@@ -262,7 +262,7 @@ fn poses_that_do_not_fit_are_rejected() {
     let far = Motion::shift([i32::MAX; 3]);
     let error = poses.place(&loaded, 1, &far).expect_err("too far");
     assert!(error.to_string().contains("center"), "{error}");
-    // What was rejected stays where it was.
+    // A rejected instance stays where it was.
     let step = f64::powi(2.0, loaded.coordinate_exponent());
     let beside = Motion::shift([0, (40.0 / step) as i32, 0]);
     let unmoved = loaded.with_poses(poses).expect("poses at rest");

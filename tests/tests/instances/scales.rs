@@ -29,7 +29,7 @@ fn ball() -> Shape {
 fn placed_ball(scene: &Loaded<'_>, record: &Record) -> (DVec3, f64) {
     let sides = scene.parts()[usize::from(record.part)].bounds().0;
     let half = sides.map(|[low, high]| (f64::from(high) - f64::from(low)) / 2.0);
-    // Boxes lie up to a unit beside.
+    // Boxes are off by up to a unit.
     let radius = half.into_iter().fold(0.0, f64::max);
     let middle =
         DVec3::from_array(sides.map(|[low, high]| (f64::from(low) + f64::from(high)) / 2.0));
@@ -43,8 +43,8 @@ fn placed_ball(scene: &Loaded<'_>, record: &Record) -> (DVec3, f64) {
     (center + turned, radius / scale)
 }
 
-/// How far a hit's point is from the plane of the triangle that it is on, in units of the scene, by exact integers of
-/// the map and double precision.
+/// Returns how far a hit's point is from the plane of its triangle, in units of the scene. Uses exact integers of the
+/// map and double precision.
 fn off_the_surface<N: Number>(scene: &Loaded<'_>, hit: &gridel_core::Hit<N>) -> f64 {
     let index = hit.instance().expect("an instance");
     let record = &scene.instances()[index as usize];
@@ -64,8 +64,8 @@ fn off_the_surface<N: Number>(scene: &Loaded<'_>, hit: &gridel_core::Hit<N>) -> 
     (place - a).dot(normal).abs() / linear(record, DVec3::X).length()
 }
 
-/// Tests rays to and from points inside every placed ball: that each meets the right side, how far hits are off their
-/// surface, and that rays which go on from a hit neither meet it again nor lose it.
+/// Tests rays to and from points inside every placed ball. Each hits the right side, and hits lie near their surface.
+/// Rays that continue from a hit neither hit it again nor lose it.
 fn check_in<N: Number>(scene: &Loaded<'_>, random: &mut Random, count: usize) {
     for (index, record) in (0_u32..).zip(scene.instances()) {
         let (middle, radius) = placed_ball(scene, record);

@@ -31,7 +31,7 @@ fn corners(scene: &Scene<'_>) -> impl Iterator<Item = [[i32; 3]; 3]> {
     (0..scene.count(Kind::Triangle)).map(|slot| scene.triangle(slot).expect("a triangle"))
 }
 
-/// Whether an even number of triangles meet at every edge.
+/// Returns whether an even number of triangles meet at every edge.
 fn is_closed(scene: &Scene<'_>) -> bool {
     let mut edges: HashMap<[[i32; 3]; 2], usize> = HashMap::new();
     for [a, b, c] in corners(scene) {
@@ -204,7 +204,7 @@ fn pieces_keep_the_number_of_their_triangle() {
     assert!(cut > 20);
 }
 
-/// A fan of slivers along a line, one triangle along all of it, and one at each of its parts: every
+/// A fan of slivers along a line, one triangle along all of it, and one at each of its parts. Every
 /// corner of the fan is a vertex on both sides.
 #[test]
 fn chains_of_slivers_cut_their_neighbours() {

@@ -1,5 +1,5 @@
-//! The reported displacement bounds how far apart the given and the snapped surfaces are, and what
-//! compiles loads.
+//! The reported displacement bounds the distance between the given and the snapped surfaces, and
+//! compiled scenes load.
 
 use glam::DVec3;
 use gridel_core::geometry::Geometry;
@@ -48,7 +48,7 @@ fn check(scene: &scene::Scene, compiled: &Compiled, samples: usize, random: &mut
             let snapped = Solid::of(blob.geometry(kind, slot).expect("a shape"));
             let steps = f64::from(report.displacements[number]);
             assert!(steps <= largest);
-            // What the arithmetic here rounds.
+            // The rounding of this arithmetic.
             let bound = steps * report.step / unit + 1e-9;
             for _ in 0..samples {
                 let surfaces = [&given[number], &snapped];

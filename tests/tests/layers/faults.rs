@@ -35,7 +35,7 @@ pub(super) fn faults(sources: &[Source], order: &[&str]) -> Vec<String> {
             }
         }
     }
-    // The file that declares what a path names, through whatever passes it on.
+    // Finds the file that declares the item of a path, through all re-exports.
     let declares = |mut path: Module| {
         for _ in 0..modules.len() {
             let mut length = path.len();
@@ -77,8 +77,8 @@ pub(super) fn faults(sources: &[Source], order: &[&str]) -> Vec<String> {
                 .or_insert(line);
         }
     }
-    // Without those that import nothing of the rest, or that nothing of it imports, again and
-    // again, cycles are left, and what lies between two of them.
+    // Modules that import nothing of the rest, or that nothing of it imports, are removed again and
+    // again. Cycles remain, and modules between two of them.
     let mut rest = modules.clone();
     loop {
         let inner: Vec<(&Module, &Module)> = edges

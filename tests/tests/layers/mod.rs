@@ -8,8 +8,7 @@ use faults::faults;
 use source::sources;
 use std::path::Path;
 
-/// A crate whose imports are checked: its sources, and its top modules from the lowest layer up, in rows of
-/// what belongs together.
+/// A crate whose imports are checked: its sources, and its top modules from the lowest layer up, one row per layer.
 struct Layers {
     sources: &'static str,
     order: &'static [&'static str],

@@ -39,7 +39,7 @@ impl Source {
     }
 }
 
-/// The text with comments and what is in quotes as spaces; lines stay where they are.
+/// Returns the text with comments and quoted text as spaces; lines stay where they are.
 fn blank(text: &str) -> String {
     let mut blanked = String::with_capacity(text.len());
     let mut rest = text;

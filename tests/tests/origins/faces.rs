@@ -50,7 +50,7 @@ fn meets_faces_in<N: Number>(scene: &Scene<'_>, axis: DVec3, random: &mut Random
         let across = DVec3::from_array(random.direction()) * (DVec3::ONE - axis.abs());
         let target = 0.25 * axis + 0.24 * random.unit() * across;
         let from = target - way * random.magnitude(0.5, 1e4);
-        // Steep enough to leave the face no room beside it.
+        // Skips flat rays, which may pass beside the face.
         if way.dot(axis).abs() < 1e-2 {
             continue;
         }
@@ -71,7 +71,7 @@ fn meets_faces_in<N: Number>(scene: &Scene<'_>, axis: DVec3, random: &mut Random
     }
 }
 
-/// A cap of a cylinder in the nearest face of the scene's box was lost by rounding, and its inside met.
+/// A cap of a cylinder in the nearest face of the scene's box was lost by rounding, and its inside hit.
 #[test]
 fn faces_in_the_scenes_box_are_met_from_outside() {
     let random = &mut Random(0xface);

@@ -12,8 +12,8 @@ use gridel_host::scene::{Camera, Light, Shape};
 use gridel_host::shape::Sphere;
 use gridel_tests::scenes;
 
-/// A picture of 24 by 24 pixels of a ball of radius 1 from so many times its radius, through a lens that
-/// fills the picture with it.
+/// Renders 24 by 24 pixels of a ball of radius 1 from a distance in radii. The lens is such that the ball fills the
+/// picture.
 fn picture<N: Number>(away: f64) -> Result<Vec<[u16; 3]>, RenderError> {
     let (center, radius) = (DVec3::ZERO, 1.0);
     let mut scene = scenes::of([Shape::Sphere(Sphere { center, radius })]);
@@ -86,7 +86,7 @@ fn far_eyes_see_the_scene_or_are_rejected() {
     assert!(fixed[2].is_some() && double[2].is_some() && single[2].is_none());
 }
 
-/// A way through glass that is longer than a length can be: it wrapped, and the glass shone.
+/// A path through glass that exceeds the range of lengths: it wrapped, and the glass shone.
 #[test]
 fn glass_seen_from_inside_from_far_away_absorbs_all() {
     let mut scene = scenes::of([Shape::Mesh {

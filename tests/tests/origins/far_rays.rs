@@ -96,7 +96,7 @@ fn judge_far_rays<N: Number>(
     worst
 }
 
-/// Answers are right for the given ray, not for one beside it.
+/// Answers are right for the given ray, not for a neighboring one.
 #[test]
 fn far_rays_keep_their_place() {
     let blob = scenes::compact_blob(&scenes::soup(0x0516, 24, 0.6), 24);

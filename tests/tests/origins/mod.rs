@@ -1,7 +1,8 @@
 //! Origins and directions of every magnitude (hard cases F: origins at 10^k, directions of 10^-k).
 //!
-//! Answers are right within the bounds of a hit in the scene, not of the distance that the ray
-//! comes from; t is rounded once more. What is not answered is rejected with a reason. Nothing else.
+//! Answers are right within the bounds of a hit in the scene, not of the distance to the ray's
+//! origin; t is rounded once more. A ray without an answer is rejected with a reason. There is no
+//! third case.
 
 mod answers;
 mod faces;

@@ -53,7 +53,7 @@ fn native_starts<N: Number>() {
             .iter()
             .fold(0.0_f64, |most, x| most.max(x.abs().to_f64()));
         let steps = apart / step(N::FORMAT, 32_768.0);
-        // Of a ray from near by, the way to the box is rounded with its slope.
+        // For a ray from near by, the way to the box is rounded with its slope.
         let is_far = N::far_to_f64(ray.start_t()) > 3.0 * 32_767.0;
         let most = if is_far { 2.0 } else { 5.0 };
         assert!(

@@ -199,9 +199,9 @@ fn from_inside_a_cone() {
     every_format!(judge());
 }
 
-/// Solids and rays whose numbers are halves of small integers, so that rays often run along lines of the
-/// mantle, and quadrics have their vertex at infinity. The first is the frustum of issue 16, whose t was
-/// 2.01562786 in `f32`, off by 8.45 steps.
+/// Solids and rays whose numbers are halves of small integers. So rays often run along lines of the mantle, and
+/// quadrics have their vertex at infinity. The first is the frustum of issue 16, whose t was 2.01562786 in `f32`, off
+/// by 8.45 steps.
 #[test]
 fn frusta_of_small_integers() {
     let mut random = Random(26);

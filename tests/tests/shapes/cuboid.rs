@@ -15,8 +15,8 @@ fn boxes_and_rays_of_every_sort() {
     of_every_sort(2);
 }
 
-/// Rays in a face, along an edge and through a corner, in both directions: closed boxes are hit,
-/// whatever the box lacks of a volume.
+/// Rays in a face, along an edge and through a corner, in both directions, hit closed boxes, even
+/// boxes without volume.
 #[test]
 fn faces_edges_and_corners_belong_to_the_box() {
     fn judge<N: Number>() {

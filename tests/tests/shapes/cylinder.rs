@@ -147,8 +147,8 @@ fn rims_and_planes_of_caps() {
     hold_all("rims of cylinders", "cylinder", &cases);
 }
 
-/// Solids of revolution are entered as often as they are left, by going on behind every hit:
-/// one interval, without a hole at a seam and without a double count (D14).
+/// A ray that continues behind every hit enters a solid of revolution as often as it leaves it.
+/// There is one interval, without a hole at a seam and without a double count (D14).
 #[test]
 fn solids_are_left_as_often_as_they_are_entered() {
     fn judge<N: Number>() {

@@ -1,5 +1,5 @@
-//! Every shape against arithmetic of 320 bits: whether, where and from which side it is hit, and
-//! how its surface lies there. One file per shape for the cases that are its own.
+//! Compares every shape with arithmetic of 320 bits: whether, where and from which side rays hit
+//! it, and its normal there. One file per shape has the cases of its own.
 
 mod cone;
 mod cuboid;

@@ -1,10 +1,9 @@
-//! A ray that leaves a surface does not meet it again, and meets what lies just beyond (hard cases
-//! F1 to F3, and the nudge test of D25).
+//! A ray that leaves a surface does not hit it again, and hits a surface that lies just beyond. These are the hard
+//! cases F1 to F3, and the nudge test of D25.
 //!
-//! All shapes but triangles and discs are convex, so a ray from the outside of a face into the half
-//! space of that face's normal can never meet the solid again: at rims, at tips, on hairs, anywhere.
-//! A ray that goes on inside must leave: as long as it starts inside, which it does unless the solid
-//! is thinner there than the error bound.
+//! All shapes but triangles and discs are convex. So a ray from the outside of a face into the half space of that
+//! face's normal can never hit the solid again. This holds at rims, at tips and on thin shapes. A ray that continues
+//! inside must leave if it starts inside. It starts inside unless the solid is thinner there than the error bound.
 
 use glam::DVec3;
 use gridel_core::{Fixed, Hit, List, NoCount, Number, Scene};
@@ -36,8 +35,8 @@ fn next_hit<N: Number>(scene: &Scene<'_>, from: [f64; 3], way: DVec3) -> Option<
     closest::<N, List>(scene, &ray.expect("a ray"), &mut NoCount)
 }
 
-/// Whether a ray that starts well outside of a torus comes into it again, exactly. What starts in the pit of one that
-/// meets its axis is as near to the pit's wall as that is narrow: there it need only start outside.
+/// Returns whether a ray that starts well outside of a torus exactly enters it again. In the pit of a torus that meets
+/// its axis, the start is as near to the wall as the pit is narrow. There the ray need only start outside.
 fn enters_elsewhere<N: Number>(
     solid: &Solid,
     (from, way): ([f64; 3], DVec3),
@@ -88,7 +87,7 @@ impl Left {
                 let normal = side * DVec3::from_array(hit.normal.map(N::ratio_to_f64));
                 let mut way = outward(random, normal);
                 if !solid.is_bounded() {
-                    // What is nearly parallel to it meets it somewhere, or not, as slopes are rounded.
+                    // A ray nearly parallel to it hits it somewhere, or not, as slopes are rounded.
                     way += normal * f64::powi(2.0, -16);
                 }
                 let from = depart(&scene, &hit, side > 0.0);
@@ -142,7 +141,7 @@ fn no_self_hits<N: Number>(shape: usize, shapes: usize, rays_each: usize) {
     left.report::<N>(SHAPES[shape]);
 }
 
-/// A ground as large as the lattice whose top lies about a height, level or nearly so.
+/// A ground as large as the lattice. Its top lies near a height, level or nearly so.
 fn ground(random: &mut Random, shape: usize) -> (Solid, f64) {
     // Spheres and cones reach twice as far down.
     let most = if matches!(SHAPES[shape], "triangle" | "box" | "disc") {
@@ -183,8 +182,8 @@ fn ground(random: &mut Random, shape: usize) -> (Solid, f64) {
     (solid, height)
 }
 
-/// A ray that hits a ground as large as the scene from close by leaves it, though the bound is that of the place
-/// and not of the scene.
+/// A ray that hits a ground as large as the scene from close by leaves it. The bound is that of the place and not of
+/// the scene.
 #[test]
 fn rays_that_leave_a_large_ground_do_not_meet_it() {
     fn judge<N: Number>(shape: usize) {
@@ -257,8 +256,8 @@ fn rays_that_leave_the_middle_of_the_lattice_do_not_come_back() {
     assert!(hits > 1000, "{hits}");
 }
 
-/// 1,000 shapes and 1,000 rays at each in the full run; the sizes of a shape span seven magnitudes
-/// and its offset is up to the lattice's end.
+/// The full run has 1,000 shapes and 1,000 rays at each. The sizes of a shape span seven magnitudes and its offset is
+/// up to the lattice's end.
 #[test]
 fn rays_that_leave_a_shape_do_not_meet_it() {
     let (shapes, rays) = (part_of(150, 1000), part_of(100, 1000));
@@ -274,8 +273,8 @@ fn rays_that_leave_a_shape_do_not_meet_it() {
     assert!(failures.is_empty(), "{failures:?}");
 }
 
-/// Cases that went wrong once: a normal that leaned along a needle, so that rays along the needle met
-/// it again; and one that was turned to the ray although its place was well known.
+/// Cases of earlier defects. One normal leaned along a needle, so that rays along the needle hit it again. Another was
+/// turned to the ray although its position was well known.
 #[test]
 fn normals_of_needles_neither_lean_nor_turn() {
     fn judge<N: Number>(solid: &Solid, origin: [f64; 3], slope: [f64; 3]) {

@@ -1,5 +1,5 @@
-//! Tori: thin rings, horns and spindles; through the hole, along the axis, in the plane of the circle,
-//! along tangents, from inside and from far away.
+//! Tori: thin rings, horns and spindles. Rays go through the hole, along the axis, in the plane of the circle, along
+//! tangents, from inside and from far away.
 
 use super::{hold, hold_all, of_every_sort};
 use glam::{DQuat, DVec3};
@@ -212,8 +212,8 @@ fn rings_of_one_step() {
     hold_all("rings of one step", "torus", &cases);
 }
 
-/// Radii at both ends of their ranges: a step each, and a reach as large as the lattice, around an axis of
-/// coordinates and around a diagonal, where it reaches beyond the lattice's end from the center.
+/// Radii at both ends of their ranges: a step each, and a reach as large as the lattice. The axis is an axis of
+/// coordinates or a diagonal, where the torus reaches beyond the lattice's end from the center.
 #[test]
 fn tori_at_the_ends_of_the_lattice() {
     let mut random = Random(75);

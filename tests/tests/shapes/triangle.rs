@@ -22,8 +22,8 @@ fn triangles_and_rays_of_every_sort() {
     of_every_sort(1);
 }
 
-/// Needles a step of the lattice wide, and triangles of the least area that the lattice knows: t
-/// comes from the plane, so it is as good as that of any other (D6, D7, D9).
+/// Needles a step of the lattice wide, and triangles of the least area that the lattice has. t
+/// comes from the plane, so it is as accurate as that of any other (D6, D7, D9).
 #[test]
 fn needles_and_specks() {
     let mut random = Random(7);
@@ -65,8 +65,8 @@ fn needles_and_specks() {
     hold_all("needles and specks", "triangle", &cases);
 }
 
-/// Rays in a triangle's plane: a hit has a finite t in the triangle's own range, or there is none;
-/// and triangles without area take nothing and hurt nobody (D8).
+/// Rays in a triangle's plane have a hit with a finite t in the triangle's own range, or none.
+/// Triangles without area have no hits and do no harm (D8).
 #[test]
 fn coplanar_rays_and_triangles_without_area() {
     fn trace<N: Number>(scene: &Scene<'_>, corners: [DVec3; 3], random: &mut Random) {
@@ -119,8 +119,8 @@ fn coplanar_rays_and_triangles_without_area() {
     }
 }
 
-/// Triangles on which other tracers went wrong (D10): three corners on a line, hit by none
-/// (pbrt's `Triangle.BadCases`), and a ray shot at a vertex that two triangles share.
+/// Triangles on which other tracers failed (D10). No ray hits three corners on a line (pbrt's
+/// `Triangle.BadCases`). Another ray is shot at a vertex that two triangles share.
 #[test]
 fn literal_traps() {
     let line = [

@@ -81,7 +81,7 @@ fn light_shines_through_what_is_cut_out() {
                 direction: DVec3::new(1.0, 0.0, -1.0),
                 color: [1.0; 3],
             }];
-            // The light comes through the square from the left, and falls on the wall beside it.
+            // The light comes through the square from the left, and falls on the wall next to it.
             let blob = blob_of(&scene);
             let view = blob.scene().expect("valid");
             let job = Job::whole(format, Structure::DualSplit, settings(&view));

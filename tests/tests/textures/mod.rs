@@ -1,4 +1,5 @@
-//! Colors of vertices and textures: every number format and structure shows what is computed here from the definition.
+//! Colors of vertices and textures: every number format and structure shows the values that these tests compute from
+//! the definition.
 
 mod alpha;
 
@@ -108,7 +109,7 @@ fn albedo(scene: &Scene<'_>, format: Format) -> Vec<[f32; 3]> {
     }
 }
 
-/// The places of the square that pixels show, but for those at its border.
+/// Returns the places of the square that pixels show, except at its border.
 fn places() -> impl Iterator<Item = (usize, [f64; 2])> {
     let [width, height] = PICTURE.map(f64::from);
     let count = usize::from(PICTURE[0]) * usize::from(PICTURE[1]);
@@ -121,7 +122,7 @@ fn places() -> impl Iterator<Item = (usize, [f64; 2])> {
     all.filter(|(_, [x, y])| x.abs() < 0.98 && y.abs() < 0.98)
 }
 
-/// What the square shows at a place by interpolation between the corners of its two triangles.
+/// Returns the square's value at a place by interpolation between the corners of its two triangles.
 fn interpolated<const N: usize>([x, y]: [f64; 2], corners: [[f64; N]; 4]) -> [f64; N] {
     let (x, y) = (0.5 * (x + 1.0), 0.5 * (y + 1.0));
     std::array::from_fn(|k| {
@@ -426,7 +427,7 @@ fn parts_hold_objects_with_and_without_images() {
     assert!(maps[0] != 0 && maps[1] == 0, "{maps:?}");
 }
 
-/// The exact picture of textures: what double precision shows lies in the intervals, but for its own rounding.
+/// The exact picture of textures: the values of double precision lie in the intervals, except for its own rounding.
 #[test]
 fn textured_pixels_are_certified() {
     for (wrap, bilinear) in [
@@ -461,7 +462,7 @@ fn textured_pixels_are_certified() {
     }
 }
 
-/// A real file with a texture: pixels of several colors, the same in all formats but for rounding.
+/// A real file with a texture: pixels of several colors, the same in all formats except for rounding.
 #[test]
 fn real_box_shows_its_texture() {
     let Some(path) = scenes::real("meshes/BoxTextured.glb") else {

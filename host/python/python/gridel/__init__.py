@@ -1,9 +1,9 @@
 """Exact, watertight ray queries for NumPy arrays.
 
-A :class:`Scene` is compiled once and asked many times, on all cores. Rays are rows of six numbers (origin and
-direction) or of eight (origin, tmin, direction, tmax); ``t`` counts multiples of the direction, which may have any
-length. No ray slips between two triangles that share an edge, and :meth:`Scene.all`, :meth:`Scene.count` and
-:meth:`Scene.contains` count no surface twice.
+A :class:`Scene` is compiled once and queried many times, on all cores. Rays are rows of six numbers
+(origin and direction) or of eight (origin, tmin, direction, tmax). ``t`` counts multiples of the
+direction, which may have any length. No ray slips between two triangles that share an edge.
+:meth:`Scene.all`, :meth:`Scene.count` and :meth:`Scene.contains` count no surface twice.
 
 >>> import numpy, gridel
 >>> corners = numpy.array([[0.0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]])

@@ -29,8 +29,8 @@ class Hits(NamedTuple):
     instance: NDArray[np.uint32]
     #: (n, 3) float32: the geometric normal, of length 1: outward, or to where corners run counter-clockwise.
     normal: NDArray[np.float32]
-    #: (n, 2) float32: weights of a triangle's second and third corner; nan where the scene's meshes are not at hand
-    #: (scenes from blobs, instances) and for other shapes, 0 on a miss.
+    #: (n, 2) float32: weights of a triangle's second and third corner; 0 on a miss. nan where the scene's meshes are not
+    #: available (scenes from blobs, instances), and for other shapes.
     uv: NDArray[np.float32]
 
 
@@ -77,8 +77,9 @@ def _rows(values: ArrayLike, widths: Tuple[int, ...], what: str) -> NDArray:
 class Scene:
     """A scene, compiled for queries. Make one by :meth:`load`, :meth:`from_arrays` or :meth:`from_blob`.
 
-    A scene does not change. Queries release the GIL and run on all cores, or on ``threads`` of them; the results are the
-    same, bit for bit, with any number of threads. Arrays of float32 and float64 in C order are read in place.
+    A scene does not change. Queries release the GIL and run on all cores, or on ``threads`` of
+    them. The results are the same, bit for bit, with any number of threads. Arrays of float32 and
+    float64 in C order are read in place.
 
     ``format`` is the number format of a query: ``"f32"``, ``"f64"`` or ``"fixed"`` (integers). ``accel`` is the name of
     an acceleration structure that the scene holds; the default is the fastest. It changes no result.
@@ -111,9 +112,10 @@ class Scene:
     ) -> "Scene":
         """Compiles a triangle mesh: vertices (n, 3) of numbers, faces (m, 3) of integers.
 
-        Vertices are centered in float64 before they are rounded to the lattice, whose step is about 1e-7 of the mesh's
-        size at 24 bits, wherever the mesh lies; :attr:`displacement` says how far they moved. Raises ValueError for
-        vertices that are not finite and faces that name no vertex.
+        Vertices are centered in float64 before they are rounded to the lattice. The lattice's step
+        is about 1e-7 of the mesh's size at 24 bits, wherever the mesh lies; :attr:`displacement` is
+        how far they moved. Raises ValueError for vertices that are not finite and faces that name
+        no vertex.
         """
         return cls._from_meshes([(vertices, faces)], accel=accel, lattice_bits=lattice_bits)
 
@@ -175,9 +177,10 @@ class Scene:
     ) -> AllHits:
         """Returns every crossing of each ray: rays (n, 6) or (n, 8), m hits ray by ray in the order of t.
 
-        Nothing is listed twice, capped or lost: a ray through an edge or a vertex of a closed mesh crosses as many
-        triangles as a ray beside it. Where a ray only touches a silhouette, or the border of an open mesh, it has no
-        crossing, or two, or one at a border; :meth:`cast` may report a hit there.
+        Nothing is listed twice, capped or lost. A ray through an edge or a vertex of a closed mesh
+        crosses as many triangles as a ray next to it. Where a ray only touches a silhouette, it has
+        no crossing or two. At the border of an open mesh it has none or one. :meth:`cast` may
+        report a hit there.
         """
         rays = _rows(rays, (6, 8), "rays")
         ray, hits, leaves = self._native.all(rays, format, accel, threads)
@@ -233,7 +236,8 @@ class Scene:
     def to_blob(
         self, *, accel: Optional[Accel] = None, lattice_bits: Optional[int] = None
     ) -> bytes:
-        """Returns the scene blob, for files and for devices; compiled anew if structures or bits are given."""
+        """Returns the scene blob, for files and for devices; compiled again if structures or bits
+        are given."""
         names = None if accel is None else _names(accel)
         return self._native.to_blob(names, lattice_bits)
 

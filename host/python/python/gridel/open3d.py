@@ -33,7 +33,7 @@ def _array(value: Any) -> np.ndarray:
 
 
 def _like(given: Any, result: np.ndarray) -> Any:
-    """The result in the form of what was given."""
+    """Returns the result in the form of the argument."""
     if _is_tensor(given):
         return sys.modules["open3d"].core.Tensor(np.ascontiguousarray(result))
     return result.view(Array)
@@ -150,8 +150,9 @@ class RaycastingScene:
     def list_intersections(self, rays: Any, nthreads: int = 0) -> dict[str, Any]:
         """Returns all crossings of rays (..., 6), ray by ray.
 
-        Keys: ``ray_splits`` (n + 1) uint32, where the hits of each ray begin and end; ``ray_ids``, ``geometry_ids`` and
-        ``primitive_ids`` (m) uint32; ``t_hit`` (m) float32; ``primitive_uvs`` (m, 2) float32.
+        Keys: ``ray_splits`` (n + 1) uint32, where the hits of each ray begin and end. ``ray_ids``,
+        ``geometry_ids`` and ``primitive_ids`` (m) uint32. ``t_hit`` (m) float32. ``primitive_uvs``
+        (m, 2) float32.
         """
         array = self._rays(rays).reshape(-1, 6)
         if self.scene is None:

@@ -20,9 +20,9 @@ __all__ = ["RayMeshIntersector"]
 class RayMeshIntersector:
     """Ray queries of a ``trimesh.Trimesh``, with the signatures and dtypes of trimesh's own class.
 
-    ``scale_to_box`` is taken for its place among the arguments and changes nothing: coordinates are always centered and
-    scaled. ``threads`` is the number of threads, 0 for one per core. A mesh that changes is compiled anew when it is
-    asked next.
+    ``scale_to_box`` is accepted for compatibility and changes nothing: coordinates are always
+    centered and scaled. ``threads`` is the number of threads, 0 for one per core. A mesh that
+    changes is compiled again at its next query.
     """
 
     def __init__(self, geometry: Any, scale_to_box: bool = True, *, threads: int = 0):

@@ -21,7 +21,7 @@ use std::ops::Range;
 /// Hits that are listed at a time.
 const LISTED: usize = 16;
 
-/// The number of hits of each ray; 0 of a ray that is none.
+/// Returns the number of hits of each ray; 0 for an invalid ray.
 pub fn count(scene: &Scene<'_>, rays: Rays<'_>, how: How) -> Vec<u32> {
     fill(how, rays.len(), 0, |start, answers| {
         dispatch!(how, count_chunk, [], (scene, rays, start, answers));
@@ -128,7 +128,8 @@ fn all_inline<N: Number, A: Accel, Q: Question<Answer = Found>>(
 /// Places, numbers of rays and triangles.
 pub type Locations = (Vec<[f64; 3]>, Vec<i64>, Vec<i64>);
 
-/// Where rays meet triangles: at most so many of each ray, or the first alone. Chunk by chunk.
+/// Returns where rays hit triangles: all hits of each ray up to a number, or the first alone. Chunk
+/// by chunk.
 pub fn locations(
     scene: &Scene<'_>,
     rays: Rays<'_>,

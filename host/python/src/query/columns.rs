@@ -10,14 +10,14 @@ pub struct Columns<'c, T> {
     pub t: &'c mut [T],
     pub object: &'c mut [u32],
     pub primitive: &'c mut [u32],
-    /// Empty where nobody asks.
+    /// Empty where it is not requested.
     pub instance: &'c mut [u32],
     pub normal: &'c mut [[f32; 3]],
     pub uv: &'c mut [[f32; 2]],
 }
 
 impl<'c, T> Columns<'c, T> {
-    /// The first so many rows, and the others.
+    /// Returns the first `at` rows, and the others.
     fn split(self, at: usize) -> (Self, Self) {
         let (t, more_t) = self.t.split_at_mut(at);
         let (object, more_objects) = self.object.split_at_mut(at);

@@ -10,8 +10,8 @@ use gridel_core::{Accel, Fixed, Format, Number, Scene, Solid, Structure, Wide, c
 /// Which objects are closed: of the scene itself, then of its parts, by their numbers.
 pub type Closed<'a> = &'a [bool];
 
-/// Whether each point lies in a closed object; in any object whose surface is crossed an odd number of times, if
-/// `closed` is `None`.
+/// Returns whether each point lies in a closed object. If `closed` is `None`, any object whose surface is crossed an
+/// odd number of times counts.
 pub fn contains(
     scene: &Scene<'_>,
     points: Points<'_>,

@@ -1,4 +1,4 @@
-//! Every crossing of a line with a torus lies in one that is enclosed, by the roots of 320 bits that `verify` finds.
+//! Every crossing of a line with a torus lies in an enclosed one, by the roots of 320 bits that `verify` finds.
 
 use super::*;
 use crate::certify::crossing::Start;

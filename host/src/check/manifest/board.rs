@@ -33,7 +33,7 @@ pub enum Program {
     Firmware(Firmware),
 }
 
-/// A Cargo package, and what is built of it.
+/// A Cargo package, and its program, target and features.
 #[derive(Clone, Debug)]
 pub struct Firmware {
     pub folder: Named,

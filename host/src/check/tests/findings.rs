@@ -1,4 +1,4 @@
-//! Findings, their evidence, and what is recorded.
+//! Findings, their evidence, and the figures that are recorded.
 
 use super::*;
 

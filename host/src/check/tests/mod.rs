@@ -11,7 +11,7 @@ use std::fs;
 use std::path::PathBuf;
 use tempfile::TempDir;
 
-/// A ball, and a manifest beside it.
+/// A folder with a ball and a manifest.
 struct Folder(TempDir);
 
 const BALL: &str = r#"

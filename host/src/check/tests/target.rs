@@ -84,7 +84,7 @@ fn target_budgets_are_recorded_and_a_board_is_not() {
     let (_, report) = folder.run(&text);
     assert_eq!(report.failed(), 0, "{report:?}");
 
-    // What is too large for the board is not recorded.
+    // A figure that exceeds the board is not recorded.
     let wide = BALL
         .replace("width = 16", "width = 65535")
         .replace("height = 12", "height = 1024");

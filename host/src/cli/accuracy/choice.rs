@@ -8,20 +8,20 @@ use gridel_host::accuracy::{Limits, Point, Results, cheapest_within, most_accura
 use gridel_host::table::counted;
 use serde::Serialize;
 
-/// The setting that was asked for.
+/// The requested setting.
 #[derive(Serialize)]
 pub struct Choice {
     pub name: String,
     pub rmse: f64,
     pub rays_per_pixel: f64,
-    /// How surely it is the cheapest, where time on this machine decides.
+    /// How certain it is that the setting is the cheapest, where time on this machine decides.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub noise: Option<String>,
     pub build: String,
     pub render: String,
 }
 
-/// The setting within the limits that were asked for, as options: the cheapest where an error is given, else the most
+/// Returns the setting within the requested limits, as options: the cheapest where an error is given, else the most
 /// accurate.
 pub fn choice(arguments: &Arguments, stem: &str, results: &Results) -> Option<Choice> {
     let board = arguments.board.as_deref();
@@ -70,7 +70,7 @@ pub fn choice(arguments: &Arguments, stem: &str, results: &Results) -> Option<Ch
     })
 }
 
-/// How surely a point is the fastest within a bound.
+/// Returns how certain it is that a point is the fastest within a bound.
 fn noise(fastest: &Point, points: &[Point], limits: Limits) -> String {
     let Some(repeats) = fastest.cost.interval() else {
         return String::from(", timed once, so its noise is unknown");

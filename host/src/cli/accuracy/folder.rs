@@ -45,7 +45,7 @@ pub fn kept(folder: &Path, key: &str) -> Result<Option<Results>, Failure> {
     let bytes = std::fs::read(&file).map_err(|error| Failure::reading(&file, &error))?;
     match serde_json::from_slice::<Results>(&bytes) {
         Ok(mut results) if results.key == key => {
-            // What has lost its pictures is measured again.
+            // A setting whose pictures are missing is measured again.
             results.points.retain(|point| {
                 let difference = format!("{}-difference", point.name);
                 let mut pictures = [&point.name, &difference].into_iter();

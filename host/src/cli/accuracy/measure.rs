@@ -10,15 +10,14 @@ use gridel_host::measure::difference_picture;
 use std::io;
 use std::path::Path;
 
-/// What a run measures with, and where it writes.
+/// The means of a run, and where it writes.
 struct Run<'r, 's> {
     arguments: &'r Arguments,
     bench: &'r mut Bench<'s>,
     folder: &'r Path,
 }
 
-/// Measures what is not measured yet, and writes down every step: the settings, then effects that are given up one
-/// after the other.
+/// Measures the rest, and writes down every step: the settings, then effects that are left out one after the other.
 pub fn measure(
     arguments: &Arguments,
     bench: &mut Bench<'_>,

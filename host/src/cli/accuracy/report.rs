@@ -89,7 +89,7 @@ pub fn text(folder: &Path, size: [u16; 2], results: &Results, choice: Option<&Ch
     text
 }
 
-/// What each effect is worth; empty for a scene that calls for none.
+/// Returns the worth of each effect; empty for a scene that calls for none.
 fn effects(results: &Results) -> String {
     if results.effects.is_empty() {
         return String::new();

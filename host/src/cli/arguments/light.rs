@@ -6,7 +6,7 @@ use glam::DVec3;
 use gridel_host::scene::{Color, Light, TrackTarget};
 use gridel_host::table::counted;
 
-/// One number or vector of a light, and what it is to be.
+/// One number or vector of a light, and its new value.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LightChange {
     number: usize,
@@ -61,7 +61,7 @@ impl LightChange {
         Ok(())
     }
 
-    /// Whether this is set in place of what a track moves.
+    /// Returns whether this replaces the property that a track moves.
     pub fn replaces(&self, target: TrackTarget, index: usize) -> bool {
         let moved = match self.to {
             Property::Position(_) => TrackTarget::LightPosition,

@@ -144,7 +144,7 @@ impl SceneOptions {
         self.geometry.given().or(self.given_for_pictures())
     }
 
-    /// The name of an option that was given and concerns what a blob holds beside its geometry.
+    /// Returns the name of a given option that concerns the content of a blob other than its geometry.
     pub fn given_for_pictures(&self) -> Option<&'static str> {
         first_given([
             (self.cutoff.is_some(), "--cutoff"),

@@ -70,7 +70,7 @@ impl StructureOptions {
     }
 }
 
-/// Rejects an option that only structures take of which none is built.
+/// Rejects an option if none of its structures is built.
 ///
 /// # Errors
 /// If it was given.

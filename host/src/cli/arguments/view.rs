@@ -1,4 +1,4 @@
-//! Options that say from where a scene is seen.
+//! Options for the camera of a scene.
 
 use super::values::{numbers, vector};
 use crate::cli::failure::Failure;
@@ -70,7 +70,7 @@ impl ViewOptions {
         }
         if scene.camera.is_none() {
             scene.background = scene.background.or(Some(compile::BACKGROUND));
-            // Which way is up decides from where the whole scene is seen.
+            // The direction up decides from where the whole scene is seen.
             for up in [Up::Y, Up::Z] {
                 // Along the axis, however long.
                 let is_along =
@@ -105,7 +105,7 @@ impl ViewOptions {
         Ok(view)
     }
 
-    /// Whether an option was given in place of what a track moves.
+    /// Returns whether an option replaces the property that a track moves.
     pub fn replaces(&self, target: TrackTarget) -> bool {
         let turns = self.eye.is_some() || self.target.is_some() || self.up.is_some();
         match target {
@@ -123,7 +123,7 @@ impl ViewOptions {
         camera.iter().any(|(given, _)| *given)
     }
 
-    /// A camera with what was given in place of its own.
+    /// Returns a camera with the given values in place of its own.
     fn moved(&self, camera: Camera) -> Result<Camera, Failure> {
         let camera = Camera {
             eye: self.eye.unwrap_or(camera.eye),
@@ -197,7 +197,7 @@ mod tests {
         let view = (camera.target - camera.eye).normalize();
         assert!(view.distance(DVec3::Y) < 1e-12);
         assert_eq!(camera.fov_degrees, 10.0);
-        // Now the scene has a camera, of which the rest stays.
+        // Now the scene has a camera, and its other values stay.
         let view = ViewOptions {
             eye: Some(DVec3::new(7.0, 8.0, 9.0)),
             background: Some([0.0; 3]),

@@ -45,7 +45,7 @@ impl JointLine {
         joints.map(line).collect()
     }
 
-    /// What the text says of it.
+    /// Returns its description.
     pub fn text(&self, number: usize) -> String {
         let [x, y, z] = self.pivot.map(significant);
         let parent = self.parent.map(|parent| format!(" on joint {parent}"));

@@ -39,7 +39,7 @@ pub fn run(
         .map(|path| read(path))
         .collect::<Result<Vec<_>, _>>()?;
     let order = in_order(&pictures).map_err(|error| failure(inputs, &error))?;
-    // The command line asks for a file at least.
+    // The command line requires at least one file.
     let Some((&first, &last)) = order.first().zip(order.last()) else {
         return Ok(());
     };
@@ -62,7 +62,7 @@ pub fn run(
         ));
     }
     let progress = Progress::steps("merging", order.len() as u64);
-    // What went wrong with a frame, rather than that the file could not be written.
+    // The failure of a frame, in contrast to that of writing the file.
     let mut failure = None;
     let written = write_file(output, |out| {
         animation.write(out, &mut |number| {

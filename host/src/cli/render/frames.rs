@@ -148,7 +148,7 @@ struct Rendered {
     samples: u16,
     depth: u8,
     threads: usize,
-    /// Of each frame, while the shutter is open.
+    /// Moments of each frame, while the shutter is open.
     #[serde(skip_serializing_if = "Option::is_none")]
     moments: Option<u16>,
     seconds: f64,
@@ -157,7 +157,7 @@ struct Rendered {
     unresolved: Vec<Unresolved>,
 }
 
-/// What frames are rendered from.
+/// The inputs of frames.
 pub struct Shot<'s> {
     pub options: &'s TimeOptions,
     pub output: &'s Path,
@@ -189,7 +189,7 @@ pub fn run(shot: Shot<'_>, frames: Range<u32>, output: &Output) -> Result<(), Fa
                 pictures: frames.len() as u32,
                 per_second,
             };
-            // What went wrong in a frame, rather than that the file could not be written.
+            // The failure of a frame, in contrast to that of writing the file.
             let mut failure = None;
             let written = write_file(path, |out| {
                 animation.write(out, &mut |number| {
@@ -257,7 +257,7 @@ impl Shot<'_> {
             .install(|| render_moments(&moments, self.job, &|| ()));
         let picture = rendered.map_err(|error| rejected(&error))?;
         let moment = Moment::Frame(Frame { number, per_second });
-        // What all frames have in common: the view of the first, and the options.
+        // Common to all frames: the view of the first, and the options.
         let start = self.source.changes_at(self.scene, tracks, 0)?;
         let start = start.apply(self.scene)?;
         let metadata = RenderMetadata::of(&start, self.job)

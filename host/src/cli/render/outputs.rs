@@ -19,7 +19,7 @@ use gridel_host::report::HeatMap;
 use serde::Serialize;
 use std::path::{Path, PathBuf};
 
-/// Pixels of pictures for displays that are held at once.
+/// Largest number of pixels of pictures for displays in memory at once.
 pub const MOST_PIXELS: usize = 1 << 26;
 
 /// The formats of pictures, as messages list them.
@@ -84,7 +84,7 @@ pub struct AovFile {
     aov: Aov,
 }
 
-/// Where a picture goes, and what is written beside it.
+/// The file of a picture, and the other files of a run.
 pub struct Outputs<'a> {
     picture: &'a Path,
     stored: Stored,
@@ -92,7 +92,7 @@ pub struct Outputs<'a> {
     aovs: Vec<AovFile>,
 }
 
-/// What was rendered.
+/// The rendered pixels.
 pub enum Rendering {
     Shown(Picture),
     Linear(LinearPicture),
@@ -109,7 +109,7 @@ impl Rendering {
 }
 
 impl<'a> Outputs<'a> {
-    /// The files that were asked for; an error for names that cannot be written to.
+    /// Returns the requested files, or an error for names that cannot be written to.
     pub fn of(input: &Path, options: &'a OutputOptions) -> Result<Self, Failure> {
         let picture = &*options.output;
         let stored = stored(picture)?;
@@ -180,7 +180,7 @@ impl<'a> Outputs<'a> {
         }
     }
 
-    /// Pixels that are held at once.
+    /// Returns the largest number of pixels in memory at once.
     pub fn most_pixels(&self) -> usize {
         match self.stored {
             Stored::Shown(_) if self.aovs.is_empty() => MOST_PIXELS,
@@ -287,7 +287,7 @@ fn layers(scene: &Scene<'_>, job: &Job, aovs: &[Aov]) -> Result<Vec<Layer>, Fail
     Ok(layers.collect())
 }
 
-/// The format that a picture's name asks for.
+/// Returns the format that a picture's name requests.
 fn stored(output: &Path) -> Result<Stored, Failure> {
     if is_standard(output) {
         return Ok(Stored::Shown(PictureFormat::Png));

@@ -25,7 +25,7 @@ pub struct ShutterOptions {
     pub moments: Option<u16>,
 }
 
-/// Moments of a shutter unless others are asked for.
+/// Moments of a shutter by default.
 const USUAL: u16 = 16;
 
 /// The most bytes that instances of all moments take.
@@ -63,7 +63,7 @@ impl ShutterOptions {
     }
 }
 
-/// What of a scene is otherwise at each moment from a time on.
+/// Returns the changes of a scene at each moment from a time on.
 pub fn changes(
     source: &Source,
     (scene, tracks): (&Scene<'_>, &Tracks<'_>),
@@ -98,7 +98,7 @@ pub fn scenes<'a>(changes: &'a [Changes], scene: &Scene<'a>) -> Result<Vec<Scene
     changes.iter().map(|it| it.apply(scene)).collect()
 }
 
-/// What a report says of moments.
+/// Returns the text of a report about moments.
 pub fn of_moments(number: Option<u16>) -> String {
     let said = |number: u16| format!(" at {}", counted(number.into(), "moment"));
     number.map_or(String::new(), said)

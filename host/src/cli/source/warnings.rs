@@ -1,4 +1,4 @@
-//! What the compiler did to a scene that its author would want to know.
+//! Changes of the compiler to a scene that its author would want to know.
 
 use gridel_core::Effects;
 use gridel_host::compile::{LATTICE_BITS, Report};
@@ -42,7 +42,7 @@ pub fn names_changed(report: &Report) -> Option<String> {
     })
 }
 
-/// Leaves effects out of the scene of a file, and says of each what is lost.
+/// Leaves effects out of the scene of a file, and reports what each of them loses.
 pub fn leave_out(scene: &mut Scene, path: &Path, effects: &[Effects]) -> Vec<String> {
     let file = path.display();
     let lost = effects

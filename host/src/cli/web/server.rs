@@ -73,7 +73,7 @@ impl Server {
         respond(stream, answer, request.starts_with("HEAD "))
     }
 
-    /// The file that a request asks for, or the code and the words of a refusal.
+    /// Returns the file of a request, or the code and the words of a refusal.
     fn find(&self, request: &str) -> Result<PathBuf, (u16, &'static str)> {
         let mut words = request.split(' ');
         let (method, target) = (words.next(), words.next().unwrap_or_default());
@@ -102,7 +102,7 @@ impl Server {
     }
 }
 
-/// The first line of a request; the others say nothing that matters here.
+/// Reads the first line of a request; the others do not matter here.
 fn read_request(stream: &TcpStream) -> io::Result<String> {
     let mut reader = BufReader::new(stream.take(MOST_REQUEST));
     let (mut first, mut line) = (String::new(), String::new());

@@ -9,9 +9,9 @@
 //! | `reinsertion.rs` | swept, then improved by taking subtrees out and putting them back |
 //! | `tree.rs` | the tree that all but the first build, and how it becomes a hierarchy |
 //!
-//! All are bounded: none takes more than `O(n log n)` steps per level or pass, some hundred bytes per
-//! primitive, and [`MAX_LEVELS`](gridel_core::format::limits::MAX_LEVELS) levels: below where a
-//! tree would be deeper, its subtrees are halved instead.
+//! All are bounded. None takes more than `O(n log n)` steps per level or pass, some hundred bytes per primitive, and
+//! [`MAX_LEVELS`](gridel_core::format::limits::MAX_LEVELS) levels. Where a tree would be deeper, its subtrees are
+//! halved instead.
 
 mod insertion;
 mod modelled;
@@ -68,10 +68,9 @@ impl Builder {
     }
 }
 
-/// Builds a hierarchy and puts the primitives in the order of its leaves; `None` without primitives.
-/// `group` gives the names of the groups that a primitive is in, the largest first, and its number
-/// in scene-file order. Builders other than the first two make leaves of the usual size where
-/// `leaf_size` asks for larger ones.
+/// Builds a hierarchy and puts the primitives in the order of its leaves; `None` without primitives. `group` gives the
+/// names of the groups that a primitive is in, the largest first, and its number in scene-file order. Builders other
+/// than the first two make leaves of the usual size where `leaf_size` is larger.
 pub fn build<'g>(
     builder: Builder,
     primitives: &mut [Primitive],

@@ -8,7 +8,7 @@ use rayon::prelude::*;
 pub fn random(primitives: &[Primitive]) -> Tree {
     let mut tree = Tree::default();
     let mut clusters = leaves(&mut tree, primitives);
-    // The same on every machine: a multiplicative shuffle of the places.
+    // A multiplicative shuffle of the places, equal on every machine.
     clusters.sort_by_key(|&leaf| (leaf as u32).wrapping_mul(0x9e37_79b1) ^ 0x2545_f491);
     while clusters.len() > 1 {
         clusters = clusters
@@ -28,10 +28,10 @@ const NEIGHBORS: usize = 16;
 
 /// Pairs the nearest two: those whose common box has the least surface.
 ///
-/// To search all would take n^2 steps. Nodes lie along a space-filling curve instead, each looks for
-/// the nearest among sixteen to either side, and all that find each other are joined at once
-/// (Meister and Bittner, "Parallel locally-ordered clustering for bounding volume hierarchy
-/// construction", 2018).
+/// To search all would take n^2 steps. Instead, nodes lie along a space-filling curve. Each looks
+/// for the nearest among sixteen to either side, and all mutual nearest pairs are joined at once.
+/// Source: Meister and Bittner, "Parallel locally-ordered clustering for bounding volume hierarchy
+/// construction", 2018.
 pub fn nearest(primitives: &[Primitive]) -> Tree {
     let mut tree = Tree::default();
     let mut clusters = leaves(&mut tree, primitives);
@@ -46,7 +46,7 @@ pub fn nearest(primitives: &[Primitive]) -> Tree {
                 let apart =
                     |other: &usize| area(&bounds.union(&tree.nodes[clusters[*other]].bounds));
                 let others = (first..end).filter(|&other| other != place);
-                // Ties go by place, so that two always find each other.
+                // Ties are decided by place, so that two always find each other.
                 let key = |other: &usize| (apart(other), place.min(*other), place.max(*other));
                 others
                     .min_by(|a, b| {

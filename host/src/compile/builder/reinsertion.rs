@@ -114,7 +114,7 @@ fn refit(tree: &mut Tree, mut number: usize) {
     }
 }
 
-/// A node that waits to be looked at, the cheapest first.
+/// A node that waits to be examined, the cheapest first.
 struct Candidate {
     /// By how much all nodes above would grow.
     growth: f64,
@@ -143,7 +143,7 @@ impl Ord for Candidate {
     }
 }
 
-/// The node beside which a box adds least surface.
+/// Returns the node next to which a box adds least surface.
 fn best_place(tree: &Tree, bounds: &UnitBox) -> usize {
     let own = area(bounds);
     let mut best = (f64::INFINITY, tree.root);

@@ -33,7 +33,7 @@ fn cloud(count: usize) -> Vec<Primitive> {
     primitives((0..count).map(|_| [0; 3].map(|_| random()).map(|low| [low, low + 300])))
 }
 
-/// Boxes of which each lies beside all before it, so that one after the other makes a chain.
+/// Boxes that each lie next to all before it, so that one after the other makes a chain.
 fn chain(count: usize) -> Vec<Primitive> {
     primitives((0..count).map(|step| [[(step * 3) as i16, (step * 3) as i16 + 1], [0, 1], [0, 1]]))
 }

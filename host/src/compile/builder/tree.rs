@@ -70,8 +70,8 @@ impl Tree {
 
     /// The hierarchy, and the primitives in the order of its leaves.
     ///
-    /// Few primitives of one kind become one leaf where the surface area heuristic says so; what
-    /// would lie too deep is halved.
+    /// Few primitives of one kind become one leaf where the surface area heuristic says so. Ranges
+    /// that would lie too deep are halved.
     pub fn finish(&self, primitives: &mut [Primitive]) -> Node {
         let mut facts = vec![Facts::default(); self.nodes.len()];
         for &number in self.parents_first().iter().rev() {
@@ -83,7 +83,7 @@ impl Tree {
                         count: places.len(),
                         tests,
                         cost: area(&node.bounds) * tests,
-                        // What is more than a leaf is halved.
+                        // A range with more than a leaf's primitives is halved.
                         height: if places.len() > LEAF_SIZE {
                             halvings(places.len())
                         } else {

@@ -134,7 +134,7 @@ fn within_reach(q13: [i64; 3]) -> Option<[i32; 3]> {
 fn direction_of(light: &Light, bounds: &UnitBox) -> Option<ApexDirection> {
     let magnitudes = light.vector.map(i64::unsigned_abs);
     let most = *magnitudes.iter().max()?;
-    // Of equal ones the first, as rays choose.
+    // The first of equal ones, as rays choose.
     let major = magnitudes.iter().position(|&it| it == most && most > 0)?;
     let slope = light
         .vector

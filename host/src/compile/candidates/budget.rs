@@ -7,7 +7,7 @@ use gridel_core::Structure;
 /// The limits of a table, and the callback for progress.
 #[derive(Clone, Copy)]
 pub struct Budget<'t> {
-    /// Gridels per side, if that is asked for.
+    /// Gridels per side, if given.
     pub gridels: Option<u32>,
     /// Most bytes of a table.
     pub bytes: u64,

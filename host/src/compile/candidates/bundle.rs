@@ -12,7 +12,7 @@ use gridel_core::format::record::Gridels;
 pub struct Bundle {
     /// The major axis.
     pub axis: usize,
-    /// Whether the way from the apex leads up it.
+    /// True if the axis increases away from the apex.
     pub up: bool,
     /// Where the rays begin on their major axis: the point, or a plane beyond the scene.
     pub start: f64,
@@ -28,7 +28,7 @@ pub enum Rays {
     Along([f64; 2]),
 }
 
-/// Ranges of what the rays of a bundle differ by, on the two axes that follow the major one.
+/// The ranges by which the rays of a bundle differ, on the two axes that follow the major one.
 pub type Ranges = [[f64; 2]; 2];
 
 impl Bundle {
@@ -40,7 +40,8 @@ impl Bundle {
         }
     }
 
-    /// How far along the major axis a box begins and ends, seen from the start and not behind it.
+    /// Returns where a box begins and ends along the major axis, seen from the start and not behind
+    /// it.
     pub fn depths(&self, bounds: &[[f64; 2]; 3]) -> [f64; 2] {
         let [low, high] = bounds[self.axis].map(|side| side - self.start);
         let (near, far) = if self.up { (low, high) } else { (-high, -low) };
@@ -78,7 +79,7 @@ impl Bundle {
         Some(ranges)
     }
 
-    /// A single ray: where it begins, and its way to a depth of 1.
+    /// Returns a single ray: its start, and its way to a depth of 1.
     pub fn ray(&self, values: [f64; 2]) -> (DVec3, DVec3) {
         let mut from = [self.start; 3];
         let mut way = [if self.up { 1.0 } else { -1.0 }; 3];

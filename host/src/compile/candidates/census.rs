@@ -23,8 +23,8 @@ impl Census {
         self.entries as f64 / self.lists.max(1) as f64
     }
 
-    /// Bytes of the entries alone, for entries of a size: 2 for short numbers, 4 for numbers or
-    /// pointers of the paper's time, 8 for the cells of linked lists.
+    /// Returns the bytes of the entries alone, for a size of entry. The size is 2 for short
+    /// numbers, 4 for numbers or pointers of the paper's time, 8 for the cells of linked lists.
     pub fn bytes(&self, entry: u64) -> u64 {
         self.entries * entry
     }
@@ -46,7 +46,7 @@ pub struct CubeCensus {
     pub objects: u64,
     /// Cylinders between opposite faces alone, 3 n^4: what the paper counts.
     pub opposite: Census,
-    /// Cylinders between all different faces, 15 n^4: what serves every ray.
+    /// Cylinders between all different faces, 15 n^4, as every ray needs.
     pub all: Census,
     /// Counts with hulls in place of cylinders, tested against the objects themselves.
     pub tight: Census,

@@ -1,4 +1,4 @@
-//! Builds the cylinder cubes: for every pair of gridels of different faces, what can be met between
+//! Builds the cylinder cubes: for every pair of gridels of different faces, the candidates between
 //! them (the paper, section 3.1).
 
 use super::budget::{Budget, OnProgress, OverBudget};
@@ -32,7 +32,7 @@ pub const FACES: [[u32; 2]; Gridels::FACE_PAIRS as usize] = {
     faces
 };
 
-/// Numbers of gridels per side that are tried, where none is asked for.
+/// Numbers of gridels per side that are tried by default.
 const SIZES: [u32; 19] = [
     1, 2, 3, 4, 5, 6, 7, 8, 10, 12, 14, 16, 20, 24, 28, 32, 40, 48, 64,
 ];
@@ -42,9 +42,9 @@ const PAPER_SIZE: u32 = 4;
 /// How the candidates of a pair of gridels are found.
 pub trait Form: Sync {
     const STRUCTURE: Structure;
-    /// Whether lists are sorted along the way and have keys.
+    /// True if lists are sorted along the ray and have keys.
     const KEYED: bool;
-    /// Most gridels per side that are tried, where none is asked for.
+    /// Most gridels per side that are tried by default.
     const MOST: u32;
 
     /// The number beyond the largest candidate.
@@ -85,7 +85,7 @@ fn rectangle(gridels: &Gridels, face: u32, number: u32) -> [[f64; 2]; 3] {
     sides
 }
 
-/// Builds a cube with the gridels that are asked for, or as many as fit the budget.
+/// Builds a cube with the given gridels, or as many as fit the budget.
 pub fn build<F: Form>(
     form: &F,
     targets: &Targets<'_>,
@@ -94,7 +94,7 @@ pub fn build<F: Form>(
     let plan = |count: u32| OfSize::new(form, Gridels::new(&targets.bounds, count));
     if let Some(count) = budget.gridels {
         let sized = plan(count);
-        // Not worth counting what cannot fit.
+        // Does not count what cannot fit.
         let least = Gridels::pairs(count);
         if least > budget.bytes {
             return Err(budget.exceeded(F::STRUCTURE, Some(count), least, true));
@@ -263,8 +263,9 @@ impl Form for Hulls<'_> {
     }
 }
 
-/// Sorts candidates by the middle of where they can be met, and gives them keys: the first level of
-/// this and all later ones, and the last level of this and all earlier ones.
+/// Sorts candidates by the middle of the span where rays can hit them, and gives them keys. A key
+/// is the first level of this and all later candidates, and the last level of this and all earlier
+/// ones.
 pub fn sorted(mut met: Vec<(u32, [f64; 2])>, list: &mut List) {
     const LEVELS: f64 = 16.0;
     /// Part of a level; more than rounding can move a place.

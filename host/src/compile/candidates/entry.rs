@@ -1,8 +1,8 @@
 //! Which nodes of the hierarchy a ray between two gridels enters at.
 //!
-//! A node is replaced by those of its children that lead to something, as long as this saves
-//! tests: it saves those of their boxes, and costs what each child would have been spared by its box. How often
-//! rays of the pair miss a child's box is found with a few of them.
+//! A node is replaced by its children that lead to candidates, as long as that lowers the estimated cost. It saves the
+//! test of their boxes, and costs the rays that each child's box would have culled. A few sample rays of the pair
+//! estimate how often rays miss a child's box.
 
 use super::cylinder_cube::{Form, Pair, sorted};
 use super::lists::List;
@@ -16,7 +16,7 @@ use std::cell::OnceCell;
 /// The form whose lists hold nodes.
 pub struct EntryNodes<'t>(pub &'t Targets<'t>);
 
-/// Rays tried for a pair: from so many places of one gridel to another place of the other.
+/// Rays tried for a pair, each from a place of one gridel to a place of the other.
 const SAMPLES: usize = 16;
 
 impl Form for EntryNodes<'_> {
@@ -102,7 +102,7 @@ impl EntryNodes<'_> {
     }
 }
 
-/// A few rays of a pair of gridels, made when they are asked for.
+/// A few rays of a pair of gridels, made when they are needed.
 struct Samples<'p> {
     pair: &'p Pair,
     rays: OnceCell<[Shaft; SAMPLES]>,

@@ -1,9 +1,9 @@
 //! Builds the lists of a table: in parallel, equal ones once, and never beyond a budget.
 //!
-//! Every list is computed twice. The first pass keeps a fingerprint of each, which shows how many
-//! differ and how many bytes they take; only if these fit the budget is the table allocated, at its
-//! exact size, and the lists that differ are computed again, straight into their places. Beside the
-//! table itself a build takes at most 72 bytes per cell, and nothing that grows with the lists' length.
+//! Every list is computed twice. The first pass keeps a fingerprint of each list, which shows how many differ and how
+//! many bytes they take. Only if these fit the budget is the table allocated, at its exact size. Then the lists that
+//! differ are computed again, straight into their places. Besides the table itself a build takes at most 72 bytes per
+//! cell, and nothing that grows with the lists' length.
 
 use super::budget::OnProgress;
 use rayon::prelude::*;
@@ -80,7 +80,7 @@ pub struct Plan<'p> {
     pub cells: u64,
     /// The number beyond the largest candidate.
     pub end: u32,
-    /// Whether entries have keys.
+    /// True if entries have keys.
     pub keyed: bool,
     /// Fills the list of a cell.
     pub list: &'p (dyn Fn(u64, &mut List) + Sync),
@@ -93,8 +93,8 @@ pub struct Counted {
     order: Vec<Print>,
 }
 
-/// The fingerprint of a cell's list: lists with the same are taken to be equal, which two different
-/// ones are with a chance of 2^-128.
+/// The fingerprint of a cell's list. Lists with the same fingerprint count as equal; two different ones have it with a
+/// chance of 2^-128.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 struct Print {
     hash: [u64; 2],

@@ -151,7 +151,7 @@ impl Layout {
             sections,
             uses_leaves: holds_nodes,
             stack_depth: 0,
-            // Nodes are not primitives: the hierarchy's leaves are what they lead to.
+            // Nodes are not primitives: they lead to the hierarchy's leaves.
             longest_list: if holds_nodes {
                 0
             } else {

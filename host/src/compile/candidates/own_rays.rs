@@ -7,8 +7,8 @@ use gridel_core::{Scene, Settings};
 /// Pixels along the longer side of the picture whose rays are taken.
 const LONGER_SIDE: u32 = 160;
 
-/// The rays of a small picture of a scene, of all kinds. The scene must hold flagged pairs. Where
-/// there are too many to be kept, there are none.
+/// Returns the rays of a small picture of a scene, of all kinds. The scene must hold flagged pairs.
+/// Returns none where there are too many to keep.
 pub fn own_rays(scene: &Scene<'_>) -> Vec<ClassPoint> {
     let settings = Settings::of(scene);
     let [width, height] = [settings.width, settings.height].map(u32::from);

@@ -18,18 +18,18 @@ pub struct Classes {
     pub lists: Lists,
 }
 
-/// Lists as short as this are not worth a halving.
+/// Lists of at most this length are not halved.
 const SHORT: usize = 3;
 /// Classes with fewer of the scene's rays are not halved.
 const FEW_RAYS: usize = 4;
-/// Lists as long as this are no better than the hierarchy.
+/// Lists of at least this length are no better than the hierarchy.
 const LONG: usize = 64;
 /// Tests of primitives against classes, at the most: a few seconds. Where many things lie in one
 /// place, classes could be halved for ever and no list would become short.
 const MOST_TESTS: usize = 1 << 26;
 /// Halvings from a root to a leaf, at the most.
 const MOST_LEVELS: u32 = 60;
-/// Bytes of a leaf beside its entries: its share of nodes, its cell and its list's start.
+/// Bytes of a leaf besides its entries: its share of nodes, its cell and its list's start.
 const LEAF_BYTES: u64 = 8 + 3 + 3;
 
 /// A class that may be halved.
@@ -199,7 +199,7 @@ impl Classes {
     }
 }
 
-/// The dimension that is best halved, and the halves; `None` where none is worth it.
+/// Returns the dimension that is best halved, and the halves; `None` where no halving saves enough.
 fn best_halves(
     targets: &Targets<'_>,
     rays: &[ClassPoint],
@@ -234,7 +234,7 @@ fn best_halves(
     Some((dimension, halves))
 }
 
-/// Which of some targets the rays of a class can meet, and where on their way that may begin.
+/// Returns the targets that rays of a class can hit, and where along the rays that may begin.
 fn met(targets: &Targets<'_>, face: usize, range: &ClassRange, slots: &[u32]) -> Vec<(u32, f64)> {
     let (axis, up) = (face / 2, face % 2 == 1);
     let units = |q13: i64| q13 as f64 / 8192.0;

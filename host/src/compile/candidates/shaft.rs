@@ -2,11 +2,11 @@
 
 /// A box from `low + λ low_rate` to `high + λ high_rate`, for λ from 0 to `last`.
 ///
-/// The convex hull of two boxes is such a volume, with λ from one to the other; so is a bundle of
+/// The convex hull of two boxes is such a volume, with λ from one to the other. So is a bundle of
 /// rays from a box of origins in a range of slopes, with λ the length along their major axis.
-/// Another box meets the volume if it meets the box at one λ, and that is six linear inequalities
-/// in λ alone: an exact test. It is the shaft of E. Haines and J. Wallace ("Shaft Culling for
-/// Efficient Ray-Cast Radiosity", 1991), and also yields where along the shaft the box is met.
+/// Another box meets the volume if it meets the box at one λ. That is six linear inequalities in λ
+/// alone: an exact test. It is the shaft of E. Haines and J. Wallace ("Shaft Culling for Efficient
+/// Ray-Cast Radiosity", 1991), and also yields where along the shaft the box is met.
 #[derive(Clone, Copy, Debug)]
 pub struct Shaft {
     pub low: [f64; 3],
@@ -54,8 +54,9 @@ impl Shaft {
 
     /// The square of the least distance of a point from the volume between two λ.
     pub fn distance2(&self, point: [f64; 3], [from, to]: [f64; 2]) -> f64 {
-        // Outside of the box by `low(λ) - point` or `point - high(λ)`, if positive: linear pieces,
-        // so the square of the distance is a quadratic between the places where one sets in.
+        // A point is outside of the box by `low(λ) - point` or `point - high(λ)`, if positive.
+        // These are linear, so the square of the distance is quadratic between the λ where one of
+        // them becomes positive.
         let sides = [0, 1, 2].map(|k| {
             [
                 (self.low[k] - point[k], self.low_rate[k]),

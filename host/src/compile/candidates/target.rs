@@ -10,11 +10,11 @@ use gridel_core::Kind;
 use gridel_core::format::Leaf;
 use gridel_core::format::record::{Gridels, Pair, UnitBox};
 
-/// Units by which the surface of a primitive is widened where it is tested itself: kernels are off
-/// by less than a quarter.
+/// Units by which the surface of a primitive is widened where the primitive itself is tested. Kernels are off by less
+/// than a quarter.
 const SURFACE_SPARE: f64 = 2.0;
 
-/// A primitive in units, widened so that whatever a kernel accepts lies in it.
+/// A primitive in units, widened so that it contains every hit that a kernel accepts.
 #[derive(Clone, Copy, Debug)]
 pub struct Target {
     bounds: [[f64; 2]; 3],
@@ -52,7 +52,7 @@ impl Target {
         met.then_some(span)
     }
 
-    /// How many times its way a ray goes until it enters the primitive, if that is a sphere before it.
+    /// Returns the multiple of its way after which a ray enters the primitive, if that is a sphere before it.
     pub fn entered_by(&self, from: DVec3, way: DVec3) -> Option<f64> {
         let Surface::Sphere { center, radius2 } = self.surface else {
             return None;
@@ -226,7 +226,7 @@ fn surface(primitives: &Primitives, kind: Kind, index: usize) -> Surface {
 fn flat(normal: DVec3, point: DVec3) -> Surface {
     let normal = normal.normalize_or_zero();
     let middle = normal.dot(point);
-    // The rounding of what is computed here is far below the spare.
+    // The rounding of this computation is far below the spare.
     let spare = SURFACE_SPARE;
     Surface::Flat {
         normal: normal.to_array(),

@@ -82,7 +82,7 @@ fn pictures_lie_around_the_scene_as_they_are_documented() {
 
 #[test]
 fn light_of_pictures_is_kept() {
-    // Of small and large pictures, and of one bright pixel.
+    // Small and large pictures, and one bright pixel.
     for (width, height) in [(1, 1), (2, 1), (7, 5), (300, 150)] {
         let mut pixels = vec![[0.5_f32, 1.0, 2.0]; width * height];
         let bright = (height / 3) * width + width / 2;

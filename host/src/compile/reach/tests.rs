@@ -37,7 +37,7 @@ fn reach_holds_random_chains_at_all_times() {
         }
         smallest = smallest.min((taken[1] - taken[0]).max_element() / (high - low).max_element());
     }
-    // It is not much larger than what is taken, but for scales in a row.
+    // It is not much larger than the true region, except for scales in a row.
     assert!(smallest > 0.01, "{smallest}");
 }
 

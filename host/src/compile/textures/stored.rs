@@ -14,15 +14,15 @@ const COLORS: usize = 256;
 /// A color as roots of linear light, or a normal, and alpha.
 type Roots = [u8; 4];
 
-/// An image, and what it is used for.
+/// An image and its uses.
 #[derive(Debug)]
 pub(super) struct UsedImage {
     pub(super) image: Arc<Image>,
-    /// Whether it holds normals, and not colors.
+    /// True if it holds normals, and not colors.
     pub(super) has_normals: bool,
-    /// Whether its alpha is used.
+    /// True if its alpha is used.
     pub(super) has_alpha: bool,
-    /// Whether smaller copies follow it.
+    /// True if smaller copies follow it.
     pub(super) has_levels: bool,
 }
 

@@ -1,8 +1,8 @@
 //! Makes nodes of eight children out of a binary tree, at the least cost that its boxes allow.
 //!
-//! Dynamic programming, as Ylitie, Karras and Laine do it ("Efficient Incoherent Ray Traversal on
-//! GPUs Through Compressed Wide BVHs", 2017): the least cost of each subtree as a forest of one to
-//! seven trees is known from its children's, and a node takes a forest of eight.
+//! Dynamic programming by Ylitie, Karras and Laine ("Efficient Incoherent Ray Traversal on GPUs
+//! Through Compressed Wide BVHs", 2017). The least cost of each subtree as a forest of one to seven
+//! trees follows from its children's. A node takes a forest of eight.
 
 use super::tree::Tree;
 use gridel_core::format::cluster::LANES;
@@ -35,7 +35,7 @@ impl Forests {
                 continue;
             };
             let (left, right) = (forests.costs[left as usize], forests.costs[right as usize]);
-            // The best way to share out 2 to 8 trees.
+            // The best distribution of 2 to 8 trees.
             let shared: [(f64, u8); FORESTS] = std::array::from_fn(|index| {
                 let trees = index + 2;
                 (1..trees)

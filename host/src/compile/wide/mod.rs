@@ -1,10 +1,10 @@
 //! Builds the eight-wide hierarchy: clusters first, then a tree over them.
 //!
-//! Clusters are found in the mesh and among the spheres as they are, not in the leaves of a tree:
-//! so strips are long and packs full, and the tree is built over a fifth of the objects. The tree
-//! is swept by the surface area heuristic on all three axes, improved by reinsertion, and collapsed
-//! to eight children per node by dynamic programming. All of it gives the same bytes with any number
-//! of threads. Memory is linear: some 100 bytes per triangle.
+//! Clusters are found in the mesh and among the spheres directly, not in the leaves of a tree. So
+//! strips are long and packs full, and the tree is built over a fifth of the objects. The tree is
+//! swept by the surface area heuristic on all three axes, and improved by reinsertion. Dynamic
+//! programming then collapses it to eight children per node. All of it gives the same bytes with
+//! any number of threads. Memory is linear: some 100 bytes per triangle.
 
 mod collapse;
 mod hull;
@@ -77,8 +77,8 @@ enum Item {
 }
 
 impl Wide {
-    /// Builds the hierarchy. Where other structures share the slots of what is in no cluster, those
-    /// are `shared`.
+    /// Builds the hierarchy. `shared` are the slots of primitives that are in no cluster, where
+    /// other structures share them.
     ///
     /// # Errors
     /// If the hierarchy is too deep for any stack.
@@ -341,8 +341,9 @@ impl Wide {
     }
 }
 
-/// The numbers of the radii of every pack, four bits each, and the windows that they count in: one
-/// for all packs if that holds all radii, else one for each pack, which overlaps the next.
+/// Returns the numbers of the radii of every pack, four bits each, and the windows that they index.
+/// There is one window for all packs if it holds all radii. Otherwise each pack has its own, which
+/// overlaps the next.
 fn windows(packs: &[[i32; LANES]]) -> (Vec<[u8; LANES / 2]>, Vec<i32>) {
     let mut distinct: Vec<i32> = packs.iter().flatten().copied().collect();
     distinct.sort_unstable();

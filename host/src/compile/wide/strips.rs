@@ -1,10 +1,10 @@
 //! Finds generalised strips in a mesh: up to 6 triangles on 8 vertices, each on three in a row.
 //!
-//! Greedy: the triangle with the fewest neighbors that are still free goes first, along that path
-//! through it that zigzags over free triangles whose box is smallest for the square of their number:
-//! rays are spared one strip in twelve that they would test if the longest path were always taken, and
-//! the bytes come back where short strips are joined, the two that make the smallest box before
-//! others. Places between them hold no triangle.
+//! Greedy: the triangle with the fewest free neighbors goes first, along a path through it that zigzags over free
+//! triangles. Among these paths the builder chooses the one whose box is smallest for the square of its number of
+//! triangles. This spares rays one strip in twelve that they would test if it always chose the longest path. The bytes
+//! come back where short strips are joined, first the two that make the smallest box. Places between them hold no
+//! triangle.
 
 use super::hull::Hull;
 use gridel_core::format::cluster::{LANES, STRIP_TRIANGLES, StripMembers};
@@ -23,10 +23,10 @@ pub struct Strip {
 
 /// No triangle, as a neighbor.
 const NOBODY: u32 = u32::MAX;
-/// Strips that are looked at, in the order of their places in space, to join one with.
+/// Strips that are considered for a join with one, in the order of their places in space.
 const REACH: usize = 48;
-/// The most that a joined box may cost, the sum of the two being 1: there is one strip less, and a node has one
-/// child less. More than a ray's time alone would allow, for their bytes.
+/// The highest cost of a joined box, the sum of the two being 1. A join saves one strip, and one child of a node. The
+/// limit is higher than a ray's time alone would allow, because of these bytes.
 const JOINED_COST: f64 = 3.0;
 
 /// Finds strips that hold every triangle once.
@@ -111,7 +111,7 @@ fn neighbors(vertices: usize, triangles: &[[u32; 3]]) -> Vec<[u32; 3]> {
     neighbors
 }
 
-/// A path through free triangles, each of which shares an edge with the one before.
+/// A path through free triangles. Each shares an edge with the one before.
 #[derive(Clone, Copy)]
 struct Path {
     vertices: [u32; LANES],
@@ -127,8 +127,7 @@ impl Mesh<'_> {
             let free = neighbors.filter(|&&it| it != NOBODY && free[it as usize]);
             free.count()
         };
-        // By how many neighbors are free; what was left last goes on first. Entries may be out of
-        // date.
+        // By the number of free neighbors; the last entry comes first. Entries may be out of date.
         let mut waiting: [Vec<u32>; 4] = Default::default();
         for triangle in (0..self.triangles.len() as u32).rev() {
             waiting[degree(triangle, &free)].push(triangle);
@@ -162,7 +161,7 @@ impl Mesh<'_> {
     fn best_through(&self, triangle: u32, free: &[bool]) -> Strip {
         let [a, b, c] = self.triangles[triangle as usize];
         let mut best: Option<(usize, i64, Path, Hull)> = None;
-        // The same zigzag backwards is another of the six.
+        // A zigzag backwards is another of the six.
         for vertices in [[a, b, c], [b, c, a], [c, a, b]] {
             let ahead = self.zigzag(triangle, vertices, free);
             let [first, second, third] = vertices;
@@ -191,7 +190,7 @@ impl Mesh<'_> {
         }
     }
 
-    /// Goes on from a triangle over the edge of its last two vertices, as far as it is free.
+    /// Continues from a triangle over the edge of its last two vertices, as far as triangles are free.
     fn zigzag(&self, start: u32, corners: [u32; 3], free: &[bool]) -> Path {
         let mut path = Path {
             vertices: [0; LANES],
@@ -233,8 +232,8 @@ impl Mesh<'_> {
 }
 
 impl Path {
-    /// The path that comes `back` triangles from behind a start and goes ahead as far as it fits;
-    /// `None` if it comes over a triangle twice.
+    /// Returns the path that starts `back` triangles behind a start and continues ahead as far as it fits. `None` if it
+    /// crosses a triangle twice.
     fn through(behind: &Path, back: usize, ahead: &Path) -> Option<Path> {
         let count = (back + ahead.count).min(STRIP_TRIANGLES);
         let mut path = *ahead;
@@ -286,8 +285,8 @@ fn join(strips: Vec<Strip>) -> Vec<Strip> {
 }
 
 impl Strip {
-    /// Both strips as one, if it has room for them: end to end, over a vertex or an edge that ends
-    /// of theirs share.
+    /// Returns both strips as one, if it has room for them. They join end to end, over a vertex or an edge that their
+    /// ends share.
     fn and(&self, other: &Strip) -> Option<Strip> {
         let turns = [(false, false), (false, true), (true, false), (true, true)];
         let joints = turns.into_iter().map(|(turn, turn_other)| {

@@ -2,8 +2,8 @@
 //! reinsertion.
 //!
 //! Reinsertion is that of Meister and Bittner ("Parallel Reinsertion for Bounding Volume Hierarchy
-//! Optimization", 2018), one node at a time: a node is taken out and put where the sum of areas is
-//! least, found by branch and bound.
+//! Optimization", 2018), one node at a time. A node is removed and inserted where the sum of areas
+//! is least, found by branch and bound.
 
 use super::hull::Hull;
 use gridel_core::format::record::UnitBox;
@@ -34,7 +34,7 @@ struct Inner {
 }
 
 impl Tree {
-    /// A tree over items, at most one of which may be missing.
+    /// Builds a tree over items, at most one of which may be missing.
     pub fn build(items: &[Hull], balanced: bool) -> Option<Self> {
         let first = *items.first()?;
         let places = [0, 1, 2].map(|axis| places(items, axis));
@@ -102,7 +102,7 @@ impl Tree {
         order
     }
 
-    /// Takes every node out once, large ones first, and puts it where it costs least. Returns
+    /// Takes every node out once, large ones first, and inserts it where it costs least. Returns
     /// whether any was moved.
     pub fn reinsert(&mut self) -> bool {
         let mut nodes: Vec<u32> = (0..self.bounds.len() as u32).collect();
@@ -133,14 +133,15 @@ impl Tree {
         Some(if left == node { right } else { left })
     }
 
-    /// The node beside which another would cost least, if that is better than where it is.
+    /// Returns the node next to which another one would cost least, if that is better than its
+    /// current place.
     fn best_place(&self, node: u32, stack: &mut Vec<(i64, u32)>) -> Option<u32> {
         let own = self.area(node);
         let parent = self.parent(node)?;
         self.parent(parent)?;
         let sibling = self.sibling(node)?;
         let mut best = (0, None);
-        // What is saved up to here by taking the node out.
+        // The saving up to here of taking the node out.
         let mut saved = self.area(parent);
         let hull = self.hull(node);
         let mut without = self.hull(sibling);
@@ -174,7 +175,7 @@ impl Tree {
         best.1.filter(|&place| place != sibling && place != parent)
     }
 
-    /// Moves a node beside another one.
+    /// Moves a node next to another one.
     fn put(&mut self, node: u32, to: u32) {
         let (Some(parent), Some(sibling)) = (self.parent(node), self.sibling(node)) else {
             return;
@@ -194,7 +195,7 @@ impl Tree {
         self.children[parent as usize - self.items] = [to, node];
         self.parents[to as usize] = parent;
         self.parents[node as usize] = parent;
-        // Whatever its box was elsewhere, those above have not seen it here.
+        // The nodes above do not include its box here, whatever its box was elsewhere.
         self.bounds[parent as usize] = self.hull(to).union(&self.hull(node));
         self.refit(above);
     }
@@ -243,7 +244,7 @@ struct Builder<'b> {
     items: &'b [Hull],
     /// Where each item comes along each axis.
     places: &'b [Vec<u32>; 3],
-    /// Whether halves are of equal count, whatever it costs, so that the tree is not deep.
+    /// True if halves are of equal count at any cost, so that the tree is not deep.
     balanced: bool,
 }
 

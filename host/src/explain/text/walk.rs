@@ -1,4 +1,4 @@
-//! The way of a ray through a structure.
+//! The path of a ray through a structure.
 
 use super::Shown;
 use super::words::{precise, vector};

@@ -20,7 +20,7 @@ pub(super) fn vector(vector: [f64; 3], number: impl Fn(f64) -> String) -> String
     format!("({x}, {y}, {z})")
 }
 
-/// A number with all digits that count where it is known within an error, and two more.
+/// Writes a number with all digits that are significant for a given error, and two more.
 pub(super) fn precise(number: f64, error: f64) -> String {
     let digits = (number.abs().log10().floor() - error.log10().floor()).clamp(0.0, 14.0);
     if !digits.is_finite() || !(1e-5..1e15).contains(&number.abs()) {

@@ -1,4 +1,4 @@
-//! A walk's way into an instance and out of it.
+//! A walk's path into an instance and out of it.
 
 use super::{InUnits, Inside, Step, Verdict, Walk, instance_name};
 use crate::trace::Frame;
@@ -27,7 +27,7 @@ impl Walk {
             return;
         };
         let outer = self.ray;
-        // The hierarchy above several instances says so before.
+        // The hierarchy above several instances has reported it before.
         let entered = instance_name(instance.number);
         if matches!(self.steps.last(), Some(Step::Opened { place }) if *place == entered) {
             self.steps.pop();

@@ -33,7 +33,7 @@ impl Account {
         self.items.iter().filter_map(|item| item.bytes).sum()
     }
 
-    /// Bytes that are missing at the least, 0 where what is known fits.
+    /// Returns the least number of bytes that are missing; 0 where the known figures fit.
     pub fn missing(&self) -> u64 {
         self.at_least().saturating_sub(self.available)
     }

@@ -75,7 +75,7 @@ impl MemoryReport {
         ))
     }
 
-    /// Returns advice that saves flash, the blob apart.
+    /// Returns advice that saves flash other than the blob's.
     pub fn flash_advice(&self, scene: &Scene<'_>) -> Vec<String> {
         let mut steps = Vec::new();
         let code = self.fast.code.zip(self.small.code);

@@ -5,7 +5,7 @@ use super::account::Account;
 use super::programs::{Footprint, Known, Profile, Programs, everything};
 use gridel_core::{Format, Structure};
 
-/// A program that was built for every board, beside that of all parts.
+/// The parts of a program that was built for every board, besides that of all parts.
 pub const FEW: [&str; 3] = ["triangle", "sphere", "shadow"];
 
 /// How items of code begin.
@@ -13,11 +13,11 @@ pub const CODE: &str = "code: ";
 
 pub const PROFILES: [Profile; 2] = [Profile::Fast, Profile::Small];
 
-/// The scene's own sizes (depth of the stack, width, waiting rays) are constants of its program, which add
-/// up to 0.8 % to code that was measured with others: this part is allowed for.
+/// The scene's own sizes (depth of the stack, width, waiting rays) are constants of its program. They add up to 0.8 %
+/// to code that was measured with others, so the estimate adds this part.
 const OWN_SIZES: u64 = 100;
 
-/// The program of a scene on a board, by what is known of programs.
+/// The program of a scene on a board, estimated from measured programs.
 pub struct ProgramEstimate<'p> {
     pub programs: &'p Programs,
     pub here: (&'static Board, Format),
@@ -29,7 +29,7 @@ pub struct ProgramEstimate<'p> {
 
 impl ProgramEstimate<'_> {
     pub fn code(&self, profile: Profile) -> Option<Known> {
-        // What a structure adds to one program it adds to others.
+        // A structure adds the same to one program as to others.
         let code = self.figure(
             profile,
             |it| it.code,
@@ -49,8 +49,8 @@ impl ProgramEstimate<'_> {
         )
     }
 
-    /// A figure of the program; `through` makes it one for another structure, by the figures of all
-    /// parts through that and through dual-split nodes.
+    /// Returns a figure of the program. `through` converts it to another structure, by the figures of all parts through
+    /// that one and through dual-split nodes.
     fn figure(
         &self,
         profile: Profile,

@@ -1,12 +1,11 @@
 //! The cost of a picture on boards, estimated from recorded figures.
 //!
-//! Two pictures are recorded in `fixtures/recorded/board.json`, instruction by instruction: the quick
-//! scene, of simple solids, and the glass chessboard, of cones and cylinders in glass. Divided by
-//! their rays they give the least and the most that a ray, with its shading, is known to take. A
-//! picture's estimate is its rays times either; where a scene lies in between, its primitives
-//! decide: on boards a test of a cone takes several times as long as one of a box. Meshes are nearer to
-//! the least: a ray at suzanne takes 1,110 instructions in `f32` and 1,385 to 1,524 in `fixed`, not
-//! shaded. `tests/tests/accuracy.rs` holds these numbers to the recorded ones.
+//! Two pictures are recorded in `fixtures/recorded/board.json`, instruction by instruction. They are the quick scene,
+//! of simple solids, and the glass chessboard, of cones and cylinders in glass. Their instructions divided by their
+//! rays are the least and the most that a ray, with its shading, is known to take. The estimate of a picture is its
+//! rays times each of these. Its primitives decide where it lies in between: on boards a test of a cone takes several
+//! times as long as one of a box. Meshes are nearer to the least: a ray at suzanne takes 1,110 instructions in `f32`
+//! and 1,385 to 1,524 in `fixed`, not shaded. `tests/tests/accuracy.rs` compares these numbers with the recorded ones.
 
 use gridel_core::Format;
 
@@ -44,8 +43,8 @@ pub const PICTURE_COSTS: [PictureCost; 3] = [
     },
 ];
 
-/// Instructions per pixel, the least and the most, of a picture with so many rays per pixel on a board,
-/// which goes by its own name or its core's; `None` where the board was not measured in the format.
+/// Returns the least and the most instructions per pixel of a picture with so many rays per pixel on a board. `board`
+/// is its own name or its core's. `None` where the board was not measured in the format.
 pub fn instructions(board: &str, format: Format, rays_per_pixel: f64) -> Option<[f64; 2]> {
     let is_it =
         |cost: &&PictureCost| [cost.core, cost.machine].contains(&board) && cost.format == format;

@@ -1,10 +1,9 @@
-//! The memory report: what a scene takes on a board, in flash and in RAM, and what remains.
+//! The memory report: the flash and RAM of a scene on a board, by part, and the rest.
 //!
-//! Sizes of the blob and of working memory are exact. Code and call stack are those of programs that the
-//! project's tests built for boards ([`Programs`]), in two profiles: a fast one, and one with the feature
-//! `small`, both linked with `lto = "fat"` and `codegen-units = 1`. Code is that of the fast program; the
-//! call stack is the larger of both. A program that was not built is bounded by the smallest with code
-//! for more, and the report says so.
+//! Sizes of the blob and of working memory are exact. Code and call stack are those of programs that the project's
+//! tests built for boards ([`Programs`]). They are built in two profiles: a fast one, and one with the feature `small`,
+//! both linked with `lto = "fat"` and `codegen-units = 1`. Code is that of the fast program; the call stack is the
+//! larger of both. A program that was not built is bounded by the smallest with code for more, and the report says so.
 //!
 //! On one board of each kind of core many programs were built. For other boards, and for structures other
 //! than dual-split nodes, the figures are scaled by programs that were built for both.
@@ -44,7 +43,7 @@ pub struct MemoryReport {
     pub measured_on: String,
     /// The emulated board whose core is of the same kind and whose figures these are, if it is not the board itself.
     pub kind: Option<&'static str>,
-    /// Whether the scene's own program was built and measured, in both profiles.
+    /// True if the scene's own program was built and measured, in both profiles.
     pub measured: bool,
     pub flash: Account,
     pub ram: Account,
@@ -54,14 +53,14 @@ pub struct MemoryReport {
     pub small: Sizes,
 }
 
-/// Bytes of a program; `None` for what is not known.
+/// Bytes of a program; `None` for unknown figures.
 #[derive(Clone, Copy, Debug, Serialize)]
 pub struct Sizes {
     pub code: Option<u64>,
     pub call_stack: Option<u64>,
 }
 
-/// Whether a scene fits.
+/// The verdict whether a scene fits.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Fit {
     Fits,
@@ -74,7 +73,7 @@ pub enum Fit {
 /// The item of places for waiting rays.
 pub const WORK_LIST: &str = "work list";
 
-/// A structure of which nothing was measured on boards.
+/// A structure that was not measured on boards.
 #[derive(Clone, Copy, Debug)]
 pub struct NotMeasured(pub Structure);
 
@@ -82,11 +81,11 @@ impl MemoryReport {
     /// The structures that were measured: those that firmware can prevalidate.
     pub const STRUCTURES: [Structure; 4] = Prevalidated::STRUCTURES;
 
-    /// The report of a scene that `blob` holds, in one of the board's number formats, through the
-    /// best structure that the blob holds.
+    /// Returns the report of a scene in `blob`, in one of the board's number formats, through the best structure of the
+    /// blob.
     ///
     /// # Errors
-    /// If that is none of [`Self::STRUCTURES`].
+    /// If the structure is not one of [`Self::STRUCTURES`].
     ///
     /// ```
     /// # use gridel_host::compile::{Options, compile};
@@ -405,7 +404,7 @@ mod tests {
         }
     }
 
-    /// The known part can be too much by itself.
+    /// The known part can exceed the board alone.
     #[test]
     fn unknown_figures_do_not_hide_what_is_short() {
         let report = report(&Programs::default(), 100);

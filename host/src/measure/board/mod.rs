@@ -1,5 +1,4 @@
-//! Boards that scenes are built for, as data: what a program has there, how it computes best, and what it
-//! costs.
+//! Boards that scenes are built for, as data: the memory for a program, the best number format, and the costs.
 //!
 //! | file | what it holds |
 //! |---|---|
@@ -33,8 +32,8 @@ pub struct Board {
     pub name: &'static str,
     /// The name of its processor core.
     pub core: &'static str,
-    /// The board that QEMU plays, on whose core programs were built and measured: the board itself, or one with a core
-    /// of the same kind.
+    /// The board that QEMU emulates, on whose core programs were built and measured: the board itself, or one with a
+    /// core of the same kind.
     pub measured: &'static str,
     /// The Rust target of its core.
     pub target: &'static str,
@@ -51,9 +50,9 @@ const MIB: u64 = 1 << 20;
 
 /// All boards: those that QEMU plays, the smallest first, then microcontrollers and their usual modules.
 ///
-/// Flash of an RP2040, an RP2350 and an ESP32 is a chip of its own: it is that of a Raspberry Pi Pico, a Pico 2, and the
-/// smallest usual module. RAM is what one range of addresses has: of an STM32H743 the AXI SRAM, of an ESP32-C3 what its
-/// cache leaves. A Wi-Fi or Bluetooth stack takes RAM of its own.
+/// Flash of an RP2040, an RP2350 and an ESP32 is a separate chip. Its size is that of a Raspberry Pi Pico, a Pico 2,
+/// and the smallest usual module. RAM is the size of one address range: the AXI SRAM of an STM32H743, and what the
+/// cache of an ESP32-C3 leaves. A Wi-Fi or Bluetooth stack takes RAM of its own.
 pub const BOARDS: [Board; 15] = [
     Board {
         name: "stm32vldiscovery",
@@ -200,7 +199,7 @@ impl Board {
             .find(|board| board.name.eq_ignore_ascii_case(name))
     }
 
-    /// Whether QEMU plays this board.
+    /// Returns whether QEMU emulates this board.
     pub fn is_emulated(&self) -> bool {
         self.name == self.measured
     }
@@ -224,7 +223,7 @@ impl Board {
         }
     }
 
-    /// The number format to use where none is asked for.
+    /// Returns the default number format.
     pub fn format(&self) -> Format {
         self.formats[0]
     }

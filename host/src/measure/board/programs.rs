@@ -1,9 +1,9 @@
-//! Code and call stack of programs that were built for boards: by board, number format and structure,
-//! and by the shapes, wider forms of storage and effects that each has code for.
+//! Code and call stack of programs that were built for boards. The keys are board, number format and structure, and the
+//! shapes, wider forms of storage and effects that a program has code for.
 //!
-//! `programs.json` is written by the board tests. Code is not a sum: what a part takes depends on what
-//! the compiler makes of the rest, by some percent of the program. A program that was built is therefore
-//! reported exactly; one that was not is bounded by the smallest that holds all of it and more.
+//! The board tests write `programs.json`. Code is not a sum: the size of a part depends on the compiler's work on the
+//! rest, by some percent of the program. So a program that was built is reported exactly. One that was not is bounded
+//! by the smallest that holds all of it and more.
 
 use super::Board;
 use gridel_core::{Effects, Format, Kind, Structure};
@@ -73,7 +73,7 @@ pub type ProgramKey<'p> = (&'p Board, Format, Structure);
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Known {
     pub bytes: u64,
-    /// Whether that very program was built. If not, it takes at most these bytes.
+    /// True if that very program was built. If not, it takes at most these bytes.
     pub measured: bool,
 }
 
@@ -88,7 +88,7 @@ impl Programs {
         self.at(program_key)?.get(&key(parts))
     }
 
-    /// Adds a program, in place of what was known of it.
+    /// Adds a program, and replaces earlier figures.
     pub fn insert(
         &mut self,
         program_key: ProgramKey<'_>,
@@ -139,8 +139,8 @@ impl Programs {
         let holds = |more: &[&str], less: &[&str]| less.iter().all(|part| more.contains(part));
         let more = known.iter().filter(|(all, _)| holds(all, parts));
         let least = more.map(|&(_, bytes)| bytes).min()?;
-        // More code for the compiler to look through sometimes makes less of it: as much as it does
-        // among the programs that were built may be missing.
+        // The compiler sometimes makes less code of a program with more parts. So the bound is raised by the largest
+        // such excess among the programs that were built.
         let pairs = known
             .iter()
             .flat_map(|less| known.iter().map(move |more| (less, more)));
@@ -161,8 +161,8 @@ impl Programs {
         footprints.flatten().filter_map(|it| it.part_view).max()
     }
 
-    /// Returns the median of what a part adds to programs that were built with and without it; `None` where
-    /// there is no such pair.
+    /// Returns the median of the bytes that a part adds, over programs that were built with and without it. `None`
+    /// where there is no such pair.
     pub fn share(&self, program_key: ProgramKey<'_>, part: &str, profile: Profile) -> Option<u64> {
         let built = self.at(program_key)?;
         let code = |program: &Program| program.footprint(profile).map(|it| it.code);

@@ -100,7 +100,7 @@ fn bits_depend_on_neither_structure_nor_rows() {
     }
 }
 
-/// The strongest lights that a scene file may have: `fixed` holds what a ray brings up to 2,048, other formats all.
+/// The strongest lights that a scene file may have: `fixed` limits the light of a ray to 2,048, other formats do not.
 #[test]
 fn strongest_lights_are_limited_in_fixed_alone() {
     let light = "[[light]]\nkind = 'directional'\ndirection = [0, 0, -1]\ncolor = 2047\n";
@@ -121,7 +121,7 @@ fn strongest_lights_are_limited_in_fixed_alone() {
     }
 }
 
-/// A scene of display values shows what it states, and its linear picture is what displays of sRGB make of it.
+/// A scene of display values shows what it states. Its linear picture is decoded from sRGB.
 #[test]
 fn display_values_are_decoded() {
     let nff = "b 0.5 0.25 1\nv\nfrom 0 0 5\nat 0 0 0\nup 0 1 0\nangle 45\nhither 1\nresolution 48 32\n\

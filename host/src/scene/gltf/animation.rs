@@ -1,7 +1,7 @@
 //! The animations of a glTF file: tracks of its camera and its lights.
 //!
-//! A node's own translation and rotation keep their keys. Where nodes above it move as well, or the way is not one that
-//! tracks have, it is sampled [`RATE`] times per second.
+//! A node's own translation and rotation keep their keys. Where nodes above it move as well, or tracks do not have such
+//! an interpolation, they are sampled [`RATE`] times per second.
 
 use super::buffers::Buffers;
 use super::place::transform;
@@ -14,10 +14,10 @@ use gltf::{Animation, Document};
 use std::collections::HashMap;
 use std::path::Path;
 
-/// Samples per second of a way that has no keys of its own.
+/// Samples per second of a motion that has no keys of its own.
 const RATE: f64 = 60.0;
 
-/// Most samples of a way; longer ones are sampled less often.
+/// Most samples of a motion; longer ones are sampled less often.
 const MOST_SAMPLES: f64 = 65_536.0;
 
 /// Most samples of all ways of a file.
@@ -33,7 +33,7 @@ pub(super) struct Way {
     pub(super) keys: Vec<Key>,
 }
 
-/// What of a node moves.
+/// The moving properties of a node.
 #[derive(Clone, Debug, Default)]
 struct Moves {
     translation: Option<Way>,
@@ -48,19 +48,19 @@ pub(super) struct Motion {
     nodes: HashMap<usize, Moves>,
     /// The node above each node.
     parents: Vec<Option<usize>>,
-    /// Where each node stands in the one above, at rest.
+    /// The transform of each node in the one above, at rest.
     rest: Vec<DMat4>,
     /// How many samples were taken of all ways.
     pub(super) samples: usize,
 }
 
-/// Whether the animation was chosen by the user, and what it is called.
+/// The chosen animation: its name, and whether the user chose it.
 pub(super) struct Chosen<'d> {
     pub(super) animation: Animation<'d>,
     pub(super) by_name: bool,
 }
 
-/// The animation that is asked for, or the first.
+/// Returns the requested animation, or the first.
 pub(super) fn choose<'d>(
     path: &Path,
     document: &'d Document,
@@ -144,17 +144,17 @@ impl Motion {
         Ok(motion)
     }
 
-    /// Whether nothing moves.
+    /// Returns whether nothing moves.
     pub(super) fn is_empty(&self) -> bool {
         self.nodes.is_empty()
     }
 
-    /// Whether the weights of a node's morph targets change.
+    /// Returns whether the weights of a node's morph targets change.
     pub(super) fn has_weights(&self, node: usize) -> bool {
         self.nodes.get(&node).is_some_and(|moves| moves.weights)
     }
 
-    /// Whether a node, or one above it, moves.
+    /// Returns whether a node, or one above it, moves.
     pub(super) fn moves(&self, node: usize) -> bool {
         self.chain(node).any(|it| self.moves_itself(it))
     }
@@ -183,7 +183,7 @@ impl Motion {
         self.parents[node]
     }
 
-    /// Where a node stands in the one above it.
+    /// Returns the transform of a node in the one above it.
     fn local(&self, node: usize, seconds: f64) -> DMat4 {
         let rest = self.rest[node];
         let Some(moves) = self.nodes.get(&node) else {
@@ -199,7 +199,7 @@ impl Motion {
         )
     }
 
-    /// Where a node stands in the scene.
+    /// Returns the transform of a node in the scene.
     fn world(&self, node: usize, seconds: f64) -> DMat4 {
         let locals = self.chain(node).map(|it| self.local(it, seconds));
         locals.fold(DMat4::IDENTITY, |world, local| local * world)
@@ -276,7 +276,7 @@ impl Motion {
         ])
     }
 
-    /// Place and rotation of a node of which nothing above moves, with its own keys.
+    /// Returns position and rotation of a node with its own keys, if no node above it moves.
     fn own_ways(&self, node: usize) -> Option<[Way; 2]> {
         if self.chain(node).skip(1).any(|it| self.moves_itself(it)) {
             return None;
@@ -360,7 +360,7 @@ fn first_time(moves: &Moves) -> f64 {
     keys.map(|key| key.seconds).fold(f64::INFINITY, f64::min)
 }
 
-/// How a camera is turned that looks along -z of a node, with y upwards as far as can be.
+/// Returns the rotation of a camera that looks along -z of a node, with y upwards as far as possible.
 fn turned(world: &DMat4) -> DQuat {
     let back = world.transform_vector3(DVec3::Z).normalize_or(DVec3::Z);
     let right = world.transform_vector3(DVec3::Y).cross(back);
@@ -368,9 +368,9 @@ fn turned(world: &DMat4) -> DQuat {
     DQuat::from_mat3(&DMat3::from_cols(right, back.cross(right), back))
 }
 
-/// The rotation of a matrix that turns and scales alike in all directions; `None` for another.
+/// Returns the rotation of a matrix that scales equally in all directions; `None` for another.
 fn rotation_of(matrix: DMat3) -> Option<DQuat> {
-    /// Of single precision.
+    /// Tolerance of single precision.
     const TOLERANCE: f64 = 1e-6;
     let scale = matrix.determinant().cbrt();
     let turns = matrix * (1.0 / scale);
@@ -380,7 +380,7 @@ fn rotation_of(matrix: DMat3) -> Option<DQuat> {
 }
 
 impl Way {
-    /// The way with each value, and each change of it, mapped linearly.
+    /// Returns the keys with each value, and each change of it, mapped linearly.
     pub(super) fn map(&self, map: impl Fn([f64; 4]) -> [f64; 4]) -> Self {
         let key = |key: &Key| Key {
             seconds: key.seconds,
@@ -394,7 +394,7 @@ impl Way {
         }
     }
 
-    /// The way as seen from a place at rest, whose values and changes are mapped by `linear`.
+    /// Returns the keys relative to a place at rest, with values and changes mapped by `linear`.
     pub(super) fn beside(&self, rest: DVec4, linear: DMat3) -> Self {
         let vector = |[x, y, z, _]: [f64; 4]| {
             let [x, y, z] = (linear * DVec3::new(x, y, z)).to_array();
@@ -408,7 +408,7 @@ impl Way {
         way
     }
 
-    /// The way of places, seen from the scene.
+    /// Returns the positions in the scene's coordinates.
     fn placed(&self, above: &DAffine3) -> Self {
         let vector = |[x, y, z, _]: [f64; 4]| {
             let [x, y, z] = above.transform_vector3(DVec3::new(x, y, z)).to_array();

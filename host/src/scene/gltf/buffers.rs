@@ -1,6 +1,6 @@
 //! The binary side of a glTF file: buffers, and what accessors read from them.
 //!
-//! The crate's own readers trust offsets, counts and types; here nothing is read that is not there.
+//! The crate's own readers trust offsets, counts and types; here every read is checked.
 
 use crate::scene::SceneError;
 use crate::scene::access::Access;
@@ -14,7 +14,7 @@ use std::collections::HashMap;
 use std::path::Path;
 use std::rc::Rc;
 
-/// Most vertices and triangles of a file, each instance counted: what a blob can hold.
+/// Most vertices and triangles of a file, each instance counted. It is the limit of a blob.
 pub(super) const MOST: usize = 1 << 24;
 
 /// Reads a component of an element from its bytes.
@@ -92,7 +92,7 @@ impl<'a> Buffers<'a> {
         }
     }
 
-    /// Reads the times or values of an animation: floats, or for rotations integers that stand for -1 to 1 or 0 to 1.
+    /// Reads the times or values of an animation: floats, or for rotations integers that mean -1 to 1 or 0 to 1.
     pub(super) fn numbers<const N: usize>(
         &self,
         accessor: &Accessor<'_>,
@@ -134,7 +134,7 @@ impl<'a> Buffers<'a> {
         bytes.get(view.offset()..)?.get(..view.length())
     }
 
-    /// Reads linear colors; alpha is 1 where there is none.
+    /// Reads linear colors; alpha is 1 where it is missing.
     pub(super) fn colors(&self, accessor: &Accessor<'_>) -> Result<Vec<[f64; 4]>, SceneError> {
         let count = match accessor.dimensions() {
             Dimensions::Vec3 => 3,
@@ -159,7 +159,7 @@ impl<'a> Buffers<'a> {
         Ok(found.into_iter().map(|it| it.map(finite)).collect())
     }
 
-    /// Reads a component of colors or coordinates: a float, or an integer that stands for 0 to 1.
+    /// Reads a component of colors or coordinates: a float, or an integer that means 0 to 1.
     fn channel(
         &self,
         accessor: &Accessor<'_>,
@@ -275,7 +275,7 @@ impl<'a> Buffers<'a> {
                     .get(offset..)
             })
             .unwrap_or(&[]);
-        // What pads an element may be missing behind the last.
+        // The padding of an element may be missing behind the last.
         let before_last = stride.checked_mul(count.saturating_sub(1));
         let needed = before_last.and_then(|bytes| bytes.checked_add(size));
         if count > 0 && (stride < size || needed.is_none_or(|needed| needed > bytes.len())) {

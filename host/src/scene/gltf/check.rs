@@ -10,7 +10,7 @@ use std::collections::HashMap;
 const MOST_ELEMENTS: usize = 16 * MOST;
 
 impl Importer<'_> {
-    /// Proves what holds of the whole file, whether it is drawn or not: nodes make trees, and meshes
+    /// Validates the whole file, also the parts that are not drawn: nodes form trees, and meshes
     /// use vertices that they have.
     pub(super) fn check(&mut self, document: &Document) -> Result<(), SceneError> {
         let count = document.nodes().len();
@@ -41,7 +41,7 @@ impl Importer<'_> {
                 "give every node one parent at most, and no circle",
             ));
         }
-        // Accessors may share their bytes, so that a short file can ask for any amount of work.
+        // Accessors may share their bytes, so that a short file can cause any amount of work.
         let stored = |it: &Accessor<'_>| it.view().is_some() || it.sparse().is_some();
         let elements = document
             .accessors()

@@ -22,8 +22,8 @@ pub(super) struct Container<'b> {
 /// Splits a file.
 ///
 /// # Errors
-/// If the header or a chunk of a binary file is not as long as it says, or of another kind or
-/// version, or if the text is in UTF-16.
+/// If the header or a chunk of a binary file has the wrong length, kind or version, or if the text
+/// is in UTF-16.
 pub(super) fn split<'b>(
     path: &Path,
     bytes: &'b [u8],

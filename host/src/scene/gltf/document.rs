@@ -15,8 +15,8 @@ const AGAIN: &str = "export the file again, as glTF 2.0";
 /// Reads the document, the buffer that the file itself holds, and how its normal maps lie.
 ///
 /// # Errors
-/// If the container or the JSON is broken, the version is not 2, an extension that is required is
-/// not understood, or an index leads nowhere.
+/// If the container or the JSON is broken, or the version is not 2. Also if a required extension is
+/// not supported, or an index is out of range.
 pub(super) fn read(
     path: &Path,
     bytes: &[u8],
@@ -137,8 +137,8 @@ fn check_indices(path: &Path, root: &Root) -> Result<(), SceneError> {
     Ok(())
 }
 
-/// Proves the rest, but for what the crate asks for and the format does not: a texture may name no
-/// image, and an accessor without a view holds zeros.
+/// Validates the rest. Allows two things that the crate rejects and the format does not. They are a
+/// texture without an image, and an accessor without a view, which holds zeros.
 fn validate(path: &Path, root: &Root) -> Result<(), SceneError> {
     let mut first = None;
     root.validate(root, gltf::json::Path::new, &mut |place, error| {

@@ -65,7 +65,7 @@ impl Importer<'_> {
         Ok(part)
     }
 
-    /// Proves that nodes fit into memory, before anything is made of them.
+    /// Checks that nodes fit into memory, before anything is made of them.
     pub(super) fn weigh(&self, placed: &[Placed<'_>]) -> Result<(), SceneError> {
         let mut size = Size::default();
         let mut parts = HashMap::new();

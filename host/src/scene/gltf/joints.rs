@@ -1,8 +1,9 @@
 //! Nodes that an animation moves, as joints of the meshes below them.
 //!
-//! A node whose own transform is `T R S` (at rest `T0 R0 S0`), in a node that stands at `W` at rest, moves what is below
-//! it by `W (T R S) (T0 R0 S0)^-1 W^-1`. This is a rotation `W R R0^-1 W^-1` and a scale `S / S0` about the pivot
-//! `W T0`, and a shift by `W (T - T0)`. All three are linear in the keys, so these are kept, whatever lies between them.
+//! A node has its own transform `T R S` (at rest `T0 R0 S0`) in a node that stands at `W` at rest. It moves its
+//! children by `W (T R S) (T0 R0 S0)^-1 W^-1`. This is a rotation `W R R0^-1 W^-1` and a scale `S / S0` about the pivot
+//! `W T0`, and a shift by `W (T - T0)`. All three are linear in the keys, so the keys are kept, with any interpolation
+//! between them.
 
 use super::Importer;
 use super::animation::{Motion, Way};
@@ -14,16 +15,16 @@ use glam::{DMat3, DMat4, DQuat, DVec3, DVec4};
 use gltf::Node;
 use std::collections::HashMap;
 
-/// How far a matrix can be from a rotation times a scale, and a change of size from an even one.
+/// Largest difference of a matrix from a rotation times a scale, and of a change of size from a uniform one.
 const TOLERANCE: f64 = 1e-5;
 
-/// The scale of what shrinks to nothing.
+/// The scale of a mesh that shrinks to nothing.
 const NOTHING: f64 = 1.0 / 256.0;
 
 impl Importer<'_> {
     /// Makes joints of the nodes that move meshes. `placed` has all nodes, each behind the one above it.
     pub(super) fn joints(&mut self, placed: &[Placed<'_>]) {
-        // Whether a node, or one below it, has a mesh that can move.
+        // For each node, whether it or one below it has a mesh that can move.
         let mut carries = HashMap::new();
         for (node, _) in placed.iter().rev() {
             let below = node
@@ -51,8 +52,8 @@ impl Importer<'_> {
         }
     }
 
-    /// Makes a joint of a node, if its animation moves what is below. `above` and `world` say where the node above it
-    /// and it itself stand at rest.
+    /// Makes a joint of a node, if its animation moves a mesh below. `above` and `world` are the transforms at rest of
+    /// the node above it and of the node itself.
     fn joint(
         &mut self,
         node: &Node<'_>,
@@ -94,7 +95,7 @@ impl Importer<'_> {
 #[derive(Default)]
 struct Own {
     ways: Vec<(TrackTarget, Way)>,
-    /// What of it cannot be shown, and what happens instead.
+    /// Parts of the motion that cannot be shown, and what happens instead.
     warnings: Vec<&'static str>,
 }
 
@@ -151,11 +152,11 @@ impl Own {
         own
     }
 
-    /// Adds a way, unless it stays at rest.
+    /// Adds a track, unless it stays at rest.
     fn add(&mut self, target: TrackTarget, way: Way, rest: DVec4) {
         let is_rest = |value: [f64; 4]| {
             let value = DVec4::from_array(value);
-            // Of the two quaternions of no rotation either is.
+            // For no rotation, either of the two quaternions will do.
             let other = match target {
                 TrackTarget::JointRotation => -rest * value.length(),
                 _ => rest,
@@ -196,7 +197,8 @@ fn least_between(first: &Key, second: &Key) -> f64 {
     inside.map(at).fold(from.min(to), f64::min)
 }
 
-/// The even scale of a way of scales, relative to that at rest, and whether it was 0 at some key; `None` if it is none.
+/// Returns the uniform scale of a sequence of scales, relative to that at rest, and whether it is 0 at some key. `None`
+/// if it is not uniform.
 fn even(way: &Way, rest: DVec3) -> Option<(Way, bool)> {
     let inverse = rest.recip();
     if !inverse.is_finite() {

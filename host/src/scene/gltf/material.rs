@@ -13,12 +13,12 @@
 //! | emission | emissive factor times `KHR_materials_emissive_strength`: 1 is display white; on the front alone |
 //! | absorption | -ln(attenuation color) / attenuation distance |
 //!
-//! The mirror of a metal without textures and of a roughness from 0.05 to below 1 is rough instead: mirror c m with that
-//! roughness, of which the diffuse color has no part and the highlight only that of m = 0. Others are as above: a
-//! metalness and a roughness of 1 are also what a file without either has.
+//! A metal without textures and with a roughness from 0.05 to below 1 has a rough mirror instead. It is the mirror c m
+//! with that roughness. The diffuse color has no part of it, and the highlight is that of m = 0. Others are as above: a
+//! file that states neither also has a metalness and a roughness of 1.
 //!
-//! Where the alpha mode is `BLEND`, alpha is what of the material is there, and the rest is a pane; but for textures
-//! with alpha.
+//! Where the alpha mode is `BLEND`, alpha is the part of the material that is present, and the rest is a pane. Textures
+//! with alpha are the exception.
 
 use crate::scene::{Alpha, Color, Diffuse, Material};
 use gltf::material::AlphaMode;
@@ -58,7 +58,7 @@ fn taken_ior(ior: f32) -> f64 {
     f64::from(ior).clamp(1.0, 4.0)
 }
 
-/// Whether the alpha of the base color alone is not cut out.
+/// Returns whether the alpha of the base color alone is not cut out.
 fn is_there(material: &gltf::Material<'_>) -> bool {
     let [.., alpha] = material.pbr_metallic_roughness().base_color_factor();
     alpha >= material.alpha_cutoff().unwrap_or(0.5)
@@ -94,7 +94,7 @@ pub(super) fn read(material: &gltf::Material<'_>, alpha_is_used: bool) -> Materi
         AlphaMode::Blend if !alpha_is_used => alpha,
         _ => 1.0,
     };
-    // Factors of a texture that is not read say little, and what is mirrored has no texture.
+    // Factors of a texture that is not read say little, and a mirror has no texture.
     let is_plain = surface.metallic_roughness_texture().is_none()
         && surface.base_color_texture().is_none();
     let is_glossy =

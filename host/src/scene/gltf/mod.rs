@@ -66,12 +66,12 @@ pub(super) const IMPORTER: Entry = Entry {
     read,
 };
 
-/// Reads a glTF file, and the buffers it names, which lie beside it. Where it has no camera or no
-/// lights, the compiler adds them.
+/// Reads a glTF file, and the buffers it names, which lie in the same folder. Where it has no camera or no lights, the
+/// compiler adds them.
 ///
 /// # Errors
-/// If a buffer cannot be read, a required extension is not understood, or the content is broken; the
-/// error names the line of broken JSON, else the element.
+/// If a buffer cannot be read, a required extension is not supported, or the content is broken. The error names the
+/// line of broken JSON, else the element.
 fn read(input: Input<'_>) -> Result<Imported, SceneError> {
     let Input {
         path,
@@ -177,14 +177,14 @@ impl Importer<'_> {
         self.warn_of(1, sentence);
     }
 
-    /// Warns of so many things at once, if there are any.
+    /// Warns of `count` things at once, if there are any.
     fn warn_of(&mut self, count: usize, sentence: impl Into<String>) {
         if count > 0 {
             self.warnings.add_times(self.place.clone(), count, sentence);
         }
     }
 
-    /// Warns of what changes the picture and is not drawn.
+    /// Warns of parts that change the picture and are not drawn.
     fn ignored(&mut self, document: &Document) {
         if document.scenes().len() > 1 {
             self.warn("the file has several scenes, of which the default one is read");
@@ -220,7 +220,7 @@ impl Importer<'_> {
         }
     }
 
-    /// Reads the animation, and warns of what of it is not shown.
+    /// Reads the animation, and warns of the parts that are not shown.
     fn animation(&mut self, document: &Document, choice: &Choice) -> Result<(), SceneError> {
         let chosen = animation::choose(self.path, document, choice)?;
         let animation = chosen.as_ref().map(|chosen| &chosen.animation);
@@ -458,7 +458,7 @@ fn place(mesh: &gltf::Mesh<'_>, part: &Primitive<'_>) -> String {
     format!("mesh {}, primitive {}", mesh.index(), part.index())
 }
 
-/// The triangles that corners stand for, counter-clockwise in front.
+/// Returns the triangles of the corners, counter-clockwise in front.
 fn triangles(mode: Mode, corners: &[u32], mirrored: bool) -> Vec<[u32; 3]> {
     let turned = |[a, b, c]: [u32; 3], turn: bool| if turn { [a, c, b] } else { [a, b, c] };
     match (mode, corners) {

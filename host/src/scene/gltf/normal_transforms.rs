@@ -1,4 +1,4 @@
-//! How normal maps lie on texture coordinates: their `KHR_texture_transform`, which the reader of glTF leaves out.
+//! Reads the transforms of normal maps: their `KHR_texture_transform`, which the reader of glTF leaves out.
 
 use crate::scene::SceneError;
 use gltf::json::Value;
@@ -34,7 +34,7 @@ pub(super) fn read(path: &Path, text: &[u8]) -> Result<NormalTransforms, SceneEr
     let mut transforms = NormalTransforms::default();
     let materials = document["materials"].as_array();
     for (number, material) in materials.into_iter().flatten().enumerate() {
-        // `Null` where something on the way is not there, or is no object.
+        // `Null` where a step of the path is missing, or is no object.
         let extension = &material["normalTexture"]["extensions"][EXTENSION];
         if !extension.is_null() {
             let what = || format!("the transform of the normal map of material {number}");

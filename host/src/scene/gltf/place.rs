@@ -4,7 +4,7 @@ use glam::{DMat4, DQuat, DVec3, DVec4};
 use gltf::scene::Transform;
 use gltf::{Mesh, Node};
 
-/// Where a node stands in its parent, computed in double precision.
+/// Returns the transform of a node in its parent, computed in double precision.
 pub(super) fn transform(node: &Node<'_>) -> DMat4 {
     match node.transform() {
         Transform::Matrix { matrix } => {

@@ -9,7 +9,7 @@ use std::collections::HashMap;
 /// The triangles that a part must save. A part has a structure of its own, and an instance a record.
 const LEAST_SAVED: u64 = 1024;
 
-/// A node with a mesh, where it stands in the scene.
+/// A node with a mesh, and its transform in the scene.
 pub(super) type Placed<'d> = (Node<'d>, DMat4);
 
 /// The meshes that become parts, by their number in the file.

@@ -1,8 +1,8 @@
 //! The cameras and lights of a glTF file.
 //!
 //! Points and spots fall off with the square of the distance, and end at their range and their cones, as
-//! `KHR_lights_punctual` says. Intensities are in candela and lux, which span many powers of ten: so all are scaled
-//! alike, as a photographer would expose. The light that is strongest in the middle of the scene is 1 there.
+//! `KHR_lights_punctual` says. Intensities are in candela and lux, which span many powers of ten. So one factor scales
+//! all, as a photographer would expose. The light that is strongest in the middle of the scene is 1 there.
 
 use super::animation::Motion;
 use crate::scene::{
@@ -17,7 +17,7 @@ use gltf::khr_lights_punctual::{Kind, Light as Punctual};
 /// Cameras and lights on their way into a scene.
 #[derive(Default)]
 pub(super) struct View {
-    /// The name of the camera that is asked for.
+    /// The name of the requested camera.
     wanted: Option<String>,
     camera: Option<Camera>,
     /// The node of the camera.
@@ -50,7 +50,7 @@ impl View {
         }
     }
 
-    /// Takes a camera, if it is the one that is asked for, or the first that has a perspective.
+    /// Takes a camera, if it is the requested one, or the first that has a perspective.
     pub(super) fn camera(
         &mut self,
         camera: &gltf::Camera<'_>,
@@ -155,7 +155,7 @@ impl View {
         }
     }
 
-    /// Proves that the camera that is asked for is there.
+    /// Checks that the requested camera exists.
     ///
     /// # Errors
     /// If it is not: what to do.

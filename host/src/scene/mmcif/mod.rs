@@ -1,5 +1,5 @@
-//! The categories of mmCIF that say where atoms are (`atom_site`), which of them are bonded beyond those
-//! that distances imply (`struct_conn`), and how they are copied (`pdbx_struct_assembly_gen`,
+//! Reads the categories of mmCIF that drawing needs. They say where atoms are (`atom_site`), and which are bonded
+//! beyond the bonds that distances imply (`struct_conn`). Others say how atoms are copied (`pdbx_struct_assembly_gen`,
 //! `pdbx_struct_oper_list`).
 //!
 //! The author's chain and residue names (`auth_`) come before the archive's (`label_`), as in PDB
@@ -240,7 +240,7 @@ impl<'a> Parser<'a, '_> {
     }
 
     fn bond(&mut self, table: &Table<'a>, columns: &BondColumns) {
-        // Hydrogen bonds are none, and a partner that symmetry moves is not where its atom is.
+        // Hydrogen bonds do not count, and a partner that symmetry moves is not where its atom is.
         let kind = table.value([columns.kind]);
         let is_bond = ["covale", "disulf", "metalc"].iter().any(|bond| {
             kind.get(..bond.len())

@@ -13,7 +13,7 @@ use std::collections::{BTreeSet, HashMap, HashSet};
 /// How many names a message lists.
 const LISTED: usize = 20;
 
-/// Atoms that stand together wherever they stand.
+/// Atoms that are copied together.
 pub(super) struct Copied {
     /// Indices of atoms in file order.
     pub(super) atoms: Vec<u32>,

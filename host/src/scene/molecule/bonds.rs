@@ -4,25 +4,25 @@ use super::parsed::Site;
 use glam::DVec3;
 use std::collections::HashMap;
 
-/// Two atoms are bonded where they are at most this much farther apart than the sum of their
-/// covalent radii, in angstroms, and at least [`CLOSEST`]: E. C. Meng and R. A. Lewis, *J. Comput.
-/// Chem.* 12 (1991) 891, also the rule of Open Babel.
+/// Two atoms are bonded if their distance exceeds the sum of their covalent radii by at most this,
+/// in angstroms, and is at least [`CLOSEST`]. From E. C. Meng and R. A. Lewis, *J. Comput. Chem.*
+/// 12 (1991) 891; also the rule of Open Babel.
 const SLACK: f64 = 0.45;
 
 /// Atoms closer than this are copies of each other, not neighbors: no bond is so short (H-H is
 /// 0.74).
 const CLOSEST: f64 = 0.4;
 
-/// The most atoms that a cell can hold: a cell is at most 4.6 angstroms wide (for lanthanum), and
-/// even in hydrogen as dense as in Jupiter's core an atom takes more than 0.1 cubic angstroms.
-/// Files in which all atoms lie in one point exist, and must not take quadratic time.
+/// The most atoms that a cell can hold. A cell is at most 4.6 angstroms wide (for lanthanum). Even
+/// in hydrogen as dense as in Jupiter's core an atom takes more than 0.1 cubic angstroms. Files in
+/// which all atoms lie in one point exist, and must not take quadratic time.
 const MOST_IN_CELL: usize = 1000;
 
 /// The most bonds that are collected; their sticks would fit into no memory.
 const MOST_BONDS: usize = 1 << 24;
 
-/// The bonds between sites, each pair once with the lower index first, and the sites that are
-/// crowded beyond reason, for which none are found.
+/// Returns the bonds between sites, each pair once with the lower index first. Also returns the
+/// sites that are so crowded that their bonds are not searched for.
 ///
 /// The sites are sorted into cells as wide as the longest possible bond, so that the cost is
 /// linear in their number.

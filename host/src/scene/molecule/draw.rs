@@ -6,8 +6,8 @@ use crate::scene::{Diffuse, Material, MoleculeStyle, Object, Shape, SourceSpan};
 use crate::shape::{Cone, Sphere};
 use std::collections::HashMap;
 
-/// The size of balls in units of the van der Waals radius, and the radius of sticks in
-/// angstroms: the defaults of the molecule viewer Jmol.
+/// The size of balls in units of the van der Waals radius, and the radius of sticks in angstroms.
+/// They are the defaults of the molecule viewer Jmol.
 const BALL: f64 = 0.23;
 const STICK: f64 = 0.15;
 

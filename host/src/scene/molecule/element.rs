@@ -32,7 +32,7 @@ impl Element {
             .then_some(Self(number))
     }
 
-    /// The symbol, such as `Fe`; `X` for what is unknown.
+    /// The symbol, such as `Fe`; `X` for unknown elements.
     pub(crate) fn symbol(self) -> &'static str {
         ELEMENTS[usize::from(self.0)].0
     }
@@ -42,8 +42,8 @@ impl Element {
         ELEMENTS[usize::from(self.0)].1
     }
 
-    /// The covalent radius in angstroms, by which bonds are found; `None` for elements that are
-    /// seen as ions (the alkali and alkaline earth metals), whose neighbors are not bonded.
+    /// The covalent radius in angstroms, by which bonds are found. `None` for elements that are
+    /// treated as ions (the alkali and alkaline earth metals), whose neighbors are not bonded.
     pub(crate) fn covalent(self) -> Option<f64> {
         let is_ion = matches!(
             self.0,
@@ -68,10 +68,10 @@ impl Element {
 /// * Covalent radii: B. Cordero et al., *Dalton Trans.* (2008) 2832; of carbon the sp3 value, of
 ///   Mn, Fe and Co the low-spin value.
 /// * Colors: those of the molecule viewer Jmol, which extend the colors of Corey, Pauling and
-///   Koltun's models to all elements; the unknown is deep pink, with the radius of carbon.
+///   Koltun's models to all elements. The unknown element is deep pink, with the radius of carbon.
 ///
-/// Where a source ends, its last value goes on (van der Waals from Fm, covalent from Bk); Pm has
-/// the van der Waals radius of Pr.
+/// Beyond the last element of a source, its last value is repeated (van der Waals from Fm, covalent
+/// from Bk). Pm has the van der Waals radius of Pr.
 #[rustfmt::skip]
 const ELEMENTS: [(&str, f64, f64, u32); 110] = [
     ("X", 1.70, 0.76, 0xFF1493),

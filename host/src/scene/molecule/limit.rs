@@ -6,7 +6,7 @@ use crate::scene::text::Source;
 
 /// Rejects atoms so crowded that their bonds fit into no memory.
 pub(super) fn check_size(source: &Source, atoms: usize, bonds: usize) -> Result<(), SceneError> {
-    // A name has a few words, of which each has a few letters.
+    // A name has a few words with a few letters each.
     let size = Size {
         objects: (atoms + 2 * bonds) as u64,
         ..Size::default()

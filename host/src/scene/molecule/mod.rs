@@ -4,10 +4,9 @@
 //! is one object, in file order, named like `A/CYS 3/CA`; hydrogens and waters are included.
 //! Materials are one for each element. There are no camera and no lights; the compiler adds them.
 //!
-//! The parsers are our own. The crate `pdbtbx` (0.12) was tried first: it does not build without
-//! its default features, panics on ordinary files (a space group it does not list, such as
-//! `H 3 2`, or a blank residue name), regroups atoms by chain so that file order is lost, reads
-//! neither CONECT nor struct_conn, and knows no lines for mmCIF.
+//! The parsers are our own. The crate `pdbtbx` (0.12) was tried first. It does not build without its default features.
+//! It panics on ordinary files (a space group it does not list, such as `H 3 2`, or a blank residue name). It regroups
+//! atoms by chain, so file order is lost. It reads neither CONECT nor struct_conn, and reports no lines for mmCIF.
 
 mod assembly;
 mod bonds;
@@ -31,11 +30,11 @@ use assembly::{Copied, assemble};
 use limit::check_size;
 use std::collections::{HashMap, HashSet};
 
-/// Makes a scene of what `parse` reads from a file.
+/// Makes a scene of the atoms that `parse` reads from a file.
 ///
 /// # Errors
-/// If the file has no atoms, its content is broken (the error names the line), or it lacks the model or
-/// the alternate location asked for.
+/// If the file has no atoms, its content is broken (the error names the line), or it lacks the requested model or
+/// alternate location.
 pub(super) fn import(
     input: Input<'_>,
     parse: impl for<'a> Fn(&'a Source, &mut Warnings) -> Result<Parsed<'a>, SceneError>,

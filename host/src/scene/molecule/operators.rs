@@ -8,7 +8,7 @@ use glam::{DMat3, DVec3};
 /// The most instances of an assembly.
 pub(super) const MOST_INSTANCES: u64 = 65_535;
 
-/// How far the entries of a matrix can be from those of a rotation: files round them to six digits or fewer.
+/// The largest error of the entries of a rotation matrix: files round them to six digits or fewer.
 const TOLERANCE: f64 = 1e-3;
 
 /// The most factors of a product. Files have two or three.
@@ -125,7 +125,7 @@ impl Matrix<'_> {
     }
 }
 
-/// The factors of an expression: what stands in parentheses, or between them.
+/// Returns the factors of an expression: the text in parentheses, or between them.
 fn factors<'a>(source: &Source, text: &'a str, line: usize) -> Result<Vec<&'a str>, SceneError> {
     let broken = |cause: &str| {
         let cause = format!("the operators {text:?} {cause}");

@@ -12,7 +12,7 @@ pub(crate) struct Site {
     pub(crate) position: DVec3,
 }
 
-/// An atom as the file has it; what it does not say is empty.
+/// An atom as the file has it; fields that the file does not state are empty.
 pub(in crate::scene) struct Atom<'a> {
     pub(in crate::scene) site: Site,
     pub(in crate::scene) line: usize,
@@ -92,8 +92,8 @@ pub(in crate::scene) struct Matrix<'a> {
 /// The operators of a group of chains, unread.
 pub(in crate::scene) enum Operators<'a> {
     Listed(Vec<Matrix<'a>>),
-    /// Names of operators in [`Parsed::operators`], such as `(1-60)(61,P)`. Each factor in parentheses stands
-    /// for several operators, and the rightmost applies first.
+    /// Names of operators in [`Parsed::operators`], such as `(1-60)(61,P)`. Each factor in parentheses means several
+    /// operators, and the rightmost applies first.
     Expression(&'a str),
 }
 

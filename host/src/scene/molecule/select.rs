@@ -5,9 +5,9 @@ use crate::scene::text::Source;
 use crate::scene::{MoleculeOptions, SceneError};
 use std::collections::{BTreeSet, HashMap};
 
-/// The atoms of the model asked for, in file order. Of a residue with alternate locations those
-/// of the one asked for remain, or of the first one where it has not that one or none is asked
-/// for; atoms without an alternate location always remain.
+/// Returns the atoms of the requested model, in file order. A residue with alternate locations
+/// keeps the atoms of the requested location. It keeps those of its first location if it lacks that
+/// one or none is requested. Atoms without an alternate location are always kept.
 pub(super) fn select<'p, 'a>(
     source: &Source,
     parsed: &'p Parsed<'a>,

@@ -4,13 +4,14 @@
 //! Where the format leaves a meaning open, the databases' reference pictures decide:
 //! * Colors and lights are display values: they are added up and shown as they are.
 //! * A light without a color has intensity 1 / sqrt(n), n being the number of lights.
-//! * Ambient light, of which the format knows nothing, is what materials leave of 1 beside Kd, Ks
-//!   and T, relative to Kd: the mean of all materials that objects have, each at most 1.
+//! * Ambient light, which the format does not have, is the part of 1 that Kd, Ks and T of a
+//!   material leave, relative to Kd. It is the mean over all materials that objects have, each at
+//!   most 1.
 //! * `angle` is the full vertical field of view. `hither` is not needed.
-//! * Of `f`, Kd (1 - T) weighs the color, Ks is the gray mirror and, up to 1 - Ks, the white
-//!   highlight, and T filters by the color what is transmitted. Shine is the exponent of Phong's
-//!   cosine, between the view and the mirrored light; the halfway vector leans half as far, which
-//!   four times the exponent makes up for.
+//! * In `f`, Kd (1 - T) weighs the color, and Ks is the gray mirror. Ks is also the white
+//!   highlight, up to 1 - Ks. T filters the transmitted light by the color. Shine is the exponent
+//!   of Phong's cosine, between the view and the mirrored light. The halfway vector leans half as
+//!   far, so the exponent is four times as large.
 //! * The normals of `pp` are ignored, with a warning. A negative radius (only the inside is
 //!   visible) counts as its absolute value, since both sides are drawn.
 //! * Polygons and patches are one mesh each, every other primitive one object, in file order.
@@ -186,8 +187,8 @@ impl<'a> Importer<'a> {
     fn fill(&mut self, line: &Line<'a>) -> Result<(), SceneError> {
         let format = "f r g b Kd Ks Shine T ior";
         let numbers = match line.numbers_from(1) {
-            // Short lines are common in files written by hand; what is missing is what says
-            // "opaque".
+            // Short lines are common in files written by hand. The missing numbers are those that
+            // say "opaque".
             given @ (6 | 7) => {
                 self.warnings.add(
                     self.source,

@@ -28,8 +28,8 @@ impl<'a> Line<'a> {
             .count()
     }
 
-    /// Reads `N` finite numbers from word `from` on. Words after them are passed over with a
-    /// warning, as dialects of the format add texture names and subdivision counts there.
+    /// Reads `N` finite numbers from word `from` on. Further words are ignored with a warning, as
+    /// dialects of the format add texture names and subdivision counts there.
     pub(super) fn numbers<const N: usize>(
         &self,
         source: &Source,

@@ -258,8 +258,8 @@ fn standard_procedural_databases() {
             else {
                 continue;
             };
-            // The polygons are flat but for the rounding of their six digits, so all area
-            // vectors point one way and their lengths add up.
+            // The polygons are flat within the rounding of their six digits, so all area vectors
+            // point one way and their lengths add up.
             let whole = outline(vertices).length();
             let sum: f64 = triangles
                 .iter()
@@ -274,8 +274,8 @@ fn standard_procedural_databases() {
     }
 }
 
-/// The mean of each channel in codes of 255, as the pictures have it that the author of the
-/// databases made. Ours has another pattern of samples and Fresnel's reflection.
+/// The mean of each channel in codes of 255, in the pictures of the databases' author. Ours has
+/// another pattern of samples and Fresnel's reflection.
 #[test]
 fn pictures_are_as_bright_as_the_databases_own() {
     for name in ["balls", "gears", "mount", "teapot", "tetra"] {

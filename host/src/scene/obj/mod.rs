@@ -1,9 +1,8 @@
 //! Reads Wavefront OBJ with its MTL materials.
 //!
-//! The parser is our own. The crate `tobj` was tried first, but it divides positions by `w`, makes
-//! triangles of polylines (`l`), lets NaN through, rejects comments and continuations on face
-//! lines, panics on a color of two numbers, and never says in which line anything is, so that all
-//! of a file would have had to be parsed before it was handed over.
+//! The parser is our own. The crate `tobj` was tried first. It divides positions by `w`, makes triangles of polylines
+//! (`l`), and lets NaN through. It rejects comments and continuations on face lines, panics on a color of two numbers,
+//! and never names a line. So a file would have to be parsed completely before it was passed on.
 //!
 //! Every `o`, `g` and change of `usemtl` starts a new mesh, in file order, which holds only the
 //! vertices that it uses. Faces are cut into triangles in file order. A face whose corners all have
@@ -29,7 +28,7 @@ pub(super) const IMPORTER: Importer = Importer {
     name: "OBJ",
     about: "Wavefront's meshes, with MTL materials",
     extensions: &["obj"],
-    // The format says nothing; modelling programs export y up by default.
+    // The format does not state it; modelling programs export y up by default.
     up: Up::Y,
     binary: false,
     example: "v 0 0 0\nv 4 0 0\nv 4 4 0\nv 3 1 0\nf 1 2 3 4\n",
@@ -47,8 +46,8 @@ pub(super) const IMPORTER: Importer = Importer {
     read,
 };
 
-/// Reads an OBJ file and the material files it names, which lie beside it. It has no camera and
-/// no lights; the compiler adds them.
+/// Reads an OBJ file and the material files it names, which lie in the same folder. It has no camera and no lights; the
+/// compiler adds them.
 ///
 /// # Errors
 /// If the file has no faces, or its content is broken; the error names the line.
@@ -131,8 +130,8 @@ fn check_size(source: &Source, parsed: &Parsed<'_>) -> Result<(), SceneError> {
     Ok(())
 }
 
-/// Reads the files that `mtllib` names. One that is missing is worth a warning alone: it was
-/// often left behind, and the geometry is all there.
+/// Reads the files that `mtllib` names. A missing one only causes a warning: it is often not delivered, and the
+/// geometry is complete.
 fn read_libraries(
     source: &Source,
     parsed: &Parsed<'_>,
@@ -310,7 +309,7 @@ impl Mesher<'_> {
     }
 }
 
-/// The normals of a part, of which it holds only those that it uses.
+/// The normals that a part uses.
 #[derive(Default)]
 struct PartNormals {
     vectors: Vec<DVec3>,

@@ -138,7 +138,7 @@ impl Statements {
             opacity = 1.0;
         }
         let diffuse = match (self.diffuse, default.diffuse) {
-            // What the texture weights.
+            // The color that the texture weights.
             (None, _) if self.texture.is_some() => [1.0; 3],
             (Some(color), _) | (None, Diffuse::Plain(color)) => color,
             (None, Diffuse::Checker { even, .. }) => even,
@@ -200,7 +200,7 @@ impl Statements {
     }
 }
 
-/// The roughness that a file gives in terms of [`Material::roughness`]: what is nearly smooth is smooth.
+/// Converts the roughness of a file to [`Material::roughness`]; nearly smooth counts as smooth.
 fn taken_roughness(roughness: f64) -> f64 {
     if roughness < Material::LEAST_ROUGHNESS {
         0.0
@@ -303,8 +303,7 @@ impl Reader<'_> {
         }
     }
 
-    /// Reads a color of one number (gray) or three, from 0 to 1; `None` where it is given in
-    /// another way.
+    /// Reads a color of one number (gray) or three, from 0 to 1; `None` where it has another form.
     fn color(&self, line: usize, warnings: &mut Warnings) -> Result<Option<Color>, SceneError> {
         self.color_up_to(1.0, line, warnings)
     }

@@ -8,7 +8,7 @@ use glam::{DVec2, DVec3};
 #[derive(Default)]
 pub(super) struct Parsed<'a> {
     pub(super) vertices: Vec<DVec3>,
-    /// Of any length.
+    /// Normals of any length.
     pub(super) normals: Vec<DVec3>,
     /// Linear; empty, or one for each vertex.
     pub(super) colors: Vec<Color>,
@@ -22,7 +22,7 @@ pub(super) struct Parsed<'a> {
 
 /// Faces in a row that belong to one object and have one material.
 pub(super) struct Part<'a> {
-    /// From `o` or `g`; empty where there is none.
+    /// The name from `o` or `g`; empty without either.
     pub(super) name: &'a str,
     pub(super) material: Option<&'a str>,
     /// The line of its first face.
@@ -30,7 +30,7 @@ pub(super) struct Part<'a> {
     pub(super) faces: Vec<Face>,
     /// Vertex indices of all faces, one after the other.
     pub(super) corners: Vec<u32>,
-    /// The normals of the corners, likewise; [`NO_NORMAL`] where there is none. Empty where no face has any.
+    /// The normals of the corners, likewise; [`NO_NORMAL`] where a corner has none. Empty where no face has any.
     pub(super) normals: Vec<u32>,
     /// The texture coordinates of the corners, likewise.
     pub(super) coordinates: Vec<u32>,
@@ -47,7 +47,7 @@ pub(super) struct Face {
     pub(super) corners: usize,
 }
 
-/// Statements about what is not drawn, or not needed to draw it.
+/// Statements about parts that are not drawn, or not needed to draw.
 const PASSED_OVER: [&str; 8] = [
     "vp", "mg", "bevel", "c_interp", "d_interp", "lod", "maplib", "call",
 ];
@@ -95,8 +95,8 @@ pub(super) fn parse<'a>(
     parser.finish(warnings)
 }
 
-/// Reads the index of a normal or of texture coordinates, of which the file has so many so far, counted from 0;
-/// [`MISSING_NORMAL`] for one that cannot be.
+/// Reads the index of a normal or of texture coordinates, and returns it counted from 0. `count` is how many the file
+/// has so far. Returns [`MISSING_NORMAL`] for an index that is out of range.
 fn number_of(index: &str, count: usize) -> u32 {
     let index = index.parse::<i64>().ok().filter(|it| *it != 0);
     let index = index.map(|it| if it < 0 { count as i64 + it } else { it - 1 });
@@ -109,7 +109,7 @@ struct Parser<'a> {
     parsed: Parsed<'a>,
     name: &'a str,
     material: Option<&'a str>,
-    /// Whether the next face starts a part.
+    /// True if the next face starts a part.
     fresh: bool,
     /// The highest index of a face and its word; it may point ahead to vertices not yet read.
     highest: Option<(u64, &'a str)>,
@@ -139,7 +139,7 @@ impl<'a> Parser<'a> {
                 &format!("the {} coordinate of a vertex", ["x", "y", "z"][axis]),
             )?;
         }
-        // What may follow is a weight, which only curved surfaces use, or a color.
+        // The rest can be a weight, which only curved surfaces use, or a color.
         let mut rest = Vec::with_capacity(words.len() - 3);
         for word in &words[3..] {
             rest.push(

@@ -185,7 +185,8 @@ fn real_meshes_have_the_triangles_box_and_area_that_trimesh_finds() {
             );
         }
         let expected = match name {
-            // A fan covers the hole of this ring many times over; this is what it encloses.
+            // A fan covers the hole of this ring many times over; this is the volume that it
+            // encloses.
             "meshes/concave_polygon.obj" => "0.2454966872",
             // Its pentagon is bent, so that its area depends on where it is cut.
             "meshes/polygonfaces.obj" => "",

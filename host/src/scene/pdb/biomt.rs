@@ -9,7 +9,7 @@ use std::rc::Rc;
 pub(super) struct Assemblies<'a> {
     /// The numbers of the assemblies that are open.
     open: Rc<[&'a str]>,
-    /// Whether a group is open, the last one.
+    /// True if a group is open, the last one.
     in_group: bool,
 }
 
@@ -26,7 +26,7 @@ impl<'a> Assemblies<'a> {
                 self.begin(line, groups);
             }
             let names = names.split(',').map(str::trim).filter(|it| !it.is_empty());
-            // What files call chains without a name.
+            // Names of files for chains without a name.
             let names = names.map(|name| if name == "NULL" { "" } else { name });
             if let Some(group) = groups.last_mut() {
                 group.chains.get_or_insert_default().extend(names);

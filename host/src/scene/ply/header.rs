@@ -1,4 +1,4 @@
-//! The header of a PLY file: its errors, and what it announces that is not read.
+//! The header of a PLY file: its errors, and its parts that are not read.
 
 use super::super::text::Warnings;
 use super::super::{SceneError, SourceSpan};
@@ -9,7 +9,7 @@ use ply_rs_bw::ply::{ElementDef, Header, PropertyType};
 use std::io::ErrorKind;
 use std::path::Path;
 
-/// Reads the header, and warns of what it announces that changes the picture and is not drawn.
+/// Reads the header. Warns of announced parts that change the picture and are not drawn.
 pub(super) fn read(
     path: &Path,
     bytes: &[u8],
@@ -98,8 +98,8 @@ fn quoted(line: &[u8]) -> String {
     )
 }
 
-/// Rejects a number of elements that the file cannot hold, each of which takes a byte at least, and
-/// properties that are not what they mean.
+/// Rejects a number of elements that the file cannot hold at one byte each or more. Also rejects
+/// properties whose types do not match their meaning.
 pub(super) fn check(path: &Path, element: &ElementDef, bytes: usize) -> Result<(), SceneError> {
     if element.count > bytes || (element.properties.is_empty() && element.count > 0) {
         return Err(SceneError::new(
@@ -153,12 +153,12 @@ const IGNORED: [(&[&str], &str, &str); 1] = [(
     "the surface has one color",
 )];
 
-/// Warns of what the header announces that changes the picture and is not drawn.
+/// Warns of announced parts that change the picture and are not drawn.
 fn ignored(path: &Path, bytes: &[u8], warnings: &mut Warnings) {
     let header = bytes
         .split(|&byte| byte == b'\n')
         .map(String::from_utf8_lossy);
-    // The element whose properties follow, how many of it there are, and what it was warned of.
+    // The element whose properties follow, its count, and the warnings that it got.
     let (mut element, mut count, mut is_reported) = (String::new(), 0, [false; IGNORED.len()]);
     for (number, line) in (1..).zip(header) {
         let words: Vec<&str> = line.split_whitespace().collect();

@@ -56,7 +56,7 @@ impl<'p> Payload<'p> {
         }
     }
 
-    /// Warns of what was passed over.
+    /// Warns of the parts that were ignored.
     pub(super) fn warn(&self, warnings: &mut Warnings) {
         if let Some((line, count)) = self.surplus {
             let place = SourceSpan {
@@ -204,7 +204,7 @@ impl<'w> Words<'w> {
                 }
                 PropertyType::List(_, kind) => self.list(kind, name)?,
             };
-            // What does not fit was rejected with the header.
+            // Values that do not fit were rejected with the header.
             read.set_property(name, value);
         }
         Ok(read)
@@ -269,7 +269,7 @@ impl<'w> Words<'w> {
         ])
     }
 
-    /// Reads a list: its length, and so many numbers of a type.
+    /// Reads a list: its length, and that many numbers of a type.
     fn list(&mut self, kind: &ScalarType, property: &str) -> Result<Property, Fault> {
         let text = self.next(Word::Length, property)?;
         let length = text.parse::<usize>().map_err(|_| {

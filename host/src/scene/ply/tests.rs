@@ -1,7 +1,7 @@
 use super::*;
 use crate::scene::test_scenes::{self, load, mesh};
 
-/// A square and a line, with colors and an element that nobody knows.
+/// A square and a line, with colors and an unknown element.
 pub(in crate::scene) const SQUARE: &str = "\
 ply
 format ascii 1.0

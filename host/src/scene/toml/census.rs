@@ -1,5 +1,4 @@
-//! Counts what a scene will hold before anything is placed: groups in groups can grow beyond all
-//! memory in a few lines.
+//! Counts the content of a scene before anything is placed. Groups in groups can exceed all memory in a few lines.
 
 use super::item::{Content, Group, Item, PartItem};
 use super::material::Palette;
@@ -14,7 +13,7 @@ pub(super) const MAX_NESTING: usize = 64;
 /// The cost of placing some objects.
 #[derive(Clone, Copy, Default)]
 struct Cost {
-    /// Primitives, or as much memory as they would take.
+    /// Primitives, or an equivalent of their memory.
     primitives: u64,
     size: Size,
     /// How many groups are nested inside each other.
@@ -22,7 +21,7 @@ struct Cost {
 }
 
 impl Cost {
-    /// The cost of what an item holds, whose names begin with the item's.
+    /// Returns the cost of an item's content, whose names begin with the item's.
     fn inside(self, item: &Item) -> Self {
         Self {
             size: self.size.with_longer_names(item.name.len() + 1),
@@ -33,7 +32,7 @@ impl Cost {
 
 /// The result of the census.
 pub(super) struct Usage {
-    /// How many objects the scene's own list comes to.
+    /// The number of objects in the scene's own list after expansion.
     pub(super) objects: usize,
     /// About groups that the scene does not use.
     pub(super) warnings: Vec<String>,
@@ -82,7 +81,7 @@ impl<'c> Census<'c> {
         for (name, group) in unused {
             let place = self.source.place(&group.span);
             warnings.push(format!("{place}: the group {name:?} is placed nowhere"));
-            // What is never placed must still make sense.
+            // Groups that are never placed must still be valid.
             self.open.push(name);
             self.items(&group.items, 1)?;
             self.open.pop();
@@ -233,7 +232,8 @@ fn imported_size(scene: &Scene) -> Size {
     objects.chain(instances).fold(Size::default(), Size::plus)
 }
 
-/// The primitives of an import; instances, joints and keys weigh as much, so that they do not multiply for free.
+/// Returns the primitives of an import. Instances, joints and keys count as well, so that they do not multiply at no
+/// cost.
 fn imported(scene: &Scene) -> u64 {
     let objects = objects_of(scene).map(|object| primitives(&object.shape));
     let tracks = scene.tracks.iter().filter(|it| it.target.is_of_joint());

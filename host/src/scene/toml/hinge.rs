@@ -1,7 +1,8 @@
 //! Rotations by angles about one axis, as keys of quaternions.
 //!
 //! The way between two quaternions is less than half a turn, and that of an angle has any number of turns. So keys are
-//! added between those of the file: on the way of a linear track exactly, on that of a spline within [`TOLERANCE`].
+//! added between those of the file. On the way of a linear track they are exact, on that of a spline within
+//! [`TOLERANCE`].
 
 use crate::scene::{Interpolation, Key, TICKS_PER_SECOND};
 use crate::shape::unit;
@@ -16,7 +17,7 @@ const LINEAR_STEP: f64 = 90.0;
 /// How far a spline of quaternions may be from that of the angles, in radians.
 const TOLERANCE: f64 = 2e-5;
 
-/// Degrees that are surely less than half a turn.
+/// Degrees that are certainly less than half a turn.
 const MOST_DEGREES: f64 = 150.0;
 
 /// Keys of rotations about an axis, given keys of angles in degrees and their changes.
@@ -149,11 +150,12 @@ impl Segment {
     }
 }
 
-/// Into how many pieces a spline of angles is cut that is replaced by splines of quaternions, given the ways between its
-/// control points in degrees.
+/// Returns the number of pieces into which a spline of angles is cut. Splines of quaternions replace it. `legs` are the
+/// differences between its control points in degrees.
 ///
-/// A cubic Hermite spline is off by at most 1/384 of the fourth derivative, which is here that of (sin, cos) of half the
-/// angle: with `n` pieces, at most `(v^4 + 6 v^2 a + 3 a^2 + 4 v j) / n^4` for bounds of the half's derivatives.
+/// The error of a cubic Hermite spline is at most 1/384 of the fourth derivative, here that of (sin, cos) of half the
+/// angle. With `n` pieces that is at most `(v^4 + 6 v^2 a + 3 a^2 + 4 v j) / n^4`, for bounds of the half's
+/// derivatives.
 fn spline_pieces(legs: [f64; 3]) -> f64 {
     let [first, middle, last] = legs.map(|leg| leg.to_radians() / 2.0);
     let speed = 3.0 * first.abs().max(middle.abs()).max(last.abs());

@@ -31,7 +31,7 @@ pub(super) struct Imports {
     pub(super) warnings: Vec<String>,
     /// Which cameras and animations are read.
     choice: Choice,
-    /// What is among the files.
+    /// The kinds of the files.
     pub(super) kinds: Kinds,
 }
 
@@ -43,7 +43,7 @@ pub(super) struct Molecules {
     pub(super) assembly: Option<String>,
 }
 
-/// What a file and those that it imports are, as far as options depend on it.
+/// The kinds of a file and of those that it imports, as far as options depend on them.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Kinds {
     pub(super) molecules: bool,
@@ -114,7 +114,7 @@ impl Imports {
 
     /// Reads the scene file from which everything starts.
     pub(super) fn root(&mut self, input: Input<'_>) -> Result<Scene, SceneError> {
-        // A path that leads nowhere is that of standard input, which nothing can import.
+        // A path that does not exist is that of standard input, which no file can import.
         let canonical = input
             .access
             .canonical(input.path)
@@ -173,7 +173,7 @@ impl Imports {
             assembly: molecules.assembly.as_deref(),
             choice: &choice,
         };
-        // What the files below are is counted by itself, and then beside what came before.
+        // The kinds of the files below are counted separately, and then added to those before.
         let before = std::mem::take(&mut self.kinds);
         let opened = self.importers.open(&path, choices, &access);
         let scene = opened.and_then(|(importer, input)| {

@@ -7,7 +7,7 @@ use glam::{DAffine3, DQuat, DVec3};
 use gridel_core::format::track::ValueKind;
 use std::collections::HashSet;
 
-/// What of an import is taken over.
+/// The parts of an import that are adopted.
 pub(super) struct ImportPlace<'p> {
     pub(super) camera: bool,
     /// The number of its first light.
@@ -128,9 +128,9 @@ pub(super) fn moved(track: &Track, by: &DAffine3) -> Option<Track> {
     Some(moved)
 }
 
-/// The rotation of a transform that turns and scales alike in all directions.
+/// Returns the rotation of a transform that scales equally in all directions.
 fn rotation_of(by: &DAffine3) -> Option<DQuat> {
-    /// Far above rounding, and far below what is seen.
+    /// Far above rounding, and far below visible differences.
     const TOLERANCE: f64 = 1e-9;
     let scale = by.matrix3.determinant().cbrt();
     let turns = by.matrix3 * (1.0 / scale);
@@ -139,7 +139,7 @@ fn rotation_of(by: &DAffine3) -> Option<DQuat> {
     is_rotation.then(|| DQuat::from_mat3(&turns))
 }
 
-/// The error of what cannot follow the transform of its import.
+/// Returns the error of a track that cannot follow the transform of its import.
 pub(super) fn lost(source: &Source, item: &Item, what: &str) -> SceneError {
     source.error(
         &item.span,

@@ -12,7 +12,7 @@ pub(super) struct Item {
     pub(super) material: Option<Name>,
     /// The angle of `smooth`.
     pub(super) smooth: Option<f64>,
-    /// Of a mesh.
+    /// The attributes of a mesh.
     pub(super) attributes: Attributes,
     pub(super) transform: DAffine3,
     pub(super) span: Span,

@@ -64,7 +64,7 @@ impl Joints {
         self.number(text).map_err(error)
     }
 
-    /// The number of a joint, or what to do where there is none of the name.
+    /// Returns the number of a joint, or what to do where no joint has the name.
     pub(super) fn number(&self, name: &str) -> Result<usize, String> {
         let found = self.numbers.get(name).copied();
         found.ok_or_else(|| {

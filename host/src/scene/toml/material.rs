@@ -50,8 +50,7 @@ impl Palette {
         Ok(palette)
     }
 
-    /// Adds a material of an import; one whose name is taken is renamed after the import, unless
-    /// it is the very same.
+    /// Adds a material of an import. One whose name is taken is renamed after the import, unless it is identical.
     pub(super) fn adopt(&mut self, material: &Material, import: &str) -> usize {
         let mut material = material.clone();
         while let Some(&index) = self.indices.get(&material.name) {

@@ -54,8 +54,8 @@ pub(super) const IMPORTER: Importer = Importer {
     read,
 };
 
-/// Reads a scene file in this format, and the files it imports; molecules among these follow the
-/// input's options where the file does not say otherwise.
+/// Reads a scene file in this format, and the files it imports. Molecules among these follow the input's options where
+/// the file does not say otherwise.
 ///
 /// # Errors
 /// If a file that is imported cannot be read or a file's content is broken; the error shows file, line

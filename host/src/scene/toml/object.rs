@@ -16,7 +16,7 @@ use std::rc::Rc;
 /// The keys of every object.
 const KEYS: &[&str] = &["kind", "name", "material"];
 
-/// The kinds of objects beside those that [`Shape`] has.
+/// The kinds of objects besides those that [`Shape`] has.
 const KINDS: [&str; 5] = ["triangle", "mesh", "group", "instance", "import"];
 
 /// Reads objects, and the files that they import.
@@ -50,8 +50,8 @@ impl Reader<'_> {
         Ok(groups)
     }
 
-    /// The objects of a group or part, of which there must be some: groups of nothing could be nested
-    /// without end at no cost in primitives.
+    /// Returns the objects of a group or part. At least one is required: empty groups could be nested without end at no
+    /// cost in primitives.
     pub(super) fn members(
         &mut self,
         fields: &Fields<'_>,

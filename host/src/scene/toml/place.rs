@@ -20,16 +20,16 @@ pub(super) struct Placer<'p> {
     groups: &'p BTreeMap<String, Group>,
     palette: &'p mut Palette,
     placed: Placed,
-    /// Whether the objects are those of a part, which holds no instances.
+    /// True if the objects are those of a part, which holds no instances.
     in_part: bool,
-    /// The first part of each import that has some, by the import, its materials here, and how smooth it is made.
+    /// The first part of each import that has some. The key is the import, its materials here, and its smoothing angle.
     imported: HashMap<(*const Scene, Vec<usize>, Option<u64>), usize>,
     /// Counted again, because boxes that are turned become twelve triangles.
     primitives: u64,
     size: Size,
 }
 
-/// What the tables of a file come to.
+/// The placed content of a file's tables.
 #[derive(Default)]
 pub(super) struct Placed {
     pub(super) objects: Vec<Object>,
@@ -81,7 +81,7 @@ impl<'p> Placer<'p> {
         }
     }
 
-    /// The objects that a scene's own list comes to, and its parts, as far as instances place them.
+    /// Returns the objects of a scene's own list, and its parts, as far as instances place them.
     pub(super) fn place(
         mut self,
         items: &[Item],

@@ -10,7 +10,7 @@ use glam::{DVec2, DVec3};
 const MAX_CORNERS: usize = 1024;
 const _: () = assert!(MAX_CORNERS <= MAX_CONCAVE);
 
-/// The keys of a kind of shape, apart from those of every object.
+/// Returns the keys of a kind of shape, without those of every object.
 pub(super) fn keys(kind: &str) -> &'static [&'static str] {
     match kind {
         "triangle" => &["vertices", "colors", "coordinates"],
@@ -136,7 +136,7 @@ fn mesh(fields: &Fields<'_>) -> Result<Shape, SceneError> {
                 "remove the face, or move its vertices off their line",
             ));
         }
-        // It has few enough vertices to be cut, whatever its shape.
+        // It has few enough vertices to be cut, in any shape.
         let cut = polygon::triangulate(&points).filter(|cut| cut.exact);
         let cut = cut.ok_or_else(|| {
             face.error(

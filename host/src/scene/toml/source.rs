@@ -16,8 +16,8 @@ pub(crate) type Span = Range<usize>;
 pub(crate) struct Source {
     pub(crate) path: Arc<PathBuf>,
     text: String,
-    /// The offset at which each line starts; counting lines anew for every object would make long
-    /// files quadratic.
+    /// The offset at which each line starts. Counting lines again for every object would take
+    /// quadratic time for long files.
     line_starts: Vec<usize>,
 }
 
@@ -96,7 +96,7 @@ impl Source {
     }
 }
 
-/// The name among `known` that is most like `wanted`.
+/// Returns the name among `known` that is most similar to `wanted`.
 pub(crate) fn nearest<'k>(wanted: &str, known: impl Iterator<Item = &'k str>) -> Option<&'k str> {
     let likeness = |name: &str| strsim::jaro_winkler(wanted, name);
     known.max_by(|a, b| likeness(a).total_cmp(&likeness(b)))

@@ -149,7 +149,7 @@ fn fields_error(fields: &Fields<'_>, cause: String, remedy: &str) -> SceneError 
     }
 }
 
-/// Whose property a target is, its name, and what it is.
+/// Parses a target: its owner, its name, and the property.
 fn parse(target: Value<'_>) -> Result<(Owner, &'static str, TrackTarget), SceneError> {
     const EXAMPLES: &str = "write a property of the camera, a light, a material or a joint, such as \"camera.eye\", \
          \"light.0.color\", \"material.glass.transmit\" or \"joint.elbow.rotation\"";

@@ -158,7 +158,7 @@ impl<'a> Value<'a> {
         }
     }
 
-    /// A color of which no channel is above 1: a surface reflects no more than arrives.
+    /// Reads a color with no channel above 1: a surface reflects no more than arrives.
     pub(crate) fn reflectance(self) -> Result<Color, SceneError> {
         self.color_up_to(
             1.0,
@@ -281,7 +281,7 @@ impl<'a> Value<'a> {
         Fields::new(self.source, self.span(), self.table()?, what, keys)
     }
 
-    /// The value of one key of a table, whatever its other keys are.
+    /// Returns the value of one key of a table, and ignores its other keys.
     pub(crate) fn member(self, what: &'a str, key: &str) -> Result<Value<'a>, SceneError> {
         let (source, span, table) = (self.source, self.span(), self.table()?);
         Fields {

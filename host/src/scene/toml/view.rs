@@ -1,4 +1,4 @@
-//! The tables that say how a scene is seen: `[camera]` and `[render]`.
+//! The tables of the camera and the picture: `[camera]` and `[render]`.
 
 use super::value::{Fields, Value};
 use crate::scene::{Camera, Lens, RenderSettings, SceneError, ToneMapping};

@@ -1,4 +1,4 @@
-//! The header, the section table, names, and what a program that verifies at compile time rejects.
+//! The header, the section table, names, and the errors of a program that verifies at compile time.
 
 use super::{Errors, everything};
 use glam::DVec3;

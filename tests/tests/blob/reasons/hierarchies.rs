@@ -77,7 +77,7 @@ pub(super) fn hierarchies() -> Errors {
     errors
 }
 
-/// A hierarchy of 49 levels, each of which has a leaf.
+/// Returns a hierarchy of 49 levels with a leaf at each.
 pub(super) fn deep_hierarchy() -> Errors {
     const LEAVES: u32 = 50;
     let mut errors = alone(&scenes::of(balls(LEAVES)), Structure::Bvh, 24);

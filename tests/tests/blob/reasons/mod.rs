@@ -1,5 +1,5 @@
-//! A forged blob for every field that can be out of its range, and for every other reason to reject
-//! one: the error names the place and says what is wrong there.
+//! Has a forged blob for every field that can be out of its range, and for every other reason to
+//! reject one. The error names the place and what is wrong there.
 
 mod header;
 mod hierarchies;

@@ -192,7 +192,7 @@ pub(super) fn environments() -> Errors {
             })
         });
     }
-    // The sun is a light of the scene; without a size there is none.
+    // The sun is a light of the scene; without a size it does not exist.
     errors.field("light 1", Field::Kind, |it| {
         it.change(SectionKind::Environment, 0, |it: &mut Environment| {
             it.sun_radius = 0

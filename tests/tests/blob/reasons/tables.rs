@@ -35,7 +35,7 @@ pub(super) fn cells() -> Errors {
     errors.field("node 0 of octree", Field::Child, |it| {
         it.set(SectionKind::OctreeNodes, 0, 9)
     });
-    // Eight nodes on each of seven levels, the first of which has children.
+    // Eight nodes on each of seven levels; the first of each has children.
     errors.field("section octree-nodes", Field::Levels, |it| {
         let mut nodes = vec![1];
         for level in 0..7 {

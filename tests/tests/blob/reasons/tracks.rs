@@ -1,4 +1,4 @@
-//! The times and tracks of what moves.
+//! The times and tracks of moving properties.
 
 use super::{Errors, everything};
 use crate::blob::small_scene;
@@ -126,7 +126,7 @@ pub(super) fn tracks() -> Errors {
     for (target, field, values) in words {
         let (_, track) = find(&base, target);
         let spline = track.interpolation() == Some(Interpolation::Cubic);
-        // Of a spline the value stands behind the change before it.
+        // In a spline the value stands behind the change before it.
         let word = track.first_word as usize + if spline { 3 } else { 0 };
         for &value in values {
             let error = forged(&base, SectionKind::TrackWords, word, |it: &mut i32| {

@@ -16,7 +16,7 @@ fn planes_and_rays_of_every_sort() {
     of_every_sort(8);
 }
 
-/// Along the plane, within it or beside it, no ray meets it; the slightest slope towards it does.
+/// No ray along the plane, within it or next to it, hits it; the slightest slope towards it does.
 #[test]
 fn rays_in_and_along_a_plane_miss_it_and_grazing_rays_meet_it() {
     fn judge<N: Number>() {
@@ -83,7 +83,7 @@ fn axis_parallel_planes_are_exact_from_everywhere() {
             let ready = ray.ready::<N>(&scene).expect("a ray");
             let hit = closest::<N, gridel_core::List>(&scene, &ready, &mut gridel_core::NoCount);
             let hit = hit.expect("a hit");
-            // A speck lies beside, never before the plane.
+            // A speck lies to the side, never before the plane.
             assert_eq!(hit.primitive, 0, "{ray:?}");
             assert_eq!(hit.point[1].length_to_f64(), height, "{ray:?} {hit:?}");
             assert_eq!(hit.normal.map(N::ratio_to_f64), [0.0, 1.0, 0.0]);

@@ -1,4 +1,4 @@
-//! Planes beside other objects: in all structures, in shadow, and in what the compiler derives.
+//! Planes together with other objects: in all structures, in shadow, and in values that the compiler derives.
 
 use super::plane;
 use glam::DVec3;
@@ -21,7 +21,7 @@ fn with_planes(seed: u64, count: usize) -> Scene {
         plane(DVec3::new(3.0, -1.5, 8.0), DVec3::Y),
         plane(DVec3::new(0.1, 0.2, 0.3), DVec3::new(1.0, -2.0, 0.5)),
         plane(DVec3::new(0.1, 1.8, 0.3), DVec3::new(0.1, 1.0, 0.0)),
-        // The same again: the first counts.
+        // The first plane again; of both the first counts.
         plane(DVec3::new(-5.0, -1.5, 0.0), -DVec3::Y),
     ]);
     scene.objects.splice(0..0, below.objects[..2].to_vec());
@@ -232,7 +232,7 @@ fn planes_are_out_of_the_frame() {
     assert_eq!(view(&soup), view(&grounded));
 }
 
-/// Two planes that cross: whichever a ray meets first, on both sides of the line where they meet.
+/// Two planes that cross: a ray hits the nearer one, on both sides of the line where they meet.
 #[test]
 fn of_two_crossing_planes_the_nearer_is_met() {
     fn judge<N: Number>() {

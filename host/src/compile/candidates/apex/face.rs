@@ -1,4 +1,4 @@
-//! The faces of a cube of directions around an apex, and what is seen through each.
+//! The faces of a cube of directions around an apex, and the candidates behind each.
 
 use super::super::bundle::{Bundle, Ranges, Rays};
 use super::super::target::Target;
@@ -11,16 +11,16 @@ const WIDER: f64 = 1.02;
 /// 2^30, the ratio 1.
 pub(super) const ONE: f64 = 1_073_741_824.0;
 
-/// A face of a cube of directions, and what is seen through it.
+/// A face of a cube of directions, and the candidates behind it.
 pub(super) struct Face {
     pub(super) bundle: Bundle,
     /// The content of a window there.
     pub(super) window: Ranges,
-    /// The targets that are seen, the nearest first.
+    /// The visible targets, the nearest first.
     pub(super) seen: Vec<Seen>,
 }
 
-/// A target that is seen.
+/// A visible target.
 #[derive(Clone, Copy)]
 pub(super) struct Seen {
     pub(super) slot: u32,
@@ -31,7 +31,7 @@ pub(super) struct Seen {
 }
 
 impl Face {
-    /// Returns the face as seen from a point; `None` if nothing is seen.
+    /// Returns the face as seen from a point; `None` if no target is visible.
     pub(super) fn of_point(
         targets: &[Target],
         at: [i32; 3],

@@ -11,16 +11,15 @@ use rayon::prelude::*;
 
 /// How much finer the next try is.
 const FINER: f64 = 1.4;
-/// How much of a list is left by the next try where it saves next to nothing: lists are then about a
-/// seventh longer than for single rays.
+/// The part of a list that remains after the next try where it saves next to nothing. Lists are then about a seventh
+/// longer than for single rays.
 const SATURATED: f64 = 0.96;
 /// Lists by which those of a window are estimated.
 const SAMPLES: u64 = 1024;
 /// 2^32 divided by the golden ratio: its multiples are spread evenly.
 const GOLDEN: u32 = 0x9e37_79b9;
 
-/// The size of cells with which an apex takes at most so many bytes, estimated from samples; `None` if
-/// no size does.
+/// Returns the size of cells with which an apex takes at most `bytes`, estimated from samples; `None` if no size does.
 pub(super) fn cell_size(faces: &[Face], targets: &[Target], bytes: f64) -> Option<f64> {
     let entry = if targets.len() < 256 { 2.0 } else { 3.0 };
     // Entries of the lists, and all bytes: a list for each cell, its number and its first entry.
@@ -34,7 +33,7 @@ pub(super) fn cell_size(faces: &[Face], targets: &[Target], bytes: f64) -> Optio
     let sides = faces.iter().flat_map(|face| face.window);
     let widest = sides.map(|[low, high]| high - low).fold(0.0, f64::max);
     if widest < f64::MIN_POSITIVE {
-        // Nothing is seen, so no size is small enough.
+        // No target is visible, so no size is small enough.
         return None;
     }
     let mut size = widest;
@@ -45,7 +44,7 @@ pub(super) fn cell_size(faces: &[Face], targets: &[Target], bytes: f64) -> Optio
     while size > widest / f64::from(Apex::MOST_CELLS) {
         let finer = size / FINER;
         let (more, all) = taken(finer);
-        // Where lists hardly get shorter any more, finer cells are only more of them.
+        // Where lists hardly get shorter, finer cells only add lists.
         if all > bytes || more > SATURATED * FINER * FINER * now {
             break;
         }
@@ -54,14 +53,14 @@ pub(super) fn cell_size(faces: &[Face], targets: &[Target], bytes: f64) -> Optio
     Some(size)
 }
 
-/// A window with the targets that are seen through each of its columns.
+/// A window with the targets that are visible through each of its columns.
 pub(super) struct Window<'t> {
     pub(super) record: ApexWindow,
     bundle: Bundle,
     targets: &'t [Target],
-    /// All that is seen through it, the nearest first.
+    /// All targets visible through it, the nearest first.
     seen: Vec<Seen>,
-    /// For each column those that are seen through it, by their places.
+    /// For each column the targets visible through it, by their places.
     columns: Vec<Vec<u32>>,
     /// The farthest that anything lies along the axis.
     last: f64,
@@ -162,7 +161,7 @@ impl<'t> Window<'t> {
         let shaft = self.bundle.shaft(ranges, self.last);
         let mut sight = Sight::new(&self.bundle, ranges);
         let mut met: Vec<(f64, u32)> = Vec::new();
-        // The least depth of what is left out.
+        // The least depth of the omitted candidates.
         let mut cut = f64::INFINITY;
         for &place in &self.columns[column as usize] {
             let one = &self.seen[place as usize];
@@ -221,7 +220,7 @@ impl Sight {
         }
     }
 
-    /// Takes what stands in the way.
+    /// Records a target in the way of the rays.
     fn meet(&mut self, target: &Target) {
         for (from, way, met) in &mut self.rays {
             if let Some(depth) = target.entered_by(*from, *way) {

@@ -4,8 +4,8 @@ use super::*;
 use crate::scene::{Choice, ImportOptions, Interpolation, TrackTarget};
 use glam::DQuat;
 
-/// The document with keys at 0, 1 and 2 seconds in a buffer of their own: accessor 2 has the times, 3 three places,
-/// 4 three rotations about y by 0, 90 and 180 degrees, 5 the places with tangents.
+/// The document with keys at 0, 1 and 2 seconds in a buffer of their own. Accessor 2 has the times, and 3 three
+/// positions. Accessor 4 has three rotations about y by 0, 90 and 180 degrees, and 5 the positions with tangents.
 fn animated(animations: Value) -> Value {
     let mut document = document();
     let half = std::f32::consts::FRAC_1_SQRT_2;
@@ -200,7 +200,7 @@ fn cameras_and_animations_are_chosen_by_name() {
     }
     let top = chosen(&document, choice(Some("top"), Some("dolly"))).unwrap();
     assert_eq!(top.scene.camera.unwrap().eye, DVec3::new(0.0, 9.0, 0.0));
-    // Of the light alone.
+    // The track of the light alone.
     assert_eq!(top.scene.tracks.len(), 1);
     let error = chosen(&document, choice(Some("side"), None)).unwrap_err();
     assert!(

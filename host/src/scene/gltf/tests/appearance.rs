@@ -23,7 +23,7 @@ fn materials() {
     assert_eq!((steel.mirror, steel.roughness), ([0.5; 3], 0.25));
     assert_eq!(steel.diffuse, Diffuse::Plain([0.0; 3]));
     assert_eq!(steel.highlight, [0.0; 3]);
-    // What nothing says more of is not rough.
+    // A material without further keys is not rough.
     let unsaid = material(json!({"pbrMetallicRoughness": {"baseColorFactor": [0.5, 0.5, 0.5, 1]}}));
     assert_eq!((unsaid.mirror, unsaid.roughness), ([0.0; 3], 0.0));
     assert_eq!(unsaid.diffuse, Diffuse::Plain([0.5; 3]));
@@ -288,7 +288,7 @@ fn normal_textures_lie_as_that_of_the_base_color_does() {
     };
     assert!(warning.contains("has the scale 20"), "{warning}");
 
-    // What is not a transform is an error, as with the color's.
+    // An invalid transform is an error, as with the color's.
     let mut broken = document.clone();
     broken["materials"][0]["normalTexture"]["extensions"]["KHR_texture_transform"]["scale"] =
         json!("large");
@@ -302,7 +302,7 @@ fn normal_textures_lie_as_that_of_the_base_color_does() {
     broken["materials"][0]["normalTexture"]["extensions"] = json!([]);
     assert!(scene(&broken).materials[0].normal_map.is_some());
 
-    // The same transform as the color's, and another one.
+    // Once the color's own transform, and once another one.
     let color = json!({"index": 0, "extensions": transform});
     document["materials"][0]["pbrMetallicRoughness"]["baseColorTexture"] = color;
     assert!(scene(&document).materials[0].normal_map.is_some());

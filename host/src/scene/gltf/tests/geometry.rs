@@ -39,7 +39,7 @@ fn a_buffer_in_a_file_of_its_own() {
     assert_eq!(load(&path).unwrap().scene.objects.len(), 1);
 }
 
-/// Children stand in their parents, and what is mirrored still faces outward.
+/// Children lie in their parents, and mirrored meshes still face outward.
 #[test]
 fn nodes_place_their_meshes() {
     let mut document = document();

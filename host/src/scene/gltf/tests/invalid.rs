@@ -73,7 +73,7 @@ fn broken_documents() {
     assert_eq!(error.line, Some(2));
 }
 
-/// Instances count against what a blob can hold before they are made.
+/// Instances count against the limit of a blob before they are made.
 #[test]
 fn a_million_instances_are_rejected() {
     let mut document = document();

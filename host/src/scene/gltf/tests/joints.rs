@@ -156,7 +156,7 @@ fn channel(random: &mut Random, node: usize, path: &'static str, scale: &[f64]) 
 /// Translation, rotation and scale of a node.
 type Rest = [Vec<f64>; 3];
 
-/// A chain of nodes, each inside of the one before, of which some move, and a square in the last one.
+/// Returns a chain of nodes, each inside of the one before, and a square in the last one. Some nodes move.
 fn chain(random: &mut Random, uneven: bool) -> (Value, Vec<Rest>, Vec<Channel>) {
     let mut document = document();
     let count = 1 + random.below(5);

@@ -192,7 +192,7 @@ fn faults_of_remarks_name_line_cause_and_remedy() {
         assert_eq!(error.line, line, "{error}\n{text}");
         assert!(error.cause.contains(cause), "{error}\n{text}");
         assert!(error.remedy.contains(remedy), "{}", error.remedy);
-        // Nobody asks for the assembly, so nothing is wrong.
+        // No option selects the assembly, so nothing is wrong.
         assert!(pdb(&text).is_ok());
     }
 }
@@ -210,8 +210,8 @@ fn chain_without_atoms_is_worth_a_warning() {
     );
 }
 
-/// Atoms of the chains A and B (by their authors X and X), operators 1 to 5 (turns about z by 0, 90, 180 and 270
-/// degrees, and a step along z) and P, a step along x.
+/// Atoms of the chains A and B (by their authors X and X), and the operators 1 to 5 and P. Operators 1 to 5 are turns
+/// about z by 0, 90, 180 and 270 degrees, and a step along z. P is a step along x.
 fn cif_of(groups: &[[&str; 3]]) -> String {
     let mut text = String::from(
         "data_t\nloop_\n_pdbx_struct_assembly_gen.assembly_id\n\
@@ -238,7 +238,7 @@ fn cif_of(groups: &[[&str; 3]]) -> String {
     text
 }
 
-/// Where the first atom of chain A stands in an assembly with this expression.
+/// Returns where the first atom of chain A stands in an assembly with this expression.
 fn places(expression: &str) -> Vec<DVec3> {
     let text = cif_of(&[["1", expression, "A"]]);
     let scene = assembled("t.cif", &text, "1").unwrap().scene;

@@ -57,7 +57,7 @@ fn bytes_that_are_no_text() {
 
 const DOT: &str = "object = [{ kind = \"sphere\", center = [0, 0, 0], radius = 1 }]\n";
 
-/// Groups of which each holds the one before `times` times, and an instance of the last.
+/// Groups that each hold the one before `times` times, and an instance of the last.
 fn tower(floors: usize, times: usize, ground: &str) -> String {
     let mut text = format!("[group.g0]\n{ground}");
     for floor in 1..=floors {

@@ -8,7 +8,7 @@ use glam::DVec2;
 const SQUARE: &str = "[[object]]\nkind = 'mesh'\nmaterial = 'm'\n\
     vertices = [[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0]]\nfaces = [[0, 1, 2, 3]]\n";
 
-/// Reads a scene beside an image of two by one pixels.
+/// Reads a scene in a folder with an image of two by one pixels.
 fn beside_image(text: &str) -> Result<Imported, SceneError> {
     let folder = tempfile::tempdir().unwrap();
     let pixels = [[255, 0, 0, 255], [0, 0, 255, 9]];
