@@ -74,6 +74,15 @@ pub enum BlobError {
         /// Bytes that a record has (the largest where there are several forms).
         expected: usize,
     },
+    /// A section has more records than the format, or another section, allows.
+    TooMany {
+        /// The section.
+        section: SectionKind,
+        /// Records that there are.
+        found: usize,
+        /// The most records.
+        most: usize,
+    },
     /// A section has too few or too many records.
     Count {
         /// The section.
@@ -218,6 +227,15 @@ impl fmt::Display for BlobError {
             } => write!(
                 f,
                 "section {}: a record has {found} bytes; it must have {expected}",
+                section.name()
+            ),
+            BlobError::TooMany {
+                section,
+                found,
+                most,
+            } => write!(
+                f,
+                "section {}: it has {found} records; it can have at most {most}",
                 section.name()
             ),
             BlobError::Count {

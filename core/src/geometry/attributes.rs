@@ -170,10 +170,10 @@ pub(crate) fn at_most_vertices(
     vertices: usize,
 ) -> Result<(), BlobError> {
     if found > vertices {
-        return Err(BlobError::Count {
+        return Err(BlobError::TooMany {
             section,
             found,
-            expected: vertices,
+            most: vertices,
         });
     }
     Ok(())

@@ -28,10 +28,10 @@ pub(crate) fn check_top(
     let section = SectionKind::InstancePairs;
     let instances = top.instances.len();
     if instances > MAX_INSTANCES {
-        return Err(BlobError::Count {
+        return Err(BlobError::TooMany {
             section: SectionKind::Instances,
             found: instances,
-            expected: MAX_INSTANCES,
+            most: MAX_INSTANCES,
         });
     }
     let expected = instances.saturating_sub(1);

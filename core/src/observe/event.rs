@@ -195,6 +195,11 @@ pub enum Event {
         /// The radiance that arrives, after shadows.
         arriving: [f64; 3],
     },
+    /// The surface that was hit reflects ambient light.
+    Ambient {
+        /// The radiance that it reflects.
+        radiance: [f64; 3],
+    },
     /// The surface was hit by a diffuse or a glossy ray. It emits light that is already counted as light of its lights.
     EmittedByLight,
     /// The surface that was hit emits light.

@@ -203,6 +203,11 @@ impl<N: Number, A: Accel, C: Observer, const EFFECTS: u32> Tracing<'_, '_, '_, N
         self.state = state;
 
         let mut local = Color::radiance(scene.view.ambient).times(surface.diffuse);
+        if C::ENABLED && local != Color::BLACK {
+            self.count.event(Event::Ambient {
+                radiance: local.to_f64(),
+            });
+        }
         All::emit::<EFFECTS, N, _>(self, &mut state, &surface, &mut local);
         let mut number = 0_u32;
         for light in scene.lights {

@@ -186,10 +186,10 @@ fn check_media(scene: &Scene<'_>) -> Result<Effects, BlobError> {
     let section = SectionKind::Media;
     let media = scene.media();
     if media.len() > MAX_MEDIA {
-        return Err(BlobError::Count {
+        return Err(BlobError::TooMany {
             section,
             found: media.len(),
-            expected: MAX_MEDIA,
+            most: MAX_MEDIA,
         });
     }
     for (index, &number) in media.iter().enumerate() {

@@ -85,10 +85,10 @@ impl<'a> Textures<'a> {
         let section = SectionKind::NormalMaps;
         let normal_maps = self.normal_maps.get().map_or(&[][..], |it| *it);
         if normal_maps.len() > self.maps.len() {
-            return Err(BlobError::Count {
+            return Err(BlobError::TooMany {
                 section,
                 found: normal_maps.len(),
-                expected: self.maps.len(),
+                most: self.maps.len(),
             });
         }
         for (index, map) in normal_maps.iter().enumerate() {

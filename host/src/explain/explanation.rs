@@ -71,6 +71,9 @@ pub struct Ray {
     /// True if the surface sends out light that its lights have already brought.
     #[serde(skip_serializing_if = "std::ops::Not::not")]
     pub is_emitted_by_light: bool,
+    /// Reflected ambient light.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub ambient: Option<[f64; 3]>,
     /// The radiance that the surface sends out.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub emitted: Option<[f64; 3]>,
@@ -280,6 +283,7 @@ impl Ray {
                     lighting.outcome = LightOutcome::BehindTriangle;
                 }
             }
+            Event::Ambient { radiance } => self.ambient = Some(radiance),
             Event::Emitted { radiance } => self.emitted = Some(radiance),
             Event::EmittedByLight => self.is_emitted_by_light = true,
             Event::Lens { point } => self.from_lens = Some(frame.place(point).to_array()),

@@ -130,6 +130,7 @@ impl<'t> Reader<'t> {
             from_lens: None,
             is_emitted_by_light: false,
             emitted: None,
+            ambient: None,
             added: [0.0; 3],
             background: false,
             environment: None,

@@ -321,6 +321,9 @@ impl Shown<'_> {
         if let Some(radiance) = ray.emitted {
             writeln!(f, "{indent}  glows with {}", color(radiance))?;
         }
+        if let Some(radiance) = ray.ambient {
+            writeln!(f, "{indent}  reflects ambient light: {}", color(radiance))?;
+        }
         for lighting in &ray.lights {
             writeln!(f, "{indent}  {}", self.outcome(lighting))?;
         }

@@ -145,9 +145,9 @@ pub fn moves(scene: &Scene<'_>, blob: &[u8]) -> bool {
 pub fn speaks(error: &BlobError) {
     let text = error.to_string();
     let named = match error {
-        BlobError::Stride { section, .. } | BlobError::Count { section, .. } => {
-            text.contains(section.name())
-        }
+        BlobError::Stride { section, .. }
+        | BlobError::Count { section, .. }
+        | BlobError::TooMany { section, .. } => text.contains(section.name()),
         BlobError::OutOfRange {
             location, field, ..
         } => text.starts_with(&location.to_string()) && text.contains(field.text()),
