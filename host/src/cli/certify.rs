@@ -72,6 +72,9 @@ const STATE: &str = "certify.state";
 /// Most pixels that are certified: their state takes 320 MiB.
 const MOST_PIXELS: usize = 1 << 22;
 
+/// The version of what is proved and how. Raise it with every change, so that older states are not continued.
+const RULES: u32 = 3;
+
 /// How often the state is written.
 const OFTEN: Duration = Duration::from_secs(5);
 
@@ -182,7 +185,7 @@ fn key(checksum: u32, settings: &Settings) -> String {
         ..
     } = settings;
     format!(
-        "gridel {} certify 2 blob {checksum:08x} size {width}x{height} samples {samples} depth {depth}\n",
+        "gridel {} certify {RULES} blob {checksum:08x} size {width}x{height} samples {samples} depth {depth}\n",
         env!("CARGO_PKG_VERSION")
     )
 }
