@@ -84,6 +84,18 @@ macro_rules! names {
                     $(Structure::$variant => $name,)*
                 }
             }
+
+            /// Returns the structure of a [name](Self::name).
+            ///
+            /// ```
+            /// use gridel_core::Structure;
+            ///
+            /// assert_eq!(Structure::from_name("bvh"), Some(Structure::Bvh));
+            /// assert_eq!(Structure::from_name("tree"), None);
+            /// ```
+            pub fn from_name(name: &str) -> Option<Self> {
+                Self::ALL.into_iter().find(|it| it.name() == name)
+            }
         }
     };
 }

@@ -24,4 +24,16 @@ impl Format {
             Format::F64 => "f64",
         }
     }
+
+    /// Returns the format of a [name](Self::name).
+    ///
+    /// ```
+    /// use gridel_core::Format;
+    ///
+    /// assert_eq!(Format::from_name("fixed"), Some(Format::Fixed));
+    /// assert_eq!(Format::from_name("float"), None);
+    /// ```
+    pub fn from_name(name: &str) -> Option<Self> {
+        Self::ALL.into_iter().find(|format| format.name() == name)
+    }
 }

@@ -53,9 +53,7 @@ mod format_name {
 
     pub fn deserialize<'d, D: Deserializer<'d>>(from: D) -> Result<Format, D::Error> {
         let name = String::deserialize(from)?;
-        let mut all = Format::ALL.into_iter();
-        all.find(|format| format.name() == name)
-            .ok_or_else(|| D::Error::custom("no such number format"))
+        Format::from_name(&name).ok_or_else(|| D::Error::custom("no such number format"))
     }
 }
 

@@ -124,7 +124,7 @@ pub struct FormatName(pub Format);
 impl<'de> Deserialize<'de> for FormatName {
     fn deserialize<D: Deserializer<'de>>(from: D) -> Result<Self, D::Error> {
         let name = String::deserialize(from)?;
-        let found = Format::ALL.into_iter().find(|it| it.name() == name);
+        let found = Format::from_name(&name);
         let unknown = || D::Error::custom(format!("there is no number format `{name}`"));
         found.map(Self).ok_or_else(unknown)
     }
@@ -137,7 +137,7 @@ pub struct StructureName(pub Structure);
 impl<'de> Deserialize<'de> for StructureName {
     fn deserialize<D: Deserializer<'de>>(from: D) -> Result<Self, D::Error> {
         let name = String::deserialize(from)?;
-        let found = Structure::ALL.into_iter().find(|it| it.name() == name);
+        let found = Structure::from_name(&name);
         let unknown = || D::Error::custom(format!("there is no structure `{name}`"));
         found.map(Self).ok_or_else(unknown)
     }

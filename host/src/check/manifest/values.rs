@@ -14,10 +14,7 @@ pub(super) fn target(value: Value<'_>) -> Result<&'static Board, SceneError> {
 
 pub(super) fn format(value: Value<'_>) -> Result<Format, SceneError> {
     let name = value.word(&Format::ALL.map(Format::name))?;
-    Ok(Format::ALL
-        .into_iter()
-        .find(|format| format.name() == name)
-        .unwrap_or(Format::F32))
+    Ok(Format::from_name(name).unwrap_or(Format::F32))
 }
 
 pub(super) fn formats(value: Value<'_>) -> Result<Vec<Format>, SceneError> {
@@ -35,10 +32,7 @@ pub(super) fn formats(value: Value<'_>) -> Result<Vec<Format>, SceneError> {
 
 pub(super) fn structure(value: Value<'_>) -> Result<Structure, SceneError> {
     let name = value.text()?;
-    let named = Structure::ALL
-        .into_iter()
-        .find(|structure| structure.name() == name);
-    named.ok_or_else(|| {
+    Structure::from_name(name).ok_or_else(|| {
         let names = || Structure::ALL.into_iter().map(Structure::name);
         let near = nearest(name, names()).unwrap_or_default();
         let all: Vec<_> = names().collect();

@@ -72,20 +72,14 @@ pub fn builder() -> impl TypedValueParser<Value = Builder> {
 
 /// The name of an acceleration structure.
 pub fn structure() -> impl TypedValueParser<Value = Structure> {
-    PossibleValuesParser::new(Structure::ALL.map(Structure::name)).try_map(|name| {
-        let mut all = Structure::ALL.into_iter();
-        all.find(|structure| structure.name() == name)
-            .ok_or("no such structure")
-    })
+    PossibleValuesParser::new(Structure::ALL.map(Structure::name))
+        .try_map(|name| Structure::from_name(&name).ok_or("no such structure"))
 }
 
 /// The name of a number format.
 pub fn format() -> impl TypedValueParser<Value = Format> {
-    PossibleValuesParser::new(Format::ALL.map(Format::name)).try_map(|name| {
-        let mut all = Format::ALL.into_iter();
-        all.find(|format| format.name() == name)
-            .ok_or("no such number format")
-    })
+    PossibleValuesParser::new(Format::ALL.map(Format::name))
+        .try_map(|name| Format::from_name(&name).ok_or("no such number format"))
 }
 
 /// The name of an AOV.
