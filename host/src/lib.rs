@@ -58,6 +58,7 @@ pub mod compile;
 pub mod deformation;
 pub mod emit;
 pub mod explain;
+mod explained;
 pub mod layer;
 mod live;
 pub mod measure;
@@ -84,3 +85,5 @@ pub mod table;
 pub mod trace;
 pub mod verify;
 pub mod view;
+
+pub use explained::explained;

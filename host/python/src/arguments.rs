@@ -1,12 +1,19 @@
 //! Names and numbers that Python gives.
 
 use gridel_core::{Format, Structure};
-use gridel_host::compile::Options;
+use gridel_host::compile::{CompileError, Options};
+use gridel_host::explained;
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 
+/// A ValueError of what is wrong.
 pub fn invalid(error: impl std::fmt::Display) -> PyErr {
     PyValueError::new_err(error.to_string())
+}
+
+/// A ValueError of what is wrong and what to do.
+pub fn rejected(error: impl Into<CompileError>) -> PyErr {
+    invalid(explained(&error.into()))
 }
 
 pub fn structure(name: &str) -> PyResult<Structure> {
@@ -29,11 +36,6 @@ pub fn format(name: &str) -> PyResult<Format> {
 }
 
 pub fn options(accel: &[String], lattice_bits: u8) -> PyResult<Options> {
-    if !(16..=24).contains(&lattice_bits) {
-        return Err(invalid(format!(
-            "lattice_bits is {lattice_bits}; it must be 16 to 24"
-        )));
-    }
     Ok(Options {
         structures: accel
             .iter()

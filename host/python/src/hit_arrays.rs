@@ -74,7 +74,8 @@ impl<'py, T: numpy::Element + Send + Copy> Cast<'py, T> {
                 normal,
                 uv,
             };
-            py.detach(|| query::cast(scene, rays, how, columns, place, number));
+            let cast = || query::cast(scene, rays, how, columns, place, number);
+            query::detach(py, how, length, cast)?;
         }
         Ok(Self {
             t,

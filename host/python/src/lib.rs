@@ -8,6 +8,7 @@ mod meshes;
 mod query;
 mod rays;
 mod scene;
+mod threads;
 
 use pyo3::prelude::*;
 

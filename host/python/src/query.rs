@@ -1,6 +1,7 @@
 //! Queries of many rays and points, spread over threads.
 
 use crate::rays::{Rays, Ready};
+use crate::threads::in_pool;
 #[cfg(target_arch = "x86_64")]
 use gridel_core::SimdLevel;
 use gridel_core::accel::DynAccel;
@@ -12,6 +13,7 @@ use gridel_core::{
 #[cfg(target_arch = "x86_64")]
 use gridel_host::simd;
 use gridel_host::trace::{DirectionScale, Frame};
+use pyo3::prelude::*;
 use rayon::prelude::*;
 use std::ops::Range;
 
@@ -76,21 +78,23 @@ mod inside;
 
 pub use all_hits::{all, count, locations};
 pub use columns::{Columns, cast};
-pub use inside::contains;
+pub use inside::{Inside, contains};
 
-/// Calls a function with all threads, or in a pool of `threads`.
-pub fn with_threads<T: Send>(threads: usize, work: impl FnOnce() -> T + Send) -> T {
-    if threads == 0 {
-        return work();
+/// Calls a function that asks about so many rays or points, without the GIL, where there are the threads that it needs.
+pub fn detach<T: Send>(
+    py: Python<'_>,
+    how: How,
+    length: usize,
+    query: impl FnOnce() -> T + Send,
+) -> PyResult<T> {
+    let chunks = length.div_ceil(CHUNK);
+    if how.threads == 1 || chunks <= 1 {
+        return Ok(py.detach(query));
     }
-    match rayon::ThreadPoolBuilder::new().num_threads(threads).build() {
-        Ok(pool) => pool.install(work),
-        // Without threads of its own it runs on those that there are.
-        Err(_) => work(),
-    }
+    in_pool(py, how.threads.min(chunks), query)
 }
 
-/// Works on chunks, with all threads or a given number.
+/// Works on chunks, by the threads that [`detach`] prepares.
 fn each_chunk<C: Send, T: Send>(
     how: How,
     chunks: Vec<C>,
@@ -99,7 +103,7 @@ fn each_chunk<C: Send, T: Send>(
     if how.threads == 1 || chunks.len() <= 1 {
         chunks.into_iter().map(work).collect()
     } else {
-        with_threads(how.threads, || chunks.into_par_iter().map(work).collect())
+        chunks.into_par_iter().map(work).collect()
     }
 }
 

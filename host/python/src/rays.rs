@@ -1,7 +1,8 @@
 //! Rays and points as NumPy arrays hold them: read in place.
 
 use glam::DVec3;
-use gridel_core::{Number, Ray, Scene};
+use gridel_core::format::limits::FARTHEST;
+use gridel_core::{Kind, Number, Ray, RayError, Scene};
 use gridel_host::trace::{DirectionScale, Frame, Rejection, SceneRay};
 use numpy::{PyReadonlyArrayDyn, PyUntypedArray, PyUntypedArrayMethods};
 use pyo3::exceptions::{PyTypeError, PyValueError};
@@ -179,16 +180,123 @@ impl<'a> Rays<'a> {
 /// A ray in the core's form, or the reason why it is invalid.
 pub type Ready<N> = Result<(Ray<N>, DirectionScale), Rejection>;
 
+/// How far from where a ray comes to a scene's box it can meet what has a box, in units, and how near.
+const REACH: [f64; 2] = [1.0 / (1_u64 << 32) as f64, (1_u64 << 17) as f64];
+
+/// Makes a ray ready for the core, from however far away. Its t are numbers of double precision, or it is none.
+#[inline(always)]
+pub fn prepare<N: Number>(scene: &Scene<'_>, frame: &Frame, ray: &SceneRay) -> Ready<N> {
+    let mut ready = frame.ray(scene, ray);
+    complete(&mut ready, (scene, frame), || *ray);
+    ready
+}
+
+/// Completes what the frame made of a ray, in place: hardly ever is there anything to do.
+#[inline(always)]
+fn complete<N: Number>(
+    ready: &mut Ready<N>,
+    (scene, frame): (&Scene<'_>, &Frame),
+    ray: impl FnOnce() -> SceneRay,
+) {
+    match ready {
+        Ok(found) => {
+            if let Err(why) = check_multiples(found) {
+                *ready = Err(why);
+            }
+        }
+        Err(Rejection::Ray(RayError::Distance)) => {
+            *ready = prepare_from_afar(scene, frame, ray());
+        }
+        Err(_) => (),
+    }
+}
+
+/// Checks that the t of the scene are numbers of double precision, which they are unless the direction is of an extreme
+/// length.
+#[inline(always)]
+fn check_multiples<N: Number>((ray, scale): &(Ray<N>, DirectionScale)) -> Result<(), Rejection> {
+    let [least, most] = REACH;
+    let exactly = || 0.0;
+    scale.multiple(N::far_to_f64(ray.start_t()) + most, exactly)?;
+    scale.multiple(least, exactly)?;
+    Ok(())
+}
+
+/// A ray from farther away than the core takes it.
+#[cold]
+#[inline(never)]
+fn prepare_from_afar<N: Number>(scene: &Scene<'_>, frame: &Frame, ray: SceneRay) -> Ready<N> {
+    let middle = Middle::of(scene);
+    let (mut near, t) = middle.nearer(&ray);
+    if !t.is_finite() {
+        return Err(Rejection::Multiple("short"));
+    }
+    // A ray that passes by so far away is brought nearer, where it misses all the same; planes it would not.
+    if Kind::ALL
+        .iter()
+        .all(|&kind| kind.is_bounded() || scene.count(kind) == 0)
+    {
+        let aside = middle.far / 2.0;
+        near.origin = near
+            .origin
+            .clamp(middle.place - aside, middle.place + aside);
+    }
+    let (ray, mut scale) = frame.ray(scene, &near)?;
+    scale.count_from(t);
+    let found = (ray, scale);
+    check_multiples(&found)?;
+    Ok(found)
+}
+
+/// The middle of a scene.
+#[derive(Clone, Copy)]
+pub struct Middle {
+    place: DVec3,
+    /// From here on the core does not take the origin of a ray.
+    pub far: f64,
+}
+
+impl Middle {
+    pub fn of(scene: &Scene<'_>) -> Self {
+        let frame = Frame::of(scene);
+        let sides = scene.bounds().0;
+        Self {
+            place: frame.place(sides.map(|[low, high]| f64::from(low).midpoint(high.into()))),
+            far: frame.length((FARTHEST >> 13) as f64),
+        }
+    }
+
+    /// The same ray from where it is a few times the scene's size before it, along its largest component, and the t of
+    /// that place.
+    pub fn nearer(&self, ray: &SceneRay) -> (SceneRay, f64) {
+        let axis = ray.direction.abs().max_position();
+        let before = (self.far / f64::from(1 << 20)).copysign(ray.direction[axis]);
+        let t = (self.place[axis] - before - ray.origin[axis]) / ray.direction[axis];
+        // Rounded once, it is a point of the ray, however large t is.
+        let along = |axis: usize| ray.direction[axis].mul_add(t, ray.origin[axis]);
+        let near = SceneRay {
+            origin: DVec3::new(along(0), along(1), along(2)),
+            direction: ray.direction,
+            tmin: ray.tmin - t,
+            tmax: ray.tmax - t,
+        };
+        (near, t)
+    }
+}
+
 #[inline(never)]
 fn fill<N: Number>(
     (scene, frame, numbers): (&Scene<'_>, &Frame, Range<usize>),
     ready: &mut Vec<Ready<N>>,
     ray: impl Fn(usize) -> SceneRay,
 ) {
-    ready.extend(numbers.map(
+    ready.extend(numbers.clone().map(
         #[inline(always)]
         |number| frame.ray(scene, &ray(number)),
     ));
+    for (number, ready) in numbers.zip(ready) {
+        complete(ready, (scene, frame), || ray(number));
+    }
 }
 
 /// A ray from its origin on.

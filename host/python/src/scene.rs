@@ -2,23 +2,26 @@
 
 mod place;
 
-use crate::arguments::{format, invalid, options, structure};
+use crate::arguments::{format, invalid, options, rejected, structure};
 use crate::closed::closed;
 use crate::hit_arrays::{Arrays, Cast, HitArrays, MeshHitArrays, append, column, rows, zeros};
-use crate::meshes::{self, Mesh};
-use crate::query::{self, Any, FirstPrimitive, Found, How, NONE};
-use crate::rays::{Array, Points, Rays};
+use crate::meshes::{self, GivenMesh, Mesh};
+use crate::query::{self, Any, FirstPrimitive, Found, How, Inside, NONE};
+use crate::rays::{Array, Middle, Points, Rays};
+use crate::threads::in_pool;
 use gridel_core::{BlobError, Scene, Settings, Structure};
 use gridel_host::blob::{Blob, best_structures};
-use gridel_host::compile::{Options, compile};
+use gridel_host::compile::{Compiled, LATTICE_BITS, Options, Report, compile};
 use gridel_host::picture::srgb;
 use gridel_host::render::{Job, render};
 use gridel_host::scene::{self, ImportOptions, Imported, Shape};
+use gridel_host::table::{counted, significant};
 use gridel_host::trace::SceneRay;
 use numpy::{IntoPyArray, PyArray2, PyArrayMethods, PyUntypedArray};
-use pyo3::exceptions::{PyFileNotFoundError, PyKeyError};
+use pyo3::exceptions::{PyFileNotFoundError, PyIsADirectoryError, PyKeyError, PyUserWarning};
 use pyo3::prelude::*;
 use pyo3::types::PyBytes;
+use std::ffi::CString;
 use std::path::PathBuf;
 use std::sync::OnceLock;
 
@@ -37,24 +40,64 @@ self_cell::self_cell!(
 #[pyclass(frozen, name = "NativeScene")]
 pub struct NativeScene {
     held: Held,
-    /// The model that it was compiled from; `None` for a blob.
-    model: Option<scene::Scene>,
+    /// What it was compiled from; `None` of a blob.
+    model: Option<Model>,
     /// The number of the first primitive of each object of `model`.
     firsts: Vec<u32>,
     displacement: f64,
+    middle: Middle,
     closed: OnceLock<Vec<bool>>,
 }
 
-impl NativeScene {
-    fn of_blob(blob: Blob, model: Option<scene::Scene>, displacement: f64) -> PyResult<Self> {
-        let held = Held::new(blob, |blob| blob.scene());
-        if let Err(error) = held.borrow_dependent() {
-            return Err(invalid(format!("invalid scene blob: {error}")));
+/// What a scene is compiled from.
+struct Model {
+    scene: scene::Scene,
+    options: Options,
+    /// Whether the scene is made of arrays alone.
+    is_of_arrays: bool,
+}
+
+impl Model {
+    fn compile(&self, py: Python<'_>) -> PyResult<Compiled> {
+        in_pool(py, 0, || compile(&self.scene, &self.options))?.map_err(rejected)
+    }
+
+    /// Warns of primitives that the lattice leaves nothing of.
+    fn warn_of_collapsed(&self, py: Python<'_>, report: &Report, level: i32) -> PyResult<()> {
+        if report.collapsed.count() == 0 {
+            return Ok(());
         }
+        let remedy = if self.options.lattice_bits < *LATTICE_BITS.end() {
+            "use more lattice_bits"
+        } else {
+            "scale them up, or put them into a scene of their own"
+        };
+        let warning = format!(
+            "{} too small for the lattice, whose step is {}, left out; {remedy}",
+            counted(report.collapsed.count(), "primitive"),
+            significant(report.step),
+        );
+        warn(py, &warning, level)
+    }
+}
+
+/// Issues a UserWarning, of a function so many levels up.
+fn warn(py: Python<'_>, warning: &str, level: i32) -> PyResult<()> {
+    let warning = CString::new(warning.replace('\0', " "))?;
+    PyErr::warn(py, &py.get_type::<PyUserWarning>(), &warning, level)
+}
+
+impl NativeScene {
+    fn of_blob(blob: Blob, model: Option<Model>, displacement: f64) -> PyResult<Self> {
+        let held = Held::new(blob, |blob| blob.scene());
+        let middle = match held.borrow_dependent() {
+            Ok(scene) => Middle::of(scene),
+            Err(error) => return Err(invalid(format!("invalid scene blob: {error}"))),
+        };
         let mut next = 0;
         let firsts = model
             .iter()
-            .flat_map(scene::Scene::all_objects)
+            .flat_map(|model| model.scene.all_objects())
             .map(|object| {
                 let first = next;
                 next += match &object.shape {
@@ -69,14 +112,20 @@ impl NativeScene {
             model,
             firsts,
             displacement,
+            middle,
             closed: OnceLock::new(),
         })
     }
 
-    fn compiled(model: scene::Scene, options: &Options) -> PyResult<Self> {
-        let compiled = compile(&model, options).map_err(invalid)?;
-        let displacement = compiled.report.largest_displacement;
-        Self::of_blob(compiled.blob, Some(model), displacement)
+    fn compiled(py: Python<'_>, model: Model, level: i32) -> PyResult<Self> {
+        let Compiled { blob, report } = model.compile(py)?;
+        model.warn_of_collapsed(py, &report, level)?;
+        let collapsed = match report.collapsed.count() {
+            0 => 0.0,
+            _ => report.step,
+        };
+        let displacement = report.largest_displacement.max(collapsed);
+        py.detach(|| Self::of_blob(blob, Some(model), displacement))
     }
 
     fn scene(&self) -> PyResult<&Scene<'_>> {
@@ -102,6 +151,48 @@ impl NativeScene {
         })
     }
 
+    /// The scene for pictures of another shape, where the compiler chooses the camera by their shape.
+    fn framed(&self, py: Python<'_>, size: [u16; 2]) -> PyResult<Option<Blob>> {
+        let Some(model) = &self.model else {
+            return Ok(None);
+        };
+        let scene = &model.scene;
+        let [width, height] = size.map(u32::from);
+        let has_shape = scene.render.width * height == scene.render.height * width;
+        if scene.camera.is_some() || has_shape {
+            return Ok(None);
+        }
+        let render = scene::RenderSettings {
+            width,
+            height,
+            ..scene.render
+        };
+        let scene = scene::Scene {
+            render,
+            ..scene.clone()
+        };
+        let compiled = in_pool(py, 0, || compile(&scene, &model.options))?;
+        Ok(Some(compiled.map_err(rejected)?.blob))
+    }
+
+    /// Which objects are closed, if any is.
+    fn closed(&self, py: Python<'_>, scene: &Scene<'_>) -> PyResult<&[bool]> {
+        let found = match self.closed.get() {
+            Some(found) => found,
+            None => {
+                // Found outside of the lock: who holds it may not wait for the GIL.
+                let found = py.detach(|| closed(scene));
+                self.closed.get_or_init(|| found)
+            }
+        };
+        if !found.contains(&true) {
+            return Err(invalid(
+                "no object of the scene is closed; pass closed_only=False to count crossings all the same",
+            ));
+        }
+        Ok(found)
+    }
+
     /// The scene with a structure chosen.
     fn chosen(&self, how: How) -> PyResult<Scene<'_>> {
         let chosen = self.scene()?.choose(how.structure);
@@ -114,6 +205,12 @@ impl NativeScene {
     #[staticmethod]
     #[pyo3(signature = (path, accel, lattice_bits))]
     fn load(py: Python<'_>, path: PathBuf, accel: Vec<String>, lattice_bits: u8) -> PyResult<Self> {
+        if path.is_dir() {
+            return Err(PyIsADirectoryError::new_err(format!(
+                "{}: a directory; name a scene file in it",
+                path.display()
+            )));
+        }
         if !path.is_file() {
             return Err(PyFileNotFoundError::new_err(format!(
                 "{}: no such file",
@@ -121,14 +218,22 @@ impl NativeScene {
             )));
         }
         let options = options(&accel, lattice_bits)?;
-        py.detach(|| {
-            if gridel_host::blob::is_blob(&path)? {
-                return Self::of_blob(Blob::read(&path)?, None, f64::NAN);
-            }
-            let imported = scene::load_with(&path, &ImportOptions::default());
-            let Imported { scene, .. } = imported.map_err(invalid)?;
-            Self::compiled(scene, &options)
-        })
+        if gridel_host::blob::is_blob(&path)? {
+            return py.detach(|| Self::of_blob(Blob::read(&path)?, None, f64::NAN));
+        }
+        let imported = in_pool(py, 0, || scene::load_with(&path, &ImportOptions::default()))?;
+        let Imported {
+            scene, warnings, ..
+        } = imported.map_err(rejected)?;
+        for warning in warnings {
+            warn(py, &warning, 2)?;
+        }
+        let model = Model {
+            scene,
+            options,
+            is_of_arrays: false,
+        };
+        Self::compiled(py, model, 2)
     }
 
     #[staticmethod]
@@ -144,9 +249,33 @@ impl NativeScene {
         accel: Vec<String>,
         lattice_bits: u8,
     ) -> PyResult<Self> {
-        let options = options(&accel, lattice_bits)?;
-        let model = meshes::model(&meshes)?;
-        py.detach(|| Self::compiled(model, &options))
+        let model = Model {
+            scene: meshes::model(&meshes)?,
+            options: Options {
+                flat_meshes: true,
+                ..options(&accel, lattice_bits)?
+            },
+            is_of_arrays: true,
+        };
+        Self::compiled(py, model, 3)
+    }
+
+    /// What [`from_meshes`](Self::from_meshes) was given; `None` of other scenes.
+    #[expect(clippy::type_complexity, reason = "arguments of a function")]
+    fn given<'py>(
+        &self,
+        py: Python<'py>,
+    ) -> PyResult<Option<(Vec<GivenMesh<'py>>, Vec<&'static str>, u8)>> {
+        let Some(model) = self.model.as_ref().filter(|model| model.is_of_arrays) else {
+            return Ok(None);
+        };
+        let options = &model.options;
+        let structures = options.structures.iter().map(|it| it.name());
+        Ok(Some((
+            meshes::given(py, &model.scene)?,
+            structures.collect(),
+            options.lattice_bits,
+        )))
     }
 
     /// The first hits: t, object, primitive, instance, normal, uv.
@@ -227,9 +356,10 @@ impl NativeScene {
         ];
         let rays = Rays::two(arrays[0].rows("origins")?, arrays[1].rows("directions")?)?;
         let scene = self.chosen(how)?;
-        Ok(py
-            .detach(|| query::ask::<FirstPrimitive>(&scene, rays, how))
-            .into_pyarray(py))
+        let found = query::detach(py, how, rays.len(), || {
+            query::ask::<FirstPrimitive>(&scene, rays, how)
+        })?;
+        Ok(found.into_pyarray(py))
     }
 
     /// Returns whether each ray of two arrays hits anything.
@@ -248,9 +378,8 @@ impl NativeScene {
         ];
         let rays = Rays::two(arrays[0].rows("origins")?, arrays[1].rows("directions")?)?;
         let scene = self.chosen(how)?;
-        Ok(py
-            .detach(|| query::ask::<Any>(&scene, rays, how))
-            .into_pyarray(py))
+        let found = query::detach(py, how, rays.len(), || query::ask::<Any>(&scene, rays, how))?;
+        Ok(found.into_pyarray(py))
     }
 
     /// Returns whether each ray hits anything.
@@ -267,9 +396,8 @@ impl NativeScene {
             Array::borrow(rays, "rays")?,
         );
         let (scene, rays) = (self.chosen(how)?, Rays::rows(array.rows("rays")?)?);
-        Ok(py
-            .detach(|| query::ask::<Any>(&scene, rays, how))
-            .into_pyarray(py))
+        let found = query::detach(py, how, rays.len(), || query::ask::<Any>(&scene, rays, how))?;
+        Ok(found.into_pyarray(py))
     }
 
     /// The number of hits of each ray.
@@ -286,9 +414,8 @@ impl NativeScene {
             Array::borrow(rays, "rays")?,
         );
         let (scene, rays) = (self.chosen(how)?, Rays::rows(array.rows("rays")?)?);
-        Ok(py
-            .detach(|| query::count(&scene, rays, how))
-            .into_pyarray(py))
+        let found = query::detach(py, how, rays.len(), || query::count(&scene, rays, how))?;
+        Ok(found.into_pyarray(py))
     }
 
     /// All hits: ray, t, object, primitive, instance, leaves, normal, uv.
@@ -305,7 +432,7 @@ impl NativeScene {
             Array::borrow(rays, "rays")?,
         );
         let (scene, rays) = (self.chosen(how)?, Rays::rows(array.rows("rays")?)?);
-        let (hits, uvs) = py.detach(|| {
+        let (hits, uvs) = query::detach(py, how, rays.len(), || {
             let mut hits = query::all(&scene, rays, how).concat();
             // Triangles closer to each other than the lattice moved them keep the order in which they are hit.
             let mut last = (usize::MAX, f64::NEG_INFINITY);
@@ -319,7 +446,7 @@ impl NativeScene {
                 })
                 .collect();
             (hits, uvs)
-        });
+        })?;
         let arrays = (
             column(py, &hits, |(_, hit)| hit.t),
             column(py, &hits, |(_, hit)| hit.object),
@@ -357,11 +484,12 @@ impl NativeScene {
         ];
         let rays = Rays::two(arrays[0].rows("origins")?, arrays[1].rows("directions")?)?;
         let scene = self.chosen(how)?;
-        let chunks = py.detach(|| {
+        let chunks = query::detach(py, how, rays.len(), || {
             query::locations(&scene, rays, how, multiple_hits, max_hits, |ray, hit| {
-                self.place(ray, hit).1.to_array()
+                let (t, place, _) = self.place(ray, hit);
+                (t, place.to_array())
             })
-        });
+        })?;
         let length = chunks.iter().map(|chunk| chunk.0.len()).sum();
         let places = zeros(py, 3 * length);
         let [numbers, triangles] = [length; 2].map(|length| zeros(py, length));
@@ -381,13 +509,13 @@ impl NativeScene {
         Ok((places.reshape([length, 3])?, numbers, triangles))
     }
 
-    /// Returns whether each point lies in a closed object, or with `closed_only` false in any object by parity.
+    /// Whether each point lies in a closed object, or by parity in any `"object"`, or in the `"scene"` as a whole.
     #[expect(clippy::too_many_arguments, reason = "keyword arguments of Python")]
     fn contains<'py>(
         &self,
         py: Python<'py>,
         points: &Bound<'py, PyUntypedArray>,
-        closed_only: bool,
+        within: &str,
         format: &str,
         accel: Option<&str>,
         threads: usize,
@@ -397,16 +525,15 @@ impl NativeScene {
             Array::borrow(points, "points")?,
         );
         let (scene, points) = (self.chosen(how)?, Points::rows(array.rows("points")?)?);
-        let closed = closed_only.then(|| self.closed.get_or_init(|| py.detach(|| closed(&scene))));
-        if closed.is_some_and(|closed| !closed.contains(&true)) {
-            return Err(invalid(
-                "no object of the scene is closed; pass closed_only=False to count crossings all the same",
-            ));
-        }
-        let closed = closed.map(Vec::as_slice);
-        Ok(py
-            .detach(|| query::contains(&scene, points, closed, how))
-            .into_pyarray(py))
+        let inside = match within {
+            "object" => Inside::Object,
+            "scene" => Inside::Scene,
+            _ => Inside::Closed(self.closed(py, &scene)?),
+        };
+        let found = query::detach(py, how, points.len(), || {
+            query::contains(&scene, points, inside, how)
+        })?;
+        Ok(found.into_pyarray(py))
     }
 
     /// A picture: (height, width, 3) uint8.
@@ -422,9 +549,13 @@ impl NativeScene {
         threads: usize,
     ) -> PyResult<Bound<'py, numpy::PyArray3<u8>>> {
         let how = self.how(format, accel, threads)?;
-        let scene = self.scene()?;
-        let own = Settings::of(scene);
+        let own = Settings::of(self.scene()?);
         let [width, height] = size.unwrap_or([own.width, own.height]);
+        let framed = self.framed(py, [width, height])?;
+        let scene = match &framed {
+            Some(blob) => &blob.scene().map_err(invalid)?,
+            None => self.scene()?,
+        };
         let settings = Settings {
             width,
             height,
@@ -433,7 +564,7 @@ impl NativeScene {
             ..own
         };
         let job = Job::whole(how.format, how.structure, settings);
-        let picture = py.detach(|| query::with_threads(threads, || render(scene, &job, &|| ())));
+        let picture = in_pool(py, threads, || render(scene, &job, &|| ()))?;
         let pixels = srgb(&picture.map_err(invalid)?, false);
         let shape = [usize::from(height), usize::from(width), 3];
         pixels.into_pyarray(py).reshape(shape)
@@ -454,10 +585,14 @@ impl NativeScene {
                 "a scene that was read from a blob cannot be compiled anew; load the scene file",
             ));
         };
+        let own = &model.options;
         let accel = accel.unwrap_or_else(|| self.accels());
-        let options = options(&accel, lattice_bits.unwrap_or(24))?;
-        let compiled = py.detach(|| compile(model, &options)).map_err(invalid)?;
-        Ok(PyBytes::new(py, compiled.blob.bytes()))
+        let options = Options {
+            flat_meshes: own.flat_meshes,
+            ..options(&accel, lattice_bits.unwrap_or(own.lattice_bits))?
+        };
+        let compiled = in_pool(py, 0, || compile(&model.scene, &options))?;
+        Ok(PyBytes::new(py, compiled.map_err(rejected)?.blob.bytes()))
     }
 
     /// The names of the structures, the fastest first.

@@ -1,5 +1,8 @@
 """Tests the class for Open3D alone, and against Open3D's own where that is installed."""
 
+import copy
+import pickle
+
 import numpy as np
 import pytest
 
@@ -62,6 +65,100 @@ def test_cube_is_crossed_twice_through_its_center():
     assert scene.test_occlusions(ray, tnear=1.5).tolist() == [True]
     assert scene.test_occlusions(ray, tnear=1.25, tfar=1.5).tolist() == [False]
     assert scene.compute_occupancy([[[0.5, 0.5, 0.5], [2, 2, 2]]]).tolist() == [[1.0, 0.0]]
+
+
+def test_occupancy_is_the_parity_of_all_meshes():
+    def answers(scene, convert):
+        for scale in (1, 0.5, 0.25):
+            vertices = (np.float32(scale) * (TETRAHEDRON - np.float32(0.2))).astype(np.float32)
+            scene.add_triangles(convert(vertices), convert(SIDES))
+        points = np.random.default_rng(1).uniform(-0.25, 0.5, size=(2000, 3)).astype(np.float32)
+        return scene.compute_occupancy(convert(points)).numpy().tolist()
+
+    mine = answers(RaycastingScene(), lambda it: it)
+    assert set(mine) == {0.0, 1.0}
+    o3d = pytest.importorskip("open3d", reason="Open3D is not installed")
+    assert mine == answers(o3d.t.geometry.RaycastingScene(), o3d.core.Tensor)
+
+
+def test_occupancy_of_two_nested_meshes_is_outside():
+    scene = RaycastingScene()
+    scene.add_triangles(TETRAHEDRON, SIDES)
+    scene.add_triangles(TETRAHEDRON, SIDES[:, ::-1])
+    assert scene.compute_occupancy([[0.1, 0.1, 0.1], [np.nan, 0, 0]]).tolist() == [0.0, 0.0]
+    scene.add_triangles(TETRAHEDRON, SIDES)
+    assert scene.compute_occupancy([[0.1, 0.1, 0.1], [np.nan, 0, 0]]).tolist() == [1.0, 0.0]
+
+
+def test_tutorial_of_open3d_runs():
+    scene = fill(RaycastingScene())
+    rays = RaycastingScene.create_rays_pinhole(
+        fov_deg=90, center=[0, 0, 2], eye=[2, 3, 0], up=[0, 1, 0], width_px=64, height_px=48
+    )
+    rays = RaycastingScene.create_rays_pinhole(90, [0.2, 0.2, 0.2], [2, 3, 4], [0, 1, 0], 64, 48)
+    found = scene.cast_rays(rays)
+    hit = found["t_hit"].isfinite()
+    assert hit.numpy().any() and type(hit.numpy()) is np.ndarray
+    points = rays[hit][:, :3] + rays[hit][:, 3:] * found["t_hit"][hit].reshape((-1, 1))
+    assert points.shape == (hit.sum(), 3)
+    assert (found["t_hit"].isinf() == hit.logical_not()).all() and not found["t_hit"].isnan().any()
+    assert found["t_hit"].cpu().clone().contiguous().to(np.float64).dtype == np.float64
+    assert found["primitive_normals"].abs().num_elements() == 64 * 48 * 3
+    o3d = pytest.importorskip("open3d", reason="Open3D is not installed")
+    assert len(o3d.t.geometry.PointCloud(points).point.positions) == len(points)
+    assert found["t_hit"].to(o3d.core.float64).dtype == np.float64
+
+
+def test_far_and_tiny_rays_and_thin_meshes():
+    scene = RaycastingScene()
+    scene.add_triangles(TETRAHEDRON, SIDES)
+    rays = np.array([[0.1, 0.2, -1e9, 0, 0, 1], [0.1, 0.2, -1e9, 0, 0, 1e-308]])
+    found = scene.cast_rays(rays)
+    assert found["t_hit"].tolist() == [1e9, np.inf] and found["primitive_ids"][1] == scene.INVALID_ID
+    assert scene.test_occlusions(rays).tolist() == [True, False]
+    assert scene.count_intersections(rays).tolist() == [2, 0]
+    assert scene.list_intersections(rays)["ray_splits"].tolist() == [0, 2, 2]
+    thin = RaycastingScene()
+    thin.add_triangles(TETRAHEDRON * [1, 1, 1e-9], SIDES)
+    assert thin.test_occlusions([[0.1, 0.2, -1, 0, 0, 1]]).tolist() == [True]
+
+
+def test_add_triangles_rejects_what_is_no_mesh():
+    scene = RaycastingScene()
+    with pytest.raises(TypeError, match="triangle_indices.*integers"):
+        scene.add_triangles(TETRAHEDRON, SIDES.astype(float))
+    with pytest.raises(ValueError, match="vertex_positions: vertex 2 is not finite"):
+        scene.add_triangles([[0, 0, 0], [1, 0, 0], [np.nan, 1, 0], [0, 0, 1]], SIDES)
+    with pytest.raises(ValueError, match="triangle_indices: face 0 .*numbered 0 to 3"):
+        scene.add_triangles(TETRAHEDRON, [[0, 1, 4]])
+    for bad in (TETRAHEDRON, object()):
+        with pytest.raises(TypeError, match="must be an open3d.t.geometry.TriangleMesh"):
+            scene.add_triangles(bad)
+    with pytest.raises(TypeError, match="vertex_positions and triangle_indices, or mesh"):
+        scene.add_triangles()
+    assert scene.scene is None
+    assert scene.add_triangles(TETRAHEDRON, SIDES) == 0
+    assert scene.test_occlusions([[0.1, 0.2, -1, 0, 0, 1]]).tolist() == [True]
+    o3d = pytest.importorskip("open3d", reason="Open3D is not installed")
+    with pytest.raises(TypeError, match="open3d.*TriangleMesh.*it must be"):
+        scene.add_triangles(o3d.geometry.TriangleMesh.create_box())
+    assert scene.add_triangles(mesh=o3d.t.geometry.TriangleMesh.create_box()) == 1
+
+
+def test_arguments_are_checked_in_empty_scenes_too():
+    for scene in (RaycastingScene(), fill(RaycastingScene())):
+        with pytest.raises(ValueError, match="query_points.*shape"):
+            scene.compute_occupancy(np.zeros((2, 4)))
+    with pytest.raises(ValueError, match="nthreads is -1; it must be 0 to 1024"):
+        scene.cast_rays(grid(3), nthreads=-1)
+
+
+def test_scenes_pickle_and_copy_after_their_first_query():
+    scene = fill(RaycastingScene())
+    expected = scene.cast_rays(grid(9))
+    for other in (copy.deepcopy(scene), pickle.loads(pickle.dumps(scene))):
+        for key, value in other.cast_rays(grid(9)).items():
+            assert np.array_equal(value, expected[key])
 
 
 def test_answers_are_those_of_open3d():

@@ -1,7 +1,12 @@
 """Scenes, formats, structures, errors, threads."""
 
+import copy
+import pickle
+import subprocess
+import sys
 import threading
 import time
+import warnings
 from pathlib import Path
 
 import numpy as np
@@ -166,6 +171,284 @@ def test_render_gives_a_picture():
     assert picture.shape == (48, 64, 3) and picture.dtype == np.uint8 and picture.std() > 10
     with pytest.raises(ValueError, match="both"):
         scene.render(64)
+
+
+def test_render_at_another_shape_is_that_of_the_program(tmp_path):
+    # A scene without a camera is framed by the shape of the picture.
+    text = "[[object]]\nkind = 'box'\nmin = [0, 0, 0]\nmax = [3, 1, 1]\n"
+    (tmp_path / "box.toml").write_text(text)
+    (tmp_path / "tall.toml").write_text("[render]\nwidth = 20\nheight = 60\n" + text)
+    box, tall = (gridel.Scene.load(tmp_path / name) for name in ("box.toml", "tall.toml"))
+    assert np.array_equal(box.render(20, 60), tall.render())
+
+
+def run(code):
+    """Runs a program that may hang."""
+    head = "import numpy as np, gridel, sys\nsys.path.insert(0, %r)\nfrom test_scene import CUBE, FACES\n"
+    program = head % str(Path(__file__).parent) + code
+    done = subprocess.run([sys.executable, "-c", program], timeout=60, capture_output=True, text=True)
+    assert done.returncode == 0, done.stderr
+
+
+def test_first_contains_of_two_threads_does_not_deadlock():
+    run(
+        """
+import threading
+ball = np.random.default_rng(1).normal(size=(3, 3))
+for _ in range(20):
+    cubes = np.concatenate([CUBE + 2 * k for k in range(2000)])
+    faces = np.concatenate([FACES + 8 * k for k in range(2000)])
+    scene = gridel.Scene.from_arrays(cubes, faces)
+    threads = [threading.Thread(target=scene.contains, args=([[0.5] * 3],)) for _ in range(4)]
+    [it.start() for it in threads]
+    [it.join() for it in threads]
+"""
+    )
+
+
+def test_queries_and_compilation_work_after_fork():
+    run(
+        """
+import os
+rays = np.tile([[0.3, 0.6, -2, 0, 0, 1.0]], (10_000, 1))
+scene = gridel.Scene.from_arrays(CUBE, FACES)
+assert scene.any(rays).all()
+child = os.fork()
+if child == 0:
+    ok = scene.any(rays).all() and scene.any(rays, threads=2).all()
+    cubes = np.concatenate([CUBE + 2 * k for k in range(20_000)])
+    faces = np.concatenate([FACES + 8 * k for k in range(20_000)])
+    ok &= gridel.Scene.from_arrays(cubes, faces).primitives == len(faces)
+    ok &= scene.render(64, 48).shape == (48, 64, 3)
+    os._exit(0 if ok else 1)
+assert os.waitpid(child, 0)[1] == 0
+"""
+    )
+
+
+@pytest.mark.parametrize("format", ["fixed", "f32", "f64"])
+def test_points_of_nan_and_infinity_are_in_nothing(cube, format):
+    points = np.full((5, 3), 0.5)
+    points[:4, 1] = [np.nan, np.inf, -np.inf, 1e300]
+    assert cube.contains(points, format=format).tolist() == [False] * 4 + [True]
+    assert cube.contains(points, closed_only=False, format=format).tolist() == [False] * 4 + [True]
+
+
+@pytest.mark.parametrize("format", ["fixed", "f32", "f64"])
+@pytest.mark.parametrize("distance", [1e6, 1e7, 1e9, 1e12, 1e15, 1e100, 1e300])
+def test_rays_from_any_distance_hit(cube, format, distance):
+    # At 1 above the x-y plane's face, through (0.25, 0.5): the bits of x and y survive the distance.
+    rays = [[0.25, 0.5, -distance, 0, 0, 2.0], [0.25, 0.5, distance, 0, 0, 1.0], [0.25, 5.0, -distance, 0, 0, 1.0]]
+    hits = cube.cast(rays, format=format)
+    assert hits.t.tolist() == [distance / 2, np.inf, np.inf]
+    assert np.allclose(hits.t[0] * 2 - distance, 0) and np.isfinite(hits.uv).all()
+    corners = CUBE[FACES[hits.primitive[0]]]
+    u, v = hits.uv[0]
+    assert np.allclose((1 - u - v) * corners[0] + u * corners[1] + v * corners[2], [0.25, 0.5, 0])
+    assert cube.any(rays, format=format).tolist() == [True, False, False]
+    assert cube.count(rays, format=format).tolist() == [2, 0, 0]
+    every = cube.all(rays, format=format)
+    assert every.ray.tolist() == [0, 0]
+    assert np.allclose(every.t, [distance / 2, distance / 2 + 0.5], rtol=1e-15)
+    limited = np.array([[0.25, 0.5, -distance, 0, 0, 0, 1, 0.5 * distance], [0.25, 0.5, -distance, 2 * distance, 0, 0, 1, np.inf]])
+    assert np.isinf(cube.cast(limited, format=format).t).all()
+    # It passes by, whichever axis is farthest.
+    aside = [[distance, 0.5, 0.5, 0, 0, 1], [distance, -distance, 3 * distance, 1, 0.5, 0.25]]
+    assert np.isinf(cube.cast(aside, format=format).t).all() and not cube.any(aside, format=format).any()
+
+
+@pytest.mark.parametrize("format", ["fixed", "f32", "f64"])
+@pytest.mark.parametrize("distance", [1e7, 1e9, 1e12])
+def test_slanted_rays_from_far_away_cross_twice(cube, format, distance):
+    rng = np.random.default_rng(7)
+    directions = rng.normal(size=(5000, 3))
+    origins = rng.uniform(0.05, 0.95, size=(5000, 3)) - distance * directions
+    rays = np.hstack([origins, directions])
+    assert (cube.count(rays, format=format) == 2).all()
+    hits = cube.cast(rays, format=format)
+    assert np.isfinite(hits.t).all() and np.isfinite(hits.uv).all()
+    assert np.allclose(hits.t, distance, rtol=1e-5)
+
+
+def test_near_rays_keep_their_bits_beside_far_ones(cube):
+    rays = np.random.default_rng(6).normal(size=(4000, 6))
+    rays[:, :3] -= 64 * rays[:, 3:]
+    mixed = rays.copy()
+    mixed[::2, :3] -= 1e9 * mixed[::2, 3:]
+    a, b = cube.cast(rays), cube.cast(mixed)
+    for one, other in zip(a, b):
+        assert np.array_equal(one[1::2], other[1::2], equal_nan=True)
+    same = a.primitive[::2] == b.primitive[::2]
+    assert same.mean() > 0.99
+
+
+def test_unreferenced_vertices_widen_no_lattice():
+    vertices = np.vstack([[[1e9, 1e9, 1e9]], CUBE / 3, [[-1e12, 0, 0]]])
+    scene = gridel.Scene.from_arrays(vertices, FACES + 1)
+    assert scene.displacement < 1e-7 and np.abs(scene.bounds).max() < 1
+    hits = scene.cast([[0.1, 0.2, -2, 0, 0, 1]])
+    assert hits.t.tolist() == [2.0]
+    corners = vertices[FACES[hits.primitive[0]] + 1]
+    u, v = hits.uv[0]
+    assert np.allclose((1 - u - v) * corners[0] + u * corners[1] + v * corners[2], [0.1, 0.2, 0])
+    with pytest.raises(ValueError, match="vertex 0 is not finite"):
+        gridel.Scene.from_arrays(np.vstack([[[np.nan] * 3], CUBE]), FACES + 1)
+    empty = gridel.Scene._from_meshes([(CUBE + 1e9, np.zeros((0, 3), int)), (CUBE, FACES)])
+    assert empty.displacement < 1e-6 and empty.contains([[0.5] * 3]).all()
+
+
+def test_collapsed_primitives_are_warned_of_and_count_in_displacement():
+    vertices = np.vstack([CUBE, 5000 * CUBE + [10, 0, 0], 1e-5 * CUBE + [5, 0, 0]])
+    faces = np.vstack([FACES, FACES + 8, FACES + 16])
+    with pytest.warns(UserWarning, match="12 primitives too small for the lattice.*left out"):
+        scene = gridel.Scene.from_arrays(vertices, faces)
+    assert scene.displacement >= 1e-5 and scene.primitives == len(faces)
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        gridel.Scene.from_arrays(CUBE, FACES)
+
+
+@pytest.mark.parametrize("format", ["fixed", "f32", "f64"])
+def test_thin_closed_meshes_are_met_as_flat_ones(format):
+    scene = gridel.Scene.from_arrays(CUBE * [1, 1, 1e-9], FACES)
+    rays = [[0.3, 0.6, -2, 0, 0, 1], [0.3, 0.6, 2, 0, 0, -1], [3, 0.6, 2, 0, 0, -1]]
+    assert np.allclose(scene.cast(rays, format=format).t, [2, 2, np.inf])
+    assert scene.any(rays, format=format).tolist() == [True, True, False]
+    assert scene.count(rays, format=format).tolist() == [2, 2, 0]
+    assert not scene.contains([[0.3, 0.6, 0.5e-9], [0.3, 0.6, 2]], format=format).any()
+    assert 0 < scene.displacement < 2e-7
+    assert len(scene.to_blob(accel="bvh")) > 0
+
+
+@pytest.mark.parametrize("format", ["fixed", "f32", "f64"])
+def test_t_is_never_outside_of_the_interval(format):
+    corners = np.array([[-1, -1, 1 / 3], [1, -1, 1 / 3], [0, 1, 1 / 3], [0, 0, -1]])
+    scene = gridel.Scene.from_arrays(corners, [[0, 1, 2], [0, 1, 3]])
+    heights = 1 / 3 + np.linspace(-3e-7, 3e-7, 301)
+    rays = np.zeros((301, 8))
+    rays[:, :3] = np.column_stack([np.full((301, 2), 0.1), heights])
+    rays[:, 6], rays[:, 7] = -1, np.inf
+    for least in (0, 1e-9):
+        rays[:, 3] = least
+        assert (scene.cast(rays, format=format).t >= least).all()
+        assert (scene.all(rays, format=format).t >= least).all()
+    rays[:, 2] += 1
+    rays[:, 3], rays[:, 7] = 0, 1
+    t = scene.cast(rays, format=format).t
+    assert (t[np.isfinite(t)] <= 1).all() and np.isfinite(t).any()
+    # The t of shapes that are not triangles, too.
+    assert (scene.all(rays, format=format).t <= 1).all()
+
+
+@pytest.mark.parametrize("format", ["fixed", "f32", "f64"])
+def test_hits_closer_than_the_lattice_come_in_the_order_of_t(format):
+    square = np.array([[-1, -1, 0], [1, -1, 0], [1, 1, 0], [-1, 1, 0.0]])
+    vertices = np.concatenate([square + [0, 0, 1e-9 * k] for k in range(3)])
+    faces = np.concatenate([np.array([[0, 1, 2], [0, 2, 3]]) + 4 * k for k in range(3)])
+    scene = gridel.Scene.from_arrays(vertices, faces)
+    rays = [[0.1, 0.2, 1, 0, 0, -1], [0.1, 0.2, -1, 0, 0, 1]]
+    every = scene.all(rays, format=format)
+    assert every.ray.tolist() == [0] * 3 + [1] * 3
+    assert (np.diff(every.t[:3]) >= 0).all() and (np.diff(every.t[3:]) >= 0).all()
+
+
+@pytest.mark.parametrize("format", ["fixed", "f32", "f64"])
+def test_rays_whose_t_leaves_double_precision_are_invalid_everywhere(cube, format):
+    rays = [[0.3, 0.6, -20, 0, 0, 1e-308], [0.3, 0.6, -20, 0, 0, 5e-324], [0.3, 0.6, -2, 0, 0, 1e-300]]
+    hits = cube.cast(rays, format=format)
+    assert np.isnan(hits.t[:2]).all() and np.isclose(hits.t[2], 2e300)
+    assert hits.primitive[:2].tolist() == [gridel.MISS] * 2
+    assert cube.any(rays, format=format).tolist() == [False, False, True]
+    assert cube.count(rays, format=format).tolist() == [0, 0, 2]
+    every = cube.all(rays, format=format)
+    assert every.ray.tolist() == [2, 2] and np.isfinite(every.t).all()
+
+
+def test_misaligned_arrays_are_copied(cube):
+    rays = np.array([[0.3, 0.6, -2, 0, 0, 1]])
+    memory = np.zeros(rays.nbytes + 1, dtype=np.uint8)
+    memory[1:] = rays.view(np.uint8).ravel()
+    misaligned = memory[1:].view(np.float64).reshape(1, 6)
+    assert not misaligned.flags.aligned
+    assert cube.cast(misaligned).t.tolist() == [2.0]
+    assert cube.cast(rays.astype(">f8")).t.tolist() == [2.0]
+
+
+def test_threads_are_at_most_1024_and_no_more_than_chunks(cube):
+    rays = np.tile([[0.3, 0.6, -2, 0, 0, 1.0]], (5000, 1))
+    before = threads_of_process()
+    assert cube.any(rays, threads=1024).all() and threads_of_process() <= before + 8
+    for bad in (-1, 1025, 2**70):
+        with pytest.raises(ValueError, match=f"threads is {bad}; it must be 0 to 1024"):
+            cube.any(rays, threads=bad)
+    with pytest.raises(TypeError, match="threads is 'two'"):
+        cube.any(rays, threads="two")
+
+
+def threads_of_process():
+    return len(list(Path("/proc/self/task").iterdir()))
+
+
+def test_errors_name_the_argument(cube):
+    with pytest.raises(ValueError, match="width is 0; it must be 1 to 65535"):
+        cube.render(0, 5)
+    with pytest.raises(ValueError, match="height is 70000"):
+        cube.render(5, 70000)
+    with pytest.raises(ValueError, match="samples is -1"):
+        cube.render(5, 5, samples=-1)
+    with pytest.raises(ValueError, match="depth is 300"):
+        cube.render(5, 5, depth=300)
+    with pytest.raises(ValueError, match="lattice_bits is -1; it must be 16 to 24"):
+        gridel.Scene.from_arrays(CUBE, FACES, lattice_bits=-1)
+    with pytest.raises(TypeError, match="vertices: the array has the type complex128"):
+        gridel.Scene.from_arrays(CUBE.astype(complex), FACES)
+    with pytest.raises(ValueError, match="18446744073709551615.*numbered 0 to 7"):
+        gridel.Scene.from_arrays(CUBE, np.array([[0, 1, 2**64 - 1]], dtype=np.uint64))
+
+
+def test_blobs_keep_the_bits_of_the_lattice():
+    coarse = gridel.Scene.from_arrays(CUBE / 3, FACES, lattice_bits=16)
+    again = gridel.Scene.from_arrays(CUBE / 3, FACES, accel="bvh", lattice_bits=16)
+    assert coarse.to_blob(accel="bvh") == again.to_blob()
+    fine = gridel.Scene.from_arrays(CUBE / 3, FACES, accel="bvh")
+    assert coarse.to_blob(accel="bvh", lattice_bits=24) == fine.to_blob()
+
+
+@pytest.mark.parametrize("scale", [1e-200, 1e-100, 1e100, 1e200])
+def test_uv_are_numbers_at_every_scale(scale):
+    scene = gridel.Scene.from_arrays(CUBE * scale, FACES)
+    hits = scene.cast([[0.3 * scale, 0.6 * scale, -2 * scale, 0, 0, scale]])
+    unit = gridel.Scene.from_arrays(CUBE, FACES).cast([[0.3, 0.6, -2, 0, 0, 1]])
+    assert np.allclose(hits.t, 2) and np.allclose(hits.uv, unit.uv)
+
+
+def test_load_takes_bytes_and_names_directories(tmp_path):
+    with pytest.raises(IsADirectoryError, match="a directory"):
+        gridel.Scene.load(tmp_path)
+    path = tmp_path / "cube.gridel"
+    path.write_bytes(gridel.Scene.from_arrays(CUBE, FACES).to_blob())
+    assert gridel.Scene.load(str(path).encode()).primitives == 12
+
+
+def test_load_says_the_remedy_and_warns(tmp_path):
+    (tmp_path / "bad.toml").write_text("[[object]]\nkind = 'sphere'\ncenter = [0, 0, 0]\nradius = -1\n")
+    with pytest.raises(ValueError, match=r"bad.toml:4: .*radius.*; \S+"):
+        gridel.Scene.load(tmp_path / "bad.toml")
+    (tmp_path / "lines.obj").write_text("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\nl 1 2\n")
+    with pytest.warns(UserWarning, match="lines.obj"):
+        scene = gridel.Scene.load(tmp_path / "lines.obj")
+    assert scene.primitives == 1
+
+
+def test_scenes_pickle_and_copy(cube):
+    rays = np.random.default_rng(1).normal(size=(1000, 6))
+    coarse = gridel.Scene.from_arrays(CUBE / 3, FACES, accel=["bvh", "wide"], lattice_bits=16)
+    for scene in (cube, coarse, gridel.Scene.from_blob(cube.to_blob())):
+        assert copy.copy(scene) is scene and copy.deepcopy([scene])[0] is scene
+        other = pickle.loads(pickle.dumps(scene))
+        assert other.to_blob() == scene.to_blob()
+        for one, two in zip(scene.cast(rays), other.cast(rays)):
+            assert np.array_equal(one, two, equal_nan=True)
 
 
 def test_docstring_example_holds():

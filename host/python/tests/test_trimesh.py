@@ -175,3 +175,66 @@ def test_thin_walls_are_told_apart():
     assert mine.contains_points(points(0.5 - 0.5 * wall)).all()
     assert not mine.contains_points(points(0.5 - 1.6 * wall)).any()
     assert not mine.contains_points(points(0.5 + 0.6 * wall)).any()
+
+
+def test_contains_points_of_nan_is_false(ball):
+    assert ours(ball).contains_points([[np.nan, 0, 0], [0, np.inf, 0], [0, 0, 0]]).tolist() == [False, False, True]
+
+
+def test_rays_from_far_away_hit(ball):
+    for distance in (1e7, 1e9, 1e12):
+        origins, directions = [[0.1, 0.2, distance], [5, 0, distance]], [[0, 0, -1.0]] * 2
+        mine = ours(ball)
+        assert mine.intersects_first(origins, directions)[0] >= 0
+        assert mine.intersects_any(origins, directions).tolist() == [True, False]
+        for multiple in (True, False):
+            places, rays, triangles = mine.intersects_location(origins, directions, multiple_hits=multiple)
+            assert rays.tolist() == [0] * (1 + multiple)
+            off = ((places - ball.triangles[triangles, 0]) * ball.face_normals[triangles]).sum(1)
+            assert np.abs(off).max() < 1e-12 and np.allclose(places[:, :2], [0.1, 0.2])
+
+
+def test_thin_boxes_are_met_as_flat_ones():
+    box = trimesh.creation.box()
+    thin = trimesh.Trimesh(box.vertices * [1, 1, 1e-9], box.faces, process=False)
+    mine = ours(thin)
+    assert mine.intersects_any([[0.1, 0.2, 5]], [[0, 0, -1]]).tolist() == [True]
+    places, rays, _ = mine.intersects_location([[0.1, 0.2, 5]], [[0, 0, -1]])
+    assert np.allclose(places, [[0.1, 0.2, 0]] * 2) and rays.tolist() == [0, 0]
+    assert mine.contains_points([[0.1, 0.2, 1.0]]).tolist() == [False]
+
+
+def test_rays_with_tiny_directions_hit_nothing(ball):
+    origins, directions = [[0.1, 0.2, 5.0], [0.1, 0.2, 5]], [[0, 0, -1e-308], [0, 0, -1]]
+    mine = ours(ball)
+    for multiple in (True, False):
+        triangles, rays = mine.intersects_id(origins, directions, multiple_hits=multiple)
+        assert rays.tolist() == [1] * (1 + multiple) and triangles.max() < len(ball.faces)
+    assert mine.intersects_any(origins, directions).tolist() == [False, True]
+    assert mine.intersects_first(origins, directions)[0] == -1
+
+
+def test_locations_come_in_the_order_of_the_ray():
+    square = np.array([[-1, -1, 0], [1, -1, 0], [1, 1, 0], [-1, 1, 0.0]])
+    vertices = np.concatenate([square + [0, 0, 1e-9 * k] for k in range(3)])
+    faces = np.concatenate([np.array([[0, 1, 2], [0, 2, 3]]) + 4 * k for k in range(3)])
+    mine = ours(trimesh.Trimesh(vertices, faces, process=False))
+    for side in (1, -1):
+        places, rays, _ = mine.intersects_location([[0.1, 0.2, side]], [[0, 0, -side]])
+        assert len(rays) == 3 and (np.diff(-side * places[:, 2]) >= 0).all()
+    # None lies before the origin.
+    corners = np.array([[-1, -1, 1 / 3], [1, -1, 1 / 3], [0, 1, 1 / 3], [0, 0, -1]])
+    mine = ours(trimesh.Trimesh(corners, [[0, 1, 2], [0, 1, 3]], process=False))
+    origins = np.column_stack([np.full((301, 2), 0.1), 1 / 3 + np.linspace(-3e-7, 3e-7, 301)])
+    places, rays, _ = mine.intersects_location(origins, np.tile([0, 0, -1.0], (301, 1)))
+    assert (places[:, 2] <= origins[rays, 2]).all()
+
+
+def test_numbers_out_of_range_name_the_argument(ball):
+    mine = ours(ball)
+    with pytest.raises(ValueError, match="max_hits is -1"):
+        mine.intersects_id([[0, 0, 5]], [[0, 0, -1]], max_hits=-1)
+    with pytest.raises(ValueError, match="threads is -1; it must be 0 to 1024"):
+        gridel.trimesh.RayMeshIntersector(ball, threads=-1).intersects_any([[0, 0, 5]], [[0, 0, -1]])
+    misaligned = np.zeros(3 * 8 + 1, dtype=np.uint8)[1:].view(np.float64).reshape(1, 3)
+    assert mine.intersects_any(misaligned, [[0, 0, -1]]).tolist() == [True]

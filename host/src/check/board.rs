@@ -1,8 +1,8 @@
 //! Programs on emulated boards.
 
-use super::explained::explained;
 use super::manifest::{Board, Firmware, Manifest, Named, Program};
 use crate::blob::Blob;
+use crate::explained;
 use std::collections::BTreeMap;
 use std::fs::{self, File};
 use std::io::{self, Read};

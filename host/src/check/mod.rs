@@ -4,7 +4,6 @@ mod bless;
 mod board;
 mod certified;
 mod diff;
-mod explained;
 mod image;
 mod junit;
 mod manifest;

@@ -1,12 +1,12 @@
 //! Measures the figures that a manifest requires.
 
 use super::board::{self, BoardRun};
-use super::explained::explained;
 use super::image::Image;
 use super::manifest::{Check, Manifest, Reference};
 use super::report::{Evidence, Figure, Finding, Key, Outcome, Record, Report};
 use crate::blob::{Blob, best_structures, is_blob};
 use crate::compile::{self, Options};
+use crate::explained;
 use crate::measure::{Rendered, board_memory};
 use crate::picture::hash;
 use crate::scene::{self, ImportOptions, Posed};

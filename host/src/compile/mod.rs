@@ -191,7 +191,7 @@ fn compile_as(
     if let Role::Whole(parts) = role {
         extent = parts.reach.around(extent);
     }
-    let (lattice, snapped, placed) = snap(role, scene, extent, options.lattice_bits)?;
+    let (lattice, snapped, placed) = snap(role, scene, extent, options)?;
     let structures = held(&options.structures);
     let required_by = match role {
         Role::Part { .. } => snapped.required_by.clone(),
@@ -313,12 +313,12 @@ fn snap(
     role: Role<'_>,
     scene: &Scene,
     (lowest, highest): (DVec3, DVec3),
-    bits: u8,
+    options: &Options,
 ) -> Result<(Lattice, Primitives, Placed), CompileError> {
     let mut coarser = 0;
     loop {
-        let lattice = Lattice::around([lowest, highest], bits, coarser)?;
-        let primitives = Primitives::snap(scene, &lattice)?;
+        let lattice = Lattice::around([lowest, highest], options.lattice_bits, coarser)?;
+        let primitives = Primitives::snap(scene, &lattice, options.flat_meshes)?;
         let placed = match role {
             Role::Part { .. } => Some(Placed::default()),
             Role::Whole(parts) => parts.place(scene, &lattice)?,
@@ -454,15 +454,15 @@ impl Hierarchies {
 /// ```
 pub fn cube_census(scene: &Scene, gridels: u32) -> Result<CubeCensus, CompileError> {
     let scene = &*scene.flattened()?;
-    let bits = Options::default().lattice_bits;
+    let options = Options::default();
     let (_, snapped, _) = snap(
         Role::Part { all: 0 },
         scene,
         Shapes::of(scene).extent(),
-        bits,
+        &options,
     )?;
     let mut order: Vec<Primitive> = snapped.boxes();
-    let root = hierarchy::build(&mut order, Splits::Swept, Options::default().leaf_size);
+    let root = hierarchy::build(&mut order, Splits::Swept, options.leaf_size);
     let flat = root.as_ref().map(|root| pairs::flatten(root, &order));
     let bounds = root.map_or(UnitBox([[0; 2]; 3]), |root| *root.bounds());
     let flat = flat.unwrap_or_default();

@@ -32,6 +32,9 @@ pub struct Options {
     /// [`Deformation`](gridel_core::Deformation). The box of a scene, and of each part, is wider by as much. Only the
     /// structure [`Bvh`](gridel_core::Bvh) can be refitted.
     pub room: f64,
+    /// Whether a closed mesh may lie in one plane once it is snapped. It has no inside then, and rays from within meet
+    /// nothing; otherwise it is an error.
+    pub flat_meshes: bool,
     /// Primitives that make a leaf of a hierarchy whatever rays pay for it, at most
     /// [`LARGEST_LEAF`]: fewer nodes and more tests. With 0 the costs alone decide.
     pub leaf_size: usize,
@@ -64,6 +67,7 @@ impl Default for Options {
             structures: vec![Structure::DualSplit],
             lattice_bits: 24,
             room: 0.0,
+            flat_meshes: false,
             leaf_size: 0,
             quality: Quality::default(),
             builder: Builder::default(),

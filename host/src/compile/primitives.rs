@@ -53,6 +53,8 @@ pub struct Primitives {
     slivers: Vec<Sliver>,
     /// A primitive reaches beyond the lattice, because it had to be moved that far.
     pub needs_room: bool,
+    /// Whether closed meshes may lie in one plane.
+    flat_meshes: bool,
 }
 
 /// Primitives that a blob leaves out, or that were moved far: the first of them by name, and how many
@@ -98,9 +100,16 @@ impl Serialize for LeftOut {
 }
 
 impl Primitives {
-    /// Snaps everything.
-    pub fn snap(scene: &Scene, lattice: &Lattice) -> Result<Self, CompileError> {
-        let mut primitives = Self::default();
+    /// Snaps everything. Unless `flat_meshes`, a closed mesh that then lies in one plane is an error.
+    pub fn snap(
+        scene: &Scene,
+        lattice: &Lattice,
+        flat_meshes: bool,
+    ) -> Result<Self, CompileError> {
+        let mut primitives = Self {
+            flat_meshes,
+            ..Self::default()
+        };
         let mut distinct = Vertices::default();
         for object in &scene.objects {
             primitives.object_first.push(primitives.total);
@@ -255,7 +264,9 @@ impl Primitives {
                         self.required_by.push((effect, name));
                     }
                 }
-                if flattened::is_flattened((vertices, &snapped), triangles) {
+                if !self.flat_meshes
+                    && flattened::is_flattened((vertices, &snapped), triangles)
+                {
                     return Err(CompileError::Flattened {
                         object: format!("{} ({})", printable(&object.name), object.place),
                         step: lattice.step(),

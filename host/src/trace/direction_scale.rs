@@ -60,6 +60,11 @@ impl DirectionScale {
         self.begin = begin;
     }
 
+    /// From now on multiples of hits count from so much earlier, in multiples of the direction.
+    pub fn count_from(&mut self, t: f64) {
+        self.begin += self.length(t);
+    }
+
     /// A length in units along the largest component, from multiples of the direction; infinite beyond all
     /// numbers.
     #[inline(always)]

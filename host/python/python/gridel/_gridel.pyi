@@ -25,6 +25,11 @@ class NativeScene:
         accel: list[str],
         lattice_bits: int,
     ) -> NativeScene: ...
+    def given(
+        self,
+    ) -> Optional[
+        Tuple[list[Tuple[NDArray[np.float64], NDArray[np.int64]]], list[str], int]
+    ]: ...
     def cast(
         self, rays: NDArray, format: str, accel: Optional[str], threads: int
     ) -> _HitArrays: ...
@@ -64,7 +69,7 @@ class NativeScene:
     def contains(
         self,
         points: NDArray,
-        closed_only: bool,
+        within: str,
         format: str,
         accel: Optional[str],
         threads: int,

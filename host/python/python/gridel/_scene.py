@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+import operator
 import os
-from typing import NamedTuple, Optional, Sequence, Tuple, Union
+from typing import Any, NamedTuple, Optional, Sequence, Tuple, Union
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -59,30 +60,89 @@ def _names(accel: Accel) -> list[str]:
     return [accel] if isinstance(accel, str) else list(accel)
 
 
-def _rows(values: ArrayLike, widths: Tuple[int, ...], what: str) -> NDArray:
-    """An array in C order of float32 or float64, without a copy where it is one already."""
+def _integer(value: Any, what: str, least: int, most: int) -> int:
+    """An integer from ``least`` to ``most``."""
+    try:
+        number = operator.index(value)
+    except TypeError:
+        raise TypeError(f"{what} is {value!r}; it must be an integer") from None
+    if not least <= number <= most:
+        raise ValueError(f"{what} is {number}; it must be {least} to {most}")
+    return number
+
+
+def _bits(value: Any) -> int:
+    """Bits of a lattice."""
+    return _integer(value, "lattice_bits", 16, 24)
+
+
+def _threads(value: Any, what: str = "threads") -> int:
+    """A number of threads, at most as many as the program takes."""
+    return _integer(value, what, 0, 1024)
+
+
+def _numbers(values: ArrayLike, what: str) -> NDArray:
+    """An array of float32 or float64 in C order, without a copy where it is one already."""
     array = np.asarray(values)
     if array.dtype not in (np.float32, np.float64):
         if array.dtype.kind not in "iuf" and array.size:
             raise TypeError(f"{what}: the array has the type {array.dtype}; it must be a type of numbers")
         array = array.astype(np.float64)
+    return np.require(array, requirements="CA")
+
+
+def _mesh(
+    vertices: ArrayLike, faces: ArrayLike, names: Tuple[str, str] = ("vertices", "faces")
+) -> Tuple[NDArray[np.float64], NDArray[np.int64]]:
+    """Vertices (n, 3) and faces (m, 3) as they are compiled."""
+    vertices = np.require(_numbers(vertices, names[0]), np.float64, "CA")
+    faces = np.asarray(faces)
+    if faces.size and faces.dtype.kind not in "iu":
+        raise TypeError(f"{names[1]}: the array has the type {faces.dtype}; it must be a type of integers")
+    for what, array in zip(names, (vertices, faces)):
+        if array.ndim != 2 or array.shape[1] != 3:
+            raise ValueError(f"{what}: the array has the shape {array.shape}; it must be (n, 3)")
+    is_valid = ((faces >= 0) & (faces < len(vertices))).all(axis=1)
+    if not is_valid.all():
+        place = int(np.argmin(is_valid))
+        raise ValueError(
+            f"{names[1]}: face {place} is {faces[place].tolist()}; "
+            f"vertices are numbered 0 to {len(vertices) - 1}"
+        )
+    is_valid = np.isfinite(vertices).all(axis=1)
+    if not is_valid.all():
+        raise ValueError(f"{names[0]}: vertex {int(np.argmin(is_valid))} is not finite")
+    return vertices, np.require(faces, np.int64, "CA")
+
+
+def _rows(values: ArrayLike, widths: Tuple[int, ...], what: str) -> NDArray:
+    """Rows of numbers."""
+    array = _numbers(values, what)
     if array.ndim == 0 or (array.shape[-1] not in widths):
         if array.size == 0:
             return np.zeros((0, widths[0]))
         expected = " or ".join(str(width) for width in widths)
         raise ValueError(f"{what}: the array has the shape {array.shape}; its last axis must be {expected}")
-    return np.ascontiguousarray(array)
+    return array
 
 
 class Scene:
     """A scene, compiled for queries. Make one by :meth:`load`, :meth:`from_arrays` or :meth:`from_blob`.
 
-    A scene does not change. Queries release the GIL and run on all cores, or on ``threads`` of
-    them. The results are the same, bit for bit, with any number of threads. Arrays of float32 and
-    float64 in C order are read in place.
+    A scene does not change, so that copies are the scene itself. Queries release the GIL and run on all cores, or on
+    ``threads`` of them (at most 1024; 0 for all); the results are the same, bit for bit, with any number of threads, and
+    in a forked process. Arrays of float32 and float64 in C order are read in place.
 
     ``format`` is the number format of a query: ``"f32"``, ``"f64"`` or ``"fixed"`` (integers). ``accel`` is the name of
     an acceleration structure that the scene holds; the default is the fastest. It changes no result.
+
+    Rays may start at any distance. A ray is invalid if its direction is zero, if a number of it is nan, if its origin or
+    direction is infinite, if its tmin is greater than its tmax, or if the t of the scene leaves double precision, as of
+    directions of length 1e-308. Invalid rays hit nothing; :meth:`cast` gives them t = nan. In a scene with planes, a ray
+    that passes the scene at more than about 2^21 times its size is invalid as well.
+
+    Scenes pickle. A scene of arrays is compiled again from them and gives the same answers. Other scenes pickle as their
+    blob, so that ``uv`` is nan and t is that of the blob.
     """
 
     __slots__ = ("_native", "__weakref__")
@@ -92,14 +152,15 @@ class Scene:
 
     @classmethod
     def load(
-        cls, path: Union[str, os.PathLike], *, accel: Accel = "wide", lattice_bits: int = 24
+        cls, path: Union[str, bytes, os.PathLike], *, accel: Accel = "wide", lattice_bits: int = 24
     ) -> "Scene":
         """Reads a scene file of any format that ``gridel`` reads, or a scene blob.
 
         ``accel`` names the structures to build and ``lattice_bits`` (16 to 24) the precision of coordinates; a blob is
-        taken as it is. Raises FileNotFoundError, and ValueError with file, place, cause and remedy.
+        taken as it is. Warns (UserWarning) of what the file's importer leaves out, and of primitives that are too small
+        for the lattice. Raises FileNotFoundError, IsADirectoryError, and ValueError with file, place, cause and remedy.
         """
-        return cls(NativeScene.load(os.fspath(path), _names(accel), lattice_bits))
+        return cls(NativeScene.load(os.fsdecode(path), _names(accel), _bits(lattice_bits)))
 
     @classmethod
     def from_arrays(
@@ -112,33 +173,23 @@ class Scene:
     ) -> "Scene":
         """Compiles a triangle mesh: vertices (n, 3) of numbers, faces (m, 3) of integers.
 
-        Vertices are centered in float64 before they are rounded to the lattice. The lattice's step
-        is about 1e-7 of the mesh's size at 24 bits, wherever the mesh lies; :attr:`displacement` is
-        how far they moved. Raises ValueError for vertices that are not finite and faces that name
-        no vertex.
+        Vertices are centered in float64 before they are rounded to the lattice, whose step is about 1e-7 of the mesh's
+        size at 24 bits, wherever the mesh lies; :attr:`displacement` says how far they moved. Vertices of no face do not
+        count. A closed mesh thinner than a step becomes flat: rays hit it, and it contains nothing. Warns (UserWarning)
+        of triangles that are too small for the lattice. Raises ValueError for vertices that are not finite and faces
+        that name no vertex.
         """
-        return cls._from_meshes([(vertices, faces)], accel=accel, lattice_bits=lattice_bits)
+        return cls._from_meshes([(vertices, faces)], accel, lattice_bits)
 
     @classmethod
     def _from_meshes(
         cls,
         meshes: Sequence[Tuple[ArrayLike, ArrayLike]],
-        *,
         accel: Accel = "wide",
         lattice_bits: int = 24,
     ) -> "Scene":
-        arrays = []
-        for vertices, faces in meshes:
-            vertices = np.ascontiguousarray(vertices, dtype=np.float64)
-            faces = np.asarray(faces)
-            if faces.size and faces.dtype.kind not in "iu":
-                raise TypeError(f"faces: the array has the type {faces.dtype}; it must be a type of integers")
-            faces = np.ascontiguousarray(faces, dtype=np.int64)
-            for what, array in (("vertices", vertices), ("faces", faces)):
-                if array.ndim != 2 or array.shape[1] != 3:
-                    raise ValueError(f"{what}: the array has the shape {array.shape}; it must be (n, 3)")
-            arrays.append((vertices, faces))
-        return cls(NativeScene.from_meshes(arrays, _names(accel), lattice_bits))
+        arrays = [_mesh(vertices, faces) for vertices, faces in meshes]
+        return cls(NativeScene.from_meshes(arrays, _names(accel), _bits(lattice_bits)))
 
     @classmethod
     def from_blob(cls, blob: bytes) -> "Scene":
@@ -150,12 +201,15 @@ class Scene:
     ) -> Hits:
         """Returns the first hit of each ray: rays (..., 6) or (..., 8), hits of shape (...).
 
-        A ray that touches an edge or a vertex hits it. At the same t the primitive that comes first counts. ``t`` and
-        ``uv`` of triangles are computed from the vertices as they were given, in float64.
+        A ray that touches an edge or a vertex hits it. This holds for rays and vertices as the query has them: it
+        rounds directions to the number format and vertices to the lattice, and by that a ray that is aimed at a
+        silhouette or at the border of an open mesh may pass beside it. At the same t the primitive that comes first
+        counts. ``t`` and ``uv`` of triangles are computed from the vertices as they were given, in float64; t is never
+        outside of tmin and tmax.
         """
         rays = _rows(rays, (6, 8), "rays")
         shape = rays.shape[:-1]
-        t, obj, primitive, instance, normal, uv = self._native.cast(rays, format, accel, threads)
+        t, obj, primitive, instance, normal, uv = self._native.cast(rays, format, accel, _threads(threads))
         return Hits(
             t.reshape(shape),
             obj.reshape(shape),
@@ -168,22 +222,25 @@ class Scene:
     def any(
         self, rays: ArrayLike, *, format: str = "f32", accel: Optional[str] = None, threads: int = 0
     ) -> NDArray[np.bool_]:
-        """Returns whether each ray hits anything: rays (..., 6) or (..., 8), the result (...) bool."""
+        """Returns whether each ray hits anything: rays (..., 6) or (..., 8), the result (...) bool.
+
+        Rays at edges and vertices are rounded as those of :meth:`cast` are.
+        """
         rays = _rows(rays, (6, 8), "rays")
-        return self._native.any(rays, format, accel, threads).reshape(rays.shape[:-1])
+        return self._native.any(rays, format, accel, _threads(threads)).reshape(rays.shape[:-1])
 
     def all(
         self, rays: ArrayLike, *, format: str = "f64", accel: Optional[str] = None, threads: int = 0
     ) -> AllHits:
         """Returns every crossing of each ray: rays (n, 6) or (n, 8), m hits ray by ray in the order of t.
 
-        Nothing is listed twice, capped or lost. A ray through an edge or a vertex of a closed mesh
-        crosses as many triangles as a ray next to it. Where a ray only touches a silhouette, it has
-        no crossing or two. At the border of an open mesh it has none or one. :meth:`cast` may
-        report a hit there.
+        Nothing is listed twice, capped or lost: a ray through an edge or a vertex of a closed mesh crosses as many
+        triangles as a ray beside it. Where a ray only touches a silhouette, or the border of an open mesh, it has no
+        crossing, or two, or one at a border; :meth:`cast` may report a hit there. Surfaces nearer to each other than
+        :attr:`displacement` come in the order in which the lattice has them, and may have the same t.
         """
         rays = _rows(rays, (6, 8), "rays")
-        ray, hits, leaves = self._native.all(rays, format, accel, threads)
+        ray, hits, leaves = self._native.all(rays, format, accel, _threads(threads))
         return AllHits(ray, *hits, leaves)
 
     def count(
@@ -191,7 +248,7 @@ class Scene:
     ) -> NDArray[np.uint32]:
         """Returns the number of crossings of each ray, as :meth:`all` lists them: (...) uint32."""
         rays = _rows(rays, (6, 8), "rays")
-        return self._native.count(rays, format, accel, threads).reshape(rays.shape[:-1])
+        return self._native.count(rays, format, accel, _threads(threads)).reshape(rays.shape[:-1])
 
     def contains(
         self,
@@ -205,11 +262,14 @@ class Scene:
         """Returns whether each point lies in a closed object: points (..., 3), the result (...) bool.
 
         Solids are closed, and so are meshes each of whose edges an even number of triangles share. A point nearer to a
-        surface than :attr:`displacement` may be on either side of it. Raises ValueError if no object is closed; with
-        ``closed_only=False`` open meshes contain what one ray leaves through an odd number of their triangles.
+        surface than :attr:`displacement` may be on either side of it. With ``format="f32"`` the points themselves are
+        rounded, by up to 3e-8 of the scene's size. No object contains nan or infinity. Raises ValueError if no object is
+        closed; with ``closed_only=False`` open meshes contain what one ray leaves through an odd number of their
+        triangles.
         """
         points = _rows(points, (3,), "points")
-        inside = self._native.contains(points, closed_only, format, accel, threads)
+        within = "closed" if closed_only else "object"
+        inside = self._native.contains(points, within, format, accel, _threads(threads))
         return inside.reshape(points.shape[:-1])
 
     def render(
@@ -225,21 +285,31 @@ class Scene:
     ) -> NDArray[np.uint8]:
         """Renders the scene from its camera: (height, width, 3) uint8 in sRGB, the first row at the top.
 
-        Defaults are those of the scene; give both ``width`` and ``height`` or neither. The pixels are those of
-        ``gridel render`` with the same settings.
+        Defaults are those of the scene; give both ``width`` and ``height`` (1 to 65535) or neither. ``samples`` is 1 to
+        4096 and ``depth`` 0 to 32. The pixels are those of ``gridel render`` with the same settings. A scene without a
+        camera is compiled anew where the ratio of the sides is not its own, because its framing depends on it.
         """
         if (width is None) != (height is None):
             raise ValueError("give both width and height, or neither")
-        size = None if width is None else [width, height]
-        return self._native.render(size, samples, depth, format, accel, threads)
+        size = None
+        if width is not None:
+            size = [_integer(width, "width", 1, 65535), _integer(height, "height", 1, 65535)]
+        if samples is not None:
+            samples = _integer(samples, "samples", 1, 4096)
+        if depth is not None:
+            depth = _integer(depth, "depth", 0, 32)
+        return self._native.render(size, samples, depth, format, accel, _threads(threads))
 
     def to_blob(
         self, *, accel: Optional[Accel] = None, lattice_bits: Optional[int] = None
     ) -> bytes:
-        """Returns the scene blob, for files and for devices; compiled again if structures or bits
-        are given."""
+        """Returns the scene blob, for files and for devices; compiled anew if structures or bits are given.
+
+        The scene's own structures and bits are the defaults.
+        """
         names = None if accel is None else _names(accel)
-        return self._native.to_blob(names, lattice_bits)
+        bits = None if lattice_bits is None else _bits(lattice_bits)
+        return self._native.to_blob(names, bits)
 
     @property
     def accels(self) -> Tuple[str, ...]:
@@ -263,13 +333,27 @@ class Scene:
 
     @property
     def displacement(self) -> float:
-        """The farthest that rounding to the lattice moved a surface, in the scene's units; nan of a blob."""
+        """The farthest that rounding to the lattice moved a surface, in the scene's units; nan of a blob.
+
+        At least a step of the lattice where primitives are smaller than that and left out.
+        """
         return self._native.displacement
 
     @property
     def bounds(self) -> NDArray[np.float64]:
         """(2, 3) float64: the lowest and the highest corner of a box around the scene."""
         return np.array(self._native.bounds)
+
+    def __copy__(self, *_: Any) -> "Scene":
+        return self
+
+    __deepcopy__ = __copy__
+
+    def __reduce__(self) -> Tuple[Any, ...]:
+        given = self._native.given()
+        if given is None:
+            return Scene.from_blob, (self.to_blob(),)
+        return Scene._from_meshes, given
 
     def __repr__(self) -> str:
         objects, primitives, instances = self._native.counts

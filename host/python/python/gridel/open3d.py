@@ -1,7 +1,8 @@
 """Ray casting scenes in place of ``open3d.t.geometry.RaycastingScene``; Open3D need not be installed.
 
 Tensors in, tensors out: where a query is given an Open3D tensor, its results are Open3D tensors. Otherwise they are
-NumPy arrays with a method ``numpy()``, so that code for Open3D need not be changed.
+an :class:`Array`, a NumPy array with methods of tensors such as ``numpy()`` and ``isfinite()``, so that code for Open3D
+need not be changed.
 """
 
 from __future__ import annotations
@@ -11,17 +12,68 @@ from typing import Any, Optional, Tuple
 
 import numpy as np
 
-from ._scene import MISS, Scene
+from ._scene import MISS, Scene, _mesh, _rows, _threads
 
 __all__ = ["Array", "RaycastingScene"]
 
 
 class Array(np.ndarray):
-    """A NumPy array with Open3D's method ``numpy()``."""
+    """A NumPy array with the methods of Open3D's tensors that code for ray casting calls.
+
+    Open3D takes it where it takes a tensor or an array.
+    """
 
     def numpy(self) -> np.ndarray:
         """Returns the plain array, without a copy."""
         return self.view(np.ndarray)
+
+    def isfinite(self) -> "Array":
+        """Returns which numbers are finite."""
+        return np.isfinite(self)
+
+    def isinf(self) -> "Array":
+        """Returns which numbers are infinite."""
+        return np.isinf(self)
+
+    def isnan(self) -> "Array":
+        """Returns which numbers are nan."""
+        return np.isnan(self)
+
+    def logical_not(self) -> "Array":
+        """Returns which numbers are 0 or false."""
+        return np.logical_not(self)
+
+    def logical_and(self, value: Any) -> "Array":
+        """Returns where both arrays are true."""
+        return np.logical_and(self, value)
+
+    def logical_or(self, value: Any) -> "Array":
+        """Returns where either array is true."""
+        return np.logical_or(self, value)
+
+    def abs(self) -> "Array":
+        """Returns absolute values."""
+        return np.abs(self)
+
+    def num_elements(self) -> int:
+        """Returns how many numbers there are."""
+        return self.size
+
+    def clone(self) -> "Array":
+        """Returns a copy."""
+        return self.copy()
+
+    def cpu(self) -> "Array":
+        """Returns itself: arrays are in the memory of the processor."""
+        return self
+
+    def contiguous(self) -> "Array":
+        """Returns the array in C order, without a copy where it is so."""
+        return np.require(self, requirements="C")
+
+    def to(self, dtype: Any, copy: bool = False) -> "Array":
+        """Converts to a type of NumPy's or Open3D's."""
+        return self.astype(str(dtype).lower() if _is_tensor(dtype) else dtype, copy=copy)
 
 
 def _is_tensor(value: Any) -> bool:
@@ -44,7 +96,10 @@ class RaycastingScene:
 
     The methods have the names, arguments, keys and dtypes of Open3D's. Rays (..., 6) are origin and direction, float32 or
     float64; ``t_hit`` counts multiples of the direction. Meshes are compiled when the first ray is cast after one was
-    added. ``nthreads`` is 0 for one thread per core. A ray through an edge or a vertex is counted once.
+    added. ``nthreads`` is at most 1024, and 0 for one thread per core. A ray through an edge or a vertex is counted once.
+    Directions are rounded to single precision: a ray that is aimed at the border of an open mesh, or at a silhouette, may
+    pass beside it. Rays may start at any distance. Invalid rays, as of :class:`gridel.Scene`, hit nothing. A closed mesh
+    thinner than a step of the lattice is met as a flat one.
     """
 
     INVALID_ID = MISS
@@ -56,21 +111,31 @@ class RaycastingScene:
         self._firsts = np.zeros(1, dtype=np.int64)
         self._scene: Optional[Scene] = None
 
-    def add_triangles(self, vertex_positions: Any, triangle_indices: Any = None) -> int:
+    def add_triangles(
+        self, vertex_positions: Any = None, triangle_indices: Any = None, *, mesh: Any = None
+    ) -> int:
         """Adds a mesh and returns the number of its geometry.
 
-        Give vertices (n, 3) and triangles (m, 3), or an ``open3d.t.geometry.TriangleMesh`` alone.
+        Give vertices (n, 3) and triangles (m, 3), or an ``open3d.t.geometry.TriangleMesh`` alone. Raises ValueError for
+        vertices that are not finite and triangles that name no vertex, and TypeError for indices that are no integers.
         """
-        if triangle_indices is None:
-            mesh = vertex_positions
-            vertex_positions, triangle_indices = mesh.vertex.positions, mesh.triangle.indices
-        vertices = np.array(_array(vertex_positions), dtype=np.float64)
-        triangles = np.array(_array(triangle_indices), dtype=np.int64)
-        for what, array in (("vertex_positions", vertices), ("triangle_indices", triangles)):
-            if array.ndim != 2 or array.shape[1] != 3:
-                raise ValueError(f"{what}: the array has the shape {array.shape}; it must be (n, 3)")
-        if triangles.size and not (0 <= triangles.min() and triangles.max() < len(vertices)):
-            raise ValueError(f"triangle_indices: vertices are numbered 0 to {len(vertices) - 1}")
+        if mesh is None and triangle_indices is None:
+            mesh, vertex_positions = vertex_positions, None
+        if (mesh is None) == (vertex_positions is None):
+            raise TypeError("add_triangles takes vertex_positions and triangle_indices, or mesh")
+        if mesh is not None:
+            try:
+                vertex_positions, triangle_indices = mesh.vertex.positions, mesh.triangle.indices
+            except AttributeError:
+                kind = f"{type(mesh).__module__}.{type(mesh).__qualname__}"
+                raise TypeError(
+                    f"mesh is a {kind}; it must be an open3d.t.geometry.TriangleMesh. "
+                    "Give vertices and triangles of other meshes"
+                ) from None
+        names = ("vertex_positions", "triangle_indices")
+        given = _mesh(_array(vertex_positions), _array(triangle_indices), names)
+        # Copies, as they are compiled later.
+        vertices, triangles = (array.copy() for array in given)
         self._meshes.append((vertices, triangles))
         self._firsts = np.append(self._firsts, self._firsts[-1] + len(triangles))
         self._scene = None
@@ -85,10 +150,7 @@ class RaycastingScene:
 
     @staticmethod
     def _rays(rays: Any) -> np.ndarray:
-        array = _array(rays)
-        if array.ndim < 1 or array.shape[-1] != 6:
-            raise ValueError(f"rays: the array has the shape {array.shape}; its last axis must be 6")
-        return array if array.dtype in (np.float32, np.float64) else array.astype(np.float32)
+        return _rows(_array(rays), (6,), "rays")
 
     def _identify(self, objects: np.ndarray, primitives: np.ndarray) -> np.ndarray:
         """The numbers of triangles in their own meshes."""
@@ -114,7 +176,7 @@ class RaycastingScene:
             }
         else:
             t, geometries, primitives, normals, uvs = self.scene._native.cast_rays(
-                np.ascontiguousarray(array), nthreads
+                array, _threads(nthreads, "nthreads")
             )
             hits = {
                 "t_hit": t.reshape(shape),
@@ -137,14 +199,14 @@ class RaycastingScene:
             limited[..., 0:3], limited[..., 4:7] = array[..., 0:3], array[..., 3:6]
             limited[..., 3], limited[..., 7] = tnear, tfar
             array = limited
-        return _like(rays, self.scene.any(array, threads=nthreads))
+        return _like(rays, self.scene.any(array, threads=_threads(nthreads, "nthreads")))
 
     def count_intersections(self, rays: Any, nthreads: int = 0) -> Any:
         """Returns the number of crossings of rays (..., 6): (...) int32."""
         array = self._rays(rays)
         if self.scene is None:
             return _like(rays, np.zeros(array.shape[:-1], dtype=np.int32))
-        counts = self.scene.count(array, format="f32", threads=nthreads)
+        counts = self.scene.count(array, format="f32", threads=_threads(nthreads, "nthreads"))
         return _like(rays, counts.astype(np.int32))
 
     def list_intersections(self, rays: Any, nthreads: int = 0) -> dict[str, Any]:
@@ -160,7 +222,7 @@ class RaycastingScene:
             splits = np.zeros(len(array) + 1, dtype=np.uint32)
             hits = (splits, none, none, none, np.zeros(0, np.float32), np.zeros((0, 2), np.float32))
         else:
-            found = self.scene.all(array, format="f32", threads=nthreads)
+            found = self.scene.all(array, format="f32", threads=_threads(nthreads, "nthreads"))
             splits = np.searchsorted(found.ray, np.arange(len(array) + 1)).astype(np.uint32)
             hits = (
                 splits,
@@ -174,15 +236,20 @@ class RaycastingScene:
         return {key: _like(rays, value) for key, value in zip(keys, hits)}
 
     def compute_occupancy(self, query_points: Any, nthreads: int = 0, nsamples: int = 1) -> Any:
-        """Returns 1 for points (..., 3) inside of a mesh and 0 for others: (...) float32.
+        """Returns 1 for points (..., 3) that all meshes together enclose an odd number of times, else 0: (...) float32.
 
-        One ray is enough; ``nsamples`` is taken for its place among the arguments.
+        A point in two meshes is outside, as in Open3D. One ray is enough; ``nsamples`` is taken for its place among the
+        arguments. Points with nan or infinity are outside.
         """
-        points = _array(query_points)
+        points = _rows(_array(query_points), (3,), "query_points")
         if self.scene is None:
             return _like(query_points, np.zeros(points.shape[:-1], dtype=np.float32))
-        inside = self.scene.contains(points, closed_only=False, threads=nthreads)
-        return _like(query_points, inside.astype(np.float32))
+        threads = _threads(nthreads, "nthreads")
+        inside = self.scene._native.contains(points, "scene", "f64", None, threads)
+        return _like(query_points, inside.reshape(points.shape[:-1]).astype(np.float32))
+
+    def __getstate__(self) -> dict:
+        return {**self.__dict__, "_scene": None}
 
     @staticmethod
     def create_rays_pinhole(*args: Any, **kwargs: Any) -> Any:

@@ -2,17 +2,21 @@
 
 >>> mesh.ray = gridel.trimesh.RayMeshIntersector(mesh)  # doctest: +SKIP
 
-No ray slips between two triangles, no surface is counted twice, and there is no most number of hits.
+No ray slips between two triangles, no surface is counted twice, and there is no most number of hits. Rays may start at
+any distance. Directions are rounded to single precision: a ray that is aimed at the border of an open mesh, or at a
+silhouette, may pass beside it. Invalid rays, as of :class:`gridel.Scene`, hit nothing. A closed mesh thinner than a step
+of the lattice is met as a flat one.
 """
 
 from __future__ import annotations
 
+import sys
 from typing import Any, Optional, Tuple, Union
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ._scene import Scene
+from ._scene import Scene, _integer, _numbers, _threads
 
 __all__ = ["RayMeshIntersector"]
 
@@ -20,9 +24,9 @@ __all__ = ["RayMeshIntersector"]
 class RayMeshIntersector:
     """Ray queries of a ``trimesh.Trimesh``, with the signatures and dtypes of trimesh's own class.
 
-    ``scale_to_box`` is accepted for compatibility and changes nothing: coordinates are always
-    centered and scaled. ``threads`` is the number of threads, 0 for one per core. A mesh that
-    changes is compiled again at its next query.
+    ``scale_to_box`` is taken for its place among the arguments and changes nothing: coordinates are always centered and
+    scaled. ``threads`` is the number of threads, at most 1024, and 0 for one per core. A mesh that changes is compiled anew when it is
+    asked next.
     """
 
     def __init__(self, geometry: Any, scale_to_box: bool = True, *, threads: int = 0):
@@ -45,12 +49,7 @@ class RayMeshIntersector:
     @staticmethod
     def _rays(origins: ArrayLike, directions: ArrayLike) -> Tuple[NDArray, NDArray]:
         """Rays as arrays (n, 3)."""
-        arrays = []
-        for values in (origins, directions):
-            array = np.asarray(values)
-            if array.dtype not in (np.float32, np.float64):
-                array = array.astype(np.float64)
-            arrays.append(np.ascontiguousarray(array))
+        arrays = [_numbers(origins, "ray_origins"), _numbers(directions, "ray_directions")]
         if arrays[0].shape != arrays[1].shape:
             raise ValueError("Ray origin and direction don't match!")
         if arrays[0].size == 0:
@@ -64,8 +63,8 @@ class RayMeshIntersector:
     ) -> Tuple[NDArray[np.float64], NDArray[np.int64], NDArray[np.int64]]:
         """Returns where rays (n, 3) hit: locations (m, 3) float64, and of each its ray and its triangle, (m,) int64.
 
-        Hits come ray by ray, in the order in which the ray meets them. With ``multiple_hits`` they are all crossings;
-        else the first hit of each ray.
+        Hits come ray by ray, in the order in which the ray meets them, and no location lies before the one before it.
+        With ``multiple_hits`` they are all crossings; else the first hit of each ray.
         """
         origins, directions = self._rays(ray_origins, ray_directions)
         return self._locations(origins, directions, multiple_hits, None)
@@ -98,7 +97,7 @@ class RayMeshIntersector:
         origins, directions = self._rays(ray_origins, ray_directions)
         if self.scene is None:
             return np.full(len(origins), -1, dtype=np.int32)
-        return self.scene._native.first(origins, directions, "f32", self.threads)
+        return self.scene._native.first(origins, directions, "f32", _threads(self.threads))
 
     def intersects_any(
         self, ray_origins: ArrayLike, ray_directions: ArrayLike
@@ -107,15 +106,15 @@ class RayMeshIntersector:
         origins, directions = self._rays(ray_origins, ray_directions)
         if self.scene is None:
             return np.zeros(len(origins), dtype=bool)
-        return self.scene._native.any_of(origins, directions, "f32", self.threads)
+        return self.scene._native.any_of(origins, directions, "f32", _threads(self.threads))
 
     def contains_points(self, points: ArrayLike) -> NDArray[np.bool_]:
         """Returns whether the mesh contains each point: points (n, 3), the result (n,) bool.
 
         Right for every closed mesh; of an open one it says how often one ray leaves it. A point nearer to the surface
-        than ``scene.displacement`` may be on either side.
+        than ``scene.displacement`` may be on either side. Points with nan or infinity are in no mesh.
         """
-        points = np.asarray(points, dtype=np.float64)
+        points = _numbers(points, "points")
         if points.ndim != 2 or points.shape[1] != 3:
             if points.size == 0:
                 return np.zeros(0, dtype=bool)
@@ -127,11 +126,13 @@ class RayMeshIntersector:
     def _locations(
         self, origins: NDArray, directions: NDArray, multiple_hits: bool, max_hits: Optional[int]
     ) -> Tuple[NDArray[np.float64], NDArray[np.int64], NDArray[np.int64]]:
+        if max_hits is not None:
+            max_hits = _integer(max_hits, "max_hits", 0, sys.maxsize)
         scene = self.scene
         if scene is None:
             return np.zeros((0, 3)), np.zeros(0, dtype=np.int64), np.zeros(0, dtype=np.int64)
         return scene._native.locations(
-            origins, directions, bool(multiple_hits), max_hits, "f32", self.threads
+            origins, directions, bool(multiple_hits), max_hits, "f32", _threads(self.threads)
         )
 
     def __getstate__(self) -> dict:

@@ -4,7 +4,7 @@ use super::{
     BATCH, CHUNK, Closest, Found, How, Met, NONE, Nearest, Question, ask_some, chunks_of,
     each_chunk, fill,
 };
-use crate::rays::{Rays, Ready};
+use crate::rays::{Rays, Ready, prepare};
 #[cfg(target_arch = "x86_64")]
 use gridel_core::SimdLevel;
 use gridel_core::accel::DynAccel;
@@ -36,7 +36,7 @@ fn count_chunk<N: Number, A: Accel>(
 ) {
     let frame = Frame::of(scene);
     for (number, answer) in (start..).zip(answers) {
-        if let Ok((ray, _)) = frame.ray::<N>(scene, &rays.get(number)) {
+        if let Ok((ray, _)) = prepare::<N>(scene, &frame, &rays.get(number)) {
             each_hit::<N, A>(scene, &ray, |_| *answer += 1);
         }
     }
@@ -118,7 +118,11 @@ fn all_inline<N: Number, A: Accel, Q: Question<Answer = Found>>(
                     scale,
                     hit,
                 };
-                all.push((number, Q::hit(met)));
+                let hit = Q::hit(met);
+                // Without one where the t of a plane leaves double precision.
+                if hit.primitive != NONE {
+                    all.push((number, hit));
+                }
             });
         }
     }
@@ -128,15 +132,17 @@ fn all_inline<N: Number, A: Accel, Q: Question<Answer = Found>>(
 /// Places, numbers of rays and triangles.
 pub type Locations = (Vec<[f64; 3]>, Vec<i64>, Vec<i64>);
 
-/// Returns where rays hit triangles: all hits of each ray up to a number, or the first alone. Chunk
-/// by chunk.
+/// Where rays meet triangles: at most so many of each ray, or the first alone. Chunk by chunk.
+///
+/// `place` gives the t and the place of a hit. A triangle that would come before the one that is hit before it, because
+/// the lattice moved both, is met in the same place.
 pub fn locations(
     scene: &Scene<'_>,
     rays: Rays<'_>,
     how: How,
     multiple_hits: bool,
     max_hits: Option<usize>,
-    place: impl Fn(&SceneRay, &Found) -> [f64; 3] + Sync,
+    place: impl Fn(&SceneRay, &Found) -> (f64, [f64; 3]) + Sync,
 ) -> Vec<Locations> {
     let most = max_hits.unwrap_or(usize::MAX);
     each_chunk(how, chunks_of(rays.len()), |numbers| {
@@ -151,13 +157,18 @@ pub fn locations(
         }
         let mut locations = Locations::default();
         let (mut last, mut of_ray) = (usize::MAX, 0);
+        let mut farthest = (f64::NEG_INFINITY, [0.0; 3]);
         for (number, hit) in &hits {
             of_ray = if *number == last { of_ray + 1 } else { 1 };
             last = *number;
             if of_ray > most {
                 continue;
             }
-            locations.0.push(place(&rays.get(*number), hit));
+            let met = place(&rays.get(*number), hit);
+            if of_ray == 1 || met.0 > farthest.0 {
+                farthest = met;
+            }
+            locations.0.push(farthest.1);
             locations.1.push(*number as i64);
             locations.2.push(hit.primitive.into());
         }

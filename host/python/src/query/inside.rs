@@ -7,23 +7,25 @@ use glam::DVec3;
 use gridel_core::accel::DynAccel;
 use gridel_core::{Accel, Fixed, Format, Number, Scene, Solid, Structure, Wide, containment_ray};
 
-/// Which objects are closed: of the scene itself, then of its parts, by their numbers.
-pub type Closed<'a> = &'a [bool];
+/// When a point is inside.
+#[derive(Clone, Copy)]
+pub enum Inside<'a> {
+    /// In one of these objects, of the scene itself, then of its parts, by their numbers.
+    Closed(&'a [bool]),
+    /// In an object whose surface is crossed an odd number of times.
+    Object,
+    /// Where all surfaces together are crossed an odd number of times.
+    Scene,
+}
 
-/// Returns whether each point lies in a closed object. If `closed` is `None`, any object whose surface is crossed an
-/// odd number of times counts.
-pub fn contains(
-    scene: &Scene<'_>,
-    points: Points<'_>,
-    closed: Option<Closed<'_>>,
-    how: How,
-) -> Vec<bool> {
+/// Whether each point is inside.
+pub fn contains(scene: &Scene<'_>, points: Points<'_>, inside: Inside<'_>, how: How) -> Vec<bool> {
     fill(how, points.len(), false, |start, answers| {
         dispatch!(
             how,
             contains_chunk,
             [],
-            (scene, points, closed, start, answers)
+            (scene, points, inside, start, answers)
         );
     })
 }
@@ -31,23 +33,29 @@ pub fn contains(
 fn contains_chunk<N: Number, A: Accel>(
     scene: &Scene<'_>,
     points: Points<'_>,
-    closed: Option<Closed<'_>>,
+    inside: Inside<'_>,
     start: usize,
     answers: &mut [bool],
 ) {
     let header = scene.header();
     let origin = DVec3::from_array(header.origin);
     let per_unit = f64::powi(2.0, -i32::from(header.unit_exponent));
-    let is_closed = |object: u32| match closed {
-        Some(closed) => closed.get(object as usize).is_some_and(|&closed| closed),
-        None => true,
+    let is_closed = |object: u32| match inside {
+        Inside::Closed(closed) => closed.get(object as usize).is_some_and(|&closed| closed),
+        Inside::Object | Inside::Scene => true,
     };
-    let is_single = header.objects == 1 && scene.instances().is_empty();
+    let is_single =
+        matches!(inside, Inside::Scene) || header.objects == 1 && scene.instances().is_empty();
     // Solids that are crossed an odd number of times so far.
     let mut odd: Vec<Solid> = Vec::new();
     for (number, answer) in (start..).zip(answers) {
-        let units = ((points.get(number) - origin) * per_unit).to_array();
-        let Ok(Some(ray)) = containment_ray::<N>(scene, units.map(N::far_from_f64)) else {
+        let units = (points.get(number) - origin) * per_unit;
+        // A number format may make a number of NaN.
+        if !units.is_finite() {
+            continue;
+        }
+        let units = units.to_array().map(N::far_from_f64);
+        let Ok(Some(ray)) = containment_ray::<N>(scene, units) else {
             continue;
         };
         odd.clear();

@@ -6,6 +6,9 @@ use glam::DVec3;
 use gridel_host::scene::Shape;
 use gridel_host::trace::SceneRay;
 
+/// Where a ray meets a triangle: its t, the place, and the weights of the second and third corner.
+type Meeting = (f64, DVec3, [f64; 2]);
+
 impl NativeScene {
     /// The corners of a triangle of a mesh as they were given, by its number; `None` of other primitives, and of those of
     /// instances.
@@ -16,7 +19,7 @@ impl NativeScene {
         let Shape::Mesh {
             vertices,
             triangles,
-        } = &model.objects.get(object)?.shape
+        } = &model.scene.objects.get(object)?.shape
         else {
             return None;
         };
@@ -24,42 +27,79 @@ impl NativeScene {
         Some(corners.map(|corner| vertices[corner as usize]))
     }
 
-    /// Where a ray meets a triangle as it was given, in double precision, and the weights of its second and third corner;
-    /// by the hit's own t where the triangle is not a mesh's, or nearly parallel to the ray. Never outside of the ray's
-    /// interval.
+    /// Where a ray meets a triangle as it was given, in double precision; by the hit's own t where the triangle is not a
+    /// mesh's, or nearly parallel to the ray. Never outside of the ray's interval.
     // Inlined, it computes what is used there, and nothing else.
     #[inline(always)]
-    pub(super) fn place(&self, ray: &SceneRay, hit: &Found) -> (f64, DVec3, [f64; 2]) {
-        let own = ray.origin + ray.direction * hit.t;
-        if hit.instance != NONE {
-            return (hit.t, own, [f64::NAN; 2]);
-        }
-        let Some([a, b, c]) = self.triangle(hit.primitive) else {
-            return (hit.t, own, [f64::NAN; 2]);
+    pub(super) fn place(&self, ray: &SceneRay, hit: &Found) -> Meeting {
+        let triangle = match hit.instance {
+            NONE => self.triangle(hit.primitive),
+            _ => None,
         };
-        let (to_b, to_c) = (b - a, c - a);
-        let normal = to_b.cross(to_c);
-        let approach = normal.dot(ray.direction);
-        // Steeper than one in a thousand.
-        let is_steep =
-            approach * approach > 1e-6 * normal.length_squared() * ray.direction.length_squared();
-        let (t, place) = if is_steep {
-            let t = normal.dot(a - ray.origin) / approach;
-            let t = t.max(ray.tmin).min(ray.tmax);
-            (t, ray.origin + ray.direction * t)
+        let Some(corners) = triangle else {
+            let t = within(ray, hit.t);
+            return (t, ray.origin + ray.direction * t, [f64::NAN; 2]);
+        };
+        let [a, b, c] = corners;
+        let is_ordinary = (b - a).cross(c - a).length_squared().is_normal()
+            && (a - ray.origin).abs().max_element() < self.middle.far;
+        if is_ordinary {
+            meet(corners, ray, hit.t)
         } else {
-            (hit.t, own)
+            self.meet_extreme(corners, *ray, hit.t)
+        }
+    }
+
+    /// [`meet`] for a triangle whose area leaves double precision, or a ray from far away, as precise as from near.
+    #[cold]
+    #[inline(never)]
+    fn meet_extreme(&self, corners: [DVec3; 3], ray: SceneRay, own: f64) -> Meeting {
+        let (near, begin) = self.middle.nearer(&ray);
+        let [a, b, c] = corners;
+        let size = (b - a).abs().max((c - a).abs()).max_element();
+        // A power of two, so that it rounds nothing.
+        let scale = (-size.log2().round()).exp2();
+        let scaled = SceneRay {
+            origin: near.origin * scale,
+            direction: near.direction * scale,
+            ..near
         };
-        let relative = place - a;
-        let square = normal.length_squared();
-        let weight = |area: DVec3| (area.dot(normal) / square).clamp(0.0, 1.0);
-        let (u, v) = (weight(relative.cross(to_c)), weight(to_b.cross(relative)));
-        (t, place, [u, v])
+        let (t, place, weights) = meet(corners.map(|it| it * scale), &scaled, own - begin);
+        (within(&ray, begin + t), place / scale, weights)
     }
 
     /// The t of a hit, and the weights of the corners of its triangle.
+    #[inline(always)]
     pub(super) fn weights(&self, ray: &SceneRay, hit: &Found) -> (f64, [f32; 2]) {
         let (t, _, uv) = self.place(ray, hit);
         (t, uv.map(|weight| weight as f32))
     }
+}
+
+/// A t, in a ray's interval.
+#[inline(always)]
+fn within(ray: &SceneRay, t: f64) -> f64 {
+    t.max(ray.tmin).min(ray.tmax)
+}
+
+/// Where a ray meets a triangle, by a t of its own where it is nearly parallel.
+#[inline(always)]
+fn meet([a, b, c]: [DVec3; 3], ray: &SceneRay, own: f64) -> Meeting {
+    let (to_b, to_c) = (b - a, c - a);
+    let normal = to_b.cross(to_c);
+    let square = normal.length_squared();
+    let approach = normal.dot(ray.direction);
+    // Steeper than one in a thousand.
+    let is_steep = approach * approach > 1e-6 * square * ray.direction.length_squared();
+    let t = if is_steep {
+        normal.dot(a - ray.origin) / approach
+    } else {
+        own
+    };
+    let t = within(ray, t);
+    let place = ray.origin + ray.direction * t;
+    let relative = place - a;
+    let weight = |area: DVec3| (area.dot(normal) / square).clamp(0.0, 1.0);
+    let weights = [weight(relative.cross(to_c)), weight(to_b.cross(relative))];
+    (t, place, weights)
 }
