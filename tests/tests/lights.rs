@@ -74,6 +74,14 @@ fn far_lamps_and_large_faces_light_small_scenes() {
             );
         }
     }
+    for (radius, height) in [(0.5_f64, 20.0_f64), (1.5, 80.0), (2.0, 120.0)] {
+        let radiance = 0.5 * (height / radius).powi(2);
+        let light = format!(
+            "[[light]]\nkind = 'sphere'\ncenter = [0, {height}, 0]\nradius = {radius}\nradiance = {radiance}\n"
+        );
+        let blob = scene(&light, "[0, 0.3, 0]", "[0, 0, 0]", GROUND);
+        check("ball", &blob, 0.5);
+    }
     for width in [0.7_f64, 1.0, 1.5, 2.0, 3.0, 7.9] {
         let half = width / 2.0;
         let glowing = format!(

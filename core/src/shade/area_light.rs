@@ -108,11 +108,11 @@ fn on_sphere<N: Number>(form: &LightForm, aim: &Aim<N>, u: N, [sine, cosine]: [N
         distance: None,
         cone: None,
     };
-    let Some(reach) = Reach::of(aim.way, aim.distance) else {
+    let Some(Reach { unit, distance }) = Reach::<N>::of(aim.way, aim.distance) else {
         return hidden;
     };
-    let radius = length::<N>(form.edges[0][0]).half();
-    let widest = radius.div(reach.half_length);
+    let radius = distance.half_length(form.edges[0][0]);
+    let widest = radius.div(distance.half);
     if widest <= N::ZERO || widest >= N::ONE {
         return hidden;
     }
@@ -124,20 +124,17 @@ fn on_sphere<N: Number>(form: &LightForm, aim: &Aim<N>, u: N, [sine, cosine]: [N
     let sag = cap * u;
     let away = (sag + (sag - sag * sag)).sqrt().min(widest);
     let toward = N::ONE - sag;
-    let [first, second] = beside(reach.unit);
+    let [first, second] = beside(unit);
     let (right, up) = (away * cosine, away * sine);
-    let axis = |k: usize| reach.unit[k] * toward + first[k] * right + second[k] * up;
+    let axis = |k: usize| unit[k] * toward + first[k] * right + second[k] * up;
     let direction = [axis(0), axis(1), axis(2)];
     // In halves, from the middle of the chord to the surface.
     let part = away.div(widest).min(N::ONE);
     let inward = radius * (N::ONE - part * part).sqrt();
-    let end = (reach.half_length * toward - inward) * extent(direction);
+    let end = distance.whole((distance.half * toward - inward) * extent(direction));
     Aim {
         way: direction.map(N::widen),
-        distance: Some(end.widen() + end.widen()),
-        cone: Some(Cone {
-            half_distance: reach.half_length,
-            widening,
-        }),
+        distance: Some(end + end),
+        cone: Some(Cone { distance, widening }),
     }
 }

@@ -11,7 +11,6 @@ use crate::observe::count::Observer;
 use crate::observe::event::Event;
 use crate::shade::Color;
 use crate::shade::effect::{Effect, Tracer};
-use crate::shade::light::length;
 use crate::shade::surface::{Lighting, Surface};
 
 pub(crate) struct Falloff;
@@ -84,8 +83,8 @@ fn shines<N: Number>(form: &LightForm, to_light: [N; 3]) -> bool {
 fn is_in_range<N: Number>(form: &LightForm, lighting: &Lighting<'_, N>) -> bool {
     form.range == 0
         || lighting
-            .half_distance()
-            .is_some_and(|half| half < length::<N>(form.range).half())
+            .whole_distance()
+            .is_some_and(|distance| distance.half < distance.half_length(form.range))
 }
 
 fn has_cone(form: &LightForm) -> bool {
@@ -95,14 +94,18 @@ fn has_cone(form: &LightForm) -> bool {
 /// Returns the arriving part of a light's color.
 #[inline(never)]
 fn falling<N: Number>(form: &LightForm, lighting: &Lighting<'_, N>, color: Color<N>) -> Color<N> {
-    let middle = lighting.cone.map(|cone| cone.half_distance);
-    let Some(half) = middle.or_else(|| lighting.half_distance()) else {
+    let middle = lighting.cone.map(|cone| cone.distance);
+    let Some(distance) = middle.or_else(|| lighting.whole_distance()) else {
         return Color::BLACK;
     };
-    let mut arriving = fallen(color, length::<N>(form.reference).half(), half);
+    let mut arriving = if form.reference == 0 {
+        color
+    } else {
+        fallen(color, distance.half_length(form.reference), distance.half)
+    };
     if form.range > 0 {
         // KHR_lights_punctual: 1 minus the fourth power of the distance over the range.
-        let part = half.div(length::<N>(form.range).half());
+        let part = distance.half.div(distance.half_length(form.range));
         if part >= N::ONE {
             return Color::BLACK;
         }
@@ -134,13 +137,9 @@ fn falling<N: Number>(form: &LightForm, lighting: &Lighting<'_, N>, color: Color
 /// Maximum number of times that a distance is doubled until it is no shorter than another.
 const DOUBLINGS: u32 = 32;
 
-/// Returns a color that is given at a reference distance, at another distance; both are given by their halves. A
-/// reference of 0 means none.
+/// Returns a color that is given at a reference distance, at another distance; both are given by their halves.
 fn fallen<N: Number>(color: Color<N>, reference: N, distance: N) -> Color<N> {
-    if reference <= N::ZERO {
-        return color;
-    }
-    if distance <= N::ZERO {
+    if reference <= N::ZERO || distance <= N::ZERO {
         return Color::BLACK;
     }
     // No ratio is above 1, because not every format can hold such a ratio.

@@ -2,6 +2,10 @@
 
 use crate::accel::Number;
 use crate::format::record::Light;
+use crate::number::Format;
+
+/// The longest distance that `fixed` holds, with 13 fraction bits.
+const LONGEST: i64 = i32::MAX as i64;
 
 impl Light {
     /// The way from a point to this light, of any length, and how far along its largest component
@@ -41,21 +45,59 @@ pub(crate) fn length<N: Number>(q13: i32) -> N {
     N::narrow(N::far(q13.into()))
 }
 
+/// Half of a distance, over a power of two by which it fits every format.
+#[derive(Clone, Copy)]
+pub(crate) struct Distance<N> {
+    pub(crate) half: N,
+    shift: u32,
+}
+
+impl<N: Number> Distance<N> {
+    /// Returns a distance along a direction whose largest component is 1, given its length there and the direction's.
+    #[inline(always)]
+    pub(crate) fn of(mut along: N::Wide, norm: N) -> Self {
+        let mut shift = 0;
+        if let Format::Fixed = N::FORMAT {
+            while along > N::far(LONGEST) && shift < 24 {
+                along = N::wide_over(along, 1 << 6);
+                shift += 6;
+            }
+        }
+        let half = N::narrow(along).half() * norm;
+        Self { half, shift }
+    }
+
+    /// Returns half of a length with 13 fraction bits, over the same power of two.
+    #[inline(always)]
+    pub(crate) fn half_length(&self, q13: i32) -> N {
+        length::<N>(q13 >> self.shift).half()
+    }
+
+    /// Returns a length that was over that power of two.
+    #[inline(always)]
+    pub(crate) fn whole(&self, length: N) -> N::Wide {
+        if self.shift == 0 {
+            length.widen()
+        } else {
+            N::wide_times(length.widen(), 1 << self.shift)
+        }
+    }
+}
+
 /// The direction and the length of a way.
 pub(crate) struct Reach<N> {
     /// The direction, of length 1.
     pub(crate) unit: [N; 3],
-    /// Half the way's length, which fits every format; at most half of [`FAR`](crate::number::Scalar::FAR) along the
-    /// largest component.
-    pub(crate) half_length: N,
+    /// The way's length.
+    pub(crate) distance: Distance<N>,
 }
 
 impl<N: Number> Reach<N> {
-    /// From a way and its length along its largest component; `None` if it has no length, or no end.
+    /// Returns them for a way and its length along its largest component; `None` if it has no length, or no end.
     pub(crate) fn of(way: [N::Wide; 3], distance: Option<N::Wide>) -> Option<Self> {
         let (slopes, _) = N::slopes(way)?;
         let (unit, norm) = N::normalize(slopes);
-        let half_length = N::narrow(distance?).half() * norm;
-        Some(Self { unit, half_length })
+        let distance = Distance::of(distance?, norm);
+        Some(Self { unit, distance })
     }
 }

@@ -11,6 +11,7 @@ use crate::scene::Scene;
 use crate::scene::textures::Footprint;
 use crate::shade::Color;
 use crate::shade::facets::Facets;
+use crate::shade::light::Distance;
 
 /// A surface that a ray has hit.
 pub(crate) struct Surface<'h, N: Number> {
@@ -91,18 +92,18 @@ pub(crate) struct Lighting<'l, N: Number> {
 }
 
 impl<N: Number> Lighting<'_, N> {
-    /// Half the distance of the light, which fits every format; `None` for infinitely far.
+    /// Returns the distance of the light; `None` for infinitely far.
     #[inline(always)]
-    pub(crate) fn half_distance(&self) -> Option<N> {
-        Some(N::narrow(self.distance?).half() * self.norm)
+    pub(crate) fn whole_distance(&self) -> Option<Distance<N>> {
+        Some(Distance::of(self.distance?, self.norm))
     }
 }
 
 /// The cone in which a sphere is seen.
 #[derive(Clone, Copy)]
 pub(crate) struct Cone<N> {
-    /// Half the distance of its middle.
-    pub(crate) half_distance: N,
+    /// The distance of its middle.
+    pub(crate) distance: Distance<N>,
     /// 1 / (1 + cos) of the angle between its axis and its side.
     pub(crate) widening: N,
 }

@@ -101,11 +101,7 @@ impl Serialize for LeftOut {
 
 impl Primitives {
     /// Snaps everything. Unless `flat_meshes`, a closed mesh that then lies in one plane is an error.
-    pub fn snap(
-        scene: &Scene,
-        lattice: &Lattice,
-        flat_meshes: bool,
-    ) -> Result<Self, CompileError> {
+    pub fn snap(scene: &Scene, lattice: &Lattice, flat_meshes: bool) -> Result<Self, CompileError> {
         let mut primitives = Self {
             flat_meshes,
             ..Self::default()
@@ -264,9 +260,7 @@ impl Primitives {
                         self.required_by.push((effect, name));
                     }
                 }
-                if !self.flat_meshes
-                    && flattened::is_flattened((vertices, &snapped), triangles)
-                {
+                if !self.flat_meshes && flattened::is_flattened((vertices, &snapped), triangles) {
                     return Err(CompileError::Flattened {
                         object: format!("{} ({})", printable(&object.name), object.place),
                         step: lattice.step(),

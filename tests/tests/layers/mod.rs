@@ -26,7 +26,7 @@ const CORE: Layers = Layers {
 const HOST: Layers = Layers {
     sources: "../host/src",
     order: &[
-        "output simd srgb table blob observed picture_rays shape deformation",
+        "output simd srgb explained table blob observed picture_rays shape deformation",
         "scene sample compile",
         "live state render trace npy picture layer openexr animation merge resolution report",
         "measure emit",
