@@ -25,7 +25,7 @@ use crate::format::range::Ranges;
 use crate::format::record::UnitBox;
 use crate::format::{BlobError, Field, Reason};
 use crate::geometry::primitive::{InScene, MAX_RADIUS, Primitive};
-use crate::geometry::{Crossing, LEAVING, Part, Surface, cross_face};
+use crate::geometry::{Crossing, LEAVING, Part, Surface};
 use crate::number::Arithmetic;
 use crate::number::extent;
 use crate::ray::Ray;
@@ -180,26 +180,16 @@ impl Cone {
         }
     }
 
-    /// Where a ray crosses the planes of the caps, the nearer one first, if they are at right angles to an axis of
-    /// coordinates and not parallel to the ray.
+    /// Returns the axis of coordinates at right angles to the caps, if there is one.
     #[inline(always)]
-    fn caps<N: Arithmetic>(&self, ray: &Ray<N>) -> Option<[(N, Part); 2]> {
+    fn axis(&self) -> Option<usize> {
         let same = |k: usize| self.base[k] == self.apex[k];
-        let axis = match (same(0), same(1), same(2)) {
-            (false, true, true) => 0,
-            (true, false, true) => 1,
-            (true, true, false) => 2,
-            _ => return None,
-        };
-        let slope = pick(ray.slope, axis);
-        if slope == N::ZERO {
-            return None;
+        match (same(0), same(1), same(2)) {
+            (false, true, true) => Some(0),
+            (true, false, true) => Some(1),
+            (true, true, false) => Some(2),
+            _ => None,
         }
-        let [base, apex] = [pick(self.base, axis), pick(self.apex, axis)];
-        let [base_t, apex_t] = [base, apex].map(|side| cross_face(ray, axis, side));
-        let caps = [(base_t, BASE), (apex_t, APEX)];
-        let base_first = (base < apex) == (slope > N::ZERO);
-        Some(if base_first { caps } else { [caps[1], caps[0]] })
     }
 
     #[inline(always)]
@@ -239,6 +229,7 @@ impl Primitive for Cone {
             return None;
         }
 
+        let beyond = reach + reach;
         // From here on lengths are shifted up as far as their products allow.
         let bits = N::headroom(reach);
         let reach = reach.scale_up(bits);
@@ -248,20 +239,39 @@ impl Primitive for Cone {
         let q_axial = N::from_wide(N::dot(q, frame.axis));
         let d_axial = N::from_wide(N::dot(d, frame.axis));
 
-        // Between the caps.
+        // Between the caps. Those at right angles to an axis are met where every face in their planes is, to the last bit.
+        let face = self.axis();
         let (mut enter, mut leave) = ((-N::FAR, BASE), (N::FAR, APEX));
+        let (mut first_t, mut last_t) = (N::ZERO, N::ZERO);
         if d_axial == N::ZERO {
             if q_axial.abs() > half_height {
                 return None;
             }
         } else {
-            let base = (-half_height - q_axial).div(d_axial);
-            let apex = (half_height - q_axial).div(d_axial);
-            (enter, leave) = if d_axial > N::ZERO {
-                ((base, BASE), (apex, APEX))
-            } else {
-                ((apex, APEX), (base, BASE))
+            let (to_base, to_apex, along) = match face {
+                Some(k) => {
+                    let side =
+                        |center: [i32; 3]| N::from_lattice(pick(center, k)) - pick(ray.origin, k);
+                    (side(self.base), side(self.apex), pick(d, k))
+                }
+                None => (-half_height - q_axial, half_height - q_axial, d_axial),
             };
+            let (first, last) = if d_axial > N::ZERO {
+                ((to_base, BASE), (to_apex, APEX))
+            } else {
+                ((to_apex, APEX), (to_base, BASE))
+            };
+            (first_t, last_t) = (first.0.div(along), last.0.div(along));
+            let ends = if face.is_some() {
+                let s = |t: N| {
+                    let s = N::narrow(t.widen() - closest.widen());
+                    s.max(-beyond).min(beyond).scale_up(bits)
+                };
+                (s(first_t), s(last_t))
+            } else {
+                (first_t, last_t)
+            };
+            (enter, leave) = ((ends.0, first.1), (ends.1, last.1));
         }
 
         // In the mantle.
@@ -311,22 +321,24 @@ impl Primitive for Cone {
         if cut.1 < leave.0 {
             leave = (cut.1, MANTLE);
         }
-        // Ends beyond what counts are infinite. Written so that a NaN is no crossing.
+        // Ends beyond the limit are infinite. Written so that a NaN is no crossing.
         let (start, end) = (-reach - reach, reach + reach);
         if !(enter.0 <= leave.0 && enter.0 > start && leave.0 < end) {
             return None;
         }
-        let back = |(s, part): (N, Part)| (closest + s.scale_down(bits), part);
-        let (enter, leave) = match self.caps(ray) {
-            Some([near, far]) => {
-                // The mantle's ends once more, as rounding moved the caps.
-                let (first, last) = (back((cut.0, MANTLE)), back((cut.1, MANTLE)));
-                let enter = if first.0 > near.0 { first } else { near };
-                let leave = if last.0 < far.0 { last } else { far };
-                (enter, leave)
-            }
-            None => (back(enter), back(leave)),
+        let back = |(s, part): (N, Part), t: N| {
+            let is_face = part != MANTLE && face.is_some();
+            (
+                if is_face {
+                    t
+                } else {
+                    closest + s.scale_down(bits)
+                },
+                part,
+            )
         };
+        let (enter, leave) = (back(enter, first_t), back(leave, last_t));
+        // Rounded apart, ends can change places.
         (enter.0 <= leave.0).then(|| Crossing {
             enter: ray.ahead(enter),
             leave,

@@ -2,7 +2,6 @@
 //!
 //! [`accept`] decides for all primitives which part of a crossing is a hit.
 
-use crate::axis::pick;
 use crate::number::Arithmetic;
 use crate::ray::Ray;
 
@@ -58,12 +57,4 @@ pub(crate) fn cross_plane<N: Arithmetic>(
         return None;
     }
     Some(N::divide(N::dot(normal, relative), approach))
-}
-
-/// Where a ray that does not run along it crosses the plane at a coordinate of an axis, in 1/256 unit: to the last bit
-/// what every shape with a face there has, so that the scene file's order decides between them.
-#[inline(always)]
-pub(crate) fn cross_face<N: Arithmetic>(ray: &Ray<N>, axis: usize, coordinate: i32) -> N {
-    let relative = N::from_lattice(coordinate) - pick(ray.origin, axis);
-    relative.div(pick(ray.slope, axis))
 }

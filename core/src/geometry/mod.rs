@@ -22,7 +22,7 @@ mod surface;
 pub(crate) mod triangle;
 
 pub(crate) use cluster::{Clusters, Packs, Packs24, Strips};
-pub(crate) use crossing::{Crossing, LATER, LEAVING, Part, accept, cross_face, cross_plane};
+pub(crate) use crossing::{Crossing, LATER, LEAVING, Part, accept, cross_plane};
 pub(crate) use primitive_id::PrimitiveId;
 pub use project::Project;
 pub use shapes::Geometry;

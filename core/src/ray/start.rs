@@ -35,6 +35,20 @@ inline_unless_small!(
     }
 );
 
+/// Returns a start that is moved back to where the scene's box begins, in that plane: rounding can have moved it off, and
+/// hits in the plane before it.
+#[inline(always)]
+pub(super) fn onto_box<N: Arithmetic>(
+    bounds: &UnitBox,
+    (axis, forward): (usize, bool),
+    start: [N; 3],
+) -> [N; 3] {
+    let [first, last] = pick(bounds.0, axis);
+    let plane = N::from_unit(if forward { first } else { last });
+    let on = |k: usize| if k == axis { plane } else { start[k] };
+    [on(0), on(1), on(2)]
+}
+
 /// An interval counted from the moved origin of a ray.
 #[inline(always)]
 pub(super) fn interval<N: Arithmetic>(tmin: N::Wide, tmax: N::Wide, start_t: N::Wide) -> [N; 2] {

@@ -46,6 +46,32 @@ fn every_structure(scene: &scene::Scene) -> gridel_host::blob::Blob {
     scenes::blob_with_gridels(scene, 24, 1)
 }
 
+/// A ray from within a box that is as large as the scene meets its faces on both sides.
+#[test]
+fn boxes_are_crossed_before_and_behind_an_origin_within() {
+    fn twice<N: Number>(scene: &Scene<'_>, ray: &UnitRay) {
+        let ready = ray.ready::<N>(scene).expect("a ray");
+        let hits = list::<N, 4>(&scene.choose(Structure::List).expect("the list"), &ready);
+        assert_eq!(hits.len(), 2, "{:?} {ray:?}", N::FORMAT);
+    }
+    let mut random = Random(19);
+    let cube = Shape::Box(Cuboid {
+        min: DVec3::splat(-1.0),
+        max: DVec3::new(1.0, 2.0, 1.0),
+    });
+    let blob = scenes::blob(&scenes::of([cube]), 24);
+    let scene = blob.scene().expect("a scene");
+    let unit = f64::powi(2.0, scene.header().unit_exponent.into());
+    for _ in 0..part_of(2000, 20_000) {
+        let origin = [0; 3].map(|_| 0.99 * random.signed() / unit);
+        let ray = UnitRay {
+            tmin: -1e9,
+            ..UnitRay::new(origin, random.direction())
+        };
+        every_format!(twice(&scene, &ray));
+    }
+}
+
 /// Compares the lists of all structures, and of lists of several sizes; returns the number of hits.
 pub(crate) fn all_agree<N: Number>(name: &str, scene: &Scene<'_>, ray: &UnitRay) -> usize {
     let ready = ray.ready::<N>(scene).expect("a ray");
