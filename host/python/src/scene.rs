@@ -73,7 +73,7 @@ impl Model {
             "scale them up, or put them into a scene of their own"
         };
         let warning = format!(
-            "{} too small for the lattice, whose step is {}, left out; {remedy}",
+            "{} left out: too small for the lattice, whose step is {}; {remedy}",
             counted(report.collapsed.count(), "primitive"),
             significant(report.step),
         );

@@ -109,6 +109,7 @@ def test_tutorial_of_open3d_runs():
     assert found["t_hit"].to(o3d.core.float64).dtype == np.float64
 
 
+@pytest.mark.filterwarnings("ignore:.*left out")
 def test_far_and_tiny_rays_and_thin_meshes():
     scene = RaycastingScene()
     scene.add_triangles(TETRAHEDRON, SIDES)

@@ -1,6 +1,7 @@
 """Scenes, formats, structures, errors, threads."""
 
 import copy
+import os
 import pickle
 import subprocess
 import sys
@@ -206,6 +207,7 @@ for _ in range(20):
     )
 
 
+@pytest.mark.skipif(not hasattr(os, "fork"), reason="the system does not fork")
 def test_queries_and_compilation_work_after_fork():
     run(
         """
@@ -270,6 +272,18 @@ def test_slanted_rays_from_far_away_cross_twice(cube, format, distance):
     assert np.allclose(hits.t, distance, rtol=1e-5)
 
 
+@pytest.mark.parametrize("format", ["fixed", "f32", "f64"])
+def test_far_rays_meet_planes_or_are_invalid(tmp_path, format):
+    plane = "[[object]]\nkind = 'plane'\npoint = [0, 0, 0]\nnormal = [0, 0, 1]\n"
+    ball = "[[object]]\nkind = 'sphere'\ncenter = [0, 0, 2]\nradius = 1\n"
+    (tmp_path / "scene.toml").write_text(plane + ball)
+    scene = gridel.Scene.load(tmp_path / "scene.toml", accel="bvh")
+    # At the ball, beside it at the plane, and so far beside it that no number of the core holds the place.
+    rays = [[0, 0, 1e9, 0, 0, -1], [5, 0, 1e9, 0, 0, -1], [1e9, 0, 1e9, 0, 0, -1.0]]
+    assert np.allclose(scene.cast(rays, format=format).t, [1e9 - 3, 1e9, np.nan], rtol=1e-12, equal_nan=True)
+    assert scene.count(rays, format=format).tolist() == [3, 1, 0]
+
+
 def test_near_rays_keep_their_bits_beside_far_ones(cube):
     rays = np.random.default_rng(6).normal(size=(4000, 6))
     rays[:, :3] -= 64 * rays[:, 3:]
@@ -300,7 +314,7 @@ def test_unreferenced_vertices_widen_no_lattice():
 def test_collapsed_primitives_are_warned_of_and_count_in_displacement():
     vertices = np.vstack([CUBE, 5000 * CUBE + [10, 0, 0], 1e-5 * CUBE + [5, 0, 0]])
     faces = np.vstack([FACES, FACES + 8, FACES + 16])
-    with pytest.warns(UserWarning, match="12 primitives too small for the lattice.*left out"):
+    with pytest.warns(UserWarning, match="12 primitives left out: too small for the lattice"):
         scene = gridel.Scene.from_arrays(vertices, faces)
     assert scene.displacement >= 1e-5 and scene.primitives == len(faces)
     with warnings.catch_warnings():
@@ -308,6 +322,7 @@ def test_collapsed_primitives_are_warned_of_and_count_in_displacement():
         gridel.Scene.from_arrays(CUBE, FACES)
 
 
+@pytest.mark.filterwarnings("ignore:.*left out")
 @pytest.mark.parametrize("format", ["fixed", "f32", "f64"])
 def test_thin_closed_meshes_are_met_as_flat_ones(format):
     scene = gridel.Scene.from_arrays(CUBE * [1, 1, 1e-9], FACES)
@@ -374,6 +389,7 @@ def test_misaligned_arrays_are_copied(cube):
     assert cube.cast(rays.astype(">f8")).t.tolist() == [2.0]
 
 
+@pytest.mark.skipif(sys.platform != "linux", reason="counts threads in /proc")
 def test_threads_are_at_most_1024_and_no_more_than_chunks(cube):
     rays = np.tile([[0.3, 0.6, -2, 0, 0, 1.0]], (5000, 1))
     before = threads_of_process()

@@ -271,6 +271,16 @@ fn flattened_closed_meshes_are_rejected() {
             .map(|_| ())
             .expect_err(name);
         assert!(matches!(error, CompileError::Flattened { .. }), "{error}");
+        let (vertices, triangles) = stretched(mesh.clone(), flat);
+        let shape = Shape::Mesh {
+            vertices,
+            triangles,
+        };
+        let allowed = Options {
+            flat_meshes: true,
+            ..Options::default()
+        };
+        compile(&scenes::of([shape]), &allowed).expect("an option allows it");
         // An open sheet is a sheet.
         let (vertices, mut triangles) = stretched(mesh, flat);
         triangles.pop();

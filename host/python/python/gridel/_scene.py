@@ -129,17 +129,17 @@ def _rows(values: ArrayLike, widths: Tuple[int, ...], what: str) -> NDArray:
 class Scene:
     """A scene, compiled for queries. Make one by :meth:`load`, :meth:`from_arrays` or :meth:`from_blob`.
 
-    A scene does not change, so that copies are the scene itself. Queries release the GIL and run on all cores, or on
-    ``threads`` of them (at most 1024; 0 for all); the results are the same, bit for bit, with any number of threads, and
-    in a forked process. Arrays of float32 and float64 in C order are read in place.
+    A scene does not change, and copies of it are the scene itself. Queries release the GIL and run on all cores, or on
+    ``threads`` of them: 1 to 1024, or 0 for all. The results are the same, bit for bit, with any number of threads, and in
+    a forked process. Arrays of float32 and float64 in C order are read in place.
 
     ``format`` is the number format of a query: ``"f32"``, ``"f64"`` or ``"fixed"`` (integers). ``accel`` is the name of
     an acceleration structure that the scene holds; the default is the fastest. It changes no result.
 
-    Rays may start at any distance. A ray is invalid if its direction is zero, if a number of it is nan, if its origin or
-    direction is infinite, if its tmin is greater than its tmax, or if the t of the scene leaves double precision, as of
-    directions of length 1e-308. Invalid rays hit nothing; :meth:`cast` gives them t = nan. In a scene with planes, a ray
-    that passes the scene at more than about 2^21 times its size is invalid as well.
+    Rays may start at any distance. A ray is invalid if its direction is zero or a number of it is nan. It is invalid if
+    its origin or direction is infinite, or if its tmin is greater than its tmax. It is also invalid if the t of the scene
+    leaves double precision, as of directions of length 1e-308. In a scene with planes, a ray that passes the scene at more
+    than about 2^21 times its size is invalid as well. Invalid rays hit nothing; :meth:`cast` gives them t = nan.
 
     Scenes pickle. A scene of arrays is compiled again from them and gives the same answers. Other scenes pickle as their
     blob, so that ``uv`` is nan and t is that of the blob.
@@ -202,10 +202,10 @@ class Scene:
         """Returns the first hit of each ray: rays (..., 6) or (..., 8), hits of shape (...).
 
         A ray that touches an edge or a vertex hits it. This holds for rays and vertices as the query has them: it
-        rounds directions to the number format and vertices to the lattice, and by that a ray that is aimed at a
-        silhouette or at the border of an open mesh may pass beside it. At the same t the primitive that comes first
-        counts. ``t`` and ``uv`` of triangles are computed from the vertices as they were given, in float64; t is never
-        outside of tmin and tmax.
+        rounds directions to the number format, and vertices to the lattice. So a ray that is aimed at a silhouette, or at
+        the border of an open mesh, may pass beside it. At the same t the primitive that comes first counts. ``t`` and
+        ``uv`` of triangles are computed from the vertices as they were given, in float64. ``t`` is never outside of tmin
+        and tmax.
         """
         rays = _rows(rays, (6, 8), "rays")
         shape = rays.shape[:-1]
