@@ -8,8 +8,8 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 
 /// Most texels of an image that is read: 8192 by 8192.
 const MOST_TEXELS: usize = 1 << 26;
-/// Most texels of all images of a scene: half a gigabyte.
-const MOST_TEXELS_OF_ALL: usize = 1 << 27;
+/// Most texels of all images of a scene: two gigabytes.
+const MOST_TEXELS_OF_ALL: usize = 1 << 29;
 /// Most texels of a side of an image that is read.
 const MOST_SIDE: usize = 1 << 15;
 
