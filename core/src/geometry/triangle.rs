@@ -268,8 +268,7 @@ pub(crate) fn cross<N: Project>(ray: &Ray<N>, corners: [[i32; 3]; 3]) -> Option<
 }
 
 inline_unless_small!(
-    /// The normal, of any length: exact but for one rounding per component. At right angles to an axis it is of length
-    /// 1, so that its plane is crossed where every other shape with a face there is, to the last bit.
+    /// Returns the normal, of any length: exact except for one rounding per component.
     fn normal<N: Arithmetic>([a, b, c]: [[i32; 3]; 3]) -> [N; 3] {
         let edge = |from: [i32; 3], to: [i32; 3]| {
             let axis = |k: usize| to[k].wrapping_sub(from[k]);
@@ -278,12 +277,7 @@ inline_unless_small!(
         let (p, q) = (edge(a, b), edge(a, c));
         // Edges have 25 bits and a sign, so the products have 51.
         let component = |i: usize, j: usize| product(p[i], q[j]).wrapping_sub(product(p[j], q[i]));
-        N::direction(match [component(1, 2), component(2, 0), component(0, 1)] {
-            [x, 0, 0] => [x.signum(), 0, 0],
-            [0, y, 0] => [0, y.signum(), 0],
-            [0, 0, z] => [0, 0, z.signum()],
-            tilted => tilted,
-        })
+        N::direction([component(1, 2), component(2, 0), component(0, 1)])
     }
 );
 
