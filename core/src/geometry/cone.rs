@@ -239,7 +239,8 @@ impl Primitive for Cone {
         let q_axial = N::from_wide(N::dot(q, frame.axis));
         let d_axial = N::from_wide(N::dot(d, frame.axis));
 
-        // Between the caps. Those at right angles to an axis are met where every face in their planes is, to the last bit.
+        // Between the caps. If they are at right angles to an axis, the ray crosses their planes at the t that it has for
+        // every face in these planes, to the last bit.
         let face = self.axis();
         let (mut enter, mut leave) = ((-N::FAR, BASE), (N::FAR, APEX));
         let (mut first_t, mut last_t) = (N::ZERO, N::ZERO);
@@ -338,7 +339,7 @@ impl Primitive for Cone {
             )
         };
         let (enter, leave) = (back(enter, first_t), back(leave, last_t));
-        // Rounded apart, ends can change places.
+        // Each end has its own rounding, so the ends can change places.
         (enter.0 <= leave.0).then(|| Crossing {
             enter: ray.ahead(enter),
             leave,

@@ -99,7 +99,7 @@ impl<N: Arithmetic> Ray<N> {
                 far_start::<N, false>(bounds, origin, direction, (slope, major), start_t)
             };
             let is_moved_back = tmin < start_t && start_t < N::Wide::default();
-            if N::FORMAT == Format::F64 && is_moved_back && within {
+            if N::FORMAT != Format::Fixed && is_moved_back && within {
                 start = onto_box(bounds, (major, forward), start);
             }
             let given = given(|| origin, [tmin, tmax], within);

@@ -83,7 +83,7 @@ fn shines<N: Number>(form: &LightForm, to_light: [N; 3]) -> bool {
 fn is_in_range<N: Number>(form: &LightForm, lighting: &Lighting<'_, N>) -> bool {
     form.range == 0
         || lighting
-            .whole_distance()
+            .light_distance()
             .is_some_and(|distance| distance.half < distance.half_length(form.range))
 }
 
@@ -95,7 +95,7 @@ fn has_cone(form: &LightForm) -> bool {
 #[inline(never)]
 fn falling<N: Number>(form: &LightForm, lighting: &Lighting<'_, N>, color: Color<N>) -> Color<N> {
     let middle = lighting.cone.map(|cone| cone.distance);
-    let Some(distance) = middle.or_else(|| lighting.whole_distance()) else {
+    let Some(distance) = middle.or_else(|| lighting.light_distance()) else {
         return Color::BLACK;
     };
     let mut arriving = if form.reference == 0 {

@@ -94,7 +94,7 @@ pub(crate) struct Lighting<'l, N: Number> {
 impl<N: Number> Lighting<'_, N> {
     /// Returns the distance of the light; `None` for infinitely far.
     #[inline(always)]
-    pub(crate) fn whole_distance(&self) -> Option<Distance<N>> {
+    pub(crate) fn light_distance(&self) -> Option<Distance<N>> {
         Some(Distance::of(self.distance?, self.norm))
     }
 }

@@ -17,8 +17,7 @@ pub fn rejected(error: impl Into<CompileError>) -> PyErr {
 }
 
 pub fn structure(name: &str) -> PyResult<Structure> {
-    let found = Structure::ALL.into_iter().find(|it| it.name() == name);
-    found.ok_or_else(|| {
+    Structure::from_name(name).ok_or_else(|| {
         let names = Structure::ALL.map(Structure::name).join(", ");
         invalid(format!(
             "unknown structure `{name}`; the structures are {names}"
@@ -27,8 +26,7 @@ pub fn structure(name: &str) -> PyResult<Structure> {
 }
 
 pub fn format(name: &str) -> PyResult<Format> {
-    let found = Format::ALL.into_iter().find(|it| it.name() == name);
-    found.ok_or_else(|| {
+    Format::from_name(name).ok_or_else(|| {
         invalid(format!(
             "unknown number format `{name}`; use fixed, f32 or f64"
         ))

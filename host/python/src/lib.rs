@@ -5,6 +5,7 @@ mod arguments;
 mod closed;
 mod hit_arrays;
 mod meshes;
+mod model;
 mod query;
 mod rays;
 mod scene;

@@ -58,6 +58,31 @@ impl<'py> Array<'py> {
     }
 }
 
+/// Origins and directions of rays in two arrays.
+pub struct TwoArrays<'py> {
+    origins: Array<'py>,
+    directions: Array<'py>,
+}
+
+impl<'py> TwoArrays<'py> {
+    pub fn borrow(
+        origins: &Bound<'py, PyUntypedArray>,
+        directions: &Bound<'py, PyUntypedArray>,
+    ) -> PyResult<Self> {
+        Ok(Self {
+            origins: Array::borrow(origins, "origins")?,
+            directions: Array::borrow(directions, "directions")?,
+        })
+    }
+
+    pub fn rays(&self) -> PyResult<Rays<'_>> {
+        Rays::two(
+            self.origins.rows("origins")?,
+            self.directions.rows("directions")?,
+        )
+    }
+}
+
 impl Values<'_> {
     fn len(&self) -> usize {
         match self {

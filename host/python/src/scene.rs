@@ -1,204 +1,29 @@
 //! Scenes as Python holds them.
 
+mod native;
 mod place;
 
-use crate::arguments::{format, invalid, options, rejected, structure};
-use crate::closed::closed;
+pub use native::NativeScene;
+
+use crate::arguments::{invalid, options, rejected};
 use crate::hit_arrays::{Arrays, Cast, HitArrays, MeshHitArrays, append, column, rows, zeros};
 use crate::meshes::{self, GivenMesh, Mesh};
-use crate::query::{self, Any, FirstPrimitive, Found, How, Inside, NONE};
-use crate::rays::{Array, Middle, Points, Rays};
+use crate::model::{Model, warn};
+use crate::query::{self, Any, FirstPrimitive, Found, Inside, NONE};
+use crate::rays::{Array, Points, Rays, TwoArrays};
 use crate::threads::in_pool;
-use gridel_core::{BlobError, Scene, Settings, Structure};
+use gridel_core::Settings;
 use gridel_host::blob::{Blob, best_structures};
-use gridel_host::compile::{Compiled, LATTICE_BITS, Options, Report, compile};
+use gridel_host::compile::{Options, compile};
 use gridel_host::picture::srgb;
 use gridel_host::render::{Job, render};
-use gridel_host::scene::{self, ImportOptions, Imported, Shape};
-use gridel_host::table::{counted, significant};
+use gridel_host::scene::{self, ImportOptions, Imported};
 use gridel_host::trace::SceneRay;
 use numpy::{IntoPyArray, PyArray2, PyArrayMethods, PyUntypedArray};
-use pyo3::exceptions::{PyFileNotFoundError, PyIsADirectoryError, PyKeyError, PyUserWarning};
+use pyo3::exceptions::{PyFileNotFoundError, PyIsADirectoryError};
 use pyo3::prelude::*;
 use pyo3::types::PyBytes;
-use std::ffi::CString;
 use std::path::PathBuf;
-use std::sync::OnceLock;
-
-type Checked<'b> = Result<Scene<'b>, BlobError>;
-
-self_cell::self_cell!(
-    /// A blob and its checked view.
-    struct Held {
-        owner: Blob,
-        #[covariant]
-        dependent: Checked,
-    }
-);
-
-/// A scene, compiled and checked.
-#[pyclass(frozen, name = "NativeScene")]
-pub struct NativeScene {
-    held: Held,
-    /// What it was compiled from; `None` of a blob.
-    model: Option<Model>,
-    /// The number of the first primitive of each object of `model`.
-    firsts: Vec<u32>,
-    displacement: f64,
-    middle: Middle,
-    closed: OnceLock<Vec<bool>>,
-}
-
-/// What a scene is compiled from.
-struct Model {
-    scene: scene::Scene,
-    options: Options,
-    /// Whether the scene is made of arrays alone.
-    is_of_arrays: bool,
-}
-
-impl Model {
-    fn compile(&self, py: Python<'_>) -> PyResult<Compiled> {
-        in_pool(py, 0, || compile(&self.scene, &self.options))?.map_err(rejected)
-    }
-
-    /// Warns of primitives that the lattice leaves nothing of.
-    fn warn_of_collapsed(&self, py: Python<'_>, report: &Report, level: i32) -> PyResult<()> {
-        if report.collapsed.count() == 0 {
-            return Ok(());
-        }
-        let remedy = if self.options.lattice_bits < *LATTICE_BITS.end() {
-            "use more lattice_bits"
-        } else {
-            "scale them up, or put them into a scene of their own"
-        };
-        let warning = format!(
-            "{} left out: too small for the lattice, whose step is {}; {remedy}",
-            counted(report.collapsed.count(), "primitive"),
-            significant(report.step),
-        );
-        warn(py, &warning, level)
-    }
-}
-
-/// Issues a UserWarning, of a function so many levels up.
-fn warn(py: Python<'_>, warning: &str, level: i32) -> PyResult<()> {
-    let warning = CString::new(warning.replace('\0', " "))?;
-    PyErr::warn(py, &py.get_type::<PyUserWarning>(), &warning, level)
-}
-
-impl NativeScene {
-    fn of_blob(blob: Blob, model: Option<Model>, displacement: f64) -> PyResult<Self> {
-        let held = Held::new(blob, |blob| blob.scene());
-        let middle = match held.borrow_dependent() {
-            Ok(scene) => Middle::of(scene),
-            Err(error) => return Err(invalid(format!("invalid scene blob: {error}"))),
-        };
-        let mut next = 0;
-        let firsts = model
-            .iter()
-            .flat_map(|model| model.scene.all_objects())
-            .map(|object| {
-                let first = next;
-                next += match &object.shape {
-                    Shape::Mesh { triangles, .. } => triangles.len() as u32,
-                    _ => 1,
-                };
-                first
-            });
-        let firsts = firsts.collect();
-        Ok(Self {
-            held,
-            model,
-            firsts,
-            displacement,
-            middle,
-            closed: OnceLock::new(),
-        })
-    }
-
-    fn compiled(py: Python<'_>, model: Model, level: i32) -> PyResult<Self> {
-        let Compiled { blob, report } = model.compile(py)?;
-        model.warn_of_collapsed(py, &report, level)?;
-        let collapsed = match report.collapsed.count() {
-            0 => 0.0,
-            _ => report.step,
-        };
-        let displacement = report.largest_displacement.max(collapsed);
-        py.detach(|| Self::of_blob(blob, Some(model), displacement))
-    }
-
-    fn scene(&self) -> PyResult<&Scene<'_>> {
-        self.held.borrow_dependent().as_ref().map_err(invalid)
-    }
-
-    fn how(&self, format_name: &str, accel: Option<&str>, threads: usize) -> PyResult<How> {
-        let scene = self.scene()?;
-        let structure = match accel {
-            Some(name) => structure(name)?,
-            None => best_structures(scene).next().unwrap_or(Structure::List),
-        };
-        if !scene.holds(structure) {
-            return Err(PyKeyError::new_err(format!(
-                "the scene does not hold the structure `{}`; compile it with accel=[...]",
-                structure.name()
-            )));
-        }
-        Ok(How {
-            format: format(format_name)?,
-            structure,
-            threads,
-        })
-    }
-
-    /// The scene for pictures of another shape, where the compiler chooses the camera by their shape.
-    fn framed(&self, py: Python<'_>, size: [u16; 2]) -> PyResult<Option<Blob>> {
-        let Some(model) = &self.model else {
-            return Ok(None);
-        };
-        let scene = &model.scene;
-        let [width, height] = size.map(u32::from);
-        let has_shape = scene.render.width * height == scene.render.height * width;
-        if scene.camera.is_some() || has_shape {
-            return Ok(None);
-        }
-        let render = scene::RenderSettings {
-            width,
-            height,
-            ..scene.render
-        };
-        let scene = scene::Scene {
-            render,
-            ..scene.clone()
-        };
-        let compiled = in_pool(py, 0, || compile(&scene, &model.options))?;
-        Ok(Some(compiled.map_err(rejected)?.blob))
-    }
-
-    /// Which objects are closed, if any is.
-    fn closed(&self, py: Python<'_>, scene: &Scene<'_>) -> PyResult<&[bool]> {
-        let found = match self.closed.get() {
-            Some(found) => found,
-            None => {
-                // Found outside of the lock: who holds it may not wait for the GIL.
-                let found = py.detach(|| closed(scene));
-                self.closed.get_or_init(|| found)
-            }
-        };
-        if !found.contains(&true) {
-            return Err(invalid(
-                "no object of the scene is closed; pass closed_only=False to count crossings all the same",
-            ));
-        }
-        Ok(found)
-    }
-
-    /// The scene with a structure chosen.
-    fn chosen(&self, how: How) -> PyResult<Scene<'_>> {
-        let chosen = self.scene()?.choose(how.structure);
-        chosen.ok_or_else(|| invalid("the structure is not there"))
-    }
-}
 
 #[pymethods]
 impl NativeScene {
@@ -350,11 +175,8 @@ impl NativeScene {
         threads: usize,
     ) -> PyResult<Arrays<'py, i32>> {
         let how = self.how(format, None, threads)?;
-        let arrays = [
-            Array::borrow(origins, "origins")?,
-            Array::borrow(directions, "directions")?,
-        ];
-        let rays = Rays::two(arrays[0].rows("origins")?, arrays[1].rows("directions")?)?;
+        let arrays = TwoArrays::borrow(origins, directions)?;
+        let rays = arrays.rays()?;
         let scene = self.chosen(how)?;
         let found = query::detach(py, how, rays.len(), || {
             query::ask::<FirstPrimitive>(&scene, rays, how)
@@ -372,11 +194,8 @@ impl NativeScene {
         threads: usize,
     ) -> PyResult<Arrays<'py, bool>> {
         let how = self.how(format, None, threads)?;
-        let arrays = [
-            Array::borrow(origins, "origins")?,
-            Array::borrow(directions, "directions")?,
-        ];
-        let rays = Rays::two(arrays[0].rows("origins")?, arrays[1].rows("directions")?)?;
+        let arrays = TwoArrays::borrow(origins, directions)?;
+        let rays = arrays.rays()?;
         let scene = self.chosen(how)?;
         let found = query::detach(py, how, rays.len(), || query::ask::<Any>(&scene, rays, how))?;
         Ok(found.into_pyarray(py))
@@ -434,17 +253,7 @@ impl NativeScene {
         let (scene, rays) = (self.chosen(how)?, Rays::rows(array.rows("rays")?)?);
         let (hits, uvs) = query::detach(py, how, rays.len(), || {
             let mut hits = query::all(&scene, rays, how).concat();
-            // Triangles closer to each other than the lattice moved them keep the order in which they are hit.
-            let mut last = (usize::MAX, f64::NEG_INFINITY);
-            let uvs: Vec<[f32; 2]> = hits
-                .iter_mut()
-                .map(|(number, hit)| {
-                    let (t, _, uv) = self.place(&rays.get(*number), hit);
-                    hit.t = if last.0 == *number { t.max(last.1) } else { t };
-                    last = (*number, hit.t);
-                    uv.map(|weight| weight as f32)
-                })
-                .collect();
+            let uvs = self.place_all(rays, &mut hits);
             (hits, uvs)
         })?;
         let arrays = (
@@ -478,11 +287,8 @@ impl NativeScene {
         Arrays<'py, i64>,
     )> {
         let how = self.how(format, None, threads)?;
-        let arrays = [
-            Array::borrow(origins, "origins")?,
-            Array::borrow(directions, "directions")?,
-        ];
-        let rays = Rays::two(arrays[0].rows("origins")?, arrays[1].rows("directions")?)?;
+        let arrays = TwoArrays::borrow(origins, directions)?;
+        let rays = arrays.rays()?;
         let scene = self.chosen(how)?;
         let chunks = query::detach(py, how, rays.len(), || {
             query::locations(&scene, rays, how, multiple_hits, max_hits, |ray, hit| {
@@ -551,7 +357,9 @@ impl NativeScene {
         let how = self.how(format, accel, threads)?;
         let own = Settings::of(self.scene()?);
         let [width, height] = size.unwrap_or([own.width, own.height]);
-        let framed = self.framed(py, [width, height])?;
+        let model = self.model.as_ref();
+        let framed = model.map(|model| model.framed(py, [width, height]));
+        let framed = framed.transpose()?.flatten();
         let scene = match &framed {
             Some(blob) => &blob.scene().map_err(invalid)?,
             None => self.scene()?,
@@ -578,7 +386,7 @@ impl NativeScene {
         lattice_bits: Option<u8>,
     ) -> PyResult<Bound<'py, PyBytes>> {
         if accel.is_none() && lattice_bits.is_none() {
-            return Ok(PyBytes::new(py, self.held.borrow_owner().bytes()));
+            return Ok(PyBytes::new(py, self.blob.borrow_owner().bytes()));
         }
         let Some(model) = &self.model else {
             return Err(invalid(

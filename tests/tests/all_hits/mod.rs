@@ -50,9 +50,18 @@ fn every_structure(scene: &scene::Scene) -> gridel_host::blob::Blob {
 #[test]
 fn boxes_are_crossed_before_and_behind_an_origin_within() {
     fn twice<N: Number>(scene: &Scene<'_>, ray: &UnitRay) {
-        let ready = ray.ready::<N>(scene).expect("a ray");
-        let hits = list::<N, 4>(&scene.choose(Structure::List).expect("the list"), &ready);
-        assert_eq!(hits.len(), 2, "{:?} {ray:?}", N::FORMAT);
+        let brute = scene.choose(Structure::List).expect("the list");
+        let far = |vector: [f64; 3]| vector.map(N::far_from_f64);
+        let [tmin, tmax] = [-1e5, 1e5].map(N::far_from_f64);
+        let (origin, direction) = (far(ray.origin), far(ray.direction));
+        let rounded = Ray::new(scene.bounds(), origin, direction, tmin, tmax);
+        for ready in [
+            ray.ready::<N>(scene).expect("a ray"),
+            rounded.expect("a ray"),
+        ] {
+            let hits = list::<N, 4>(&brute, &ready);
+            assert_eq!(hits.len(), 2, "{:?} {ray:?}", N::FORMAT);
+        }
     }
     let mut random = Random(19);
     let cube = Shape::Box(Cuboid {

@@ -2,6 +2,7 @@
 
 use super::NativeScene;
 use crate::query::{Found, NONE};
+use crate::rays::Rays;
 use glam::DVec3;
 use gridel_host::scene::Shape;
 use gridel_host::trace::SceneRay;
@@ -73,6 +74,19 @@ impl NativeScene {
     pub(super) fn weights(&self, ray: &SceneRay, hit: &Found) -> (f64, [f32; 2]) {
         let (t, _, uv) = self.place(ray, hit);
         (t, uv.map(|weight| weight as f32))
+    }
+
+    /// Gives the hits of rays, ray by ray in their order, their t, and returns the weights of the corners of their
+    /// triangles. Triangles closer to each other than the lattice moved them keep the order in which they are hit.
+    pub(super) fn place_all(&self, rays: Rays<'_>, hits: &mut [(usize, Found)]) -> Vec<[f32; 2]> {
+        let mut last = (usize::MAX, f64::NEG_INFINITY);
+        let placed = hits.iter_mut().map(|(number, hit)| {
+            let (t, _, uv) = self.place(&rays.get(*number), hit);
+            hit.t = if last.0 == *number { t.max(last.1) } else { t };
+            last = (*number, hit.t);
+            uv.map(|weight| weight as f32)
+        });
+        placed.collect()
     }
 }
 

@@ -4,11 +4,11 @@
 //! an interpolation, they are sampled [`RATE`] times per second.
 
 use super::buffers::Buffers;
+use super::curve::Curve;
 use super::place::transform;
-use crate::scene::track::interpolate;
 use crate::scene::{Choice, Interpolation, Key, SceneError, SourceSpan, Track, TrackTarget};
 use crate::table::printable;
-use glam::{DAffine3, DMat3, DMat4, DQuat, DVec3, DVec4};
+use glam::{DAffine3, DMat3, DMat4, DQuat, DVec3};
 use gltf::animation::Property;
 use gltf::{Animation, Document};
 use std::collections::HashMap;
@@ -20,42 +20,35 @@ const RATE: f64 = 60.0;
 /// Most samples of a motion; longer ones are sampled less often.
 const MOST_SAMPLES: f64 = 65_536.0;
 
-/// Most samples of all ways of a file.
+/// Most samples of all curves of a file.
 const MOST_SAMPLES_OF_ALL: usize = 1 << 20;
 
-/// Why ways cannot be sampled: cause and remedy.
+/// Why curves cannot be sampled: cause and remedy.
 type Fault = [String; 2];
-
-/// How a property of a node moves.
-#[derive(Clone, Debug)]
-pub(super) struct Way {
-    pub(super) interpolation: Interpolation,
-    pub(super) keys: Vec<Key>,
-}
 
 /// The moving properties of a node.
 #[derive(Clone, Debug, Default)]
-struct Moves {
-    translation: Option<Way>,
-    rotation: Option<Way>,
-    scale: Option<Way>,
+struct NodeCurves {
+    translation: Option<Curve>,
+    rotation: Option<Curve>,
+    scale: Option<Curve>,
     weights: bool,
 }
 
 /// The animation that is read, by the nodes that it moves.
 #[derive(Default)]
 pub(super) struct Motion {
-    nodes: HashMap<usize, Moves>,
+    nodes: HashMap<usize, NodeCurves>,
     /// The node above each node.
     parents: Vec<Option<usize>>,
     /// The transform of each node in the one above, at rest.
     rest: Vec<DMat4>,
-    /// How many samples were taken of all ways.
+    /// How many samples were taken of all curves.
     pub(super) samples: usize,
 }
 
 /// The chosen animation: its name, and whether the user chose it.
-pub(super) struct Chosen<'d> {
+pub(super) struct ChosenAnimation<'d> {
     pub(super) animation: Animation<'d>,
     pub(super) by_name: bool,
 }
@@ -65,10 +58,10 @@ pub(super) fn choose<'d>(
     path: &Path,
     document: &'d Document,
     choice: &Choice,
-) -> Result<Option<Chosen<'d>>, SceneError> {
+) -> Result<Option<ChosenAnimation<'d>>, SceneError> {
     let Some(wanted) = &choice.animation else {
         let first = document.animations().next();
-        return Ok(first.map(|animation| Chosen {
+        return Ok(first.map(|animation| ChosenAnimation {
             animation,
             by_name: false,
         }));
@@ -88,7 +81,7 @@ pub(super) fn choose<'d>(
     };
     let error = || SceneError::new(path, format!("there is no animation {wanted:?}"), remedy);
     found.ok_or_else(error).map(|animation| {
-        Some(Chosen {
+        Some(ChosenAnimation {
             animation,
             by_name: true,
         })
@@ -117,7 +110,7 @@ impl Motion {
         for (number, channel) in channels.enumerate() {
             let target = channel.target();
             let moves = motion.nodes.entry(target.node().index()).or_default();
-            let way = match target.property() {
+            let curve = match target.property() {
                 Property::MorphTargetWeights => {
                     moves.weights = true;
                     continue;
@@ -126,7 +119,7 @@ impl Motion {
                 Property::Rotation => &mut moves.rotation,
                 Property::Scale => &mut moves.scale,
             };
-            let found = way_of(&channel, buffers)?;
+            let found = Curve::read(&channel, buffers)?;
             let error = |cause: &str| {
                 SceneError::new(
                     path,
@@ -139,7 +132,7 @@ impl Motion {
                 )
             };
             found.check(target.property()).map_err(error)?;
-            *way = Some(found);
+            *curve = Some(found);
         }
         Ok(motion)
     }
@@ -172,7 +165,7 @@ impl Motion {
     }
 
     /// The translation, rotation and scale of a node that moves.
-    pub(super) fn ways(&self, node: usize) -> Option<[Option<&Way>; 3]> {
+    pub(super) fn curves(&self, node: usize) -> Option<[Option<&Curve>; 3]> {
         let moves = self.nodes.get(&node)?;
         let all = [&moves.translation, &moves.rotation, &moves.scale];
         Some(all.map(Option::as_ref))
@@ -190,11 +183,14 @@ impl Motion {
             return rest;
         };
         let (scale, rotation, translation) = rest.to_scale_rotation_translation();
-        let at = |way: &Option<Way>, property| way.as_ref().map(|way| way.at(seconds, property));
+        let at = |curve: &Option<Curve>, property| {
+            curve.as_ref().map(|curve| curve.at(seconds, property))
+        };
         let vector = |[x, y, z, _]: [f64; 4]| DVec3::new(x, y, z);
         DMat4::from_scale_rotation_translation(
             at(&moves.scale, Property::Scale).map_or(scale, vector),
-            at(&moves.rotation, Property::Rotation).map_or(rotation, |it| DQuat::from_array(it).normalize()),
+            at(&moves.rotation, Property::Rotation)
+                .map_or(rotation, |it| DQuat::from_array(it).normalize()),
             at(&moves.translation, Property::Translation).map_or(translation, vector),
         )
     }
@@ -214,8 +210,8 @@ impl Motion {
     /// The times at which a node is sampled.
     fn sample_times(&mut self, node: usize) -> Result<Vec<f64>, Fault> {
         let moves = self.chain(node).filter_map(|it| self.nodes.get(&it));
-        let ways = moves.flat_map(|it| [&it.translation, &it.rotation, &it.scale]);
-        let times = ways.flatten().flat_map(|way| way.keys.iter());
+        let curves = moves.flat_map(|it| [&it.translation, &it.rotation, &it.scale]);
+        let times = curves.flatten().flat_map(|curve| curve.keys.iter());
         let times: Vec<f64> = times.map(|key| key.seconds).collect();
         let first = times.iter().copied().fold(f64::INFINITY, f64::min);
         let last = times.iter().copied().fold(f64::NEG_INFINITY, f64::max);
@@ -230,7 +226,9 @@ impl Motion {
                 format!(
                     "cameras and lights below nodes that move take more than {MOST_SAMPLES_OF_ALL} samples"
                 ),
-                String::from("animate fewer lights, shorten the animation, or move the lights themselves"),
+                String::from(
+                    "animate fewer lights, shorten the animation, or move the lights themselves",
+                ),
             ]);
         }
         Ok((0..=steps as u32).map(time).collect())
@@ -241,14 +239,14 @@ impl Motion {
         if !self.moves(node) {
             return Ok(Vec::new());
         }
-        let track = |target, way: Way| Track {
+        let track = |target, curve: Curve| Track {
             target,
             index: 0,
-            interpolation: way.interpolation,
-            keys: way.keys,
+            interpolation: curve.interpolation,
+            keys: curve.keys,
             place: place.clone(),
         };
-        let [eye, rotation] = if let Some(own) = self.own_ways(node) {
+        let [eye, rotation] = if let Some(own) = self.own_curves(node) {
             own
         } else {
             let times = self.sample_times(node)?;
@@ -261,7 +259,7 @@ impl Motion {
                 value: turned(world).to_array(),
                 ..Key::default()
             };
-            let linear = |keys| Way {
+            let linear = |keys| Curve {
                 interpolation: Interpolation::Linear,
                 keys,
             };
@@ -277,14 +275,14 @@ impl Motion {
     }
 
     /// Returns position and rotation of a node with its own keys, if no node above it moves.
-    fn own_ways(&self, node: usize) -> Option<[Way; 2]> {
+    fn own_curves(&self, node: usize) -> Option<[Curve; 2]> {
         if self.chain(node).skip(1).any(|it| self.moves_itself(it)) {
             return None;
         }
         let moves = self.nodes.get(&node)?;
         let above = DAffine3::from_mat4(self.above(node));
         let world = self.world(node, 0.0);
-        let still = |value: [f64; 4]| Way {
+        let still = |value: [f64; 4]| Curve {
             interpolation: Interpolation::Step,
             keys: vec![Key {
                 seconds: first_time(moves),
@@ -293,16 +291,16 @@ impl Motion {
             }],
         };
         let eye = match &moves.translation {
-            Some(way) => way.placed(&above),
+            Some(curve) => curve.placed(&above),
             None => {
                 let [x, y, z] = world.transform_point3(DVec3::ZERO).to_array();
                 still([x, y, z, 0.0])
             }
         };
         let rotation = match &moves.rotation {
-            Some(way) => {
+            Some(curve) => {
                 let above = rotation_of(above.matrix3)?;
-                way.map(|value| (above * DQuat::from_array(value)).to_array())
+                curve.map(|value| (above * DQuat::from_array(value)).to_array())
             }
             None => still(turned(&world).to_array()),
         };
@@ -320,9 +318,9 @@ impl Motion {
         if !self.moves(node) {
             return Ok(None);
         }
-        let own = self.own_ways(node).filter(|_| !directional);
-        let way = match own {
-            Some([way, _]) => way,
+        let own = self.own_curves(node).filter(|_| !directional);
+        let curve = match own {
+            Some([curve, _]) => curve,
             None => {
                 let times = self.sample_times(node)?;
                 let key = |seconds: f64| {
@@ -333,30 +331,30 @@ impl Motion {
                     };
                     Key::of_vector(seconds, vector)
                 };
-                Way {
+                Curve {
                     interpolation: Interpolation::Linear,
                     keys: times.into_iter().map(key).collect(),
                 }
             }
         };
-        let aims = way.keys.iter().all(|key| key.vector() != DVec3::ZERO);
+        let aims = curve.keys.iter().all(|key| key.vector() != DVec3::ZERO);
         Ok((aims || !directional).then(|| Track {
             target: match directional {
                 true => TrackTarget::LightDirection,
                 false => TrackTarget::LightPosition,
             },
             index,
-            interpolation: way.interpolation,
-            keys: way.keys,
+            interpolation: curve.interpolation,
+            keys: curve.keys,
             place: place.clone(),
         }))
     }
 }
 
 /// The time of a node's first key.
-fn first_time(moves: &Moves) -> f64 {
-    let ways = [&moves.translation, &moves.rotation, &moves.scale];
-    let keys = ways.into_iter().flatten().flat_map(|way| &way.keys);
+fn first_time(moves: &NodeCurves) -> f64 {
+    let curves = [&moves.translation, &moves.rotation, &moves.scale];
+    let keys = curves.into_iter().flatten().flat_map(|curve| &curve.keys);
     keys.map(|key| key.seconds).fold(f64::INFINITY, f64::min)
 }
 
@@ -377,133 +375,4 @@ fn rotation_of(matrix: DMat3) -> Option<DQuat> {
     let squared = turns.transpose() * turns;
     (scale > 0.0 && squared.abs_diff_eq(DMat3::IDENTITY, TOLERANCE))
         .then(|| DQuat::from_mat3(&turns).normalize())
-}
-
-impl Way {
-    /// Returns the keys with each value, and each change of it, mapped linearly.
-    pub(super) fn map(&self, map: impl Fn([f64; 4]) -> [f64; 4]) -> Self {
-        let key = |key: &Key| Key {
-            seconds: key.seconds,
-            value: map(key.value),
-            entering: map(key.entering),
-            leaving: map(key.leaving),
-        };
-        Self {
-            interpolation: self.interpolation,
-            keys: self.keys.iter().map(key).collect(),
-        }
-    }
-
-    /// Returns the keys relative to a place at rest, with values and changes mapped by `linear`.
-    pub(super) fn beside(&self, rest: DVec4, linear: DMat3) -> Self {
-        let vector = |[x, y, z, _]: [f64; 4]| {
-            let [x, y, z] = (linear * DVec3::new(x, y, z)).to_array();
-            [x, y, z, 0.0]
-        };
-        let mut way = self.clone();
-        for key in &mut way.keys {
-            key.value = vector((DVec4::from_array(key.value) - rest).to_array());
-            (key.entering, key.leaving) = (vector(key.entering), vector(key.leaving));
-        }
-        way
-    }
-
-    /// Returns the positions in the scene's coordinates.
-    fn placed(&self, above: &DAffine3) -> Self {
-        let vector = |[x, y, z, _]: [f64; 4]| {
-            let [x, y, z] = above.transform_vector3(DVec3::new(x, y, z)).to_array();
-            [x, y, z, 0.0]
-        };
-        let mut way = self.map(vector);
-        for (placed, key) in way.keys.iter_mut().zip(&self.keys) {
-            let [x, y, z] = above.transform_point3(key.vector()).to_array();
-            placed.value = [x, y, z, 0.0];
-        }
-        way
-    }
-
-    /// Proves what glTF promises.
-    fn check(&self, property: Property) -> Result<(), &'static str> {
-        if self.keys.is_empty() {
-            return Err("it has no keys, or not a value for each");
-        }
-        let numbers = self.keys.iter().flat_map(|key| {
-            let vectors = [key.value, key.entering, key.leaving];
-            vectors.into_iter().flatten().chain([key.seconds])
-        });
-        if !numbers.into_iter().all(f64::is_finite) {
-            return Err("a number is not finite");
-        }
-        if !self
-            .keys
-            .is_sorted_by(|one, other| one.seconds < other.seconds)
-        {
-            return Err("its times do not ascend");
-        }
-        let turns = |key: &Key| key.value != [0.0; 4];
-        if property == Property::Rotation && !self.keys.iter().all(turns) {
-            return Err("a rotation has length 0");
-        }
-        Ok(())
-    }
-
-    /// The value at a time, as glTF defines it.
-    fn at(&self, seconds: f64, property: Property) -> [f64; 4] {
-        let turns = property == Property::Rotation;
-        interpolate(self.interpolation, &self.keys, turns, seconds)
-    }
-}
-
-/// Reads the keys of a channel; none if its counts do not fit.
-fn way_of(
-    channel: &gltf::animation::Channel<'_>,
-    buffers: &Buffers<'_>,
-) -> Result<Way, SceneError> {
-    let sampler = channel.sampler();
-    let times = buffers.numbers::<1>(&sampler.input())?;
-    let values: Vec<[f64; 4]> = match channel.target().property() {
-        Property::Rotation => buffers.numbers::<4>(&sampler.output())?,
-        _ => {
-            let vectors = buffers.numbers::<3>(&sampler.output())?;
-            vectors
-                .into_iter()
-                .map(|[x, y, z]| [x, y, z, 0.0])
-                .collect()
-        }
-    };
-    let interpolation = match sampler.interpolation() {
-        gltf::animation::Interpolation::Step => Interpolation::Step,
-        gltf::animation::Interpolation::Linear => Interpolation::Linear,
-        gltf::animation::Interpolation::CubicSpline => Interpolation::Cubic,
-    };
-    let each = match interpolation {
-        Interpolation::Cubic => 3,
-        _ => 1,
-    };
-    let keys = if values.len() == each * times.len() {
-        let key = |([seconds], values): (&[f64; 1], &[[f64; 4]])| match *values {
-            [entering, value, leaving] => Key {
-                seconds: *seconds,
-                value,
-                entering,
-                leaving,
-            },
-            _ => Key {
-                seconds: *seconds,
-                value: values[0],
-                ..Key::default()
-            },
-        };
-        times
-            .iter()
-            .zip(values.chunks_exact(each))
-            .map(key)
-            .collect()
-    } else {
-        Vec::new()
-    };
-    Ok(Way {
-        interpolation,
-        keys,
-    })
 }

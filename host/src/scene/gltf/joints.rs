@@ -6,7 +6,8 @@
 //! between them.
 
 use super::Importer;
-use super::animation::{Motion, Way};
+use super::animation::Motion;
+use super::curve::Curve;
 use super::place::{parts, transform};
 use super::shared::Placed;
 use crate::scene::{Interpolation, Joint, Key, LARGEST_SCALE, Placement, Track, TrackTarget};
@@ -68,7 +69,7 @@ impl Importer<'_> {
         for warning in own.warnings {
             self.warn(format!("node {number}{called} {warning}"));
         }
-        if own.ways.is_empty() {
+        if own.curves.is_empty() {
             return None;
         }
         let joint = self.scene.joints.len();
@@ -79,11 +80,11 @@ impl Importer<'_> {
             place: self.place.clone(),
         });
         let place = &self.place;
-        let tracks = own.ways.into_iter().map(|(target, way)| Track {
+        let tracks = own.curves.into_iter().map(|(target, curve)| Track {
             target,
             index: joint,
-            interpolation: way.interpolation,
-            keys: way.keys,
+            interpolation: curve.interpolation,
+            keys: curve.keys,
             place: place.clone(),
         });
         self.scene.tracks.extend(tracks);
@@ -94,7 +95,7 @@ impl Importer<'_> {
 /// The own motion of a node.
 #[derive(Default)]
 struct Own {
-    ways: Vec<(TrackTarget, Way)>,
+    curves: Vec<(TrackTarget, Curve)>,
     /// Parts of the motion that cannot be shown, and what happens instead.
     warnings: Vec<&'static str>,
 }
@@ -103,16 +104,16 @@ impl Own {
     /// The motion of a node in nodes that stand at `above` at rest.
     fn of(node: &Node<'_>, motion: &Motion, above: &DMat4) -> Self {
         let mut own = Self::default();
-        let Some([translation, rotation, scale]) = motion.ways(node.index()) else {
+        let Some([translation, rotation, scale]) = motion.curves(node.index()) else {
             return own;
         };
         let linear = DMat3::from_mat4(*above);
         let parts = parts(node);
-        if let Some(way) = translation {
+        if let Some(curve) = translation {
             let rest = transform(node).w_axis.truncate();
             own.add(
                 TrackTarget::JointShift,
-                way.beside(rest.extend(0.0), linear),
+                curve.relative_to(rest.extend(0.0), linear),
                 DVec4::ZERO,
             );
         }
@@ -123,9 +124,9 @@ impl Own {
         );
         match (rotation, &turned, parts) {
             (None, ..) => {}
-            (Some(way), Some(above), Some([_, rest, _])) => {
+            (Some(curve), Some(above), Some([_, rest, _])) => {
                 let [outer, inner] = [above.rotation, DQuat::from_vec4(rest).inverse() * above.rotation.inverse()];
-                let mapped = way.map(|value| (outer * DQuat::from_array(value) * inner).to_array());
+                let mapped = curve.map(|value| (outer * DQuat::from_array(value) * inner).to_array());
                 own.add(TrackTarget::JointRotation, mapped, DVec4::W);
             }
             _ => own.warnings.push(
@@ -134,7 +135,7 @@ impl Own {
         }
         match (scale, parts) {
             (None, _) => {}
-            (Some(way), Some([_, _, rest])) => match even(way, rest.truncate()) {
+            (Some(curve), Some([_, _, rest])) => match even(curve, rest.truncate()) {
                 Some((mapped, vanishes)) => {
                     if vanishes {
                         own.warnings.push("shrinks to nothing; it keeps 1/256 of its size");
@@ -153,7 +154,7 @@ impl Own {
     }
 
     /// Adds a track, unless it stays at rest.
-    fn add(&mut self, target: TrackTarget, way: Way, rest: DVec4) {
+    fn add(&mut self, target: TrackTarget, curve: Curve, rest: DVec4) {
         let is_rest = |value: [f64; 4]| {
             let value = DVec4::from_array(value);
             // For no rotation, either of the two quaternions will do.
@@ -167,11 +168,11 @@ impl Own {
             };
             value.abs_diff_eq(own, 1e-9) || value.abs_diff_eq(other, 1e-9)
         };
-        let mut keys = way.keys.iter();
+        let mut keys = curve.keys.iter();
         let stays = keys
             .all(|key| is_rest(key.value) && key.entering == [0.0; 4] && key.leaving == [0.0; 4]);
         if !stays {
-            self.ways.push((target, way));
+            self.curves.push((target, curve));
         }
     }
 }
@@ -199,12 +200,12 @@ fn least_between(first: &Key, second: &Key) -> f64 {
 
 /// Returns the uniform scale of a sequence of scales, relative to that at rest, and whether it is 0 at some key. `None`
 /// if it is not uniform.
-fn even(way: &Way, rest: DVec3) -> Option<(Way, bool)> {
+fn even(curve: &Curve, rest: DVec3) -> Option<(Curve, bool)> {
     let inverse = rest.recip();
     if !inverse.is_finite() {
         return None;
     }
-    let ratios = way.map(|[x, y, z, _]| {
+    let ratios = curve.map(|[x, y, z, _]| {
         let [x, y, z] = (DVec3::new(x, y, z) * inverse).to_array();
         [x, y, z, 0.0]
     });
@@ -225,7 +226,7 @@ fn even(way: &Way, rest: DVec3) -> Option<(Way, bool)> {
         }
     }
     let mut segments = ratios.keys.windows(2);
-    if way.interpolation == Interpolation::Cubic
+    if curve.interpolation == Interpolation::Cubic
         && segments.any(|keys| least_between(&keys[0], &keys[1]) < -TOLERANCE * largest)
     {
         return None;

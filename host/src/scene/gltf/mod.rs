@@ -12,6 +12,7 @@ mod attributes;
 mod buffers;
 mod check;
 mod container;
+mod curve;
 mod document;
 mod instances;
 mod joints;

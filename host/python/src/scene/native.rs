@@ -1,0 +1,132 @@
+//! The scene behind Python's: a blob, and what it was compiled from.
+
+use crate::arguments::{format, invalid, structure};
+use crate::closed::closed;
+use crate::model::Model;
+use crate::query::How;
+use crate::rays::Middle;
+use gridel_core::{BlobError, Scene, Structure};
+use gridel_host::blob::{Blob, best_structures};
+use gridel_host::compile::Compiled;
+use gridel_host::scene::Shape;
+use pyo3::exceptions::PyKeyError;
+use pyo3::prelude::*;
+use std::sync::OnceLock;
+
+type Checked<'b> = Result<Scene<'b>, BlobError>;
+
+self_cell::self_cell!(
+    /// A blob and its checked view.
+    pub struct CheckedBlob {
+        owner: Blob,
+        #[covariant]
+        dependent: Checked,
+    }
+);
+
+/// A scene, compiled and checked.
+#[pyclass(frozen, name = "NativeScene")]
+pub struct NativeScene {
+    pub(super) blob: CheckedBlob,
+    /// What it was compiled from; `None` of a blob.
+    pub(super) model: Option<Model>,
+    /// The number of the first primitive of each object of `model`.
+    pub(super) firsts: Vec<u32>,
+    pub(super) displacement: f64,
+    pub(super) middle: Middle,
+    pub(super) closed: OnceLock<Vec<bool>>,
+}
+
+impl NativeScene {
+    pub(super) fn of_blob(blob: Blob, model: Option<Model>, displacement: f64) -> PyResult<Self> {
+        let blob = CheckedBlob::new(blob, |blob| blob.scene());
+        let middle = match blob.borrow_dependent() {
+            Ok(scene) => Middle::of(scene),
+            Err(error) => return Err(invalid(format!("invalid scene blob: {error}"))),
+        };
+        let mut next = 0;
+        let firsts = model
+            .iter()
+            .flat_map(|model| model.scene.all_objects())
+            .map(|object| {
+                let first = next;
+                next += match &object.shape {
+                    Shape::Mesh { triangles, .. } => triangles.len() as u32,
+                    _ => 1,
+                };
+                first
+            });
+        let firsts = firsts.collect();
+        Ok(Self {
+            blob,
+            model,
+            firsts,
+            displacement,
+            middle,
+            closed: OnceLock::new(),
+        })
+    }
+
+    pub(super) fn compiled(py: Python<'_>, model: Model, level: i32) -> PyResult<Self> {
+        let Compiled { blob, report } = model.compile(py)?;
+        model.warn_of_collapsed(py, &report, level)?;
+        let collapsed = match report.collapsed.count() {
+            0 => 0.0,
+            _ => report.step,
+        };
+        let displacement = report.largest_displacement.max(collapsed);
+        py.detach(|| Self::of_blob(blob, Some(model), displacement))
+    }
+
+    pub(super) fn scene(&self) -> PyResult<&Scene<'_>> {
+        self.blob.borrow_dependent().as_ref().map_err(invalid)
+    }
+
+    pub(super) fn how(
+        &self,
+        format_name: &str,
+        accel: Option<&str>,
+        threads: usize,
+    ) -> PyResult<How> {
+        let scene = self.scene()?;
+        let structure = match accel {
+            Some(name) => structure(name)?,
+            None => best_structures(scene).next().unwrap_or(Structure::List),
+        };
+        if !scene.holds(structure) {
+            return Err(PyKeyError::new_err(format!(
+                "the scene does not hold the structure `{}`; compile it with accel=[...]",
+                structure.name()
+            )));
+        }
+        Ok(How {
+            format: format(format_name)?,
+            structure,
+            threads,
+        })
+    }
+
+    /// Which objects are closed, if any is.
+    pub(super) fn closed(&self, py: Python<'_>, scene: &Scene<'_>) -> PyResult<&[bool]> {
+        let found = match self.closed.get() {
+            Some(found) => found,
+            None => {
+                // Found outside of the lock: who holds it may not wait for the GIL.
+                let found = py.detach(|| closed(scene));
+                self.closed.get_or_init(|| found)
+            }
+        };
+        if !found.contains(&true) {
+            return Err(invalid(
+                "no object of the scene is closed; pass closed_only=False to count crossings all the same",
+            ));
+        }
+        Ok(found)
+    }
+
+    /// The scene with a structure chosen.
+    pub(super) fn chosen(&self, how: How) -> PyResult<Scene<'_>> {
+        let chosen = self.scene()?.choose(how.structure);
+        chosen.ok_or_else(|| invalid("the structure is not there"))
+    }
+}

@@ -1,0 +1,143 @@
+//! The curves of a glTF animation: keys of one property of a node.
+
+use super::buffers::Buffers;
+use crate::scene::track::interpolate;
+use crate::scene::{Interpolation, Key, SceneError};
+use glam::{DAffine3, DMat3, DVec3, DVec4};
+use gltf::animation::Property;
+
+/// How a property of a node moves.
+#[derive(Clone, Debug)]
+pub(super) struct Curve {
+    pub(super) interpolation: Interpolation,
+    pub(super) keys: Vec<Key>,
+}
+
+impl Curve {
+    /// Reads the keys of a channel; none if its counts do not fit.
+    pub(super) fn read(
+        channel: &gltf::animation::Channel<'_>,
+        buffers: &Buffers<'_>,
+    ) -> Result<Self, SceneError> {
+        let sampler = channel.sampler();
+        let times = buffers.numbers::<1>(&sampler.input())?;
+        let values: Vec<[f64; 4]> = match channel.target().property() {
+            Property::Rotation => buffers.numbers::<4>(&sampler.output())?,
+            _ => {
+                let vectors = buffers.numbers::<3>(&sampler.output())?;
+                vectors
+                    .into_iter()
+                    .map(|[x, y, z]| [x, y, z, 0.0])
+                    .collect()
+            }
+        };
+        let interpolation = match sampler.interpolation() {
+            gltf::animation::Interpolation::Step => Interpolation::Step,
+            gltf::animation::Interpolation::Linear => Interpolation::Linear,
+            gltf::animation::Interpolation::CubicSpline => Interpolation::Cubic,
+        };
+        let each = match interpolation {
+            Interpolation::Cubic => 3,
+            _ => 1,
+        };
+        let keys = if values.len() == each * times.len() {
+            let key = |([seconds], values): (&[f64; 1], &[[f64; 4]])| match *values {
+                [entering, value, leaving] => Key {
+                    seconds: *seconds,
+                    value,
+                    entering,
+                    leaving,
+                },
+                _ => Key {
+                    seconds: *seconds,
+                    value: values[0],
+                    ..Key::default()
+                },
+            };
+            times
+                .iter()
+                .zip(values.chunks_exact(each))
+                .map(key)
+                .collect()
+        } else {
+            Vec::new()
+        };
+        Ok(Self {
+            interpolation,
+            keys,
+        })
+    }
+
+    /// Returns the keys with each value, and each change of it, mapped linearly.
+    pub(super) fn map(&self, map: impl Fn([f64; 4]) -> [f64; 4]) -> Self {
+        let key = |key: &Key| Key {
+            seconds: key.seconds,
+            value: map(key.value),
+            entering: map(key.entering),
+            leaving: map(key.leaving),
+        };
+        Self {
+            interpolation: self.interpolation,
+            keys: self.keys.iter().map(key).collect(),
+        }
+    }
+
+    /// Returns the keys relative to a place at rest, with values and changes mapped by `linear`.
+    pub(super) fn relative_to(&self, rest: DVec4, linear: DMat3) -> Self {
+        let vector = |[x, y, z, _]: [f64; 4]| {
+            let [x, y, z] = (linear * DVec3::new(x, y, z)).to_array();
+            [x, y, z, 0.0]
+        };
+        let mut curve = self.clone();
+        for key in &mut curve.keys {
+            key.value = vector((DVec4::from_array(key.value) - rest).to_array());
+            (key.entering, key.leaving) = (vector(key.entering), vector(key.leaving));
+        }
+        curve
+    }
+
+    /// Returns the positions in the scene's coordinates.
+    pub(super) fn placed(&self, above: &DAffine3) -> Self {
+        let vector = |[x, y, z, _]: [f64; 4]| {
+            let [x, y, z] = above.transform_vector3(DVec3::new(x, y, z)).to_array();
+            [x, y, z, 0.0]
+        };
+        let mut curve = self.map(vector);
+        for (placed, key) in curve.keys.iter_mut().zip(&self.keys) {
+            let [x, y, z] = above.transform_point3(key.vector()).to_array();
+            placed.value = [x, y, z, 0.0];
+        }
+        curve
+    }
+
+    /// Proves what glTF promises.
+    pub(super) fn check(&self, property: Property) -> Result<(), &'static str> {
+        if self.keys.is_empty() {
+            return Err("it has no keys, or not a value for each");
+        }
+        let numbers = self.keys.iter().flat_map(|key| {
+            let vectors = [key.value, key.entering, key.leaving];
+            vectors.into_iter().flatten().chain([key.seconds])
+        });
+        if !numbers.into_iter().all(f64::is_finite) {
+            return Err("a number is not finite");
+        }
+        if !self
+            .keys
+            .is_sorted_by(|one, other| one.seconds < other.seconds)
+        {
+            return Err("its times do not ascend");
+        }
+        let turns = |key: &Key| key.value != [0.0; 4];
+        if property == Property::Rotation && !self.keys.iter().all(turns) {
+            return Err("a rotation has length 0");
+        }
+        Ok(())
+    }
+
+    /// The value at a time, as glTF defines it.
+    pub(super) fn at(&self, seconds: f64, property: Property) -> [f64; 4] {
+        let turns = property == Property::Rotation;
+        interpolate(self.interpolation, &self.keys, turns, seconds)
+    }
+}
