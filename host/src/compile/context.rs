@@ -7,7 +7,7 @@ use super::instances::{Parts, Placed, Role};
 use super::options::{OnProgress, Options};
 use super::pairs::Flat;
 use super::primitives::Primitives;
-use super::shading_data::ShadingData;
+use super::shading::ShadingData;
 use super::volumes::Tree;
 use super::wide::Wide;
 use crate::scene::Scene;
@@ -29,7 +29,7 @@ pub struct BuildContext<'g> {
     pub primitives: &'g Primitives,
     /// The box of all primitives; a point without any.
     pub bounds: UnitBox,
-    pub shading_data: &'g ShadingData,
+    pub shading: &'g ShadingData,
     pub role: Role<'g>,
     pub placed: &'g Placed,
     /// The scene's parts, compiled with other options.

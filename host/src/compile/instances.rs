@@ -3,6 +3,7 @@
 use super::error::CompileError;
 use super::instance_tree::{Tree, build};
 use super::reach::Reach;
+use super::requirements::Requirements;
 use super::section::{Section, section};
 use super::sizes::Sizes;
 use crate::blob::Blob;
@@ -43,7 +44,7 @@ pub struct Parts {
     /// For each object of all parts, its first primitive, counted from that of the first part.
     pub object_first: Vec<u32>,
     /// Parts with meshes whose vertices require effects, by name.
-    pub required_by: Vec<(Effects, String)>,
+    pub requirements: Requirements,
     /// For each part, its first primitive, counted in the same way. The total follows.
     first_primitive: Vec<u32>,
     /// The bytes of their structures.
@@ -100,7 +101,7 @@ impl Parts {
             for effect in [Effects::SMOOTH, Effects::VERTEX_COLORS] {
                 if Effects(header.effects).contains(effect) {
                     let name = format!("part {}", printable(&part.name));
-                    parts.required_by.push((effect, name));
+                    parts.requirements.add(effect, name);
                 }
             }
             parts.bounds.push(header.bounds);

@@ -5,15 +5,12 @@ mod builder;
 mod camera;
 mod candidates;
 mod cells;
-mod checkerboard;
 mod context;
 mod coordinates;
 mod cuts;
 mod dual_split;
-mod environment;
 mod error;
 mod estimate;
-mod exposure;
 mod extent;
 mod flattened;
 mod framing;
@@ -23,9 +20,6 @@ mod instances;
 mod joints;
 mod lattice;
 mod layout;
-mod lens;
-mod light_forms;
-mod media;
 mod names;
 mod octree;
 mod options;
@@ -34,13 +28,13 @@ mod primitives;
 mod reach;
 mod records;
 mod report;
+mod requirements;
 mod room;
 mod section;
-mod shading_data;
+mod shading;
 mod sizes;
 mod structures;
 mod support;
-mod textures;
 mod tracks;
 mod vertices;
 mod volumes;
@@ -51,7 +45,6 @@ pub use builder::Builder;
 pub(crate) use camera::place;
 pub use candidates::census::{Census, CubeCensus};
 pub use candidates::lists::Figures;
-pub use environment::EnvironmentFigures;
 pub use error::CompileError;
 pub use framing::{BACKGROUND, framing};
 pub use lattice::BITS as LATTICE_BITS;
@@ -59,14 +52,14 @@ pub use names::{KeptNames, Names};
 pub use options::{LARGEST_LEAF, OnProgress, Options};
 pub use primitives::LeftOut;
 pub use report::{Report, TableStats};
-pub(crate) use shading_data::light_record;
-pub use shading_data::radiance;
+pub(crate) use shading::light_record;
+pub use shading::{EnvironmentFigures, TextureFigures, radiance};
 pub use structures::{takes_hierarchy, usual_budget};
-pub use textures::TextureFigures;
 pub use wide::Quality;
 
 pub use crate::scene::TICKS_PER_SECOND;
 
+use crate::blob::Blob;
 use crate::scene::{Object, Scene};
 use crate::shape::Lattice;
 use crate::table::printable;
@@ -82,6 +75,7 @@ use hierarchy::{Node, Primitive, Splits};
 use instances::{Parts, Placed, Role};
 use pairs::Flat;
 use primitives::Primitives;
+use shading::ShadingData;
 use sizes::Sizes;
 use std::time::{Duration, Instant};
 use wide::Wide;
@@ -89,7 +83,7 @@ use wide::Wide;
 /// A blob, and a report about its compilation.
 #[derive(Clone, Debug)]
 pub struct Compiled {
-    pub blob: crate::blob::Blob,
+    pub blob: Blob,
     pub report: Report,
 }
 
@@ -193,13 +187,12 @@ fn compile_as(
     }
     let (lattice, snapped, placed) = snap(role, scene, extent, options)?;
     let structures = held(&options.structures);
-    let required_by = match role {
-        Role::Part { .. } => snapped.required_by.clone(),
-        Role::Whole(parts) => [&snapped.required_by[..], &parts.required_by[..]].concat(),
-    };
+    let mut requirements = snapped.requirements.clone();
+    if let Role::Whole(parts) = role {
+        requirements.extend(&parts.requirements);
+    }
     let budget = options.texture_bytes;
-    let shading_data =
-        shading_data::ShadingData::of(&shapes, &lattice, extent, required_by, budget)?;
+    let shading = ShadingData::of(&shapes, &lattice, extent, requirements, budget)?;
     // WebAssembly without a system has no clock, and asking for the time would panic.
     let has_clock = !cfg!(all(target_family = "wasm", target_os = "unknown"));
     let started = has_clock.then(Instant::now);
@@ -213,11 +206,11 @@ fn compile_as(
     let mut bounds = placed.around(own).unwrap_or(UnitBox([[0; 2]; 3]));
     if let Role::Whole(parts) = role {
         bounds = parts.reach.box_around(bounds, &lattice);
-    }
-    // Where rays start in a part depends on its box, so that is the same through all structures.
-    if structures.contains(&Structure::Octree) && matches!(role, Role::Whole(_)) {
-        let boxes: Vec<_> = order.iter().map(|primitive| primitive.bounds).collect();
-        bounds = octree::bounds(&bounds, &boxes);
+        // Where rays start in a part depends on its box, so that is the same through all structures.
+        if structures.contains(&Structure::Octree) {
+            let boxes: Vec<_> = order.iter().map(|primitive| primitive.bounds).collect();
+            bounds = octree::bounds(&bounds, &boxes);
+        }
     }
     let sah_cost = root.as_ref().map(hierarchy::sah_cost);
     let parts_with = |options: &Options| Ok(compile_parts(scene, options, &|_, _, _| ())?.0);
@@ -230,7 +223,7 @@ fn compile_as(
         order: &order,
         primitives: &snapped,
         bounds,
-        shading_data: &shading_data,
+        shading: &shading,
         role,
         placed: &placed,
         parts_with: &parts_with,
@@ -266,22 +259,7 @@ fn compile_as(
     // A table may fill what memory there is; all that it was built from makes room for the blob.
     drop((root, order, wide));
     let blob = writer::write(parts)?;
-    let bytes = blob.bytes().len();
-    if let Some(most) = options.max_bytes.filter(|&most| bytes as u64 > most) {
-        let bytes_with = |other: &Options| {
-            let unnamed = Options {
-                names: false,
-                ..other.clone()
-            };
-            Some(compile(scene, &unnamed).ok()?.report.bytes)
-        };
-        let advice = advice(options, &blob, &sizes, &bytes_with);
-        return Err(CompileError::TooLarge {
-            bytes: bytes as u64,
-            over: bytes as u64 - most,
-            advice,
-        });
-    }
+    check_bytes(&blob, scene, options, &sizes)?;
     let fine_steps = lattice.fine_steps() as f32;
     let displacements = snapped.displacements.iter().map(|it| it / fine_steps);
     let displacements: Vec<f32> = displacements.collect();
@@ -295,17 +273,42 @@ fn compile_as(
         collapsed: snapped.collapsed.clone(),
         without_area: snapped.without_area.clone(),
         sah_cost,
-        bytes,
+        bytes: blob.bytes().len(),
         longest_list,
-        effects: shading_data.required_by.clone(),
-        textures: shading_data.texture_figures.clone(),
-        environment: shading_data.environment.as_ref().map(|it| it.figures),
-        supplied: shading_data.supplied.clone(),
+        effects: shading.requirements.by_effect(),
+        textures: shading.texture_figures().to_vec(),
+        environment: shading.environment_figures(),
+        supplied: shading.supplied.clone(),
         setup,
         tables,
         names,
     };
     Ok((Compiled { blob, report }, sizes))
+}
+
+/// Returns an error with advice if a scene's blob is larger than the options allow.
+fn check_bytes(
+    blob: &Blob,
+    scene: &Scene,
+    options: &Options,
+    sizes: &Sizes,
+) -> Result<(), CompileError> {
+    let bytes = blob.bytes().len() as u64;
+    let Some(most) = options.max_bytes.filter(|&most| bytes > most) else {
+        return Ok(());
+    };
+    let bytes_with = |other: &Options| {
+        let unnamed = Options {
+            names: false,
+            ..other.clone()
+        };
+        Some(compile(scene, &unnamed).ok()?.report.bytes)
+    };
+    Err(CompileError::TooLarge {
+        bytes,
+        over: bytes - most,
+        advice: advice(options, blob, sizes, &bytes_with),
+    })
 }
 
 /// Snaps a scene of some extent to the finest lattice that holds it once it is snapped.

@@ -5,6 +5,7 @@ use super::cuts::{self, Sliver};
 use super::flattened::{self, is_degenerate};
 use super::hierarchy::Primitive;
 use super::records::{Added, Records};
+use super::requirements::Requirements;
 use super::vertices::{Corner, Corners, MOST_COORDINATE, Vertices, corner_at};
 use crate::scene::{Object, Scene};
 use crate::shape::{Lattice, Shape, Solid, displacement};
@@ -31,7 +32,7 @@ pub struct Primitives {
     /// The attributes of each vertex other than its position; empty where no vertex has any.
     pub corners: Vec<Corner>,
     /// Objects whose vertices require effects, by name.
-    pub required_by: Vec<(Effects, String)>,
+    pub requirements: Requirements,
     pub triangles: Vec<[u32; 3]>,
     pub records: Records,
     /// For each kind, the numbers of its primitives in scene-file order.
@@ -257,7 +258,7 @@ impl Primitives {
                 ] {
                     if is_required {
                         let name = format!("mesh {}", printable(&object.name));
-                        self.required_by.push((effect, name));
+                        self.requirements.add(effect, name);
                     }
                 }
                 if !self.flat_meshes && flattened::is_flattened((vertices, &snapped), triangles) {

@@ -1,10 +1,9 @@
 //! The compiler's report.
 
 use super::candidates::lists::Figures;
-use super::environment::EnvironmentFigures;
 use super::names::KeptNames;
 use super::primitives::LeftOut;
-use super::textures::TextureFigures;
+use super::shading::{EnvironmentFigures, TextureFigures};
 use std::time::Duration;
 
 /// The compiler's report.

@@ -13,7 +13,6 @@ use super::layout::Layout;
 use super::octree;
 use super::options::Options;
 use super::section::section;
-use super::shading_data::ShadingData;
 use super::writer;
 use gridel_core::Structure;
 use gridel_core::format::SectionKind;
@@ -90,7 +89,7 @@ pub fn lay_out(structure: Structure, context: &BuildContext<'_>) -> Result<Layou
             Layout::of_classes(ray_classes::build(&context.targets(), &rays, budget)?)
         }
         Structure::Apex => {
-            let ShadingData { view, lights, .. } = context.shading_data;
+            let (view, lights) = (&context.shading.view, context.shading.lights());
             Layout::of_apexes(apex::build(&context.targets(), view, lights, budget))
         }
         Structure::Wide => {

@@ -1,6 +1,6 @@
 //! Distinct vertices of meshes: places on the lattice, with normals, colors and texture coordinates.
 
-use super::textures;
+use super::shading;
 use crate::scene::{Attributes, Color, Normals};
 use crate::shape::unit;
 use glam::DVec3;
@@ -110,7 +110,7 @@ impl Corners {
         let coordinates: Vec<[i32; 2]> = coordinates.collect::<Option<_>>()?;
         let at = |corner: u32| coordinates.get(corner as usize).copied();
         let of_triangle = |&[a, b, c]: &[u32; 3]| Some([at(a)?, at(b)?, at(c)?]);
-        let root = |channel: f64| textures::root(channel, display_values);
+        let root = |channel: f64| shading::root(channel, display_values);
         let color = |it: &Color| [root(it[0]), root(it[1]), root(it[2]), 255];
         Some(Self {
             normals: stored(normals),

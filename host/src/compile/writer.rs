@@ -2,7 +2,6 @@
 
 use super::CompileError;
 use super::context::BuildContext;
-use super::environment::EnvironmentData;
 use super::instances::Role;
 use super::layout::Layout;
 use super::names::{KeptNames, Names};
@@ -83,7 +82,7 @@ pub fn parts(context: &BuildContext<'_>, layouts: Vec<Layout>) -> Parts {
         lattice,
         primitives,
         flat,
-        shading_data,
+        shading,
         ..
     } = *context;
     let own = primitives.total;
@@ -108,33 +107,9 @@ pub fn parts(context: &BuildContext<'_>, layouts: Vec<Layout>) -> Parts {
         }
     }
 
-    let mut sections = vec![section(SectionKind::View, &[shading_data.view])];
-    sections.push(section(SectionKind::Lights, &shading_data.lights));
-    sections.push(section(SectionKind::LightForms, &shading_data.light_forms));
-    sections.push(section(SectionKind::Emissions, &shading_data.emissions));
-    sections.push(section(SectionKind::Lens, &shading_data.lens));
-    sections.push(section(SectionKind::Indirect, &shading_data.bounces));
-    sections.extend(
-        shading_data
-            .environment
-            .iter()
-            .flat_map(EnvironmentData::sections),
-    );
-    sections.push(section(SectionKind::Materials, &shading_data.materials));
-    sections.push(section(SectionKind::Roughnesses, &shading_data.roughnesses));
-    sections.push(section(SectionKind::Media, &shading_data.media));
-    sections.push(section(SectionKind::ShownForms, &shading_data.shown_forms));
+    let mut sections = shading.sections(objects);
     if objects != total && objects > 1 {
         sections.push(indices(SectionKind::ObjectFirst, &object_first, 2));
-    }
-    // A part's objects that are not distinguished have no materials, either.
-    let has_all = shading_data.object_material.len() == objects as usize;
-    if shading_data.materials.len() > 1 && has_all {
-        sections.push(indices(
-            SectionKind::ObjectMaterial,
-            &shading_data.object_material,
-            1,
-        ));
     }
     let order: Vec<u32> = Kind::ALL
         .iter()
@@ -148,8 +123,6 @@ pub fn parts(context: &BuildContext<'_>, layouts: Vec<Layout>) -> Parts {
     if !counts_up(&order) || order.len() as u32 != own {
         sections.push(indices(SectionKind::Order, &order, 2));
     }
-    sections.extend(shading_data.tracks.iter().cloned());
-    sections.extend(shading_data.textures.iter().cloned());
     sections.extend(geometry(lattice, primitives, flat));
     if uses_leaves {
         sections.push(section(SectionKind::Leaves, &flat.leaves));
@@ -179,7 +152,7 @@ pub fn parts(context: &BuildContext<'_>, layouts: Vec<Layout>) -> Parts {
         blob_bytes: 0,
         checksum: 0,
         structures,
-        effects: shading_data.effects.0,
+        effects: shading.requirements.effects().0,
         stack_depth,
         longest_leaf: if uses_leaves {
             flat.longest_leaf as u16
@@ -194,8 +167,8 @@ pub fn parts(context: &BuildContext<'_>, layouts: Vec<Layout>) -> Parts {
         origin: lattice.origin.to_array(),
         bounds: context.bounds,
         stack_bytes: u32::from(stack_depth) * size_of::<Entry>() as u32,
-        coordinate_shift: shading_data.coordinates.header.coordinate_shift,
-        coordinate_origin: shading_data.coordinates.header.coordinate_origin,
+        coordinate_shift: shading.coordinates.header.coordinate_shift,
+        coordinate_origin: shading.coordinates.header.coordinate_origin,
         spare: [0; 3],
     };
     Parts { header, sections }

@@ -1,6 +1,6 @@
 //! Exposure. The compiler multiplies all light of a scene, so that pictures cost no more.
 
-use super::CompileError;
+use crate::compile::CompileError;
 use crate::scene::{Color, Light, Scene, Track};
 use gridel_core::format::track::TrackTarget;
 

@@ -2,17 +2,18 @@
 //!
 //! The map is octahedral: see `gridel_core::format::environment`. Every texel is the mean of the radiance in it.
 
-use super::CompileError;
 use super::exposure::Exposure;
-use super::section::{Section, section};
+use super::radiance;
+use crate::compile::CompileError;
+use crate::compile::section::{Section, section};
 use crate::scene::{Color, Environment, Panorama, Sky};
 use crate::shape::unit;
 use crate::table::grouped;
 use glam::DVec3;
+use gridel_core::Up;
 use gridel_core::format::SectionKind;
 use gridel_core::format::environment::Environment as Record;
 use gridel_core::format::record::Light;
-use gridel_core::{Effects, Up};
 use serde::Serialize;
 use std::f64::consts::{PI, TAU};
 use std::fmt;
@@ -159,11 +160,6 @@ impl EnvironmentData {
             section(SectionKind::EnvironmentColumns, &self.columns),
         ]
     }
-
-    /// Returns its effect and what requires it.
-    pub fn required_by() -> (Effects, String) {
-        (Effects::ENVIRONMENT, String::from("the environment"))
-    }
 }
 
 /// The record, and the sun as a light.
@@ -186,12 +182,12 @@ fn sun_of(
         sun_direction: towards.round().to_array().map(|x| x as i32),
         sun_radius: (sun.radius() * f64::from(1 << 30)).round() as i32,
         // A brighter sun is limited to what a record holds.
-        sun_radiance: super::radiance(color.map(|channel| channel / sun.solid_angle_over_pi())),
+        sun_radiance: radiance(color.map(|channel| channel / sun.solid_angle_over_pi())),
         ..plain
     };
     let light = Light {
         vector: [0; 3],
-        color: super::radiance(color),
+        color: radiance(color),
         directional: Light::SUN,
     };
     Ok((record, (color != [0.0; 3]).then_some(light)))

@@ -1,6 +1,6 @@
 //! The lens of a camera as a record.
 
-use super::CompileError;
+use crate::compile::CompileError;
 use crate::scene::{Camera, Lens};
 use crate::shape::Lattice;
 use gridel_core::format::lens;

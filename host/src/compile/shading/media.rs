@@ -1,6 +1,7 @@
 //! The order of glass that overlaps.
 
-use super::CompileError;
+use crate::compile::CompileError;
+use crate::compile::requirements::Requirements;
 use crate::scene::Scene;
 use crate::table::printable;
 use gridel_core::Effects;
@@ -12,7 +13,7 @@ use std::cmp::Reverse;
 pub fn media(
     scene: &Scene,
     numbers: &[Option<u32>],
-    required_by: &mut Vec<(Effects, String)>,
+    requirements: &mut Requirements,
 ) -> Result<Vec<u32>, CompileError> {
     let mut media = Vec::new();
     for (material, number) in scene.materials.iter().zip(numbers) {
@@ -20,7 +21,7 @@ pub fn media(
         if let (Some(priority), Some(number)) = (priority, number) {
             media.push((Reverse(priority), *number));
             let name = printable(&material.name);
-            required_by.push((Effects::NESTED, format!("the priority of material {name}")));
+            requirements.add(Effects::NESTED, format!("the priority of material {name}"));
         }
     }
     if media.len() > MAX_MEDIA {

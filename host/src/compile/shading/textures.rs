@@ -7,8 +7,8 @@
 
 mod stored;
 
-use super::CompileError;
-use super::section::{Section, section};
+use crate::compile::CompileError;
+use crate::compile::section::{Section, section};
 use crate::scene::{Alpha, Material, Texture, Wrap};
 use crate::srgb::{linear_of_srgb, srgb_of_linear};
 use crate::table::{grouped, printable};

@@ -1,6 +1,6 @@
 //! The forms of lights as records.
 
-use super::CompileError;
+use crate::compile::CompileError;
 use crate::scene::{Color, LightForm, LightShape};
 use crate::shape::{Lattice, unit};
 use glam::DVec3;

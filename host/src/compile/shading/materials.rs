@@ -1,0 +1,176 @@
+//! Materials as records, and what only some of them have beside.
+
+use super::checkerboard::{LARGEST_CELL, checker_origin, has_large_cells};
+use super::exposure::Exposure;
+use super::media::media;
+use super::radiance;
+use super::textures::{TextureFigures, Textures};
+use crate::compile::CompileError;
+use crate::compile::requirements::Requirements;
+use crate::compile::section::{Section, indices, section};
+use crate::scene::{Color, Diffuse, Material, Scene};
+use crate::shape::Lattice;
+use crate::table::printable;
+use gridel_core::Effects;
+use gridel_core::format::SectionKind;
+use gridel_core::format::record;
+
+/// The materials that objects have. Lists other than `records` are empty where no material needs them.
+#[derive(Debug, Default)]
+pub struct MaterialData {
+    records: Vec<record::Material>,
+    /// For each object, its place in `records`.
+    of_objects: Vec<u32>,
+    /// For each material of the scene its place in `records`, if an object has it.
+    pub numbers: Vec<Option<u32>>,
+    emissions: Vec<record::Emission>,
+    /// The α of each material, up to the last rough one.
+    roughnesses: Vec<i32>,
+    /// The materials with a priority, from the highest on.
+    media: Vec<u32>,
+    textures: Vec<Section>,
+    /// How each texture is stored.
+    pub texture_figures: Vec<TextureFigures>,
+}
+
+impl MaterialData {
+    /// Compiles the materials of a scene, whose textures may take so many bytes.
+    pub fn of(
+        scene: &Scene,
+        lattice: &Lattice,
+        exposure: &Exposure,
+        texture_bytes: Option<u64>,
+        requirements: &mut Requirements,
+    ) -> Result<Self, CompileError> {
+        let mut data = Self {
+            numbers: vec![None; scene.materials.len()],
+            ..Self::default()
+        };
+        let mut textures = Textures::default();
+        for object in scene.all_objects() {
+            let material = &scene.materials[object.material];
+            if !object.shape.is_bounded() && has_large_cells(material, lattice) {
+                return Err(CompileError::CheckerSize {
+                    material: printable(&material.name),
+                    most: LARGEST_CELL * lattice.unit(),
+                });
+            }
+            let number = *data.numbers[object.material].get_or_insert_with(|| {
+                let record = record::Material {
+                    maps: textures.maps(material),
+                    ..material_record(material, lattice)
+                };
+                requirements.add(record.effects(), label(material));
+                data.records.push(record);
+                data.records.len() as u32 - 1
+            });
+            data.of_objects.push(number);
+        }
+        (data.textures, data.texture_figures) =
+            textures.sections(scene.display_values, texture_bytes)?;
+        for (material, number) in scene.materials.iter().zip(&data.numbers) {
+            let Some(number) = *number else {
+                continue;
+            };
+            if material.emission != [0.0; 3] {
+                let color = exposure.of_color(material.emission, || label(material))?;
+                let emission = record::Emission {
+                    radiance: radiance(color),
+                    lights: material.is_sampled.into(),
+                };
+                put(&mut data.emissions, number, emission);
+                requirements.add(Effects::EMISSION, label(material));
+            }
+            if material.is_rough() {
+                let roughness = material.roughness.clamp(Material::LEAST_ROUGHNESS, 1.0);
+                let [alpha, ..] = ratio([roughness * roughness; 3]);
+                put(&mut data.roughnesses, number, alpha);
+                requirements.add(Effects::GLOSSY, label(material));
+            }
+        }
+        data.media = media(scene, &data.numbers, requirements)?;
+        Ok(data)
+    }
+
+    /// Whether a material is rough.
+    pub fn are_rough(&self) -> bool {
+        !self.roughnesses.is_empty()
+    }
+
+    /// The sections of a blob that tells so many objects apart.
+    pub fn sections(&self, objects: u32) -> Vec<Section> {
+        let mut sections = vec![
+            section(SectionKind::Materials, &self.records),
+            section(SectionKind::Emissions, &self.emissions),
+            section(SectionKind::Roughnesses, &self.roughnesses),
+            section(SectionKind::Media, &self.media),
+        ];
+        // A part's objects that are not distinguished have no materials, either.
+        if self.records.len() > 1 && self.of_objects.len() == objects as usize {
+            sections.push(indices(SectionKind::ObjectMaterial, &self.of_objects, 1));
+        }
+        sections.extend(self.textures.iter().cloned());
+        sections
+    }
+}
+
+/// Puts a material's value into a list that ends where all others have none.
+fn put<T: Clone + Default>(values: &mut Vec<T>, number: u32, value: T) {
+    let number = number as usize;
+    if values.len() <= number {
+        values.resize(number + 1, T::default());
+    }
+    values[number] = value;
+}
+
+/// A material for messages.
+fn label(material: &Material) -> String {
+    format!("material {}", printable(&material.name))
+}
+
+fn material_record(material: &Material, lattice: &Lattice) -> record::Material {
+    let (even, odd, checker_size, checker_origin) = match material.diffuse {
+        Diffuse::Plain(color) => (color, color, 0, [0; 3]),
+        Diffuse::Checker {
+            even,
+            odd,
+            size,
+            origin,
+        } => {
+            // At least one sub-step.
+            let size = (size / lattice.unit()).max(1.0 / 8192.0);
+            // On the lattice, as faces are that lie between two layers of cells.
+            let step = lattice.step() / lattice.unit();
+            let origin = (lattice.in_units(origin) / step).round() * step;
+            let origin = origin.to_array().map(|x| checker_origin(x, size));
+            let q13 = |units: f64| (units * 8192.0).round() as i32;
+            (even, odd, q13(size.min(LARGEST_CELL)), origin.map(q13))
+        }
+    };
+    let glass = material.transmit != [0.0; 3];
+    record::Material {
+        diffuse: ratio(even),
+        odd: ratio(odd),
+        checker_size,
+        checker_origin,
+        highlight: ratio(material.highlight),
+        mirror: ratio(material.mirror),
+        transmit: ratio(material.transmit),
+        inverse_ior: ratio([1.0 / material.ior.clamp(1.0, 4.0); 3])[0],
+        // The cast saturates: one unit of such glass lets nothing through anyway.
+        absorption: material.absorption.map(|coefficient| {
+            if glass {
+                (coefficient * lattice.unit() * f64::powi(2.0, 32)).round() as u32
+            } else {
+                0
+            }
+        }),
+        shininess: material.shininess.clamp(1, 1024),
+        maps: 0,
+    }
+}
+
+/// Ratios with 30 fraction bits, 0 to 1.
+fn ratio(color: Color) -> [i32; 3] {
+    color.map(|channel| (channel.clamp(0.0, 1.0) * f64::from(1 << 30)).round() as i32)
+}

@@ -1,0 +1,209 @@
+//! Camera, lights and materials as records, and the effects that they require.
+
+mod checkerboard;
+mod environment;
+mod exposure;
+mod lens;
+mod light_forms;
+mod lights;
+mod materials;
+mod media;
+mod setting;
+mod textures;
+
+pub use environment::EnvironmentFigures;
+pub use lights::light_record;
+pub use textures::{TextureFigures, root};
+
+use super::CompileError;
+use super::camera::place;
+use super::coordinates::Coordinates;
+use super::extent::Shapes;
+use super::joints;
+use super::requirements::Requirements;
+use super::section::{Section, section};
+use super::tracks;
+use crate::scene::{Color, Scene, ToneMapping};
+use crate::shape::Lattice;
+use bytemuck::Zeroable;
+use environment::EnvironmentData;
+use exposure::Exposure;
+use glam::DVec3;
+use gridel_core::Effects;
+use gridel_core::format::SectionKind;
+use gridel_core::format::lens::Lens;
+use gridel_core::format::record::{self, View};
+use lights::{LightData, Space, on_lattice};
+use materials::MaterialData;
+use setting::Setting;
+
+/// Everything of a blob that is not geometry.
+#[derive(Debug)]
+pub struct ShadingData {
+    pub view: View,
+    pub coordinates: Coordinates,
+    pub requirements: Requirements,
+    /// Parts that the scene lacks and the compiler supplied.
+    pub supplied: Vec<String>,
+    materials: MaterialData,
+    lights: LightData,
+    /// The light around the scene.
+    environment: Option<EnvironmentData>,
+    /// The lens of the camera, in place of a pinhole: one, or none.
+    lens: Vec<Lens>,
+    /// How often light may be reflected diffusely: one number, or none.
+    bounces: Vec<u32>,
+    /// Tracks and joints.
+    motion: Vec<Section>,
+}
+
+impl ShadingData {
+    /// Compiles the shading data of a scene in a space, whose meshes require these effects. Its textures may take
+    /// `texture_bytes`.
+    pub fn of(
+        shapes: &Shapes<'_>,
+        lattice: &Lattice,
+        extent: (DVec3, DVec3),
+        mut requirements: Requirements,
+        texture_bytes: Option<u64>,
+    ) -> Result<Self, CompileError> {
+        let scene = shapes.scene();
+        let setting = Setting::of(shapes);
+        let camera = setting.camera;
+        let space = Space { lattice, extent };
+        let exposure = Exposure::of(scene);
+        let materials =
+            MaterialData::of(scene, lattice, &exposure, texture_bytes, &mut requirements)?;
+        let are_rough = materials.are_rough();
+        let mut lights = LightData::of(scene, &setting.lights, space, &exposure, are_rough)?;
+        let environment = scene.environment.as_ref();
+        let environment = environment.map(|it| EnvironmentData::of(it, scene.up, &exposure));
+        let environment = environment.transpose()?;
+        if let Some(environment) = &environment {
+            lights.records.extend(&environment.lights);
+            requirements.add(Effects::ENVIRONMENT, "the environment");
+        }
+        let light = |color, what: &str| exposure.of_color(color, || what.into()).map(radiance);
+        let view = View {
+            background: light(setting.background, "background")?,
+            ambient: light(setting.ambient, "ambient light")?,
+            ..view_record(scene)?
+        };
+        let lens = lens::record(scene.lens.as_ref(), &camera, lattice)?;
+        let bounces = Some(scene.render.bounces).filter(|&bounces| bounces > 0);
+        requirements.add(view.effects(), "the `tone_mapping` of pictures");
+        for (effect, is_required, part) in [
+            (
+                Effects::DEPTH_OF_FIELD,
+                lens.is_some(),
+                "the camera's `aperture`",
+            ),
+            (
+                Effects::INDIRECT,
+                bounces.is_some(),
+                "the `bounces` of pictures",
+            ),
+        ] {
+            requirements.add(effect.only_if(is_required), part);
+        }
+        if scene.all_objects().next().is_some() {
+            require_lights(&lights.records, scene, &mut requirements);
+        }
+
+        on_lattice(lattice, space.size(), String::from("camera"), camera.eye)?;
+        let mut places = tracks::places(&scene.tracks, &camera);
+        places.extend(joints::places(scene));
+        let corners = [extent.0, extent.1];
+        let coordinates = Coordinates::choose(lattice, corners, camera.eye, &scene.lights, &places);
+        let placed = place(&camera, &coordinates.header)?;
+        let mut tracks = joints::kept_tracks(scene);
+        exposure.change_tracks(&mut tracks);
+        let mut motion =
+            tracks::sections(tracks, &camera, &materials.numbers, &coordinates.header)?;
+        motion.extend(joints::sections(scene, &coordinates.header)?);
+        Ok(Self {
+            view: placed.replace_in(&view, &coordinates.header),
+            coordinates,
+            requirements,
+            supplied: setting.supplied,
+            materials,
+            lights,
+            environment,
+            lens: lens.into_iter().collect(),
+            bounces: bounces.into_iter().map(u32::from).collect(),
+            motion,
+        })
+    }
+
+    /// The lights, those of the environment included.
+    pub fn lights(&self) -> &[record::Light] {
+        &self.lights.records
+    }
+
+    /// How each texture is stored.
+    pub fn texture_figures(&self) -> &[TextureFigures] {
+        &self.materials.texture_figures
+    }
+
+    /// How the environment is stored.
+    pub fn environment_figures(&self) -> Option<EnvironmentFigures> {
+        self.environment.as_ref().map(|it| it.figures)
+    }
+
+    /// The sections of a blob that tells so many objects apart.
+    pub fn sections(&self, objects: u32) -> Vec<Section> {
+        let mut sections = vec![
+            section(SectionKind::View, &[self.view]),
+            section(SectionKind::Lens, &self.lens),
+            section(SectionKind::Indirect, &self.bounces),
+        ];
+        sections.extend(self.lights.sections());
+        sections.extend(self.environment.iter().flat_map(EnvironmentData::sections));
+        sections.extend(self.materials.sections(objects));
+        sections.extend(self.motion.iter().cloned());
+        sections
+    }
+}
+
+/// Adds what lights require where there are objects.
+fn require_lights(lights: &[record::Light], scene: &Scene, requirements: &mut Requirements) {
+    // The environment stands for itself. A scene file may turn shadows off.
+    let mut known = Effects::ENVIRONMENT;
+    if !scene.render.shadows {
+        known = known.with(Effects::SHADOW);
+    }
+    for (number, light) in lights.iter().enumerate() {
+        requirements.add(light.effects().without(known), format!("light {number}"));
+    }
+}
+
+/// The defaults of a picture; the camera is placed afterwards.
+fn view_record(scene: &Scene) -> Result<View, CompileError> {
+    let render = &scene.render;
+    let encoding = match (render.tone_mapping, scene.display_values) {
+        (ToneMapping::None, false) => 0,
+        (ToneMapping::None, true) => View::DISPLAY_VALUES,
+        (_, true) => return Err(CompileError::ToneMapping),
+        (ToneMapping::Reinhard, false) => View::REINHARD,
+        (ToneMapping::Aces, false) => View::ACES,
+    };
+    Ok(View {
+        cutoff: radiance([render.cutoff; 3])[0],
+        width: render.width.clamp(1, u16::MAX.into()) as u16,
+        height: render.height.clamp(1, u16::MAX.into()) as u16,
+        samples: render.samples,
+        depth: render.depth.max(render.bounces),
+        encoding,
+        ..View::zeroed()
+    })
+}
+
+/// A color of light as a blob's records hold it: 20 fraction bits, 0 to 2,047.999999; saturates.
+///
+/// ```
+/// assert_eq!(gridel_host::compile::radiance([1.0, 0.5, 0.0]), [1 << 20, 1 << 19, 0]);
+/// assert_eq!(gridel_host::compile::radiance([1e9; 3]), [i32::MAX; 3]);
+/// ```
+pub fn radiance(color: Color) -> [i32; 3] {
+    color.map(|channel| (channel * f64::from(1 << 20)).round().max(0.0) as i32)
+}
