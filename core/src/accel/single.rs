@@ -46,7 +46,12 @@ impl Single {
     #[inline(always)]
     pub(super) fn limit<N: CullArithmetic>(t: N) -> i32 {
         let t = t.to_f32();
-        if t < 0.0 { -1 } else { t.to_bits() as i32 + 1 }
+        // The sum of two zeros has no sign.
+        if t < 0.0 {
+            -1
+        } else {
+            (t + 0.0).to_bits() as i32 + 1
+        }
     }
 
     /// Returns the t of these bits; -1 for the limit below 0, whose bits are a NaN.

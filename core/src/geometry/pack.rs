@@ -21,10 +21,15 @@ pub(crate) struct LaneHits {
 impl LaneHits {
     /// The crossing with the sphere in a lane: that of [`sphere::cross`].
     #[inline(always)]
-    pub(crate) fn crossing<N: Arithmetic>(&self, recip_norm2: N, lane: usize) -> Crossing<N> {
+    pub(crate) fn crossing<N: Arithmetic>(
+        &self,
+        ray: &Ray<N>,
+        recip_norm2: N,
+        lane: usize,
+    ) -> Crossing<N> {
         let closest = N::length_from_f64(self.closest[lane & 7].into());
         let square = N::length_from_f64(self.square[lane & 7].into());
-        sphere::tangent_crossing(closest, square.widen(), recip_norm2)
+        sphere::tangent_crossing(ray, closest, square.widen(), recip_norm2)
     }
 }
 

@@ -96,20 +96,21 @@ pub(crate) fn cross<N: Arithmetic>(
     if square < N::Wide::default() {
         return None;
     }
-    Some(tangent_crossing(closest, square, recip_norm2))
+    Some(tangent_crossing(ray, closest, square, recip_norm2))
 }
 
 /// Returns the crossing whose middle lies at `closest`. `square` is the radius squared less the square of the line's
 /// distance from the center.
 #[inline(always)]
 pub(crate) fn tangent_crossing<N: Arithmetic>(
+    ray: &Ray<N>,
     closest: N,
     square: N::Wide,
     recip_norm2: N,
 ) -> Crossing<N> {
     let half = N::root(N::wide_scale(square, recip_norm2));
     Crossing {
-        enter: (closest - half, 0),
+        enter: ray.ahead((closest - half, 0)),
         leave: (closest + half, 0),
     }
 }

@@ -120,7 +120,7 @@ impl<N: Number, K: Culling<N>, F: Collect<N>> Search<'_, '_, N, K, F> {
         while lanes != 0 {
             let lane = lanes.trailing_zeros();
             lanes &= lanes - 1;
-            let crossing = met.crossing(self.recip_norm2, lane as usize);
+            let crossing = met.crossing(self.ray, self.recip_norm2, lane as usize);
             self.consider(crossing, place(lane));
             self.observe(place(lane), Some(&crossing), count);
             // Lanes have tested the others, too, so observers get all of them.

@@ -138,7 +138,9 @@ impl Analytic for Plane {
         let point = if is_tilted && is_near {
             self.point
         } else {
-            DVec3::select(tilts, along * self.point.dot(along), DVec3::ZERO)
+            // By the given normal: far from its point, a plane with the rounded one lies elsewhere.
+            let normal = self.normal.normalize();
+            DVec3::select(tilts, normal * self.point.dot(normal), DVec3::ZERO)
         };
         let step = lattice.fine_steps();
         let settled = Self {

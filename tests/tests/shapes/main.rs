@@ -10,6 +10,7 @@ mod plane;
 mod self_hits;
 mod sphere;
 mod torus;
+mod touching;
 mod triangle;
 
 use gridel_core::Number;

@@ -2,7 +2,7 @@
 
 use super::plane;
 use glam::DVec3;
-use gridel_core::{Kind, Number};
+use gridel_core::{Kind, Number, Structure};
 use gridel_host::blob::Blob;
 use gridel_host::compile::{CompileError, Options, compile};
 use gridel_host::scene::{Scene, Shape};
@@ -116,6 +116,34 @@ fn scenes_of_planes_alone_work() {
     let scene = scenes::of([plane(DVec3::ZERO, DVec3::Y)]);
     let blob = scenes::blob(&scene, 24);
     every_format!(one(&blob.scene().expect("a scene")));
+}
+
+/// A plane that leans so little that its normal is rounded still passes the scene where it was.
+#[test]
+fn planes_with_a_far_point_pass_the_scene_in_their_place() {
+    fn one<N: Number>(scene: &gridel_core::Scene<'_>, t: f64) {
+        let ray = UnitRay::new([0.0, 5000.0, 0.0], [0.0, -1.0, 0.0]);
+        let ready = ray.ready::<N>(scene).expect("a ray");
+        let (hit, _) = through::<N>(Structure::List, scene, &ready);
+        let hit = hit.expect("a hit");
+        let apart = N::far_to_f64(hit.t) - t;
+        assert!(apart.abs() < 0.01, "{:?}: {apart} units off", N::FORMAT);
+    }
+    let ball = Shape::Sphere(Sphere {
+        center: DVec3::ZERO,
+        radius: 1.0,
+    });
+    for far in [1e4, 1e8, 1e12] {
+        let leaning = DVec3::new(1.0 / far, 1.0, 0.0);
+        let scene = scenes::of([plane(DVec3::new(far, 0.0, 2.0), leaning), ball.clone()]);
+        let compiled = compile(&scene, &Options::default()).expect("compiles");
+        assert!(compiled.report.largest_displacement < 1e-3, "{far}");
+        let blob = scenes::blob(&scene, 24);
+        let scene = blob.scene().expect("a scene");
+        let unit = f64::powi(2.0, scene.header().unit_exponent.into());
+        let height = (1.0 - scene.header().origin[1]) / unit;
+        every_format!(one(&scene, 5000.0 - height));
+    }
 }
 
 #[test]
