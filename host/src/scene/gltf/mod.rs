@@ -27,7 +27,7 @@ use super::access::Access;
 use super::importer::{Choices, Importer as Entry, Input};
 use super::text::Warnings;
 use super::{
-    Attributes, Choice, Image, Imported, Normals, Object, Scene, SceneError, Shape, SourceSpan,
+    Attributes, Choice, Image, Imported, Normals, Object, ScaleRange, Scene, SceneError, Shape, SourceSpan,
 };
 use animation::Motion;
 use buffers::{Buffers, MOST};
@@ -99,6 +99,7 @@ fn read(input: Input<'_>) -> Result<Imported, SceneError> {
         triangles: 0,
         shared: Shared::default(),
         joint_of: HashMap::new(),
+        scales: Vec::new(),
         warnings,
     };
     importer.check(&document)?;
@@ -166,6 +167,8 @@ struct Importer<'a> {
     shared: Shared,
     /// The joint that moves a node.
     joint_of: HashMap<usize, usize>,
+    /// For each joint, the scales that it and those above it lead to.
+    scales: Vec<ScaleRange>,
     warnings: Warnings,
 }
 
