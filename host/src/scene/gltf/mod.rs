@@ -17,6 +17,7 @@ mod document;
 mod instances;
 mod joints;
 mod material;
+mod middle;
 mod normal_transforms;
 mod normals;
 mod place;
