@@ -156,7 +156,10 @@ fn finish(mut imported: Imported, options: &ImportOptions) -> Result<Imported, S
     if options.instances == Instances::Flatten {
         let scene = &mut imported.scene;
         let moving = scene.instances.iter().find(|it| it.joint.is_some());
+        let has_joints = scene.tracks.iter().any(|track| track.target.is_of_joint());
         match (moving, options.at) {
+            // Copies are where they are at any time.
+            (None, Some(_)) if has_joints => imported.posed = Some(Posed::AtTime),
             (None, _) => {}
             (Some(_), Some(seconds)) => {
                 scene.instances = scene.instances_at(seconds);

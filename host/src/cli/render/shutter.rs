@@ -68,12 +68,13 @@ fn unevenness(samples: u16, moments: u16) -> Option<String> {
 const MOST_BYTES: usize = 1 << 30;
 
 impl ShutterOptions {
-    /// For how many ticks the shutter is open, and over how many moments; `None` without one.
+    /// For how many ticks the shutter is open, and over how many moments; `None` without one, or where nothing moves.
     ///
     /// # Errors
     /// If it is open for less than a tick.
     pub fn exposure(&self, tracks: &Tracks<'_>, samples: u16) -> Result<Option<Exposure>, Failure> {
-        let Some(seconds) = self.shutter else {
+        // Where no track does anything, nothing is blurred.
+        let Some(seconds) = self.shutter.filter(|_| !tracks.is_empty()) else {
             return Ok(None);
         };
         let open = u32::try_from(ticks(tracks, seconds)).unwrap_or(0);
