@@ -10,7 +10,9 @@ use super::animation::Motion;
 use super::curve::Curve;
 use super::place::{parts, transform};
 use super::shared::Placed;
-use crate::scene::{Interpolation, Joint, Key, LARGEST_SCALE, Placement, ScaleRange, Track, TrackTarget};
+use crate::scene::{
+    Interpolation, Joint, Key, LARGEST_SCALE, Placement, ScaleRange, Track, TrackTarget,
+};
 use crate::table::printable;
 use glam::{DMat3, DMat4, DQuat, DVec3, DVec4};
 use gltf::Node;

@@ -65,8 +65,12 @@ impl<'s> Meshes<'s> {
         // Those that lead farthest come first; few others reach beyond them.
         for axis in 0..3 {
             let ends = |it: &&(usize, DAffine3)| self.outer(it.0, &it.1, axis);
-            let lowest = placed.iter().min_by(|a, b| ends(a)[0].total_cmp(&ends(b)[0]));
-            let highest = placed.iter().max_by(|a, b| ends(a)[1].total_cmp(&ends(b)[1]));
+            let lowest = placed
+                .iter()
+                .min_by(|a, b| ends(a)[0].total_cmp(&ends(b)[0]));
+            let highest = placed
+                .iter()
+                .max_by(|a, b| ends(a)[1].total_cmp(&ends(b)[1]));
             for (part, affine) in [lowest, highest].into_iter().flatten() {
                 self.widen(&mut bounds, *part, affine);
             }
@@ -83,7 +87,8 @@ impl<'s> Meshes<'s> {
         let row = affine.matrix3.row(axis);
         let middle = row.dot(low.midpoint(high)) + affine.translation[axis];
         let reach = row.abs().dot((high - low) * 0.5);
-        let slack = SLACK * (row.abs().dot(low.abs().max(high.abs())) + affine.translation[axis].abs());
+        let slack =
+            SLACK * (row.abs().dot(low.abs().max(high.abs())) + affine.translation[axis].abs());
         [middle - reach - slack, middle + reach + slack]
     }
 
@@ -141,7 +146,8 @@ mod tests {
             .map(|number| Instance {
                 placement: Placement {
                     rotation: turn(&mut random),
-                    translation: DVec3::new(f64::from(number % 30), f64::from(number / 30), 0.0) * 2.5,
+                    translation: DVec3::new(f64::from(number % 30), f64::from(number / 30), 0.0)
+                        * 2.5,
                     scale: 0.75,
                 },
                 ..first.clone()

@@ -28,16 +28,17 @@ use super::access::Access;
 use super::importer::{Choices, Importer as Entry, Input};
 use super::text::Warnings;
 use super::{
-    Attributes, Choice, Image, Imported, Normals, Object, ScaleRange, Scene, SceneError, Shape, SourceSpan,
+    Attributes, Choice, Image, Imported, Normals, Object, ScaleRange, Scene, SceneError, Shape,
+    SourceSpan,
 };
 use animation::Motion;
 use buffers::{Buffers, MOST};
 use glam::{DMat4, DVec3};
-use normal_transforms::NormalTransforms;
 use gltf::mesh::Mode;
 use gltf::scene::Transform;
 use gltf::{Document, Node, Primitive, Semantic};
 use gridel_core::Up;
+use normal_transforms::NormalTransforms;
 use place::transform;
 use shared::Shared;
 use std::collections::HashMap;
@@ -121,7 +122,9 @@ fn read(input: Input<'_>) -> Result<Imported, SceneError> {
         ..
     } = importer;
     let tracks = view.tracks(&mut motion, &place);
-    scene.tracks.extend(tracks.map_err(|[cause, remedy]| SceneError::new(path, cause, remedy))?);
+    scene
+        .tracks
+        .extend(tracks.map_err(|[cause, remedy]| SceneError::new(path, cause, remedy))?);
     if motion.samples > 0 {
         warnings.add_times(
             place.clone(),

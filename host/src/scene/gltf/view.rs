@@ -224,9 +224,8 @@ impl View {
             }
         }
         scene.camera = self.camera;
-        let needs_middle = |lamp: &Lamp| {
-            matches!(lamp.light, Light::Point { .. }) && lamp.intensity > 0.0
-        };
+        let needs_middle =
+            |lamp: &Lamp| matches!(lamp.light, Light::Point { .. }) && lamp.intensity > 0.0;
         let (middle, size) = match self.lights.iter().any(needs_middle) {
             true => middle(scene),
             false => (DVec3::ZERO, 0.0),
