@@ -40,13 +40,16 @@ impl Reach {
             bounds: scene.room,
             scales: Vec::with_capacity(scene.instances.len()),
         };
+        let size = size_at_rest(scene, parts);
         for instance in &scene.instances {
             let mut scales = [1.0; 2];
             if let Some(joint) = instance.joint.filter(|_| scene.is_placed(instance)) {
                 let mut region = Region::of(parts[instance.part], &instance.placement);
+                // The rest of the margin is for the rounding of boxes.
+                let mut spare = size * MARGIN / 4.0;
                 let chain = std::iter::successors(Some(joint), |&it| scene.joints[it].parent);
                 for joint in chain {
-                    region = region.moved(&ranges[joint]);
+                    region = region.moved(&ranges[joint], &mut spare);
                     let [least, greatest] = ranges[joint].scale;
                     scales = [scales[0] * least, scales[1] * greatest];
                 }
@@ -104,6 +107,15 @@ impl Turns {
         turn: Turn::None,
         off: 0.0,
     };
+}
+
+/// The longest side of the box around all instances on joints, at rest.
+fn size_at_rest(scene: &Scene, parts: &[[DVec3; 2]]) -> f64 {
+    let moving = scene.instances.iter();
+    let moving = moving.filter(|it| it.joint.is_some() && scene.is_placed(it));
+    let boxes = moving.map(|it| Region::of(parts[it.part], &it.placement).corners);
+    let around = boxes.reduce(|a, b| [a[0].min(b[0]), a[1].max(b[1])]);
+    around.map_or(0.0, |[low, high]| (high - low).max_element())
 }
 
 /// All that a joint does at some time, and its rest.
@@ -230,8 +242,8 @@ impl Region {
         }
     }
 
-    /// Returns the region after a joint's motion.
-    fn moved(&self, range: &Range) -> Self {
+    /// Returns the region after a joint's motion. Of the margin, small rotations may take what is to `spare`.
+    fn moved(&self, range: &Range, spare: &mut f64) -> Self {
         let Range {
             pivot,
             turns,
@@ -242,7 +254,10 @@ impl Region {
             corners: [low, high],
             center,
             radius,
-        } = self.seen_from(pivot).turned_off(range).turned(turns.turn);
+        } = self
+            .seen_from(pivot)
+            .turned_off(range, spare)
+            .turned(turns.turn);
         let scaled = Self {
             corners: [
                 (low * least).min(low * greatest),
@@ -271,7 +286,7 @@ impl Region {
 
     /// Returns the region that small rotations about the origin, and the rounding of a joint's motion, sweep. What the
     /// margin takes in is left out.
-    fn turned_off(&self, range: &Range) -> Self {
+    fn turned_off(&self, range: &Range, spare: &mut f64) -> Self {
         let rests = matches!(range.turns.turn, Turn::None) && range.turns.off == 0.0;
         let rounding = match rests && range.scale == [1.0; 2] {
             true => 0.0,
@@ -280,7 +295,8 @@ impl Region {
         let [low, high] = self.corners;
         let farthest = low.abs().max(high.abs()).length();
         let by = (range.turns.off + rounding) * farthest.min(self.center.length() + self.radius);
-        if by < (high - low).max_element() * MARGIN / 32.0 {
+        if by <= *spare {
+            *spare -= by;
             return *self;
         }
         Self {
