@@ -9,6 +9,7 @@ mod frames;
 pub use frames::{FramesError, NumberedPicture, in_order};
 
 use crate::picture::{PictureFormat, Rows, write_png};
+use crate::scene::TICKS_PER_SECOND;
 use std::fmt;
 use std::io::{self, BufRead, Read, Write};
 use std::ops::Range;
@@ -262,16 +263,35 @@ impl Merge {
     }
 }
 
-/// The first thing in which two pictures were made differently, as it is in each.
+/// The first thing in which two pictures were made differently, as it is in each. Things are compared by their names.
 fn difference(one: &[(String, String)], other: &[(String, String)]) -> Option<[String; 2]> {
-    let shown = |pair: Option<&(String, String)>| {
-        pair.map_or(String::from("nothing more"), |(name, value)| {
-            format!("{name} {value}")
-        })
+    let value = |of: &[(String, String)], wanted: &str| {
+        let mut pairs = of.iter().filter(|(name, _)| name == wanted);
+        pairs.next().map(|(_, value)| value.clone())
     };
-    let longer = one.len().max(other.len());
-    let at = (0..longer).find(|&at| one.get(at) != other.get(at))?;
-    Some([shown(one.get(at)), shown(other.get(at))])
+    let shown = |of: &[(String, String)], name: &str| {
+        let value = value(of, name);
+        value.map_or_else(|| format!("no {name}"), |it| made_with(name, &it))
+    };
+    let mut names = one.iter().chain(other).map(|(name, _)| name.as_str());
+    let name = names.find(|name| value(one, name) != value(other, name))?;
+    Some([shown(one, name), shown(other, name)])
+}
+
+/// A name and a value, with times in seconds.
+fn made_with(name: &str, value: &str) -> String {
+    let ticks = match name {
+        "time" | "shutter" => value.parse::<i64>().ok(),
+        _ => None,
+    };
+    match ticks {
+        // A tick is 0.00002 s long.
+        Some(ticks) => {
+            let seconds = ticks as f64 / f64::from(TICKS_PER_SECOND);
+            format!("{name} {} s", (seconds * 1e6).round() / 1e6)
+        }
+        None => format!("{name} {value}"),
+    }
 }
 
 /// A picture that is whole again.
@@ -318,3 +338,34 @@ impl fmt::Display for MergeError {
 }
 
 impl std::error::Error for MergeError {}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn differences_are_found_by_name_and_times_are_in_seconds() {
+        let made = |text: &str| {
+            let pairs = text.split(", ").filter_map(|pair| pair.split_once(' '));
+            let pairs = pairs.map(|(name, value)| (name.to_owned(), value.to_owned()));
+            pairs.collect::<Vec<_>>()
+        };
+        let plain = made("blob dcde075e, samples 4");
+        let blurred = made("shutter 4800, moments 16, blob dcde075e, samples 4");
+        let at = |ticks: &str| made(&format!("time {ticks}, blob dcde075e, samples 4"));
+        let found = |one, other| difference(one, other).map(|it| it.join("; "));
+        assert_eq!(found(&plain, &plain), None);
+        assert_eq!(
+            found(&plain, &blurred).as_deref(),
+            Some("no shutter; shutter 0.1 s")
+        );
+        assert_eq!(
+            found(&blurred, &plain).as_deref(),
+            Some("shutter 0.1 s; no shutter")
+        );
+        assert_eq!(
+            found(&at("24000"), &at("24001")).as_deref(),
+            Some("time 0.5 s; time 0.500021 s")
+        );
+    }
+}

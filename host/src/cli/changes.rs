@@ -71,7 +71,7 @@ impl Changes {
         let mut lights: Vec<Light> = own.iter().map(|it| Light::of_blob(scene, it)).collect();
         let before = lights.clone();
         for change in &options.lights {
-            change.apply(&mut lights)?;
+            change.apply(&mut lights, |number| is_spot(scene, &own[number]))?;
         }
         let records = lights.iter().enumerate().map(|(number, light)| {
             // Those that stay keep their bits.
@@ -90,4 +90,10 @@ impl Changes {
             lights: lights.map_err(|error| Failure::Usage(miette::Report::new(error)))?,
         })
     }
+}
+
+/// Returns whether a light shines within a cone.
+fn is_spot(scene: &Scene<'_>, light: &record::Light) -> bool {
+    let form = scene.light_form(light);
+    form.is_some_and(|form| !light.is_area() && form.cone_cosine != -(1 << 30))
 }

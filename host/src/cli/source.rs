@@ -36,6 +36,8 @@ pub struct Source {
     names: Option<Names>,
     /// Where instances that move were copied, if they were.
     posed: Option<Posed>,
+    /// Whether the scene file has tracks that the blob has not: options replace them, or they move nothing.
+    has_idle_tracks: bool,
     /// Number of instances of a scene file that were copied.
     pub copied: usize,
     /// Effects of a scene file that were left out.
@@ -134,6 +136,7 @@ impl Source {
             for_pictures: None,
             names: None,
             posed: None,
+            has_idle_tracks: false,
             copied: 0,
             without: Effects::NONE,
             made_by: None,
@@ -154,7 +157,7 @@ impl Source {
         options: &SceneOptions,
         mut compiling: compile::Options,
     ) -> Result<Self, Failure> {
-        let imported = import_from(&input, options)?;
+        let (imported, has_tracks) = import_from(&input, options)?;
         if let Some(bits) = options.geometry.lattice_bits {
             compiling.lattice_bits = bits;
         }
@@ -199,6 +202,7 @@ impl Source {
             for_pictures: None,
             names: Some(names),
             posed: imported.posed,
+            has_idle_tracks: has_tracks,
             copied: imported.copied,
             without: options.geometry.import.left_out(),
             made_by: Some((options.for_import(), compiling)),
@@ -235,15 +239,19 @@ impl Source {
         }
     }
 
-    /// Returns whether a time concerns more than instances that were copied at their places at that time.
+    /// Returns whether a time concerns more than instances that were copied at their places at that time, and tracks
+    /// that do nothing. It does where there is an error to report.
     fn moves_otherwise(&self) -> bool {
-        self.posed != Some(Posed::AtTime) || self.tracks().is_ok()
+        match self.tracks() {
+            Ok(tracks) => !tracks.is_empty(),
+            Err(_) => self.posed != Some(Posed::AtTime),
+        }
     }
 
-    /// The tracks of a scene that moves.
+    /// The tracks of a scene that moves; none where all of the scene file's do nothing.
     pub fn tracks(&self) -> Result<Tracks<'_>, Failure> {
         let tracks = Tracks::from_bytes(self.blob.bytes()).map_err(|error| self.invalid(error))?;
-        if !tracks.is_empty() {
+        if !tracks.is_empty() || self.has_idle_tracks {
             return Ok(tracks);
         }
         let file = self.input.path().display();
@@ -424,10 +432,11 @@ impl Source {
 
 /// Reads a scene file, warns of the parts that its importer ignored, and applies the options.
 pub fn import(path: &Path, options: &SceneOptions) -> Result<Imported, Failure> {
-    import_from(&Input::open(path)?, options)
+    Ok(import_from(&Input::open(path)?, options)?.0)
 }
 
-fn import_from(input: &Input, options: &SceneOptions) -> Result<Imported, Failure> {
+/// Imports a scene file, and returns whether it has tracks, those that options replace among them.
+fn import_from(input: &Input, options: &SceneOptions) -> Result<(Imported, bool), Failure> {
     let path = input.path();
     if input.is_blob()? {
         return Err(Failure::failed(
@@ -482,12 +491,20 @@ fn import_from(input: &Input, options: &SceneOptions) -> Result<Imported, Failur
     }
     options.view.apply(&mut imported.scene)?;
     for change in &options.lights {
-        change.apply(&mut imported.scene.lights)?;
+        let scene::Scene {
+            lights,
+            light_forms,
+            ..
+        } = &mut imported.scene;
+        let form = |number: usize| light_forms.get(number).copied().flatten();
+        let is_spot = |number: usize| form(number).is_some_and(|form| form.spot.is_some());
+        change.apply(lights, is_spot)?;
     }
     let replaced = |track: &Track| {
         let by_light = |change: &LightChange| change.replaces(track.target, track.index);
         options.view.replaces(track.target) || options.lights.iter().any(by_light)
     };
+    let has_tracks = !imported.scene.tracks.is_empty();
     imported.scene.tracks.retain(|track| !replaced(track));
-    Ok(imported)
+    Ok((imported, has_tracks))
 }

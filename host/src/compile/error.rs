@@ -116,6 +116,15 @@ pub enum CompileError {
         count: usize,
         most: usize,
     },
+    #[error("the scene has {count} {what}, more than the {most} that a blob can hold")]
+    #[diagnostic(help(
+        "copy the instances with `--instances flatten`, or split the scene into several blobs"
+    ))]
+    TooManyPlaced {
+        what: &'static str,
+        count: usize,
+        most: usize,
+    },
     #[error(
         "the {what} lies {distance:.3e} scene units from a scene of {size:.3e}: too far for the number formats"
     )]
@@ -175,6 +184,13 @@ pub enum CompileError {
     SmallInstance {
         instance: String,
         size: f64,
+        least: f64,
+    },
+    #[error("the instance {instance} has a scale of {scale:e}, which no lattice can hold")]
+    #[diagnostic(help("use a scale of at least {least:e}"))]
+    TinyInstance {
+        instance: String,
+        scale: f64,
         least: f64,
     },
     #[error("the instance {instance} {cause}")]

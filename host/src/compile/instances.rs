@@ -19,6 +19,9 @@ use gridel_core::format::track::Joint;
 use gridel_core::format::{SectionKind, instance};
 use std::sync::Arc;
 
+/// The least scale of instances, so that numbers keep their precision.
+const LEAST_SCALE: f64 = 1e-250;
+
 /// The purpose of a blob.
 #[derive(Clone, Copy, Debug)]
 pub enum Role<'p> {
@@ -77,7 +80,7 @@ impl Parts {
             ("instances", scene.instances.len(), MAX_INSTANCES),
         ] {
             if count > most {
-                return Err(CompileError::TooMany { what, count, most });
+                return Err(CompileError::TooManyPlaced { what, count, most });
             }
         }
         let mut parts = Self::default();
@@ -191,6 +194,13 @@ impl Parts {
     ) -> Result<instance::Instance, CompileError> {
         let part = &self.lattices[instance.part];
         let placement = &instance.placement;
+        if placement.scale < LEAST_SCALE {
+            return Err(CompileError::TinyInstance {
+                instance: instance_name(instance),
+                scale: placement.scale,
+                least: LEAST_SCALE,
+            });
+        }
         let stretch = lattice.unit() / (placement.scale * part.unit());
         let exponent = libm::ceil(libm::log2(stretch)) as i64;
         let [least, most] = INSTANCE_EXPONENT;
@@ -311,4 +321,41 @@ fn alone(part: &Part, scene: &Scene) -> Result<Scene, CompileError> {
 
 fn instance_name(instance: &Instance) -> String {
     format!("{} ({})", printable(&instance.name), instance.place)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::compile::{Options, compile};
+    use crate::scene::read;
+
+    fn scene(file: &str) -> Scene {
+        read("a.toml".as_ref(), file.into(), &Default::default())
+            .unwrap()
+            .scene
+    }
+
+    const PART: &str =
+        "[[part]]\nname = 'p'\nobject = [{ kind = 'sphere', center = [0, 0, 0], radius = 1 }]\n";
+
+    #[test]
+    fn scales_that_no_lattice_holds_are_rejected_as_such() {
+        let scene = scene(&format!("{PART}[[instance]]\npart = 'p'\nscale = 1e-310\n"));
+        let error = compile(&scene, &Options::default()).unwrap_err();
+        assert!(
+            matches!(error, CompileError::TinyInstance { .. }),
+            "{error}"
+        );
+    }
+
+    #[test]
+    fn too_many_parts_are_rejected_with_a_remedy() {
+        let mut scene = scene(&format!("{PART}[[instance]]\npart = 'p'\n"));
+        scene.parts[0].objects.clear();
+        let part = scene.parts[0].clone();
+        scene.parts.resize(65_536, part);
+        let error = Parts::compile(&scene, |_| unreachable!()).unwrap_err();
+        let help = miette::Diagnostic::help(&error).unwrap().to_string();
+        assert!(help.contains("--instances flatten"), "{help}");
+    }
 }

@@ -3,7 +3,7 @@
 use super::coordinates::position;
 use super::error::CompileError;
 use super::section::{Section, section};
-use crate::scene::{Joint, Key, Scene, Track, TrackTarget};
+use crate::scene::{Joint, JointTracks, Key, ScaleRange, Scene, Track, TrackTarget};
 use crate::table::printable;
 use glam::DVec3;
 use gridel_core::format::SectionKind;
@@ -38,7 +38,7 @@ pub fn check(scene: &Scene) -> Result<(), CompileError> {
             }
         };
         if level > MOST_LEVELS {
-            let cause = format!("has more than {MOST_LEVELS} joints above it");
+            let cause = format!("stands in a chain of more than {MOST_LEVELS} joints");
             return Err(error(name, cause));
         }
         if !pivot.is_finite() {
@@ -56,7 +56,7 @@ pub fn check(scene: &Scene) -> Result<(), CompileError> {
     }
     let mut tracks = scene.tracks.iter();
     match tracks.find(|track| track.target.is_of_joint() && !is_valid(track.index)) {
-        None => Ok(()),
+        None => check_scales(scene),
         Some(track) => Err(CompileError::Track {
             place: track.place.clone(),
             target: track.target.name(),
@@ -64,6 +64,35 @@ pub fn check(scene: &Scene) -> Result<(), CompileError> {
             remedy: "use the number of a joint of the scene",
         }),
     }
+}
+
+/// Checks that programs can compose the scales of all joints that move instances.
+fn check_scales(scene: &Scene) -> Result<(), CompileError> {
+    let mut moves = vec![false; scene.joints.len()];
+    for instance in scene.instances.iter().filter(|it| scene.is_placed(it)) {
+        let mut next = instance.joint;
+        while let Some(joint) = next.filter(|&joint| !moves[joint]) {
+            moves[joint] = true;
+            next = scene.joints[joint].parent;
+        }
+    }
+    let mut ranges: Vec<ScaleRange> = Vec::with_capacity(scene.joints.len());
+    for ((joint, tracks), moves) in scene.joints.iter().zip(JointTracks::of(scene)).zip(moves) {
+        let own = tracks.scale.map_or(ScaleRange::REST, |track| {
+            ScaleRange::of(track.interpolation, &track.keys)
+        });
+        let above = joint.parent.map_or(ScaleRange::REST, |it| ranges[it]);
+        let range = own.under(&above);
+        if let Some(cause) = range.fault().filter(|_| moves) {
+            return Err(CompileError::Joint {
+                name: printable(&joint.name),
+                cause,
+                remedy: "use smaller changes of scale, or copy the instances with `--instances flatten`",
+            });
+        }
+        ranges.push(range);
+    }
+    Ok(())
 }
 
 /// The tracks of a scene that a blob holds: those of joints only if instances can follow them.
@@ -108,3 +137,6 @@ pub fn sections(scene: &Scene, header: &Header) -> Result<Vec<Section>, CompileE
     let records: Vec<_> = records.collect::<Result<_, CompileError>>()?;
     Ok(vec![section(SectionKind::Joints, &records)])
 }
+
+#[cfg(test)]
+mod tests;

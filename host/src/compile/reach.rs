@@ -5,7 +5,8 @@
 //! axis sweep a cylinder about it, others a sphere about the pivot.
 
 use crate::scene::{
-    Interpolation, Joint, JointTracks, Key, LARGEST_SCALE, LEAST_SCALE, Placement, Scene, Track,
+    Interpolation, Joint, JointTracks, LARGEST_SCALE, LEAST_SCALE, Placement, ScaleRange, Scene,
+    Track, control_points,
 };
 use crate::shape::Lattice;
 use glam::{DQuat, DVec3, DVec4};
@@ -13,6 +14,9 @@ use gridel_core::format::record::UnitBox;
 
 /// Largest difference of the axes of rotations about one axis.
 const SAME_AXIS: f64 = 1e-6;
+
+/// Bound of how far rounding takes the matrix and the scale of a joint off, in radians.
+const ROUNDING: f64 = 1.0 / (1 << 23) as f64;
 
 /// By what part of its size room is widened: some units for the rounding of boxes.
 const MARGIN: f64 = 1.0 / 4096.0;
@@ -36,13 +40,16 @@ impl Reach {
             bounds: scene.room,
             scales: Vec::with_capacity(scene.instances.len()),
         };
+        let size = size_at_rest(scene, parts);
         for instance in &scene.instances {
             let mut scales = [1.0; 2];
             if let Some(joint) = instance.joint.filter(|_| scene.is_placed(instance)) {
                 let mut region = Region::of(parts[instance.part], &instance.placement);
+                // The rest of the margin is for the rounding of boxes.
+                let mut spare = size * MARGIN / 4.0;
                 let chain = std::iter::successors(Some(joint), |&it| scene.joints[it].parent);
                 for joint in chain {
-                    region = region.moved(&ranges[joint]);
+                    region = region.moved(&ranges[joint], &mut spare);
                     let [least, greatest] = ranges[joint].scale;
                     scales = [scales[0] * least, scales[1] * greatest];
                 }
@@ -79,7 +86,7 @@ impl Reach {
     }
 }
 
-/// The rotations of a joint.
+/// The rotations of a joint, without small ones.
 #[derive(Clone, Copy, Debug)]
 enum Turn {
     None,
@@ -87,79 +94,128 @@ enum Turn {
     Any,
 }
 
+/// The rotations of a joint.
+#[derive(Clone, Copy, Debug)]
+struct Turns {
+    turn: Turn,
+    /// Largest angle of the small rotations that come with these, in radians.
+    off: f64,
+}
+
+impl Turns {
+    const NONE: Self = Self {
+        turn: Turn::None,
+        off: 0.0,
+    };
+}
+
+/// The longest side of the box around all instances on joints, at rest.
+fn size_at_rest(scene: &Scene, parts: &[[DVec3; 2]]) -> f64 {
+    let moving = scene.instances.iter();
+    let moving = moving.filter(|it| it.joint.is_some() && scene.is_placed(it));
+    let boxes = moving.map(|it| Region::of(parts[it.part], &it.placement).corners);
+    let around = boxes.reduce(|a, b| [a[0].min(b[0]), a[1].max(b[1])]);
+    around.map_or(0.0, |[low, high]| (high - low).max_element())
+}
+
 /// All that a joint does at some time, and its rest.
 #[derive(Clone, Copy, Debug)]
 struct Range {
     pivot: DVec3,
-    turn: Turn,
+    turns: Turns,
     scale: [f64; 2],
     shift: [DVec3; 2],
 }
 
 impl Range {
     fn of(joint: &Joint, tracks: &JointTracks<'_>) -> Self {
-        let scale = tracks.scale.map_or([1.0; 2], |track| {
-            let points = control_points(track).map(|it| it.x.clamp(LEAST_SCALE, LARGEST_SCALE));
-            points.fold([1.0; 2], |[least, greatest]: [f64; 2], it| {
-                [least.min(it), greatest.max(it)]
-            })
+        let scale = tracks.scale.map_or(ScaleRange::REST, |track| {
+            ScaleRange::of(track.interpolation, &track.keys)
         });
         let shift = tracks.shift.map_or([DVec3::ZERO; 2], |track| {
-            let points = control_points(track).map(DVec4::truncate);
+            let points = track.control_points().map(DVec4::truncate);
             points.fold([DVec3::ZERO; 2], |[low, high], it| {
                 [low.min(it), high.max(it)]
             })
         });
         Self {
             pivot: joint.pivot,
-            turn: tracks.rotation.map_or(Turn::None, turn),
-            scale,
+            turns: tracks.rotation.map_or(Turns::NONE, turns),
+            scale: scale.ends(),
             shift,
         }
     }
 }
 
-/// Points whose convex hull holds all values of a track.
-fn control_points(track: &Track) -> impl Iterator<Item = DVec4> + Clone {
-    let vector = DVec4::from_array;
-    let keys = track.keys.iter().map(move |key| vector(key.value));
-    let cubic = track.interpolation == Interpolation::Cubic;
-    let pairs = track.keys.windows(2).filter(move |_| cubic);
-    let between = pairs.flat_map(move |pair: &[Key]| {
-        let third = (pair[1].seconds - pair[0].seconds) / 3.0;
-        [
-            vector(pair[0].value) + vector(pair[0].leaving) * third,
-            vector(pair[1].value) - vector(pair[1].entering) * third,
-        ]
-    });
-    keys.chain(between)
-}
-
 /// The rotations of a track.
-fn turn(track: &Track) -> Turn {
+fn turns(track: &Track) -> Turns {
     // Linear ways are those between rotations, whatever the lengths of their quaternions.
-    let points = control_points(track).map(|it| match track.interpolation {
-        Interpolation::Cubic => it,
-        _ => DQuat::from_vec4(it).normalize().into(),
+    let points = track.control_points();
+    let imaginary = points.map(|it| match track.interpolation {
+        Interpolation::Cubic => it.truncate(),
+        _ => DVec4::from(DQuat::from_vec4(it).normalize()).truncate(),
     });
-    let imaginary = points.map(DVec4::truncate);
     let longest = imaginary.clone().fold(DVec3::ZERO, |longest, it| {
         match it.length_squared() > longest.length_squared() {
             true => it,
             false => longest,
         }
     });
-    if longest.length() <= SAME_AXIS {
-        return Turn::None;
+    let shortest = shortest(track);
+    // The rotation by a quaternion of length 1 has twice the angle whose sine is the length of its imaginary part.
+    let angle = |off: f64| 2.0 * libm::asin((off / shortest).min(1.0));
+    let is_small = |off: f64| off == 0.0 || (off <= SAME_AXIS && off < shortest);
+    if is_small(longest.length()) {
+        return Turns {
+            turn: Turn::None,
+            off: match longest == DVec3::ZERO {
+                true => 0.0,
+                false => angle(longest.length()),
+            },
+        };
     }
     let axis = longest.normalize();
-    match imaginary
-        .clone()
-        .all(|it| it.cross(axis).length() <= SAME_AXIS)
-    {
-        true => Turn::About(axis),
-        false => Turn::Any,
+    let across = imaginary.map(|it| it.cross(axis).length());
+    let across = across.fold(0.0, f64::max);
+    match across {
+        0.0 => Turns {
+            turn: Turn::About(axis),
+            off: 0.0,
+        },
+        _ if is_small(across) => Turns {
+            turn: Turn::About(axis),
+            off: angle(across),
+        },
+        // A spline through quaternions of nearly no length, all about one axis.
+        _ if across <= SAME_AXIS * SAME_AXIS => Turns {
+            turn: Turn::About(axis),
+            off: 0.0,
+        },
+        _ => Turns {
+            turn: Turn::Any,
+            off: 0.0,
+        },
     }
+}
+
+/// A length that quaternions between the keys of a track, with those of length 1 of linear ones, do not fall below; at
+/// most 0 where a spline can be that short.
+fn shortest(track: &Track) -> f64 {
+    if track.interpolation != Interpolation::Cubic {
+        // Parts of two quaternions on the shorter way between them add up to at most the root of 2.
+        return std::f64::consts::FRAC_1_SQRT_2;
+    }
+    let lengths = track.keys.windows(2).map(|pair| {
+        let points: Vec<DVec4> = control_points(track.interpolation, pair).collect();
+        let along = points.iter().sum::<DVec4>().normalize_or_zero();
+        let lengths = points.iter().map(|point| along.dot(*point));
+        lengths.fold(f64::INFINITY, f64::min)
+    });
+    let ends = track
+        .keys
+        .iter()
+        .map(|key| DVec4::from_array(key.value).length());
+    lengths.chain(ends).fold(f64::INFINITY, f64::min)
 }
 
 /// A box and a sphere that both hold a part.
@@ -186,11 +242,11 @@ impl Region {
         }
     }
 
-    /// Returns the region after a joint's motion.
-    fn moved(&self, range: &Range) -> Self {
+    /// Returns the region after a joint's motion. Of the margin, small rotations may take what is to `spare`.
+    fn moved(&self, range: &Range, spare: &mut f64) -> Self {
         let Range {
             pivot,
-            turn,
+            turns,
             scale: [least, greatest],
             shift,
         } = *range;
@@ -198,7 +254,10 @@ impl Region {
             corners: [low, high],
             center,
             radius,
-        } = self.seen_from(pivot).turned(turn);
+        } = self
+            .seen_from(pivot)
+            .turned_off(range, spare)
+            .turned(turns.turn);
         let scaled = Self {
             corners: [
                 (low * least).min(low * greatest),
@@ -221,6 +280,28 @@ impl Region {
         Self {
             corners: self.corners.map(|corner| corner - place),
             center: self.center - place,
+            ..*self
+        }
+    }
+
+    /// Returns the region that small rotations about the origin, and the rounding of a joint's motion, sweep. What the
+    /// margin takes in is left out.
+    fn turned_off(&self, range: &Range, spare: &mut f64) -> Self {
+        let rests = matches!(range.turns.turn, Turn::None) && range.turns.off == 0.0;
+        let rounding = match rests && range.scale == [1.0; 2] {
+            true => 0.0,
+            false => ROUNDING,
+        };
+        let [low, high] = self.corners;
+        let farthest = low.abs().max(high.abs()).length();
+        let by = (range.turns.off + rounding) * farthest.min(self.center.length() + self.radius);
+        if by <= *spare {
+            *spare -= by;
+            return *self;
+        }
+        Self {
+            corners: [low - by, high + by],
+            radius: self.radius + by,
             ..*self
         }
     }

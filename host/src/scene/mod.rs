@@ -29,6 +29,7 @@ mod placement;
 mod plain_lights;
 mod polygon;
 mod radiance;
+mod scale_range;
 mod size;
 mod source_span;
 #[cfg(test)]
@@ -61,9 +62,11 @@ pub use options::{
     Choice, ImportOptions, Imported, Instances, MoleculeOptions, MoleculeStyle, Posed,
 };
 pub use placement::Placement;
+pub(crate) use scale_range::ScaleRange;
 pub use size::MOST_INPUT;
 pub use source_span::SourceSpan;
 pub use texture::{NormalMap, Texture, Wrap};
+pub(crate) use track::control_points;
 pub use track::{Interpolation, Key, TICKS_PER_SECOND, Track, TrackTarget};
 pub use without::{effect_named, leave_out, shown_without};
 
@@ -153,7 +156,10 @@ fn finish(mut imported: Imported, options: &ImportOptions) -> Result<Imported, S
     if options.instances == Instances::Flatten {
         let scene = &mut imported.scene;
         let moving = scene.instances.iter().find(|it| it.joint.is_some());
+        let has_joints = scene.tracks.iter().any(|track| track.target.is_of_joint());
         match (moving, options.at) {
+            // Copies are where they are at any time.
+            (None, Some(_)) if has_joints => imported.posed = Some(Posed::AtTime),
             (None, _) => {}
             (Some(_), Some(seconds)) => {
                 scene.instances = scene.instances_at(seconds);

@@ -1,7 +1,7 @@
 //! Tracks: how the camera, lights, materials and joints of a scene change with time.
 
 use super::source_span::SourceSpan;
-use glam::{DQuat, DVec3};
+use glam::{DQuat, DVec3, DVec4};
 use gridel_core::format::track::ValueKind;
 pub use gridel_core::format::track::{Interpolation, TrackTarget};
 
@@ -55,11 +55,35 @@ impl Key {
 }
 
 impl Track {
+    /// Points whose convex hull holds all values of the track.
+    pub(crate) fn control_points(&self) -> impl Iterator<Item = DVec4> + Clone {
+        control_points(self.interpolation, &self.keys)
+    }
+
     /// The value at a time, in the precision of `f64`. Rotations are of any length but 0.
     pub(crate) fn at(&self, seconds: f64) -> [f64; 4] {
         let turns = self.target.kind() == ValueKind::Rotation;
         interpolate(self.interpolation, &self.keys, turns, seconds)
     }
+}
+
+/// Points whose convex hull holds all values between keys.
+pub(crate) fn control_points(
+    interpolation: Interpolation,
+    keys: &[Key],
+) -> impl Iterator<Item = DVec4> + Clone {
+    let vector = DVec4::from_array;
+    let values = keys.iter().map(move |key| vector(key.value));
+    let cubic = interpolation == Interpolation::Cubic;
+    let pairs = keys.windows(2).filter(move |_| cubic);
+    let between = pairs.flat_map(move |pair: &[Key]| {
+        let third = (pair[1].seconds - pair[0].seconds) / 3.0;
+        [
+            vector(pair[0].value) + vector(pair[0].leaving) * third,
+            vector(pair[1].value) - vector(pair[1].entering) * third,
+        ]
+    });
+    values.chain(between)
 }
 
 /// The value between keys at a time; `turns` says that they are rotations.

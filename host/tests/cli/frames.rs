@@ -155,10 +155,44 @@ fn parts_of_pictures_at_different_times_do_not_merge() {
     folder.fails(
         1,
         &["merge", "a.png", "b.png", "-o", "x.png"],
-        &["time 24000", "time 36000"],
+        &["time 0.5 s", "time 0.75 s"],
     );
     folder.done(&["merge", "a.png", "c.png", "-o", "x.png"]);
     assert!(folder.read("x.png") == folder.read("whole.png"));
+}
+
+/// Tracks that options replace, and joints whose instances were copied, leave a still picture.
+#[test]
+fn scenes_whose_tracks_do_nothing_have_a_picture_at_a_time() {
+    let folder = Folder::new();
+    let ball = "kind = 'sphere', center = [0, 0, 0], radius = 1";
+    let size = "[render]\nwidth = 16\nheight = 12\n";
+    let orbit = "[[track]]\ntarget = 'camera.orbit'\ntimes = [0, 1]\nvalues = [0, 90]\n";
+    let shift = "[[joint]]\nname = 'a'\n[[track]]\ntarget = 'joint.a.shift'\ntimes = [0, 1]\n\
+                 values = [[0, 0, 0], [1, 0, 0]]\n";
+    let orbited = format!("ambient = 1\nobject = [{{ {ball} }}]\n{size}{orbit}");
+    let part = format!("[[part]]\nname = 'p'\nobject = [{{ {ball} }}]\n[[instance]]\npart = 'p'\n");
+    folder.write("orbit.toml", orbited.as_bytes());
+    folder.write(
+        "joint.toml",
+        format!("ambient = 1\n{size}{part}{shift}").as_bytes(),
+    );
+    for (scene, option) in [
+        ("orbit.toml", ["--eye", "1,2,8"]),
+        ("joint.toml", ["--instances", "flatten"]),
+    ] {
+        let still = [&["render", scene, "-o", "still.ppm"], &option[..]].concat();
+        folder.done(&still);
+        let at = [
+            &["render", scene, "-o", "at.ppm", "--time", "1"],
+            &option[..],
+        ]
+        .concat();
+        folder.done(&at);
+        assert!(folder.read("at.ppm") == folder.read("still.ppm"), "{scene}");
+    }
+    let open = ["--eye", "1,2,8", "--time", "1", "--shutter", "0.1"];
+    folder.done(&[&["render", "orbit.toml", "-o", "open.ppm"], &open[..]].concat());
 }
 
 #[test]

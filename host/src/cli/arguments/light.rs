@@ -21,11 +21,15 @@ enum Property {
 }
 
 impl LightChange {
-    /// Changes one of the lights of a scene.
+    /// Changes one of the lights of a scene; `is_spot` says which of them are spots.
     ///
     /// # Errors
     /// If there is no such light, or it has no such property.
-    pub fn apply(&self, lights: &mut [Light]) -> Result<(), Failure> {
+    pub fn apply(
+        &self,
+        lights: &mut [Light],
+        is_spot: impl Fn(usize) -> bool,
+    ) -> Result<(), Failure> {
         let count = lights.len();
         let Some(light) = lights.get_mut(self.number) else {
             let remedy = match count {
@@ -53,6 +57,12 @@ impl LightChange {
             }
             (Light::Directional { .. }, Property::Position(_)) => {
                 return Err(self.misfit("shines from far away and has no position", "direction"));
+            }
+            (Light::Point { .. }, Property::Direction(_)) if is_spot(self.number) => {
+                return Err(self.misfit(
+                    "is a spot, whose direction cannot be changed yet",
+                    "position",
+                ));
             }
             (Light::Point { .. }, Property::Direction(_)) => {
                 return Err(self.misfit("shines in all directions", "position"));
@@ -128,7 +138,8 @@ mod tests {
             "1.direction=0,0,-1",
             "1.color=0,.5,2",
         ] {
-            light(change).unwrap().apply(&mut lights).unwrap();
+            let change = light(change).unwrap();
+            change.apply(&mut lights, |_| false).unwrap();
         }
         let position = DVec3::new(1.0, 2.5, -3.0);
         let color = [1.0; 3];
@@ -159,9 +170,21 @@ mod tests {
     fn changes_that_do_not_fit_the_lights_are_rejected() {
         let mut lights = [POINT, DIRECTIONAL];
         for wrong in ["2.color=1,1,1", "0.direction=1,0,0", "1.position=0,0,0"] {
-            assert!(light(wrong).unwrap().apply(&mut lights).is_err(), "{wrong}");
+            let change = light(wrong).unwrap();
+            assert!(change.apply(&mut lights, |_| false).is_err(), "{wrong}");
         }
         assert_eq!(lights, [POINT, DIRECTIONAL]);
-        assert!(light("0.color=1,1,1").unwrap().apply(&mut []).is_err());
+        let change = light("0.color=1,1,1").unwrap();
+        assert!(change.apply(&mut [], |_| false).is_err());
+    }
+
+    #[test]
+    fn directions_of_spots_are_rejected_as_such() {
+        let change = light("0.direction=1,0,0").unwrap();
+        let said = |is_spot: bool| {
+            let error = change.apply(&mut [POINT], |_| is_spot).unwrap_err();
+            format!("{error:?}")
+        };
+        assert!(said(true).contains("spot") && !said(false).contains("spot"));
     }
 }

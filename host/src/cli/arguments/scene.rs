@@ -311,7 +311,8 @@ impl MoleculeOptions {
 #[derive(Args, Clone, Debug, Default)]
 #[command(next_help_heading = "Options for camera and lights")]
 pub struct TargetPoint {
-    /// Look at this point [default: the file's, or the middle of the scene]
+    /// Look at this point. With a track `camera.orbit` the orbit of a scene file turns about it, that of a blob does not
+    /// [default: the file's, or the middle of the scene]
     #[arg(long, value_name = "X,Y,Z", value_parser = vector, allow_hyphen_values = true,
         display_order = 101)]
     target: Option<DVec3>,

@@ -14,7 +14,8 @@ use gridel_host::scene::{Camera, Color, Scene, TrackTarget};
 #[derive(Args, Clone, Debug, Default)]
 #[command(next_help_heading = "Options for camera and lights")]
 pub struct ViewOptions {
-    /// Place the camera here, in scene units [default: the file's, or where everything is seen]
+    /// Place the camera here, in scene units. A blob keeps no target and no tilted up: give `--target` and `--up`, too
+    /// [default: the file's, or where everything is seen]
     #[arg(long, value_name = "X,Y,Z", value_parser = vector, allow_hyphen_values = true,
         display_order = 100)]
     eye: Option<DVec3>,
@@ -27,7 +28,8 @@ pub struct ViewOptions {
     #[arg(skip)]
     pub size: Option<[u16; 2]>,
 
-    /// Point this direction up [default: the file's, or y; z for STL and NFF]
+    /// Point this direction up. With a track `camera.orbit` the orbit of a scene file turns about it, that of a blob does
+    /// not [default: the file's, or y; z for STL and NFF; for a blob the picture's, or an axis that it is upright on]
     #[arg(long, value_name = "X,Y,Z", value_parser = vector, allow_hyphen_values = true,
         display_order = 102)]
     up: Option<DVec3>,

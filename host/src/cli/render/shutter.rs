@@ -3,8 +3,10 @@
 use crate::cli::arguments;
 use crate::cli::changes::Changes;
 use crate::cli::failure::Failure;
+use crate::cli::output::warn;
 use crate::cli::source::Source;
 use clap::Args;
+use gridel_core::format::limits::MAX_SAMPLES;
 use gridel_core::{Scene, Tracks};
 use gridel_host::picture::Exposure;
 use gridel_host::state::{exposed, ticks};
@@ -18,8 +20,8 @@ pub struct ShutterOptions {
         allow_hyphen_values = true)]
     pub shutter: Option<f64>,
 
-    /// Moments while the shutter is open, evenly apart. Samples are shared out among them, so there are at most as many
-    /// as samples per pixel [default: 16, or else one per sample]
+    /// Moments while the shutter is open, evenly apart. Samples are shared out among them, so their number should divide
+    /// that of the samples per pixel [default: 16, or another number near it that divides the samples]
     #[arg(long, value_name = "N", requires = "shutter",
         value_parser = clap::value_parser!(u16).range(1..=256))]
     pub moments: Option<u16>,
@@ -28,16 +30,51 @@ pub struct ShutterOptions {
 /// Moments of a shutter by default.
 const USUAL: u16 = 16;
 
+/// The fewest moments of a shutter by default, where there are as many samples.
+const FEWEST: u16 = 8;
+
+/// The most moments of a shutter.
+const MOST: u16 = 256;
+
+/// The usual number of moments of some samples: one that divides them, as every moment then has as many.
+fn usual(samples: u16) -> u16 {
+    let divides = |moments: &u16| samples.is_multiple_of(*moments);
+    let fewer = (1..=USUAL.min(samples)).rev().find(divides);
+    let more = || (USUAL..=MOST.min(samples)).find(divides);
+    let enough = fewer.filter(|&it| it >= FEWEST.min(samples));
+    enough.or_else(more).unwrap_or(USUAL.min(samples))
+}
+
+/// What is wrong with moments that do not have the same number of samples; `None` if they have.
+fn unevenness(samples: u16, moments: u16) -> Option<String> {
+    if samples.is_multiple_of(moments) {
+        return None;
+    }
+    let few = samples / moments;
+    let next = (few + 1)
+        .checked_mul(moments)
+        .filter(|&it| it <= MAX_SAMPLES);
+    let next = next.unwrap_or(few * moments);
+    Some(format!(
+        "some of the {moments} moments have {} and some {}, and so count for more: let the moments divide the samples, \
+         such as `--samples {next}` or `--moments {}`",
+        counted(few.into(), "sample"),
+        few + 1,
+        usual(samples)
+    ))
+}
+
 /// The most bytes that instances of all moments take.
 const MOST_BYTES: usize = 1 << 30;
 
 impl ShutterOptions {
-    /// For how many ticks the shutter is open, and over how many moments; `None` without one.
+    /// For how many ticks the shutter is open, and over how many moments; `None` without one, or where nothing moves.
     ///
     /// # Errors
     /// If it is open for less than a tick.
     pub fn exposure(&self, tracks: &Tracks<'_>, samples: u16) -> Result<Option<Exposure>, Failure> {
-        let Some(seconds) = self.shutter else {
+        // Where no track does anything, nothing is blurred.
+        let Some(seconds) = self.shutter.filter(|_| !tracks.is_empty()) else {
             return Ok(None);
         };
         let open = u32::try_from(ticks(tracks, seconds)).unwrap_or(0);
@@ -48,7 +85,7 @@ impl ShutterOptions {
                 "leave it out, or let it be open for longer",
             ));
         }
-        let moments = self.moments.unwrap_or(USUAL.min(samples));
+        let moments = self.moments.unwrap_or_else(|| usual(samples));
         if moments > samples {
             return Err(Failure::usage(
                 format!(
@@ -58,6 +95,9 @@ impl ShutterOptions {
                 ),
                 format!("ask for `--samples {moments}`, or for `--moments {samples}`"),
             ));
+        }
+        if let Some(sentence) = unevenness(samples, moments) {
+            warn(sentence);
         }
         Ok(Some(Exposure { open, moments }))
     }
@@ -102,4 +142,40 @@ pub fn scenes<'a>(changes: &'a [Changes], scene: &Scene<'a>) -> Result<Vec<Scene
 pub fn of_moments(number: Option<u16>) -> String {
     let said = |number: u16| format!(" at {}", counted(number.into(), "moment"));
     number.map_or(String::new(), said)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn usual_moments_divide_the_samples() {
+        for (samples, moments) in [
+            (1, 1),
+            (4, 4),
+            (16, 16),
+            (17, 17),
+            (20, 10),
+            (24, 12),
+            (64, 16),
+            (22, 11),
+            (26, 13),
+            (34, 17),
+        ] {
+            assert_eq!(usual(samples), moments, "{samples} samples");
+            assert_eq!(unevenness(samples, moments), None);
+        }
+        // A large prime has no such number.
+        assert_eq!(usual(257), 16);
+        assert!(unevenness(257, 16).is_some());
+    }
+
+    #[test]
+    fn moments_that_do_not_divide_the_samples_are_warned_of() {
+        let sentence = unevenness(17, 16).unwrap();
+        assert!(
+            sentence.contains("`--samples 32` or `--moments 17`"),
+            "{sentence}"
+        );
+    }
 }

@@ -1,6 +1,6 @@
 use super::*;
 use crate::scene::test_chains::{Random, chain};
-use crate::scene::{SourceSpan, TrackTarget};
+use crate::scene::{Key, SourceSpan, TrackTarget};
 
 #[test]
 fn reach_holds_random_chains_at_all_times() {
@@ -93,6 +93,50 @@ fn reach_of_shifts_and_hinges_is_tight() {
     let axle = vec![(TrackTarget::JointRotation, vec![rest, [1.0, 0.0, 0.0, 0.0]])];
     let round = 0.25_f64.hypot(0.25);
     near(of_tracks(axle), [1.0, -round, -round], [2.0, round, round]);
+}
+
+/// Where the pivot lies far away, small rotations and small differences of axes move a part far.
+#[test]
+fn reach_holds_small_rotations_about_distant_pivots() {
+    for (first, second) in [
+        (DQuat::IDENTITY, DQuat::from_rotation_z(1.9e-6)),
+        (
+            DQuat::from_rotation_x(1.0),
+            DQuat::from_scaled_axis(DVec3::new(1.0, 0.0, 1e-6)),
+        ),
+    ] {
+        for interpolation in [Interpolation::Linear, Interpolation::Cubic] {
+            let mut scene = chain(&mut Random(1), true);
+            scene.joints.truncate(1);
+            scene.joints[0].pivot = DVec3::new(1e5, 0.0, 0.0);
+            scene.instances[0].joint = Some(0);
+            scene.instances[0].placement = Placement::IDENTITY;
+            let key = |(seconds, rotation): (f64, DQuat)| Key {
+                seconds,
+                value: rotation.to_array(),
+                ..Key::default()
+            };
+            scene.tracks = vec![Track {
+                target: TrackTarget::JointRotation,
+                index: 0,
+                interpolation,
+                keys: [(0.0, first), (1.0, second)].map(key).to_vec(),
+                place: SourceSpan::default(),
+            }];
+            let part = [-DVec3::ONE, DVec3::ONE];
+            let [low, high] = Reach::of(&scene, &[part]).bounds.unwrap();
+            for step in 0..=10 {
+                let placement = scene.instances_at(f64::from(step) * 0.1)[0].placement;
+                for corner in part {
+                    let corner = placement.point(corner);
+                    assert!(
+                        corner.cmpge(low).all() && corner.cmple(high).all(),
+                        "{corner} is not in {low} to {high}"
+                    );
+                }
+            }
+        }
+    }
 }
 
 #[test]

@@ -17,8 +17,8 @@ use super::programs::{Known, Profile, Programs};
 use crate::blob::best_structures;
 use crate::measure::bytes::{MemoryMap, board_memory};
 use crate::measure::deforming::Deforming;
-use crate::table::grouped;
-use gridel_core::{Format, Prevalidated, Rgb565, Scene, Structure};
+use crate::table::{counted, grouped};
+use gridel_core::{Format, Motion, Poses, Prevalidated, Rgb565, Scene, Structure, Tracks};
 use serde::Serialize;
 
 /// Memory of a board that a scene is to fit into.
@@ -157,6 +157,9 @@ impl MemoryReport {
                 ),
                 Some(mesh.bytes as u64),
             );
+        }
+        for (what, bytes) in moving(scene, blob) {
+            ram.add(what, Some(bytes));
         }
         let need = board_memory(scene, format, scene.view().depth);
         ram.add(
@@ -298,6 +301,31 @@ impl MemoryReport {
     }
 }
 
+/// Rows of the RAM in which a program moves the instances of a scene with joints; none without joints. A program that
+/// leaves them at rest needs none of it.
+fn moving(scene: &Scene<'_>, blob: &[u8]) -> Vec<(String, u64)> {
+    // They were checked with the scene.
+    let joints = Tracks::from_bytes(blob).map_or(0, |tracks| tracks.joints().len() as u64);
+    if joints == 0 {
+        return Vec::new();
+    }
+    let instances = scene.instances().len() as u64;
+    // Records of 32 bits only, with the same size on boards.
+    vec![
+        (
+            format!(
+                "moved instances ({})",
+                counted(instances as usize, "instance")
+            ),
+            instances * size_of::<Poses<1>>() as u64,
+        ),
+        (
+            format!("motions of {}", counted(joints as usize, "joint")),
+            joints * size_of::<Motion>() as u64,
+        ),
+    ]
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -376,6 +404,24 @@ mod tests {
         assert_eq!(bytes(&report.flash, CODE), Some(30_300));
         assert_eq!(bytes(&report.ram, "call stack"), Some(1500));
         assert_eq!(report.fit(), Fit::Fits);
+    }
+
+    #[test]
+    fn joints_take_ram_for_instances_and_motions() {
+        let text = "ambient = 1\n[[part]]\nname = 'p'\n\
+                    object = [{ kind = 'sphere', center = [0, 0, 0], radius = 1 }]\n\
+                    [[joint]]\nname = 'a'\n[[joint]]\nname = 'b'\nparent = 'a'\n\
+                    [[instance]]\npart = 'p'\njoint = 'a'\n[[instance]]\npart = 'p'\njoint = 'b'\n\
+                    [[instance]]\npart = 'p'\n\
+                    [[track]]\ntarget = 'joint.a.shift'\ntimes = [0, 1]\nvalues = [[0, 0, 0], [1, 0, 0]]\n";
+        let imported = crate::scene::read("a.toml".as_ref(), text.into(), &Default::default());
+        let compiled = compile(&imported.unwrap().scene, &Options::default()).unwrap();
+        let scene = compiled.blob.scene().unwrap();
+        let rows = moving(&scene, compiled.blob.bytes());
+        assert_eq!(
+            rows.iter().map(|row| row.1).collect::<Vec<_>>(),
+            [3 * 92, 2 * 64]
+        );
     }
 
     #[test]

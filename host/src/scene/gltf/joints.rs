@@ -10,7 +10,9 @@ use super::animation::Motion;
 use super::curve::Curve;
 use super::place::{parts, transform};
 use super::shared::Placed;
-use crate::scene::{Interpolation, Joint, Key, LARGEST_SCALE, Placement, Track, TrackTarget};
+use crate::scene::{
+    Interpolation, Joint, Key, LARGEST_SCALE, Placement, ScaleRange, Track, TrackTarget,
+};
 use crate::table::printable;
 use glam::{DMat3, DMat4, DQuat, DVec3, DVec4};
 use gltf::Node;
@@ -64,7 +66,9 @@ impl Importer<'_> {
     ) -> Option<usize> {
         let number = node.index();
         let name = node.name();
-        let own = Own::of(node, &self.motion, above);
+        let mut own = Own::of(node, &self.motion, above);
+        let above = parent.map_or(ScaleRange::REST, |it| self.scales[it]);
+        let scales = own.limit(&above);
         let called = name.map_or_else(String::new, |name| format!(" {:?}", printable(name)));
         for warning in own.warnings {
             self.warn(format!("node {number}{called} {warning}"));
@@ -73,6 +77,7 @@ impl Importer<'_> {
             return None;
         }
         let joint = self.scene.joints.len();
+        self.scales.push(scales);
         self.scene.joints.push(Joint {
             name: name.map_or_else(|| format!("node {number}"), str::to_owned),
             parent,
@@ -151,6 +156,25 @@ impl Own {
                 .push("has a sheared matrix; it keeps its size at rest"),
         }
         own
+    }
+
+    /// Leaves the scale out if it cannot be composed with those `above`, and returns what they come to.
+    fn limit(&mut self, above: &ScaleRange) -> ScaleRange {
+        let is_scale = |target: TrackTarget| target == TrackTarget::JointScale;
+        let curve = self.curves.iter().find(|(target, _)| is_scale(*target));
+        let own = curve.map_or(ScaleRange::REST, |(_, curve)| {
+            ScaleRange::of(curve.interpolation, &curve.keys)
+        });
+        let range = own.under(above);
+        // Without a scale of its own it is at most as large as what it hangs on.
+        if range.fault().is_none() || curve.is_none() {
+            return range;
+        }
+        self.curves.retain(|(target, _)| !is_scale(*target));
+        self.warnings.push(
+            "grows with the nodes above it beyond 64 times its size; it keeps its size at rest",
+        );
+        ScaleRange::REST.under(above)
     }
 
     /// Adds a track, unless it stays at rest.

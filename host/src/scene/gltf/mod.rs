@@ -17,6 +17,7 @@ mod document;
 mod instances;
 mod joints;
 mod material;
+mod middle;
 mod normal_transforms;
 mod normals;
 mod place;
@@ -27,16 +28,17 @@ use super::access::Access;
 use super::importer::{Choices, Importer as Entry, Input};
 use super::text::Warnings;
 use super::{
-    Attributes, Choice, Image, Imported, Normals, Object, Scene, SceneError, Shape, SourceSpan,
+    Attributes, Choice, Image, Imported, Normals, Object, ScaleRange, Scene, SceneError, Shape,
+    SourceSpan,
 };
 use animation::Motion;
 use buffers::{Buffers, MOST};
 use glam::{DMat4, DVec3};
-use normal_transforms::NormalTransforms;
 use gltf::mesh::Mode;
 use gltf::scene::Transform;
 use gltf::{Document, Node, Primitive, Semantic};
 use gridel_core::Up;
+use normal_transforms::NormalTransforms;
 use place::transform;
 use shared::Shared;
 use std::collections::HashMap;
@@ -99,6 +101,7 @@ fn read(input: Input<'_>) -> Result<Imported, SceneError> {
         triangles: 0,
         shared: Shared::default(),
         joint_of: HashMap::new(),
+        scales: Vec::new(),
         warnings,
     };
     importer.check(&document)?;
@@ -119,7 +122,9 @@ fn read(input: Input<'_>) -> Result<Imported, SceneError> {
         ..
     } = importer;
     let tracks = view.tracks(&mut motion, &place);
-    scene.tracks.extend(tracks.map_err(|[cause, remedy]| SceneError::new(path, cause, remedy))?);
+    scene
+        .tracks
+        .extend(tracks.map_err(|[cause, remedy]| SceneError::new(path, cause, remedy))?);
     if motion.samples > 0 {
         warnings.add_times(
             place.clone(),
@@ -166,6 +171,8 @@ struct Importer<'a> {
     shared: Shared,
     /// The joint that moves a node.
     joint_of: HashMap<usize, usize>,
+    /// For each joint, the scales that it and those above it lead to.
+    scales: Vec<ScaleRange>,
     warnings: Warnings,
 }
 

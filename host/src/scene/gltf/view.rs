@@ -5,8 +5,9 @@
 //! all, as a photographer would expose. The light that is strongest in the middle of the scene is 1 there.
 
 use super::animation::Motion;
+use super::middle::middle;
 use crate::scene::{
-    Camera, Color, Light, LightForm, Object, RenderSettings, Scene, Shape, SourceSpan, Spot, Track,
+    Camera, Color, Light, LightForm, RenderSettings, Scene, SourceSpan, Spot, Track,
 };
 use crate::table::printable;
 use glam::{DMat4, DVec3};
@@ -223,7 +224,12 @@ impl View {
             }
         }
         scene.camera = self.camera;
-        let (middle, size) = middle(scene);
+        let needs_middle =
+            |lamp: &Lamp| matches!(lamp.light, Light::Point { .. }) && lamp.intensity > 0.0;
+        let (middle, size) = match self.lights.iter().any(needs_middle) {
+            true => middle(scene),
+            false => (DVec3::ZERO, 0.0),
+        };
         // A light within the scene is measured from a distance that is usual there.
         let nearest = (0.25 * size).max(1e-15);
         let strength = |lamp: &Lamp| match lamp.light {
@@ -252,26 +258,4 @@ impl View {
             scene.light_forms.push(lamp.form);
         }
     }
-}
-
-/// The middle of the box around all meshes, and the length of its diagonal.
-fn middle(scene: &Scene) -> (DVec3, f64) {
-    fn vertices(object: &Object) -> &[DVec3] {
-        match &object.shape {
-            Shape::Mesh { vertices, .. } => vertices,
-            _ => &[],
-        }
-    }
-    let own = scene.objects.iter().flat_map(vertices).copied();
-    let placed = scene.instances.iter().flat_map(|instance| {
-        let affine = instance.placement.affine();
-        let objects = scene.parts[instance.part].objects.iter();
-        let vertices = objects.flat_map(vertices);
-        vertices.map(move |vertex| affine.transform_point3(*vertex))
-    });
-    let nowhere = (DVec3::INFINITY, DVec3::NEG_INFINITY);
-    let (low, high) = own.chain(placed).fold(nowhere, |(low, high), vertex| {
-        (low.min(vertex), high.max(vertex))
-    });
-    ((low + high) * 0.5, low.distance(high))
 }

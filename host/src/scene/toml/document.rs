@@ -171,6 +171,7 @@ pub(super) fn read(input: Input<'_>, imports: &mut Imports) -> Result<Scene, Sce
     let targets = Targets {
         source: &source,
         lights: &scene.lights,
+        light_forms: &scene.light_forms,
         light_names: &scene.light_names,
         palette: &palette,
         joints: &joints,

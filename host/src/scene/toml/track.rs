@@ -8,7 +8,7 @@ use super::transform;
 use super::value::{Fields, Value};
 use super::view::field_of_view;
 use crate::scene::{
-    Diffuse, Interpolation, Key, LARGEST_SCALE, LEAST_SCALE, Light, SceneError, Track, TrackTarget,
+    Diffuse, Interpolation, Key, LARGEST_SCALE, LEAST_SCALE, Light, LightForm, SceneError, Track, TrackTarget,
 };
 use crate::table::counted;
 use glam::{DQuat, DVec3};
@@ -323,6 +323,7 @@ pub(super) struct Targets<'t> {
     pub(super) source: &'t Source,
     pub(super) lights: &'t [Light],
     pub(super) light_names: &'t [String],
+    pub(super) light_forms: &'t [Option<LightForm>],
     pub(super) palette: &'t Palette,
     pub(super) joints: &'t Joints,
 }
@@ -365,6 +366,15 @@ impl Targets<'_> {
             Owner::Camera => Ok(0),
             Owner::Light(name) => {
                 let index = self.light(name, &target.span)?;
+                let form = self.light_forms.get(index).copied().flatten();
+                let is_spot = form.is_some_and(|form| form.spot.is_some());
+                if is_spot && track.target == TrackTarget::LightDirection {
+                    return Err(self.source.error(
+                        &target.span,
+                        format!("light {name} is a spot, whose `direction` cannot move yet"),
+                        "move its `position` or `color`, or write several scene files",
+                    ));
+                }
                 let instead = match (track.target, self.lights[index]) {
                     (TrackTarget::LightPosition, Light::Directional { .. }) => "direction",
                     (TrackTarget::LightDirection, Light::Point { .. }) => "position",

@@ -367,6 +367,19 @@ fn what_shrinks_to_nothing_keeps_a_little() {
 }
 
 #[test]
+fn nodes_that_grow_too_much_together_keep_their_size() {
+    let grow: [&[f64]; 2] = [&[1.0; 3], &[10.0; 3]];
+    let imported = below(json!({}), &[0, 1].map(|node| two_keys(node, "scale", grow)));
+    let tracks = &imported.scene.tracks;
+    assert_eq!(tracks.len(), 1, "{tracks:?}");
+    assert!(
+        imported.warnings[0].contains("with the nodes above it"),
+        "{:?}",
+        imported.warnings
+    );
+}
+
+#[test]
 fn nodes_that_stay_at_rest_make_no_joint() {
     let still = two_keys(1, "translation", [&[0.0; 3], &[0.0; 3]]);
     let back = two_keys(

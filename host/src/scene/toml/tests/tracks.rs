@@ -119,3 +119,14 @@ fn a_material_of_no_object_moves_nothing_and_is_named() {
         "{warning}"
     );
 }
+
+#[test]
+fn tracks_of_the_directions_of_spots_are_rejected_as_such() {
+    let text = "[[light]]\nkind = 'spot'\nposition = [0, 5, 0]\ndirection = [0, -1, 0]\nname = 'lamp'\n\
+        [[track]]\ntarget = 'light.lamp.direction'\ntimes = [0]\nvalues = [[0, -1, 0]]\n";
+    let error = load(text).unwrap_err().to_string();
+    assert!(
+        error.contains("is a spot, whose `direction` cannot move yet"),
+        "{error}"
+    );
+}
