@@ -29,6 +29,9 @@ pub enum RaysError {
         "give each ray a row of 8: origin x y z, tmin, direction x y z, tmax, in scene units"
     ))]
     Shape { found: String },
+    #[error("its shape is {found}, which is more than a file holds")]
+    #[diagnostic(help("is its header damaged? Write the rays again with `numpy.save`"))]
+    Overflow { found: String },
     #[error("it has {found} bytes of rays where its header promises {expected}")]
     #[diagnostic(help("was it cut off, or was something added to it? Write it again"))]
     Length { found: usize, expected: u64 },
@@ -58,16 +61,16 @@ pub fn read_rays(file: &[u8]) -> Result<Vec<SceneRay>, RaysError> {
         }
     };
     let &[rays, 8] = &header.shape[..] else {
-        let extents: Vec<String> = header.shape.iter().map(u64::to_string).collect();
-        let found = format!("({})", extents.join(", "));
+        let found = tuple(&header.shape);
         return Err(RaysError::Shape { found });
     };
-    let length = |rays: u64| rays.checked_mul((COLUMNS * size) as u64);
-    if length(rays) != Some(data.len() as u64) {
-        return Err(RaysError::Length {
-            found: data.len(),
-            expected: length(rays).unwrap_or(u64::MAX),
-        });
+    let Some(expected) = rays.checked_mul((COLUMNS * size) as u64) else {
+        let found = tuple(&header.shape);
+        return Err(RaysError::Overflow { found });
+    };
+    if expected != data.len() as u64 {
+        let found = data.len();
+        return Err(RaysError::Length { found, expected });
     }
     let rays = rays as usize;
     let number = |ray: usize, column: usize| {
@@ -86,6 +89,15 @@ pub fn read_rays(file: &[u8]) -> Result<Vec<SceneRay>, RaysError> {
             tmax: number(ray, 7),
         })
         .collect())
+}
+
+/// A shape as NumPy shows it.
+fn tuple(shape: &[u64]) -> String {
+    let extents: Vec<String> = shape.iter().map(u64::to_string).collect();
+    match &extents[..] {
+        [extent] => format!("({extent},)"),
+        _ => format!("({})", extents.join(", ")),
+    }
 }
 
 /// `bytes` must have `N` bytes.

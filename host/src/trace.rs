@@ -14,8 +14,9 @@ use glam::DVec3;
 use gridel_core::accel::DynAccel;
 use gridel_core::format::limits::MAX_STACK_DEPTH;
 use gridel_core::{
-    Accel, Bvh, Counters, DualSplit, Fixed, Flagged, Format, NoCount, Number, Observer, Ray,
-    RayError, RayKind, Scene, Stack, Structure, Wide, any_hit, closest_primitive,
+    Accel, Bvh, Counters, DualSplit, Fixed, Flagged, Format, NoCount, Number, Observer,
+    PrimitiveHit, Ray, RayError, RayKind, Scene, Stack, StackView, Structure, Wide, any_hit,
+    closest_primitive,
 };
 use std::ops::Range;
 
@@ -26,6 +27,19 @@ pub struct SceneRay {
     pub tmin: f64,
     pub direction: DVec3,
     pub tmax: f64,
+}
+
+impl SceneRay {
+    /// Returns a `t` of the ray, or the end of its interval that is nearest to it. Number formats round `tmin` and
+    /// `tmax`, so that a hit can lie outside of the interval as it was given, by that rounding.
+    #[inline(always)]
+    pub fn within(&self, t: f64) -> f64 {
+        if t >= self.tmin {
+            if t <= self.tmax { t } else { self.tmax }
+        } else {
+            self.tmin
+        }
+    }
 }
 
 /// The answer to a ray: a hit, [`SceneHit::MISS`] or [`SceneHit::REJECTED`].
@@ -64,6 +78,11 @@ impl SceneHit {
         normal: [0.0; 3],
     };
 
+    /// Returns whether nothing was met.
+    fn is_miss(&self) -> bool {
+        self.object == Self::MISS.object
+    }
+
     /// Returns whether the ray was rejected.
     pub fn is_rejected(&self) -> bool {
         self.t.is_nan()
@@ -80,6 +99,9 @@ pub struct Query {
 }
 
 /// Traces rays one after the other on this thread. Returns which were rejected, and why.
+///
+/// `t` of a hit is never below `tmin` or above `tmax`. The number format rounds both, so it can find or miss a surface
+/// that is as near to one of them as it rounds.
 ///
 /// ```
 /// # use gridel_host::compile::{Options, compile};
@@ -227,8 +249,9 @@ fn any_of_each<N: Number, A: Accel, C: Observer>(
         load_ahead(rays, hits, first + BATCH..first + 2 * BATCH);
         let rays = &rays[first..rays.len().min(first + BATCH)];
         frame.fill(&mut batch, scene, rays);
-        for (place, (ready, hit)) in batch.iter().zip(&mut hits[first..]).enumerate() {
-            let (ray, _) = match ready {
+        let answers = rays.iter().zip(&batch).zip(&mut hits[first..]);
+        for (place, ((scene_ray, ready), hit)) in answers.enumerate() {
+            let (ray, direction_scale) = match ready {
                 Ok(ready) => ready,
                 Err(why) => {
                     *hit = rejections.add(first + place, *why);
@@ -236,10 +259,17 @@ fn any_of_each<N: Number, A: Accel, C: Observer>(
                 }
             };
             count.ray(RayKind::Primary, ray);
-            *hit = if any_hit::<N, A, C>(scene, ray, stack.as_view(), count) {
-                SceneHit::ANY
+            let found = if direction_scale.has_every_multiple() {
+                Ok(any_hit::<N, A, C>(scene, ray, stack.as_view(), count))
             } else {
-                SceneHit::MISS
+                // Rays whose closest hit has no t are rejected, as where it is asked for.
+                let met = closest_of_extreme::<N, A, C>(scene, ray, stack.as_view(), count);
+                answer(scene, scene_ray, (ray, direction_scale), met).map(|it| !it.is_miss())
+            };
+            *hit = match found {
+                Ok(true) => SceneHit::ANY,
+                Ok(false) => SceneHit::MISS,
+                Err(why) => rejections.add(first + place, why),
             };
         }
     }
@@ -269,31 +299,54 @@ fn closest_of_each<N: Number, A: Accel, C: Observer>(
                 closest_primitive::<N, A, C>(scene, ray, stack.as_view(), count)
             }));
         }
-        for (place, ((ready, met), hit)) in
-            batch.iter().zip(&met).zip(&mut hits[first..]).enumerate()
-        {
+        let answers = rays.iter().zip(&batch).zip(&met).zip(&mut hits[first..]);
+        for (place, (((scene_ray, ready), met), hit)) in answers.enumerate() {
             let found = ready.as_ref().map_err(|why| *why);
             let found = found.and_then(|(ray, direction_scale)| {
-                // Inlining lets the compiler compute only the values that are used here.
-                let Some(found) = met.and_then(|met| met.hit(scene, ray)) else {
-                    return Ok(SceneHit::MISS);
-                };
-                let error = || found.error.length_to_f64();
-                Ok(SceneHit {
-                    t: direction_scale.multiple(N::far_to_f64(found.t), error)?,
-                    object: found.object,
-                    primitive: found.primitive,
-                    instance: found
-                        .instance()
-                        .and_then(|index| scene.instances().get(index as usize))
-                        .map_or(u32::MAX, |instance| instance.number),
-                    normal: found.normal.map(|x| x.ratio_to_f64() as f32),
-                })
+                answer(scene, scene_ray, (ray, direction_scale), *met)
             });
             *hit = found.unwrap_or_else(|why| rejections.add(first + place, why));
         }
     }
     rejections
+}
+
+/// Finds what a ray of an extreme length meets first, where any hit suffices.
+#[cold]
+#[inline(never)]
+fn closest_of_extreme<N: Number, A: Accel, C: Observer>(
+    scene: &Scene<'_>,
+    ray: &Ray<N>,
+    stack: &mut StackView,
+    count: &mut C,
+) -> Option<PrimitiveHit<N>> {
+    closest_primitive::<N, A, C>(scene, ray, stack, count)
+}
+
+/// The answer to a ray by what it meets first.
+// Inlining lets the compiler compute only the values that are used here.
+#[inline(always)]
+fn answer<N: Number>(
+    scene: &Scene<'_>,
+    scene_ray: &SceneRay,
+    (ray, direction_scale): (&Ray<N>, &DirectionScale),
+    met: Option<PrimitiveHit<N>>,
+) -> Result<SceneHit, Rejection> {
+    let Some(found) = met.and_then(|met| met.hit(scene, ray)) else {
+        return Ok(SceneHit::MISS);
+    };
+    let error = || found.error.length_to_f64();
+    let t = direction_scale.multiple(N::far_to_f64(found.t), error)?;
+    Ok(SceneHit {
+        t: scene_ray.within(t),
+        object: found.object,
+        primitive: found.primitive,
+        instance: found
+            .instance()
+            .and_then(|index| scene.instances().get(index as usize))
+            .map_or(u32::MAX, |instance| instance.number),
+        normal: found.normal.map(|x| x.ratio_to_f64() as f32),
+    })
 }
 
 /// Starts to load what belongs to the rays of some places. A processor does so by itself too late: tracing a ray
@@ -474,3 +527,6 @@ impl Start {
         Ray::from_f64(scene.bounds(), origin, direction, self.tmin, self.tmax)
     }
 }
+
+#[cfg(test)]
+mod tests;

@@ -92,7 +92,7 @@ pub fn bless(manifest: &Manifest, report: &Report) -> Blessed {
             set(table, keys, value(figure));
         }
     }
-    blessed.new = document.to_string();
+    blessed.new = super::diff::with_line_ends(&manifest.text, &document.to_string());
     blessed
 }
 

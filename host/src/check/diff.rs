@@ -61,6 +61,34 @@ pub(super) fn unified(name: &str, old: &str, new: &str) -> String {
     text
 }
 
+/// Returns the new text with the line ends of the old one. Those of new lines are as those before them.
+pub(super) fn with_line_ends(old: &str, new: &str) -> String {
+    if !old.contains('\r') {
+        return new.to_owned();
+    }
+    let plain = |text: &str| text.replace("\r\n", "\n");
+    let (old_plain, new_plain) = (plain(old), plain(new));
+    let lines = changes(
+        &old_plain.split_inclusive('\n').collect::<Vec<_>>(),
+        &new_plain.split_inclusive('\n').collect::<Vec<_>>(),
+    );
+    let mut ends = old.split_inclusive('\n').map(|line| line.ends_with("\r\n"));
+    let mut returns = ends.clone().next().unwrap_or_default();
+    let mut text = String::with_capacity(new.len() + lines.len());
+    for (tag, line) in lines {
+        if tag != Tag::New {
+            returns = ends.next().unwrap_or(returns);
+        }
+        if tag != Tag::Old {
+            match line.strip_suffix('\n') {
+                Some(line) if returns => text.extend([line, "\r\n"]),
+                _ => text.push_str(line),
+            }
+        }
+    }
+    text
+}
+
 /// The lines of both texts in order. After a difference, the texts meet again at the nearest pair of
 /// equal lines.
 fn changes<'a>(mut old: &[&'a str], mut new: &[&'a str]) -> Vec<(Tag, &'a str)> {

@@ -283,10 +283,7 @@ fn named_instances(explanation: &Explanation, names: &Names) -> BTreeMap<u32, St
 fn failure(error: &ExplainError) -> Failure {
     let remedy = match error {
         ExplainError::Render(_) => "change the option, or the scene file's `[render]`",
-        ExplainError::Ray(_) => {
-            "give six finite numbers, of which the last three are not all 0, an origin near the scene, \
-             and tmin before tmax"
-        }
+        ExplainError::Ray(why) => why.remedy(),
     };
     Failure::usage(error.to_string(), remedy)
 }

@@ -41,6 +41,7 @@ mod web;
 
 use clap::{CommandFactory, Parser, Subcommand};
 use peak_alloc::PeakAlloc;
+use std::io::{self, Write};
 use std::process::ExitCode;
 
 /// Compile scenes into blobs, and ray trace them on a microcontroller or on a host
@@ -84,8 +85,11 @@ enum Command {
 ///
 /// `memory` is the program's allocator, which knows how much is in use.
 pub fn run(memory: &PeakAlloc) -> ExitCode {
-    let program = Program::parse();
     failure::break_lines_at_spaces();
+    let program = match Program::try_parse() {
+        Ok(program) => program,
+        Err(answer) => return answered(&answer),
+    };
     // Without a handler an interrupt would only leave a temporary file behind.
     let _ = ctrlc::set_handler(|| gridel_host::output::exit_removing_unfinished(130));
     if let Err(cause) = gridel_host::simd::from_environment() {
@@ -115,6 +119,16 @@ pub fn run(memory: &PeakAlloc) -> ExitCode {
     match done {
         Ok(()) => ExitCode::SUCCESS,
         Err(failure) => failure.report(),
+    }
+}
+
+/// Prints what clap answers by itself: the help, the version, or what is wrong with the command line.
+fn answered(answer: &clap::Error) -> ExitCode {
+    let printed = answer.print().and_then(|()| io::stdout().flush());
+    // Standard error may be closed; the exit code says enough.
+    match output::printed(printed) {
+        Err(failure) if !answer.use_stderr() => failure.report(),
+        _ => ExitCode::from(u8::try_from(answer.exit_code()).unwrap_or(2)),
     }
 }
 

@@ -186,7 +186,11 @@ pub fn print_about(output: &Path, text: impl Display) -> Result<(), Failure> {
 
 fn to_standard_output(text: &[u8]) -> Result<(), Failure> {
     let mut out = io::stdout().lock();
-    let written = out.write_all(text).and_then(|()| out.flush());
+    printed(out.write_all(text).and_then(|()| out.flush()))
+}
+
+/// The result of printing on standard output.
+pub fn printed(written: io::Result<()>) -> Result<(), Failure> {
     match written {
         // A reader that closes the pipe early is no failure, and changes no finding.
         Err(error) if error.kind() != io::ErrorKind::BrokenPipe => Err(Failure::failed(

@@ -40,11 +40,8 @@ pub fn completions(arguments: &CompletionArguments, mut program: Command) -> Res
 pub fn man(arguments: &ManArguments, mut program: Command) -> Result<(), Failure> {
     let folder = &arguments.folder;
     program.build();
-    let commands = program
-        .get_subcommands()
-        .filter(|command| command.get_name() != "help");
     let pages: Vec<(String, String)> = std::iter::once(&program)
-        .chain(commands)
+        .chain(program.get_subcommands())
         .map(|command| {
             let page = Man::new(command.clone());
             let mut text = Vec::new();

@@ -26,7 +26,9 @@ use std::time::Instant;
 /// Trace rays from a NumPy file through a blob or a scene file
 ///
 /// Rays are a float32 or float64 array of shape (N, 8): origin x y z, tmin, direction x y z, tmax,
-/// in scene units. The direction can have any length; t is in multiples of it.
+/// in scene units. The direction can have any length; t is in multiples of it. t of a hit is never
+/// below tmin or above tmax. The number format rounds both, so it can find or miss a surface that is
+/// as near to one of them as it rounds.
 ///
 /// Hits are a structured array with the fields t (f8, inf for a miss), object and primitive (u4,
 /// 0xffffffff for a miss, counted in the order of the scene file) and normal (3 f4 of length 1,
@@ -34,10 +36,10 @@ use std::time::Instant;
 /// primitive: instance (u4, 0xffffffff for the scene's own objects).
 ///
 /// A ray is rejected if it has a NaN, if its direction is zero, or if its origin or direction is
-/// infinite. It is rejected, too, if tmin is greater than tmax, if t exceeds double precision, or if
-/// its origin is more than 2^37 units away (2^21 times the width of the largest scene). Its t is nan
-/// in the file. Rejected rays are counted separately from misses. The first one is printed with its
-/// row and the reason.
+/// infinite. It is rejected, too, if tmin is greater than tmax, or if its origin is more than 2^37
+/// units away (2^21 times the width of the largest scene). A ray whose closest hit has a t beyond
+/// double precision is rejected, with --any too. t of a rejected ray is nan in the file. Rejected rays
+/// are counted separately from misses. The first one is printed with its row and the reason.
 #[derive(Args)]
 #[command(after_help = super::failure::EXIT_CODES)]
 pub struct Arguments {

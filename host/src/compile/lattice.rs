@@ -55,5 +55,23 @@ impl Lattice {
 
 /// An integer whose power of two is at most `x`, and not much less.
 fn log2_below(x: f64) -> i32 {
-    x.log2().floor() as i32 - 1
+    // The logarithm of 0, to which a tiny quotient is rounded, is minus infinity.
+    x.log2().floor().max(-1075.0) as i32 - 1
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn extents_of_every_size_have_a_lattice_or_an_error() {
+        for size in [5e-324, 1e-320, 1e-310, 1e-300, 1e300, f64::MAX] {
+            let found = Lattice::around([DVec3::ZERO, DVec3::splat(size)], 16, 0);
+            assert!(matches!(found, Err(CompileError::Extent { .. })), "{size}");
+        }
+        for size in [0.0, 1e-250, 1.0, 1e250] {
+            let found = Lattice::around([DVec3::ZERO, DVec3::splat(size)], 16, 0);
+            assert!(found.is_ok(), "{size}");
+        }
+    }
 }

@@ -87,7 +87,14 @@ fn foreign_arrays_are_named() {
         "()",
         "(4294967296, 4294967296)",
     ] {
-        assert!(read("'<f8'", shape).contains("not (N, 8)"), "{shape}");
+        let message = read("'<f8'", shape);
+        assert_eq!(message, format!("its shape is {shape}, not (N, 8)"));
+    }
+    // 2^61 rows and 2^60: the bytes are no number of 64 bits.
+    for shape in ["(2305843009213693952, 8)", "(1152921504606846976, 8)"] {
+        let message = read("'<f8'", shape);
+        let expected = format!("its shape is {shape}, which is more than a file holds");
+        assert_eq!(message, expected);
     }
     assert!(read("[('a', '<f8')]", "(16,)").contains("no array of plain numbers"));
     assert_eq!(

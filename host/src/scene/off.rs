@@ -2,7 +2,8 @@
 //!
 //! The keyword may be missing. It may have the prefixes `ST`, `C` and `N`, for vertices with
 //! texture coordinates, colors and normals on their lines. These are ignored, with a warning each,
-//! and so are the colors of faces. Vertices of other than three coordinates (`4OFF`, `nOFF`) and
+//! and so are the colors of faces. Many programs write colors behind vertices without announcing them;
+//! these are ignored in the same way, where every vertex and every face has a line of its own. Vertices of other than three coordinates (`4OFF`, `nOFF`) and
 //! binary files are rejected. Comments begin with `#`.
 
 use super::importer::{Importer, Input, stem};
@@ -92,7 +93,13 @@ fn read(input: Input<'_>) -> Result<Imported, SceneError> {
     let mut warnings = Warnings::default();
     let mut words = Words::new(source);
     let (keyword, [vertices, faces]) = header(source, &mut words)?;
-    let vertices = read_vertices(source, &mut words, keyword, vertices, &mut warnings)?;
+    let vertices = read_vertices(
+        source,
+        &mut words,
+        keyword,
+        [vertices, faces],
+        &mut warnings,
+    )?;
     let triangles = read_faces(source, &mut words, &vertices, faces, &mut warnings)?;
     if words.next().is_some() {
         let sentence = "lines behind the last face are ignored";
@@ -175,10 +182,11 @@ fn read_vertices(
     source: &Source,
     words: &mut Words<'_>,
     keyword: Keyword<'_>,
-    count: usize,
+    [count, faces]: [usize; 2],
     warnings: &mut Warnings,
 ) -> Result<Vec<DVec3>, SceneError> {
-    let fewest = keyword.fewest_numbers();
+    let unannounced = keyword.fewest_numbers() == 3 && has_unannounced_numbers(words, count, faces);
+    let fewest = keyword.fewest_numbers() + usize::from(unannounced);
     let mut vertices = Vec::new();
     let mut first_line = 0;
     for number in 0..count {
@@ -206,6 +214,10 @@ fn read_vertices(
     }
     for (has, sentence) in [
         (
+            unannounced,
+            "the numbers behind the coordinates of a vertex are ignored; the keyword does not announce them",
+        ),
+        (
             keyword.colored,
             "the color of a vertex is ignored; the surface has one color",
         ),
@@ -223,6 +235,25 @@ fn read_vertices(
         }
     }
     Ok(vertices)
+}
+
+/// Returns whether every vertex has more numbers than its coordinates, on a line of its own. Where lines end says so only
+/// in files that have a line for each vertex and each face.
+fn has_unannounced_numbers(words: &Words<'_>, vertices: usize, faces: usize) -> bool {
+    let is_wide = |line: &str| {
+        let mut words = line.split_whitespace();
+        words.clone().nth(3).is_some() && words.all(|word| word.parse::<f64>().is_ok())
+    };
+    let is_face = |line: &str| {
+        let mut words = line.split_whitespace();
+        let corners = words.next().and_then(|word| word.parse().ok());
+        corners.is_some_and(|corners: usize| corners > 0 && words.nth(corners - 1).is_some())
+    };
+    let mut lines = words.lines_ahead();
+    words.rest_of_line().is_empty()
+        && vertices > 0
+        && lines.by_ref().take(vertices).filter(|it| is_wide(it)).count() == vertices
+        && lines.take(faces).filter(|it| is_face(it)).count() == faces
 }
 
 fn read_faces(
@@ -377,6 +408,26 @@ mod tests {
                 Some(3)
             )
         );
+    }
+
+    #[test]
+    fn numbers_of_vertices_that_are_not_announced_are_ignored_with_a_warning() {
+        let warning = "thing.off:3: the numbers behind the coordinates of a vertex are ignored; the keyword does not \
+                       announce them (and 3 times more)";
+        for (keyword, numbers) in [
+            ("OFF\n", "255 0 0"),
+            ("OFF\n", "255 0 0 255 # red"),
+            ("OFF\n", "1.0 .5 0 1"),
+            ("# no keyword\n", "0 0 1"),
+        ] {
+            let vertices = ["0 0 0", "1 0 0", "1 1 0", "0 1 0"];
+            let lines = vertices.map(|vertex| format!("{vertex} {numbers}\n"));
+            let text = format!("{keyword}4 1 4\n{}4 0 1 2 3\n", lines.concat());
+            holds_the_square(&text, &[warning]);
+        }
+        // Two vertices on a line are two.
+        let pairs = "OFF\n4 2 0\n0 0 0 1 0 0\n1 1 0 0 1 0\n3 0 1 2\n3 0 2 3\n";
+        holds_the_square(pairs, &[]);
     }
 
     #[test]

@@ -120,16 +120,18 @@ fn atom<'a>(
     let field = columns(line, 13, 16);
     // Column 21 is blank in the format and the fourth letter of a name in its extensions.
     let residue = columns(line, 18, 21).trim();
-    let element = Element::from_symbol(columns(line, 77, 78).trim())
-        .or_else(|| element_of_name(field, columns(line, 1, 6) == "HETATM"))
-        .unwrap_or_else(|| {
-            let sentence = format!(
-                "the element of the atom {:?} is unknown; it is drawn in pink",
-                field.trim()
-            );
-            warnings.add(source, number, sentence);
-            Element::UNKNOWN
-        });
+    let element = match stated_symbol(line) {
+        Some(symbol) => Element::from_symbol(symbol),
+        None => element_of_name(field, columns(line, 1, 6) == "HETATM"),
+    };
+    let element = element.unwrap_or_else(|| {
+        let sentence = format!(
+            "the element of the atom {:?} is unknown; it is drawn in pink",
+            field.trim()
+        );
+        warnings.add(source, number, sentence);
+        Element::UNKNOWN
+    });
     Ok(Atom {
         site: Site {
             element,
@@ -148,9 +150,24 @@ fn atom<'a>(
     })
 }
 
+/// Returns the symbol of an atom's element, as the file states it, known or unknown. `None` where its columns are blank
+/// or have something else: line numbers of old files, or a part of a longer word.
+fn stated_symbol(line: &str) -> Option<&str> {
+    let symbol = columns(line, 77, 78).trim();
+    let is_letter = |text: &str| text.contains(|c: char| c.is_ascii_alphabetic());
+    // A charge begins with a digit or a sign.
+    let is_word = is_letter(columns(line, 79, 79));
+    let is_known = || Element::from_symbol(symbol).is_some();
+    (is_letter(symbol) && (!is_word || is_known())).then_some(symbol)
+}
+
 /// Returns the element from the four columns of an atom's name, whose first two are the symbol,
 /// right-justified: ` CA ` is a carbon, `CA  ` is calcium.
 fn element_of_name(field: &str, hetero: bool) -> Option<Element> {
+    // The wwPDB's name for an atom of an unknown element; it is neither uranium nor nitrogen.
+    if field.trim() == "UNK" {
+        return None;
+    }
     let letters = field.trim_start_matches(|c: char| c.is_whitespace() || c.is_ascii_digit());
     let (one, two, rest) = (
         columns(letters, 1, 1),

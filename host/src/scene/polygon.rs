@@ -5,11 +5,14 @@
 //! repeated vertices, and may touch itself. A face with holes does so if a bridge joins its outlines and is walked
 //! twice. The triangles cover the polygon exactly, because each is a positively oriented piece of it.
 
+mod cells;
+
+use cells::Cells;
 use glam::DVec3;
 use robust::{Coord, orient2d};
 
-/// Concave polygons with more vertices are rejected, because clipping ears takes quadratic time. For the worst outlines
-/// of this size, those that cross themselves, that is half a second.
+/// Concave polygons with more vertices are rejected, because clipping ears can take quadratic time. What is known of a
+/// corner is kept, so that outlines of this size take some milliseconds.
 pub(super) const MAX_CONCAVE: usize = 4_096;
 
 /// The triangles of a polygon, as indices into its vertices, in its own winding.
@@ -129,22 +132,39 @@ fn is_strictly_convex(flat: &[Coord<f64>]) -> bool {
 fn crosses_itself(flat: &[Coord<f64>]) -> bool {
     let n = flat.len();
     let side = |i: usize| (flat[i], flat[(i + 1) % n]);
-    let extent = |i: usize| {
-        let (a, b) = side(i);
-        (a.x.min(b.x), a.x.max(b.x))
-    };
-    let mut sides: Vec<usize> = (0..n).collect();
-    sides.sort_by(|&i, &j| extent(i).0.total_cmp(&extent(j).0));
     let apart = |(a, b), c, d| {
         let (left, right) = (orient2d(a, b, c), orient2d(a, b, d));
         left > 0.0 && right < 0.0 || left < 0.0 && right > 0.0
     };
-    sides.iter().enumerate().any(|(place, &i)| {
+    // The ends of each side along both axes.
+    let mut sides: Vec<([[f64; 2]; 2], usize)> = (0..n)
+        .map(|i| {
+            let (a, b) = side(i);
+            let ends = [[a.x.min(b.x), a.x.max(b.x)], [a.y.min(b.y), a.y.max(b.y)]];
+            (ends, i)
+        })
+        .collect();
+    // How many sides a line across an axis meets, on average.
+    let met = |axis: usize| {
+        let ends = sides.iter().map(|(ends, _)| ends[axis]);
+        let long: f64 = ends.clone().map(|[low, high]| high - low).sum();
+        let [low, high] = ends.fold([f64::MAX, f64::MIN], |all, [low, high]| {
+            [all[0].min(low), all[1].max(high)]
+        });
+        long / (high - low)
+    };
+    let along = usize::from(met(1) < met(0));
+    let across = 1 - along;
+    sides.sort_by(|a, b| a.0[along][0].total_cmp(&b.0[along][0]));
+    sides.iter().enumerate().any(|(place, &(ends, i))| {
         // Those that begin before this one ends.
         sides[place + 1..]
             .iter()
-            .take_while(|&&j| extent(j).0 <= extent(i).1)
-            .any(|&j| {
+            .take_while(|(other, _)| other[along][0] <= ends[along][1])
+            .filter(|(other, _)| {
+                other[across][0] <= ends[across][1] && ends[across][0] <= other[across][1]
+            })
+            .any(|&(_, j)| {
                 let (one, other) = (side(i), side(j));
                 apart(one, other.0, other.1) && apart(other, one.0, one.1)
             })
@@ -158,7 +178,23 @@ struct Clipper<'a> {
     next: Vec<usize>,
     previous: Vec<usize>,
     left: usize,
+    /// The vertices that are left.
+    cells: Cells,
+    /// What is known of each corner while its neighbors stay.
+    corners: Vec<Corner>,
     triangles: Vec<[u32; 3]>,
+    /// How often a corner was compared with a vertex.
+    #[cfg(test)]
+    tested: std::cell::Cell<usize>,
+}
+
+/// What is known of a corner.
+#[derive(Clone, Copy, Default)]
+struct Corner {
+    /// Twice its signed area.
+    turn: Option<f64>,
+    /// A vertex inside of it, which keeps it from being cut off until the vertex is cut off itself.
+    blocker: Option<u32>,
 }
 
 /// The requirements of an ear. Each kind is tried only where the polygon has none of the kind before it.
@@ -185,11 +221,23 @@ impl<'a> Clipper<'a> {
             next: (0..n).map(|i| (i + 1) % n).collect(),
             previous: (0..n).map(|i| (i + n - 1) % n).collect(),
             left: n,
+            cells: Cells::new(flat),
+            corners: vec![Corner::default(); n],
             triangles: Vec::with_capacity(n - 2),
+            #[cfg(test)]
+            tested: Default::default(),
         }
     }
 
     fn run(mut self) -> Triangulation {
+        Triangulation {
+            exact: self.cut_all(),
+            triangles: self.triangles,
+        }
+    }
+
+    /// Cuts all corners off. Returns false where the outline crosses itself.
+    fn cut_all(&mut self) -> bool {
         let mut tip = 0;
         let mut exact = true;
         while self.left > 3 {
@@ -203,14 +251,11 @@ impl<'a> Clipper<'a> {
         }
         exact &= self.turn(tip) >= 0.0;
         self.cut(tip);
-        Triangulation {
-            triangles: self.triangles,
-            exact,
-        }
+        exact
     }
 
     /// The first ear of that kind, going round from `start`.
-    fn find(&self, kind: Ear, start: usize) -> Option<usize> {
+    fn find(&mut self, kind: Ear, start: usize) -> Option<usize> {
         let mut tip = start;
         for _ in 0..self.left {
             let turn = self.turn(tip);
@@ -229,12 +274,11 @@ impl<'a> Clipper<'a> {
     }
 
     /// Twice the signed area of the corner at `tip`.
-    fn turn(&self, tip: usize) -> f64 {
-        orient2d(
-            self.flat[self.previous[tip]],
-            self.flat[tip],
-            self.flat[self.next[tip]],
-        )
+    fn turn(&mut self, tip: usize) -> f64 {
+        let (before, after) = (self.previous[tip], self.next[tip]);
+        let flat = self.flat;
+        let turn = || orient2d(flat[before], flat[tip], flat[after]);
+        *self.corners[tip].turn.get_or_insert_with(turn)
     }
 
     /// Takes `tip` out of the outline and returns the corner to go on with. It skips one, which
@@ -250,25 +294,44 @@ impl<'a> Clipper<'a> {
         self.next[before] = after;
         self.previous[after] = before;
         self.left -= 1;
+        self.cells.remove(tip);
+        self.corners[before] = Corner::default();
+        self.corners[after] = Corner::default();
         self.next[after]
     }
 
     /// Returns whether no part of the outline reaches into the corner at `tip`.
-    fn is_clear(&self, tip: usize) -> bool {
+    fn is_clear(&mut self, tip: usize) -> bool {
+        if let Some(blocker) = self.corners[tip].blocker
+            && self.cells.has(blocker as usize)
+        {
+            return false;
+        }
         let (before, after) = (self.previous[tip], self.next[tip]);
         let [a, b, c] = [before, tip, after].map(|i| self.flat[i]);
-        let (min_x, max_x) = (a.x.min(b.x).min(c.x), a.x.max(b.x).max(c.x));
-        let (min_y, max_y) = (a.y.min(b.y).min(c.y), a.y.max(b.y).max(c.y));
-        let mut i = self.next[after];
-        while i != before {
+        let x = [a.x.min(b.x).min(c.x), a.x.max(b.x).max(c.x)];
+        let y = [a.y.min(b.y).min(c.y), a.y.max(b.y).max(c.y)];
+        let blocks = |i: usize| {
+            #[cfg(test)]
+            self.tested.set(self.tested.get() + 1);
             let p = self.flat[i];
-            let near = p.x >= min_x && p.x <= max_x && p.y >= min_y && p.y <= max_y;
-            if near && self.blocks(i, a, b, c) {
-                return false;
-            }
-            i = self.next[i];
-        }
-        true
+            let near = p.x >= x[0] && p.x <= x[1] && p.y >= y[0] && p.y <= y[1];
+            near && ![before, tip, after].contains(&i) && self.blocks(i, a, b, c)
+        };
+        let found = match self.cells.around([x, y], self.left) {
+            Some(mut near) => near.find(|&i| blocks(i)),
+            // Most cells are near, or there are few vertices.
+            None => std::iter::successors(Some(self.next[after]), |&i| Some(self.next[i]))
+                .take_while(|&i| i != before)
+                .find(|&i| blocks(i)),
+        };
+        // Others block only while their own neighbors stay.
+        let inside = |&i: &usize| {
+            let p = self.flat[i];
+            orient2d(a, b, p) > 0.0 && orient2d(b, c, p) > 0.0
+        };
+        self.corners[tip].blocker = found.filter(inside).map(|i| i as u32);
+        found.is_none()
     }
 
     /// Returns whether the outline at vertex `i` keeps the corner `a b c` from being cut off.

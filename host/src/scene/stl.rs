@@ -30,7 +30,7 @@ pub(super) const IMPORTER: Importer = Importer {
     example: "solid tip\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\n\
               endloop\nendfacet\nendsolid tip\n",
     recognizes: |bytes| {
-        is_text(bytes) || announced(bytes).is_some_and(|it| length(it) == bytes.len() as u64)
+        begins_with_solid(bytes) || announced(bytes).is_some_and(|it| length(it) == bytes.len() as u64)
     },
     read,
 };
@@ -46,7 +46,13 @@ fn length(triangles: u32) -> u64 {
     HEAD as u64 + TRIANGLE as u64 * u64::from(triangles)
 }
 
+/// Returns whether a file is one of text. Binary files may begin with "solid" as well, but their head and their
+/// triangles have bytes that no text has.
 fn is_text(bytes: &[u8]) -> bool {
+    begins_with_solid(bytes) && !bytes[..bytes.len().min(HEAD + TRIANGLE)].contains(&0)
+}
+
+fn begins_with_solid(bytes: &[u8]) -> bool {
     let bytes = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes);
     let head = bytes.trim_ascii_start().get(..5);
     head.is_some_and(|it| it.eq_ignore_ascii_case(b"solid"))

@@ -71,6 +71,12 @@ impl<'a> Words<'a> {
         self.lines.peek().map_or(0, |(_, line)| count(line))
     }
 
+    /// The lines behind this one that have words.
+    pub(super) fn lines_ahead(&self) -> impl Iterator<Item = &'a str> {
+        let lines = self.lines.clone().map(|(_, line)| plain(line).trim());
+        lines.filter(|line| !line.is_empty())
+    }
+
     /// Returns the next word; `what` names it in the message.
     pub(super) fn expect(&mut self, what: impl Display) -> Result<&'a str, SceneError> {
         self.next().ok_or_else(|| {

@@ -15,6 +15,22 @@ pub enum Rejection {
     Multiple(&'static str),
 }
 
+impl Rejection {
+    /// What to do about it.
+    pub fn remedy(&self) -> &'static str {
+        match self {
+            Self::Ray(RayError::Direction) => "give a finite direction that is not 0 0 0",
+            Self::Ray(RayError::Origin) => "give an origin of three finite numbers",
+            Self::Ray(RayError::Distance) => {
+                "give an origin nearer to the scene; another point of the ray meets the same surfaces"
+            }
+            Self::Ray(RayError::Interval) => "give a tmin that is at most tmax",
+            Self::Multiple("short") => "give a longer direction",
+            Self::Multiple(_) => "give a shorter direction",
+        }
+    }
+}
+
 /// The rays that were rejected.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Rejections {
@@ -38,6 +54,25 @@ impl Rejections {
         Self {
             count: self.count + next.count,
             first: self.first.or(next_first),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn remedies_are_those_of_the_reason() {
+        for (why, remedy) in [
+            (Rejection::Ray(RayError::Direction), "not 0 0 0"),
+            (Rejection::Ray(RayError::Origin), "three finite numbers"),
+            (Rejection::Ray(RayError::Distance), "nearer to the scene"),
+            (Rejection::Ray(RayError::Interval), "at most tmax"),
+            (Rejection::Multiple("short"), "a longer direction"),
+            (Rejection::Multiple("long"), "a shorter direction"),
+        ] {
+            assert!(why.remedy().contains(remedy), "{why}: {}", why.remedy());
         }
     }
 }

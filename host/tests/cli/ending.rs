@@ -62,6 +62,23 @@ fn a_report_that_cannot_be_written_is_an_error() {
     assert!(folder.path("a.gridel").is_file());
 }
 
+#[cfg(target_os = "linux")]
+#[test]
+fn a_version_or_help_that_cannot_be_written_is_an_error() {
+    let folder = Folder::new();
+    for arguments in [&["--version"][..], &["--help"], &["build", "--help"]] {
+        let full = std::fs::OpenOptions::new().write(true).open("/dev/full");
+        let mut command = folder.command(arguments);
+        let output = command.stdout(full.unwrap()).output().unwrap();
+        assert_eq!(output.status.code(), Some(1), "{arguments:?}");
+        let message = String::from_utf8(output.stderr).unwrap();
+        assert!(
+            message.contains("standard output cannot be written"),
+            "{message}"
+        );
+    }
+}
+
 #[cfg(unix)]
 #[test]
 fn an_interrupt_leaves_the_old_file_and_nothing_else() {

@@ -21,13 +21,13 @@ fn every_command_has_a_page_of_the_manual() {
     let help = folder.done(&["--help"]);
     let commands = help.lines().skip_while(|line| *line != "Commands:").skip(1);
     let commands = commands.map_while(|line| line.split_whitespace().next());
-    let commands: Vec<_> = commands.filter(|command| *command != "help").collect();
-    assert!(commands.len() >= 13, "{commands:?}");
+    let commands: Vec<_> = commands.collect();
+    assert!(commands.len() >= 14, "{commands:?}");
     for command in commands {
         let page = folder.read(&format!("man/man1/gridel-{command}.1"));
         let page = String::from_utf8(page).unwrap();
         assert!(
-            page.contains(".SH SYNOPSIS") && page.contains("Exit codes"),
+            page.contains(".SH SYNOPSIS") && (command == "help" || page.contains("Exit codes")),
             "{command}"
         );
     }

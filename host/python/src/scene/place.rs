@@ -38,7 +38,7 @@ impl NativeScene {
             _ => None,
         };
         let Some(corners) = triangle else {
-            let t = within(ray, hit.t);
+            let t = ray.within(hit.t);
             return (t, ray.origin + ray.direction * t, [f64::NAN; 2]);
         };
         let [a, b, c] = corners;
@@ -66,7 +66,7 @@ impl NativeScene {
             ..near
         };
         let (t, place, weights) = meet(corners.map(|it| it * scale), &scaled, own - begin);
-        (within(&ray, begin + t), place / scale, weights)
+        (ray.within(begin + t), place / scale, weights)
     }
 
     /// The t of a hit, and the weights of the corners of its triangle.
@@ -90,12 +90,6 @@ impl NativeScene {
     }
 }
 
-/// A t, in a ray's interval.
-#[inline(always)]
-fn within(ray: &SceneRay, t: f64) -> f64 {
-    t.max(ray.tmin).min(ray.tmax)
-}
-
 /// Where a ray meets a triangle, by a t of its own where it is nearly parallel.
 #[inline(always)]
 fn meet([a, b, c]: [DVec3; 3], ray: &SceneRay, own: f64) -> Meeting {
@@ -110,7 +104,7 @@ fn meet([a, b, c]: [DVec3; 3], ray: &SceneRay, own: f64) -> Meeting {
     } else {
         own
     };
-    let t = within(ray, t);
+    let t = ray.within(t);
     let place = ray.origin + ray.direction * t;
     let relative = place - a;
     let weight = |area: DVec3| (area.dot(normal) / square).clamp(0.0, 1.0);

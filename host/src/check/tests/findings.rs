@@ -64,6 +64,32 @@ tests_per_ray = 0.25
     assert_eq!(bless(&manifest, &report).diff(), "");
 }
 
+#[test]
+fn blessing_keeps_line_ends() {
+    let folder = Folder::new();
+    let plain = "# by hand\n[[check]]\nscene = \"ball.toml\"\nhash = {} # new\n\n# end\n";
+    let mixed = plain.replacen('\n', "\r\n", 4);
+    for text in [plain.replace('\n', "\r\n"), mixed, plain.to_owned()] {
+        let (manifest, report) = folder.run(&text);
+        let blessed = bless(&manifest, &report);
+        record(&blessed);
+        let new = folder.text();
+        let ends = |text: &str| -> Vec<bool> {
+            let lines = text.split_inclusive('\n');
+            lines.map(|line| line.ends_with("\r\n")).collect()
+        };
+        assert_eq!(ends(&new), ends(&text), "{new:?}");
+        assert_ne!(new, text);
+        // One line changes.
+        let diff = blessed.diff();
+        assert_eq!(
+            diff.lines().filter(|it| it.starts_with('-')).count(),
+            2,
+            "{diff}"
+        );
+    }
+}
+
 /// The picture changes, and nothing else does.
 #[test]
 fn another_picture_is_broken_and_shown() {

@@ -22,8 +22,12 @@ use std::path::{Path, PathBuf};
 /// Largest number of pixels of pictures for displays in memory at once.
 pub const MOST_PIXELS: usize = 1 << 26;
 
-/// The formats of pictures, as messages list them.
-const FORMATS: &str = ".png, .ppm, .rgb565, .npy or .exr";
+/// The formats of pictures that this build writes, as messages list them.
+const FORMATS: &str = if cfg!(feature = "exr") {
+    ".png, .ppm, .rgb565, .npy or .exr"
+} else {
+    ".png, .ppm, .rgb565 or .npy"
+};
 
 /// What is written.
 #[derive(Args)]

@@ -55,6 +55,7 @@ impl OperatorColumns {
             name: table.value([self.name]),
             words: self.rows.map(|row| row.map(|column| table.value([column]))),
             line: table.line,
+            again: None,
         }
     }
 }

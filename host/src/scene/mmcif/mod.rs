@@ -18,6 +18,7 @@ use cif::{Token, Tokens};
 use glam::DVec3;
 use gridel_core::Up;
 use std::collections::HashMap;
+use std::collections::hash_map::Entry;
 use table::{Column, Table, category};
 
 pub(super) const IMPORTER: Importer = Importer {
@@ -177,7 +178,16 @@ impl<'a> Parser<'a, '_> {
             Columns::Group(columns) => self.parsed.groups.push(columns.read(table)),
             Columns::Operator(columns) => {
                 let matrix = columns.read(table);
-                self.parsed.operators.insert(matrix.name, matrix);
+                match self.parsed.operators.entry(matrix.name) {
+                    Entry::Vacant(place) => {
+                        place.insert(matrix);
+                    }
+                    // It matters only to assemblies that use it.
+                    Entry::Occupied(mut place) if !place.get().agrees(&matrix) => {
+                        place.get_mut().again.get_or_insert(matrix.line);
+                    }
+                    Entry::Occupied(_) => {}
+                }
             }
         }
         Ok(())

@@ -4,6 +4,7 @@ use super::parsed::{Matrix, Operators, Parsed};
 use crate::scene::text::Source;
 use crate::scene::{Placement, SceneError};
 use glam::{DMat3, DVec3};
+use std::collections::HashMap;
 
 /// The most instances of an assembly.
 pub(super) const MOST_INSTANCES: u64 = 65_535;
@@ -58,6 +59,7 @@ impl<'a> Operators<'a> {
     ) -> Result<Vec<Operator>, SceneError> {
         let text = match self {
             Self::Listed(matrices) => {
+                reject_doubled(source, matrices)?;
                 return matrices.iter().map(|it| it.read(source)).collect();
             }
             Self::Expression(text) => *text,
@@ -83,8 +85,30 @@ impl<'a> Operators<'a> {
     }
 }
 
+/// Rejects a list in which two operators have one number. Names that are no numbers, such as `****`, distinguish none.
+fn reject_doubled(source: &Source, matrices: &[Matrix<'_>]) -> Result<(), SceneError> {
+    let mut lines = HashMap::new();
+    for matrix in matrices {
+        let first = *lines.entry(matrix.name).or_insert(matrix.line);
+        if first != matrix.line && matrix.name.parse::<u32>().is_ok() {
+            return Err(doubled(source, matrix.name, [first, matrix.line]));
+        }
+    }
+    Ok(())
+}
+
+/// The error of two operators with one name, in these lines.
+fn doubled(source: &Source, name: &str, [first, second]: [usize; 2]) -> SceneError {
+    let cause = format!("two operators have the name {name}; the first is in line {first}");
+    let remedy = "remove one of them or give it another name, or choose another assembly";
+    source.error(cause, remedy).at_line(second)
+}
+
 impl Matrix<'_> {
     fn read(&self, source: &Source) -> Result<Operator, SceneError> {
+        if let Some(again) = self.again {
+            return Err(doubled(source, self.name, [self.line, again]));
+        }
         let mut rows = [[0.0; 4]; 3];
         for (words, row) in self.words.iter().zip(&mut rows) {
             for (word, number) in words.iter().zip(row) {

@@ -87,6 +87,15 @@ pub(in crate::scene) struct Matrix<'a> {
     /// Three rows of the rotation, each with its displacement behind it; empty where one is missing.
     pub(in crate::scene) words: [[&'a str; 4]; 3],
     pub(in crate::scene) line: usize,
+    /// The line of another one that has its name.
+    pub(in crate::scene) again: Option<usize>,
+}
+
+impl Matrix<'_> {
+    /// Returns whether two have the same words.
+    pub(in crate::scene) fn agrees(&self, other: &Self) -> bool {
+        self.words == other.words
+    }
 }
 
 /// The operators of a group of chains, unread.

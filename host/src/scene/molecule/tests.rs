@@ -176,6 +176,34 @@ fn elements_from_names() {
 }
 
 #[test]
+fn element_columns_that_are_filled_rule_out_the_name() {
+    let read = |name: &str, end: &str| {
+        let text =
+            format!("HETATM    1 {name} UNX A   1       0.000   0.000   0.000  1.00  0.00{end}\n");
+        let imported = pdb(&text).unwrap();
+        (symbols(&imported)[0].to_owned(), imported.warnings)
+    };
+    let unknown = "t.pdb:1: the element of the atom \"UNK\" is unknown; it is drawn in pink";
+    for end in [
+        "           X",
+        "          X ",
+        "           X1+",
+        "          XX",
+    ] {
+        let expected = (String::from("X"), vec![String::from(unknown)]);
+        assert_eq!(read(" UNK", end), expected, "{end:?}");
+        assert_eq!(read("UNK ", end), expected, "{end:?}");
+        assert_eq!(read(" CA ", end).0, "X", "{end:?}");
+    }
+    assert_eq!(read(" UNK", "").0, "X");
+    // Line numbers of old files, long names of segments, charges alone.
+    for end in ["      1ABC1042", "      PROTEINX", "            1+", ""] {
+        assert_eq!(read(" CA ", end), (String::from("C"), vec![]), "{end:?}");
+    }
+    assert_eq!(read(" UNK", "          FE2+").0, "Fe");
+}
+
+#[test]
 fn pdb_faults_name_line_and_cause() {
     let fault = |text: &str| pdb(text).unwrap_err().to_string();
     assert_eq!(fault(""), "t.pdb: the file has no atoms");

@@ -73,8 +73,8 @@ pub(super) fn parse<'a>(
     while let Some((number, line)) = lines.next() {
         let mut words: Vec<&str> = Vec::new();
         let mut rest = line.trim_end();
-        // A backslash at its end continues a line on the next one.
-        while let Some(continued) = rest.strip_suffix('\\') {
+        // A backslash at its end continues a line on the next one, unless a comment ends so.
+        while let Some(continued) = rest.strip_suffix('\\').filter(|it| !has_comment(it)) {
             words.extend(continued.split_whitespace());
             rest = lines.next().map_or("", |(_, line)| line.trim_end());
         }
@@ -93,6 +93,11 @@ pub(super) fn parse<'a>(
         }
     }
     parser.finish(warnings)
+}
+
+/// Returns whether a word of a line begins a comment.
+fn has_comment(line: &str) -> bool {
+    line.split_whitespace().any(|word| word.starts_with('#'))
 }
 
 /// Reads the index of a normal or of texture coordinates, and returns it counted from 0. `count` is how many the file

@@ -51,6 +51,20 @@ fn parts_follow_the_file() {
 }
 
 #[test]
+fn comments_that_end_in_a_backslash_do_not_continue() {
+    for text in [
+        format!("# made in C:\\models\\\n{CORNERS}f 1 2 3\n"),
+        format!("{CORNERS}f 1 2 3 # C:\\models\\\nf 1 3 4\n"),
+        format!("{CORNERS}f 1 2 \\\n3 # C:\\\nf 1 3 4\n"),
+    ] {
+        let scene = read(&text).unwrap().scene;
+        let (vertices, triangles) = mesh(&scene.objects[0]);
+        assert_eq!(vertices[1], DVec3::X, "{text}");
+        assert_eq!(triangles.len(), text.matches("f ").count(), "{text}");
+    }
+}
+
+#[test]
 fn faces_may_come_before_their_vertices() {
     let scene = read(&format!("f 1 2 3\no later\n{CORNERS}")).unwrap().scene;
     assert_eq!(mesh(&scene.objects[0]).0.len(), 3);

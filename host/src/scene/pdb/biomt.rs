@@ -82,6 +82,7 @@ impl<'a> Assemblies<'a> {
                     name,
                     words: [[""; 4]; 3],
                     line,
+                    again: None,
                 };
                 matrix.words[row] = words;
                 matrices.push(matrix);

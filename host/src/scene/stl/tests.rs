@@ -78,20 +78,29 @@ fn binary_files_share_vertices_and_say_what_is_too_much() {
         (4, &[[0, 1, 2], [1, 3, 2]][..])
     );
     assert_eq!(imported.scene.objects[0].name, "thing");
-    bytes[..5].copy_from_slice(b"thing");
     bytes.extend([7; 3]);
-    let imported = read(&bytes).unwrap();
-    assert!(imported.warnings[0].contains("3 bytes behind the last triangle"));
+    for head in [&b"thing"[..], b"solid", b"solid fake\nfacet normal 0 0 1\nouter loop\n"] {
+        bytes[..head.len()].copy_from_slice(head);
+        let imported = read(&bytes).unwrap();
+        assert_eq!(mesh(&imported.scene.objects[0]).1.len(), 2);
+        assert!(imported.warnings[0].contains("3 bytes behind the last triangle"));
+    }
 }
 
 #[test]
 fn faults_name_line_or_triangle() {
     let cut = &file(&[[[0.0; 3]; 3]; 2])[..150];
+    let solid = cut.to_vec();
     let mut named = cut.to_vec();
     named[..5].copy_from_slice(b"thing");
     let nan = file(&[[[0.0; 3]; 3], [[0.0; 3], [f32::NAN; 3], [0.0; 3]]]);
     let text = |from: &str, to: &str| TWO_SOLIDS.replacen(from, to, 1).into_bytes();
     for (bytes, line, cause) in [
+        (
+            solid,
+            None,
+            "announces 2 triangles, which take 184 bytes, and has 150",
+        ),
         (
             named,
             None,

@@ -198,6 +198,34 @@ fn faults_of_remarks_name_line_cause_and_remedy() {
 }
 
 #[test]
+fn operators_of_one_name_are_rejected_with_both_lines() {
+    let head = ["BIOMOLECULE: 1", "APPLY THE FOLLOWING TO CHAINS: A"];
+    let text = chains(&remarks(&[&head, &IDENTITY, &TURN, &TURN]));
+    let error = assembled("t.pdb", &text, "1").unwrap_err();
+    let cause = "two operators have the name 2; the first is in line 6";
+    assert_eq!((error.cause.as_str(), error.line), (cause, Some(9)));
+    assert!(pdb(&text).is_ok());
+    // Groups have numbers of their own.
+    let second = ["APPLY THE FOLLOWING TO CHAINS: B"];
+    let text = chains(&remarks(&[
+        &head, &IDENTITY, &TURN, &second, &IDENTITY, &TURN,
+    ]));
+    assert!(assembled("t.pdb", &text, "1").is_ok());
+
+    let text = cif_of(&[["1", "1", "A"], ["2", "2", "A"]]);
+    let row = "2 0 -1 0 0 1 0 0 0 0 0 1 0\n";
+    let line = text[..text.find(row).unwrap()].lines().count() + 1;
+    let doubled = text.replace(row, &format!("{row}{}", row.replace("1 0\n", "1 9\n")));
+    let error = assembled("t.cif", &doubled, "2").unwrap_err();
+    let cause = format!("two operators have the name 2; the first is in line {line}");
+    assert_eq!((error.cause, error.line), (cause, Some(line + 1)));
+    // Nothing is wrong where no assembly uses it, or both are the same.
+    assert!(assembled("t.cif", &doubled, "1").is_ok() && cif(&doubled).is_ok());
+    let same = text.replace(row, &format!("{row}{row}"));
+    assert!(assembled("t.cif", &same, "2").is_ok());
+}
+
+#[test]
 fn chain_without_atoms_is_worth_a_warning() {
     let text = chains(&remarks(&[
         &["APPLY THE FOLLOWING TO CHAINS: A, X, Y"],
