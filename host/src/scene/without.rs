@@ -111,12 +111,12 @@ const REMOVALS: [(Effects, &str, Removal); Effects::NAMED.len()] = [
     ),
     (
         Effects::FALLOFF,
-        "lights are as bright everywhere as where the camera looks",
+        "lights are as bright everywhere as where the camera looks, and spheres that shine are not seen",
         remove_falloff,
     ),
     (
         Effects::AREA_LIGHT,
-        "lights shine from their middles, and shadows have hard edges",
+        "lights shine from their middles, shadows have hard edges, and spheres that shine are not seen",
         shrink_areas,
     ),
     (
@@ -200,8 +200,12 @@ pub fn leave_out(scene: &mut Scene, effect: Effects) -> Option<Vec<String>> {
     }
     let materials = before.materials.iter().zip(&scene.materials);
     let materials = materials.filter(|(old, new)| old != new);
-    let objects = before.all_objects().zip(scene.all_objects());
-    let objects = objects.filter(|(old, new)| old != new);
+    // Some objects may be gone.
+    let mut left = scene.all_objects().peekable();
+    let objects = before.all_objects().filter(move |old| {
+        let new = left.next_if(|new| (&new.name, &new.place) == (&old.name, &old.place));
+        new != Some(old)
+    });
     let lights = (0..before.lights.len()).filter(|&number| {
         let form = |scene: &Scene| scene.light_forms.get(number).copied().flatten();
         form(&before) != form(scene)
@@ -211,7 +215,7 @@ pub fn leave_out(scene: &mut Scene, effect: Effects) -> Option<Vec<String>> {
         _ => format!("light {number}"),
     });
     let names = lights.chain(materials.map(|(old, _)| format!("material `{}`", old.name)));
-    let names = names.chain(objects.map(|(old, _)| format!("object `{}`", old.name)));
+    let names = names.chain(objects.map(|old| format!("object `{}`", old.name)));
     Some(names.collect())
 }
 
@@ -260,9 +264,9 @@ mod tests {
         [material.lamp]
         emission = 2
         [[object]]
-        kind = 'sphere'
-        center = [9, 9, 9]
-        radius = 1
+        kind = 'box'
+        min = [8, 8, 8]
+        max = [9, 9, 9]
         material = 'lamp'
         [[light]]
         kind = 'rectangle'
