@@ -482,7 +482,7 @@ fn import_from(input: &Input, options: &SceneOptions) -> Result<Imported, Failur
     }
     options.view.apply(&mut imported.scene)?;
     for change in &options.lights {
-        change.apply(&mut imported.scene.lights)?;
+        change.apply_to_scene(&mut imported.scene)?;
     }
     let replaced = |track: &Track| {
         let by_light = |change: &LightChange| change.replaces(track.target, track.index);
