@@ -18,7 +18,7 @@ use gridel_host::scene::{self, Imported, Posed, Track};
 use gridel_host::state::{self, State, StateError};
 use gridel_host::table::{counted, grouped, printable, significant};
 use std::path::Path;
-use warnings::{far_moved, leave_out, names_changed};
+use warnings::{leave_out, of_compiler};
 
 /// A blob, from a file or from the compiler.
 pub struct Source {
@@ -181,12 +181,7 @@ impl Source {
             warn(&warning);
             warnings.push(warning);
         }
-        warnings.extend(report.environment.and_then(|it| it.warning()));
-        if let Some(warning) = far_moved(&report, compiling.lattice_bits) {
-            warn(&warning);
-            warnings.push(warning);
-        }
-        if let Some(warning) = names_changed(&report) {
+        for warning in of_compiler(&report, compiling.lattice_bits) {
             warn(&warning);
             warnings.push(warning);
         }
