@@ -167,7 +167,7 @@ fn remove_tracks(scene: &mut Scene, target: TrackTarget) {
 impl Scene {
     /// Removes all that calls for some effects: the blob has no byte of them, and the program no code. Settings for
     /// other effects stay, except those that depend on them. Without glass nothing absorbs, and without a falloff
-    /// lights have no area.
+    /// lights have no area. A scene that loses its only light is dark.
     ///
     /// ```
     /// # let file = "[[object]]\nkind = 'sphere'\ncenter = [0, 0, 0]\nradius = 1\nname = 'ball'";
@@ -182,11 +182,14 @@ impl Scene {
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
     pub fn remove_effects(&mut self, effects: Effects) {
+        let was_lit = self.is_lit();
         for (effect, _, remove) in REMOVALS {
             if effects.contains(effect) {
                 remove(self);
             }
         }
+        // No other light replaces what is gone.
+        self.is_dark |= was_lit && !self.is_lit();
     }
 }
 
@@ -320,6 +323,28 @@ mod tests {
     fn effects(scene: &Scene) -> Effects {
         let blob = compile(scene, &Options::default()).unwrap().blob;
         blob.scene().unwrap().effects()
+    }
+
+    #[test]
+    fn scenes_that_lose_their_only_light_are_dark() {
+        let sphere =
+            "[[object]]\nkind = 'sphere'\ncenter = [0, 0, 0]\nradius = 1\nmaterial = 'own'\n";
+        let environment = "[environment]\nzenith = 1\nhorizon = 1\nground = 1\n[material.own]\n";
+        let glow = "render.bounces = 1\n[material.own]\nemission = 1\nlights = false\n";
+        for (text, effect) in [
+            (environment, Effects::ENVIRONMENT),
+            (glow, Effects::EMISSION),
+            (glow, Effects::INDIRECT),
+        ] {
+            let text = format!("{text}{sphere}");
+            let imported = read("dark.toml".as_ref(), text.into(), &Default::default());
+            let mut scene = imported.unwrap().scene;
+            scene.remove_effects(effect);
+            let blob = compile(&scene, &Options::default()).unwrap().blob;
+            let compiled = blob.scene().unwrap();
+            assert_eq!(compiled.lights().len(), 0, "{effect}");
+            assert_eq!(compiled.view().ambient, [0; 3], "{effect}");
+        }
     }
 
     /// A new effect needs what calls for it in the scene above, and a row in the table of removals.

@@ -186,7 +186,7 @@ impl View {
             Some(_) => motion.camera(self.camera_node, place)?,
             None => Vec::new(),
         };
-        // Without any strength there are no lights.
+        // Without any strength lights are black, wherever they are.
         let lit = self.lights.iter().any(|lamp| lamp.intensity > 0.0);
         let lights = self.lights.iter().zip(&self.light_nodes).enumerate();
         for (index, (lamp, &node)) in lights.filter(|_| lit) {
@@ -233,11 +233,13 @@ impl View {
             }
         };
         let strongest = self.lights.iter().map(strength).fold(0.0, f64::max);
-        if strongest == 0.0 {
-            return;
-        }
         for lamp in self.lights {
-            let dim = |color: Color| color.map(|channel| channel * lamp.intensity / strongest);
+            // Lights without any strength are black: the scene is dark, and no other light is supplied.
+            let part = match strongest {
+                0.0 => 0.0,
+                _ => lamp.intensity / strongest,
+            };
+            let dim = |color: Color| color.map(|channel| channel * part);
             scene.lights.push(match lamp.light {
                 Light::Directional { direction, color } => Light::Directional {
                     direction,
