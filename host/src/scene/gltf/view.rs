@@ -30,6 +30,7 @@ pub(super) struct View {
     light_nodes: Vec<usize>,
     has_broken: bool,
     has_moving_spots: bool,
+    has_narrow_spots: bool,
 }
 
 /// A light of the file.
@@ -116,8 +117,10 @@ impl View {
                 outer_cone_angle,
             } => {
                 let degrees = |radians: f32| f64::from(radians).to_degrees();
-                // The range that the extension allows; more is an error there.
-                let outer = degrees(outer_cone_angle).clamp(0.1, 90.0);
+                // The extension allows no more than 90 degrees.
+                let asked = degrees(outer_cone_angle);
+                self.has_narrow_spots |= asked < Spot::LEAST_OUTER;
+                let outer = asked.clamp(Spot::LEAST_OUTER, 90.0);
                 Some(Spot {
                     direction: world.transform_vector3(-DVec3::Z),
                     inner: degrees(inner_cone_angle).clamp(0.0, outer),
@@ -212,6 +215,10 @@ impl View {
             (
                 self.has_moving_spots,
                 "spot lights that move keep the direction that they have at rest",
+            ),
+            (
+                self.has_narrow_spots,
+                "spot lights narrower than 0.3 degrees are widened to 0.3, so that `f32` holds their light",
             ),
             (
                 self.has_broken,
