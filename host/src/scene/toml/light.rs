@@ -58,16 +58,27 @@ fn light(table: Value<'_>) -> Result<Lit, SceneError> {
         }
         "point" | "spot" => {
             let position = fields.require("position")?.vector()?;
-            let color = fields.or("color", [1.0; 3], Value::radiance)?;
-            (Light::Point { position, color }, of_point(kind, &fields)?)
+            let form = of_point(kind, &fields)?;
+            // Light that falls off has an exponent of its own in the blob.
+            let read = match form.is_some_and(|form| form.falls_off) {
+                true => Value::bright_radiance,
+                false => Value::radiance_of_points,
+            };
+            let color = fields.or("color", [1.0; 3], read)?;
+            (Light::Point { position, color }, form)
         }
         _ => {
             let (position, shape) = area(kind, &fields)?;
-            let color = fields.require("radiance")?.radiance()?;
             let form = LightForm {
                 shape,
                 is_visible: fields.or("visible", false, Value::boolean)?,
                 ..LightForm::default()
+            };
+            let radiance = fields.require("radiance")?;
+            // Surfaces that are seen hold less.
+            let color = match form.is_visible {
+                true => radiance.radiance_of_visible()?,
+                false => radiance.bright_radiance()?,
             };
             (Light::Point { position, color }, Some(form))
         }
@@ -91,6 +102,11 @@ fn of_point(kind: &str, fields: &Fields<'_>) -> Result<Option<LightForm>, SceneE
             let value = value.unwrap_or(fields.require("kind")?);
             return Err(value.error(cause, "write half the angle of the cone, such as `outer = 30`"));
         }
+        let least = Spot::LEAST_OUTER;
+        if let Some(value) = fields.get("outer").filter(|_| outer < least) {
+            let cause = format!("the spot's `outer` angle is {outer} degrees; it must be at least {least}, so that `f32` holds its light");
+            return Err(value.error(cause, "write at least 0.3, or use a directional light"));
+        }
         let direction = fields.require("direction")?.direction()?;
         Some(Spot {
             direction,
@@ -102,11 +118,6 @@ fn of_point(kind: &str, fields: &Fields<'_>) -> Result<Option<LightForm>, SceneE
     };
     let plain = !falls_off && range.is_none() && spot.is_none();
     Ok((!plain).then_some(LightForm {
-        let least = Spot::LEAST_OUTER;
-        if let Some(value) = fields.get("outer").filter(|_| outer < least) {
-            let cause = format!("the spot's `outer` angle is {outer} degrees; it must be at least {least}, so that `f32` holds its light");
-            return Err(value.error(cause, "write at least 0.3, or use a directional light"));
-        }
         shape: LightShape::Point,
         falls_off,
         range,
