@@ -56,6 +56,8 @@ mod world;
 pub use page::{Pictures, page, sentence};
 pub use picture::{Enclosed, LEVELS, code, enclose, explain, linear};
 pub use reason::Reason;
-pub use report::{FormatReport, OpenPixel, OpenPixels, Report, Width, certify, exact_picture, map};
+pub use report::{
+    DifferentPixel, FormatReport, OpenPixel, OpenPixels, Report, Width, certify, exact_picture, map,
+};
 pub use search::{Open, Step};
 pub use world::{NONE, Unknown, World};

@@ -88,7 +88,51 @@ fn formats(report: &Report, explain: &str) -> String {
             format.max_proved_error,
         );
     }
-    table + "</table></div>\n"
+    table.push_str("</table></div>\n");
+    for format in &report.formats {
+        let name = format.format;
+        let pixels = format.different_pixels.iter();
+        let commands = pixels.map(|it| {
+            let [x, y] = it.pixel;
+            format!("{explain}{x},{y} --format {name}")
+        });
+        table.push_str(&list(
+            &format!("pixels of {name} that are different"),
+            commands,
+        ));
+    }
+    table
+}
+
+/// Commands that a list of the page shows.
+const LISTED: usize = 1_000;
+
+/// A list of commands that unfolds; nothing for none.
+fn list(what: &str, commands: impl ExactSizeIterator<Item = String>) -> String {
+    let count = commands.len();
+    if count == 0 {
+        return String::new();
+    }
+    let mut list = format!(
+        "<details><summary>All {} {what}</summary>\n<ul>\n",
+        grouped(count)
+    );
+    if count > LISTED {
+        list = format!(
+            "<details><summary>The first {} of {} {what}</summary>\n<ul>\n",
+            grouped(LISTED),
+            grouped(count)
+        );
+    }
+    for command in commands.take(LISTED) {
+        let _ = writeln!(list, "<li><code>{}</code>", escape(&command));
+    }
+    list.push_str("</ul>\n");
+    if count > LISTED {
+        let more = grouped(count - LISTED);
+        let _ = writeln!(list, "<p>{more} more are in the JSON report.</p>");
+    }
+    list + "</details>\n"
 }
 
 fn reasons(report: &Report, explain: &str) -> String {
@@ -117,7 +161,15 @@ fn reasons(report: &Report, explain: &str) -> String {
             grouped(reason.on_boundary),
         );
     }
-    table + "</table></div>\n"
+    table.push_str("</table></div>\n");
+    for reason in &report.reasons {
+        let commands = reason.examples.iter().map(|it| {
+            let [x, y] = it.pixel;
+            format!("{explain}{x},{y} --interval")
+        });
+        table.push_str(&list(&format!("open pixels: {}", reason.text), commands));
+    }
+    table
 }
 
 /// Bars of the widths of intervals; their lengths are logarithmic, so that few pixels are visible
@@ -148,10 +200,19 @@ fn widths(report: &Report) -> String {
 fn image([width, height]: [u16; 2], pixels: &[u8]) -> io::Result<String> {
     let mut png = Vec::new();
     write_png(&mut png, [width.into(), height.into()], pixels, None)?;
+    let [shown_width, shown_height] = shown_size([width, height]);
     let data = base64::engine::general_purpose::STANDARD.encode(png);
     Ok(format!(
-        "<img alt=\"\" width=\"{width}\" height=\"{height}\" src=\"data:image/png;base64,{data}\">"
+        "<img alt=\"\" width=\"{shown_width}\" height=\"{shown_height}\" src=\"data:image/png;base64,{data}\">"
     ))
+}
+
+/// The size at which a picture is shown: small ones are enlarged by a whole number.
+fn shown_size(size: [u16; 2]) -> [u32; 2] {
+    const USUAL: u32 = 480;
+    let [width, height] = size.map(u32::from);
+    let by = (USUAL / width.max(height).max(1)).max(1);
+    [width * by, height * by]
 }
 
 fn escape(text: &str) -> String {
@@ -172,3 +233,26 @@ const HEAD: &str = "<!DOCTYPE html>\n<html lang=\"en\">\n<meta charset=\"utf-8\"
     .bars span { display: block; height: 0.9em; background: #4a78c8; }\n\
     .pictures { display: flex; flex-wrap: wrap; gap: 1.5em; }\nfigure { margin: 0; max-width: 100%; }\n\
     img { max-width: 100%; height: auto; image-rendering: pixelated; }\nfigcaption { max-width: 34em; }\n</style>\n";
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn small_pictures_are_enlarged() {
+        assert_eq!(shown_size([48, 36]), [480, 360]);
+        assert_eq!(shown_size([320, 240]), [320, 240]);
+        assert_eq!(shown_size([4000, 1]), [4000, 1]);
+    }
+
+    #[test]
+    fn lists_say_how_many_more_there_are() {
+        let commands = |count: usize| (0..count).map(|it| format!("explain <{it}>"));
+        assert_eq!(list("pixels", commands(0)), "");
+        let few = list("pixels", commands(2));
+        assert!(few.contains("All 2 pixels") && few.contains("<li><code>explain &lt;1&gt;"));
+        let many = list("pixels", commands(1_234));
+        assert_eq!(many.matches("<li>").count(), LISTED);
+        assert!(many.contains("The first 1,000 of 1,234 pixels") && many.contains("234 more"));
+    }
+}

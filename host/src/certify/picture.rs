@@ -10,6 +10,7 @@ use super::search::{Open, Step, Stop, Tracer};
 use super::tone;
 use super::world::{NONE, World};
 use crate::srgb::linear_of_srgb;
+use crate::trace::Frame;
 use bytemuck::{Pod, Zeroable};
 use gridel_core::format::record::View;
 use gridel_core::render::Pixel as _;
@@ -264,7 +265,8 @@ fn at_level(
     })
 }
 
-/// The rays behind a pixel and the numbers along them, at the level at which the pixel was decided.
+/// The rays behind a pixel and the numbers along them, at the level at which the pixel was decided. Points and
+/// distances are in scene units.
 pub fn explain(
     world: &World<'_>,
     settings: &Settings,
@@ -273,6 +275,72 @@ pub fn explain(
     let enclosed = enclose(world, settings, pixel, LEVELS.len());
     let mut steps = Vec::new();
     let level = usize::from(enclosed.level);
-    let evaluated = at_level(world, settings, pixel, level, Some(&mut steps));
+    let mut evaluated = at_level(world, settings, pixel, level, Some(&mut steps));
+    let frame = Frame::of(world.scene);
+    for step in &mut steps {
+        to_scene_units(&frame, step);
+    }
+    for open in &mut evaluated.open {
+        open.point = frame.place(open.point).to_array();
+    }
     (enclosed, steps, evaluated.open)
+}
+
+/// Converts the points and distances of a step, which are in lattice units.
+fn to_scene_units(frame: &Frame, step: &mut Step) {
+    for (name, bounds) in &mut step.values {
+        match *name {
+            "distance" => {
+                for [low, high] in bounds {
+                    [*low, *high] = [*low, *high].map(|it| frame.length(it));
+                }
+            }
+            "point" => {
+                let places = [0, 1].map(|end| {
+                    let end: Vec<f64> = bounds.iter().map(|it| it[end]).collect();
+                    <[f64; 3]>::try_from(end).map(|it| frame.place(it).to_array())
+                });
+                if let [Ok(low), Ok(high)] = places {
+                    // The sum with the origin is rounded.
+                    let outward = |axis: usize| [low[axis].next_down(), high[axis].next_up()];
+                    *bounds = [0, 1, 2].map(outward).to_vec();
+                }
+            }
+            _ => {}
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::compile::{Options, compile};
+
+    #[test]
+    fn explained_points_and_distances_are_in_scene_units() {
+        let file = "[camera]\neye = [100, 0, 50]\ntarget = [100, 0, 0]\n[render]\nwidth = 1\nheight = 1\n\
+            [[light]]\nkind = 'point'\nposition = [100, 50, 50]\n\
+            [[light]]\nkind = 'point'\nposition = [100, 50, 60]\n\
+            [[object]]\nkind = 'box'\nmin = [90, -10, -20]\nmax = [110, 10, 0]\n";
+        let imported = crate::scene::read("box.toml".as_ref(), file.into(), &Default::default());
+        let blob = compile(&imported.unwrap().scene, &Options::default());
+        let blob = blob.unwrap().blob;
+        let scene = blob.scene().unwrap();
+        let world = World::of(&scene).unwrap_or_else(|unknown| panic!("{unknown}"));
+        let (_, steps, _) = explain(&world, &Settings::of(&scene), [0, 0]);
+        let hit = steps.iter().find(|step| step.event == "hit").unwrap();
+        let near = |[low, high]: [f64; 2], to: f64| {
+            assert!(
+                low <= high && (low - to).abs().max((high - to).abs()) < 1e-3,
+                "{low} {high}"
+            );
+        };
+        assert_eq!((hit.values[0].0, hit.values[1].0), ("distance", "point"));
+        near(hit.values[0].1[0], 50.0);
+        for (bounds, to) in hit.values[1].1.iter().zip([100.0, 0.0, 0.0]) {
+            near(*bounds, to);
+        }
+        let lights: Vec<_> = steps.iter().filter_map(|step| step.light).collect();
+        assert_eq!(lights, [0, 1]);
+    }
 }

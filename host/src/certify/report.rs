@@ -6,43 +6,53 @@ use super::world::{NONE, World};
 use gridel_core::{Format, Settings};
 use rayon::prelude::*;
 use serde::Serialize;
+use std::sync::{Mutex, PoisonError};
 
-/// Rows that are evaluated between two looks at the clock.
-pub const ROWS_AT_ONCE: usize = 16;
+/// What pixels are stored to, as they are done.
+struct Kept<'p, F> {
+    pixels: &'p mut [Enclosed],
+    keep: F,
+    /// For each row, how many pixels are not done.
+    open: Vec<usize>,
+}
 
-/// Encloses the pixels of a picture that are not yet done, some rows at a time. Calls `progress` after every row, from
-/// any thread, and `keep` after some rows, whose error ends the work.
+/// Encloses the pixels of a picture that are not yet done. Calls `progress` once for every row, and `keep` after every
+/// pixel that was not done, from any thread. An error of `keep` ends the work.
 ///
 /// # Errors
 /// Those of `keep`.
 ///
 /// # Panics
 /// If there are not as many pixels as the settings say.
-pub fn certify<E>(
+pub fn certify<E: Send>(
     world: &World<'_>,
     settings: &Settings,
     pixels: &mut [Enclosed],
     progress: &(dyn Fn() + Sync),
-    mut keep: impl FnMut(&[Enclosed]) -> Result<(), E>,
+    keep: impl FnMut(&[Enclosed]) -> Result<(), E> + Send,
 ) -> Result<(), E> {
     let width = usize::from(settings.width);
     assert_eq!(pixels.len(), width * usize::from(settings.height));
-    let rows: Vec<usize> = (0..usize::from(settings.height)).collect();
-    for some in rows.chunks(ROWS_AT_ONCE) {
-        let first = some[0] * width;
-        let part = &mut pixels[first..first + some.len() * width];
-        let is_new = part.iter().any(|pixel| pixel.done == 0);
-        part.par_chunks_mut(width).zip(some).for_each(|(row, &y)| {
-            for (x, pixel) in row.iter_mut().enumerate().filter(|(_, it)| it.done == 0) {
-                *pixel = enclose(world, settings, [x as u16, y as u16], LEVELS.len());
-            }
+    let not_done = |&index: &usize| pixels[index].done == 0;
+    let indices: Vec<usize> = (0..pixels.len()).filter(not_done).collect();
+    let mut open = vec![0; settings.height.into()];
+    indices.iter().for_each(|index| open[index / width] += 1);
+    open.iter()
+        .filter(|&&open| open == 0)
+        .for_each(|_| progress());
+    let kept = Mutex::new(Kept { pixels, keep, open });
+    indices.into_par_iter().try_for_each(|index| {
+        let [x, y] = [index % width, index / width];
+        let pixel = enclose(world, settings, [x as u16, y as u16], LEVELS.len());
+        let mut kept = kept.lock().unwrap_or_else(PoisonError::into_inner);
+        let Kept { pixels, keep, open } = &mut *kept;
+        pixels[index] = pixel;
+        open[y] -= 1;
+        if open[y] == 0 {
             progress();
-        });
-        if is_new {
-            keep(pixels)?;
         }
-    }
-    Ok(())
+        keep(pixels)
+    })
 }
 
 /// The report of a picture.
@@ -72,7 +82,7 @@ pub struct OpenPixels {
     pub pixels: usize,
     /// Open pixels whose ray lies on the boundary as far as 256 bits can decide.
     pub on_boundary: usize,
-    /// The first of them.
+    /// All of them, row by row.
     pub examples: Vec<OpenPixel>,
 }
 
@@ -111,10 +121,18 @@ pub struct FormatReport {
     pub worst: Option<[usize; 2]>,
     /// Pixels by their proved difference in 255ths, from 1.
     pub by_error: Vec<(u8, usize)>,
+    /// All pixels proved to be others, row by row.
+    pub different_pixels: Vec<DifferentPixel>,
 }
 
-/// Examples of each reason.
-const EXAMPLES: usize = 8;
+/// A pixel of a format that is proved to differ from the exact one.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+pub struct DifferentPixel {
+    pub pixel: [usize; 2],
+    /// The largest proved difference of a channel, in 255ths.
+    pub error: u8,
+}
+
 /// The narrowest power of ten that is counted on its own.
 const NARROWEST: i32 = -17;
 
@@ -151,7 +169,7 @@ impl Report {
                 text: reason.text(),
                 pixels: count,
                 on_boundary: open().filter(|(_, it)| it.on_boundary == 1).count(),
-                examples: open().take(EXAMPLES).map(example).collect(),
+                examples: open().map(example).collect(),
             });
         }
         reasons.sort_by_key(|it| std::cmp::Reverse(it.pixels));
@@ -172,10 +190,16 @@ impl Report {
             let most = errors.iter().flatten().copied().max().unwrap_or(0);
             let with = |error: u8| errors.iter().filter(|&&it| it == Some(error)).count();
             let worst = errors.iter().position(|&it| it == Some(most) && most > 0);
+            let different = errors.iter().enumerate().filter_map(|(index, it)| {
+                let error = it.filter(|&error| error > 0)?;
+                let pixel = place(index);
+                Some(DifferentPixel { pixel, error })
+            });
             FormatReport {
                 format: format.name(),
                 equal: with(0),
-                different: errors.iter().flatten().filter(|&&it| it > 0).count(),
+                different: different.clone().count(),
+                different_pixels: different.collect(),
                 open: errors.iter().filter(|it| it.is_none()).count(),
                 max_proved_error: most,
                 worst: worst.map(place),
@@ -223,4 +247,71 @@ pub fn map(pixels: &[Enclosed], pictures: &[(Format, Vec<[u16; 3]>)]) -> Vec<u8>
 pub fn exact_picture(pixels: &[Enclosed]) -> Vec<u8> {
     let middle = |it: &Enclosed| [0, 1, 2].map(|k| it.low[k].midpoint(it.high[k]));
     pixels.iter().flat_map(middle).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::compile::{Options, compile};
+
+    const FILE: &str = "[render]\nwidth = 6\nheight = 4\n\
+        [[object]]\nkind = 'sphere'\ncenter = [0, 0, 0]\nradius = 1\n";
+
+    fn with_world(test: impl FnOnce(&World<'_>, &Settings)) {
+        let imported = crate::scene::read("ball.toml".as_ref(), FILE.into(), &Default::default());
+        let blob = compile(&imported.unwrap().scene, &Options::default());
+        let blob = blob.unwrap().blob;
+        let scene = blob.scene().unwrap();
+        let world = World::of(&scene).unwrap_or_else(|unknown| panic!("{unknown}"));
+        test(&world, &Settings::of(&scene));
+    }
+
+    #[test]
+    fn every_pixel_that_is_done_is_kept_at_once() {
+        with_world(|world, settings| {
+            let mut pixels = vec![Enclosed::default(); 24];
+            let mut counts = Vec::new();
+            let stopped = certify(world, settings, &mut pixels, &|| (), |pixels| {
+                counts.push(pixels.iter().filter(|it| it.done == 1).count());
+                if counts.len() < 3 { Ok(()) } else { Err(()) }
+            });
+            assert_eq!(stopped, Err(()));
+            assert_eq!(counts[..3], [1, 2, 3]);
+            let before = pixels.iter().filter(|it| it.done == 1).count();
+            let (mut more, rows) = (0, std::sync::atomic::AtomicUsize::new(0));
+            let count_row = || {
+                rows.fetch_add(1, std::sync::atomic::Ordering::Relaxed);
+            };
+            let Ok(()) = certify(world, settings, &mut pixels, &count_row, |_| {
+                more += 1;
+                Ok::<_, std::convert::Infallible>(())
+            });
+            assert_eq!((before + more, rows.into_inner()), (24, 4));
+            assert!(pixels.iter().all(|it| it.done == 1));
+        });
+    }
+
+    #[test]
+    fn reports_list_all_different_and_open_pixels() {
+        with_world(|_, settings| {
+            let known = Enclosed {
+                done: 1,
+                ..Enclosed::default()
+            };
+            let open = Enclosed {
+                high: [255; 3],
+                reason: Reason::Hit as u8,
+                ..known
+            };
+            let mut pixels = [known; 24];
+            pixels[9..24].fill(open);
+            let mut picture = vec![[0; 3]; 24];
+            picture[2] = [u16::MAX; 3];
+            picture[7] = [0, u16::MAX, 0];
+            let report = Report::of(settings, &pixels, &[(Format::F32, picture)]);
+            let of = |pixel| DifferentPixel { pixel, error: 255 };
+            assert_eq!(report.formats[0].different_pixels, [of([2, 0]), of([1, 1])]);
+            assert_eq!(report.reasons[0].examples.len(), 15);
+        });
+    }
 }

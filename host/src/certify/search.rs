@@ -21,7 +21,7 @@ pub struct Open {
     pub depth: u8,
     /// The primitive in scene-file order; [`NONE`] for none.
     pub primitive: u32,
-    /// In scene units times the blob's scale: lattice units.
+    /// In lattice units; [`explain`](super::explain) returns it in scene units.
     pub point: [f64; 3],
 }
 
@@ -38,7 +38,10 @@ pub struct Step {
     pub primitive: Option<u32>,
     #[serde(skip_serializing_if = "Option::is_none")]
     pub object: Option<u32>,
-    /// The numbers of the event, each with its bounds.
+    /// The number of the light.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub light: Option<u32>,
+    /// The numbers of the event, each with its bounds. Points and distances are in scene units.
     pub values: Vec<(&'static str, Vec<[f64; 2]>)>,
 }
 
@@ -126,11 +129,22 @@ impl Tracer<'_, '_> {
                 event,
                 primitive: hit.map(|it| it.0),
                 object: hit.map(|it| it.1),
+                light: None,
                 values: values
                     .into_iter()
                     .map(|(name, numbers)| (name, numbers.iter().map(|x| x.bounds()).collect()))
                     .collect(),
             });
+        }
+    }
+
+    /// States the light of the last step.
+    pub fn name_light(&self, number: u32) {
+        let Some(steps) = &self.steps else {
+            return;
+        };
+        if let Some(step) = steps.borrow_mut().last_mut() {
+            step.light = Some(number);
         }
     }
 

@@ -108,17 +108,21 @@ impl Tracer<'_, '_> {
     fn own<N: Enclosure>(&self, seen: &Seen<'_, N>) -> Result<Three<N>, Stop> {
         let (scene, hit, depth) = (self.world.scene, seen.hit, seen.path.depth);
         let named = Some((hit.primitive, hit.object));
-        self.step(
-            depth,
-            "hit",
-            named,
-            [
-                ("t", &[hit.t][..]),
-                ("point", &hit.point.map(|x| x * N::scaled(1, 8))),
-                ("normal", &seen.normal),
-                ("weight", &seen.weight),
-            ],
-        );
+        if self.steps.is_some() {
+            let direction = seen.path.ray.direction;
+            let length = dot(direction, direction).sqrt();
+            self.step(
+                depth,
+                "hit",
+                named,
+                [
+                    ("distance", &[hit.t * length * N::scaled(1, 8)][..]),
+                    ("point", &hit.point.map(|x| x * N::scaled(1, 8))),
+                    ("normal", &seen.normal),
+                    ("weight", &seen.weight),
+                ],
+            );
+        }
         let mut local = times(scene.view().ambient.map(radiance_of), seen.diffuse);
         if let Some(emission) = scene.emission(hit.object).filter(|_| hit.front) {
             // The surface that sent such a ray has been lit by it, or has reflected it by the formula.
@@ -130,6 +134,7 @@ impl Tracer<'_, '_> {
         for numbered in (0..).zip(scene.lights()) {
             let lit = self.lit(numbered, seen)?;
             self.step(depth, "light", named, [("adds", &lit)]);
+            self.name_light(numbered.0);
             local = plus(local, lit);
         }
         let brought = times(local, seen.weight);

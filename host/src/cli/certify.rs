@@ -83,6 +83,15 @@ const OFTEN: Duration = Duration::from_secs(5);
 struct Printed<'r> {
     folder: String,
     #[serde(flatten)]
+    report: Commanded<'r>,
+}
+
+/// The report in JSON.
+#[derive(Clone, Copy, Serialize)]
+struct Commanded<'r> {
+    /// The command that explains a pixel, up to the pixel: `X,Y --interval`, or `X,Y --format NAME`.
+    explain: &'r str,
+    #[serde(flatten)]
     report: &'r Report,
 }
 
@@ -147,6 +156,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let mut pixels = state.read(count)?;
     let progress = Progress::steps("certifying", settings.height.into());
     let mut written = Instant::now();
+    // Pixels are kept one by one; a picture of any cost loses a few seconds.
     certify(
         &world,
         &settings,
@@ -168,7 +178,10 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     write_results(&folder, &stem, (&report, &pixels, &pictures), &command)?;
     if arguments.json {
         let folder = folder.display().to_string();
-        let report = &report;
+        let report = Commanded {
+            explain: &command,
+            report: &report,
+        };
         print_json_warned(&Printed { folder, report }, &source.warnings)
     } else {
         print(text(&folder, &report, &command))
@@ -263,7 +276,11 @@ fn write_results(
     let failed =
         |error: io::Error| Failure::failed(error.to_string(), "report this as a fault of gridel");
     let page = page(name, report, &shown, command).map_err(failed)?;
-    let json = serde_json::to_string_pretty(report).map_err(|error| failed(error.into()))?;
+    let commanded = Commanded {
+        explain: command,
+        report,
+    };
+    let json = serde_json::to_string_pretty(&commanded).map_err(|error| failed(error.into()))?;
     let [page_path, json_path, map_path, exact_path] =
         [PAGE, JSON, MAP, EXACT].map(|name| folder.join(name));
     write_files(&[

@@ -1,6 +1,6 @@
 //! Values of options that replace a blob's own values.
 
-use super::arguments::SceneOptions;
+use super::arguments::{LightChange, SceneOptions};
 use super::failure::Failure;
 use gridel_core::format::record::{self, View};
 use gridel_core::{BlobError, Scene};
@@ -72,6 +72,17 @@ impl Changes {
         let before = lights.clone();
         for change in &options.lights {
             change.apply(&mut lights, |number| is_spot(scene, &own[number]))?;
+        }
+        let mut numbers = options.lights.iter().map(LightChange::number);
+        let is_shown =
+            |&number: &usize| before[number] != lights[number] && scene.is_shown(&own[number]);
+        if let Some(number) = numbers.find(is_shown) {
+            return Err(Failure::usage(
+                format!(
+                    "light {number} is visible, and the object that shows it cannot change in a blob"
+                ),
+                "give the scene file in place of the blob",
+            ));
         }
         let records = lights.iter().enumerate().map(|(number, light)| {
             // Those that stay keep their bits.

@@ -11,6 +11,7 @@ use gridel_core::{Scene, Settings, Structure};
 use gridel_host::certify::{self, World};
 use gridel_host::compile::Names;
 use gridel_host::explain::{ExplainError, Explanation, LightOutcome, Shown, Subject, explain};
+use gridel_host::table::printable;
 use gridel_host::trace::SceneRay;
 use serde::Serialize;
 use std::collections::BTreeMap;
@@ -120,7 +121,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         (None, None) => return Ok(()),
     };
     if let (true, Subject::Pixel(pixel)) = (arguments.interval, subject) {
-        return intervals(arguments, &scene, &settings, pixel);
+        return intervals(arguments, &scene, &source.names(&scene), &settings, pixel);
     }
     let explanation = explain(&scene, arguments.with.format, structure, settings, subject)
         .map_err(|error| failure(&error))?;
@@ -146,6 +147,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
 fn intervals(
     arguments: &Arguments,
     scene: &Scene<'_>,
+    names: &Names,
     settings: &Settings,
     pixel: [u16; 2],
 ) -> Result<(), Failure> {
@@ -164,6 +166,7 @@ fn intervals(
         high: enclosed.high,
         proved: enclosed.proved().is_some(),
         open,
+        lights: light_names(&steps, names),
         steps,
     };
     if arguments.json {
@@ -183,7 +186,16 @@ struct Intervals {
     high: [u8; 3],
     proved: bool,
     open: Vec<certify::Open>,
+    /// Names of lights by number; those without a name are missing.
+    #[serde(skip_serializing_if = "BTreeMap::is_empty")]
+    lights: BTreeMap<u32, String>,
     steps: Vec<certify::Step>,
+}
+
+fn light_names(steps: &[certify::Step], names: &Names) -> BTreeMap<u32, String> {
+    let numbers = steps.iter().filter_map(|step| step.light);
+    let named = numbers.filter_map(|it| Some((it, names.light(it)?.to_owned())));
+    named.collect()
 }
 
 impl Intervals {
@@ -205,14 +217,23 @@ impl Intervals {
             let [px, py, pz] = open.point;
             let _ = writeln!(
                 text,
-                "open: {} at depth {}, at {px:.6}, {py:.6}, {pz:.6} in lattice units",
+                "open: {} at depth {}, at {px}, {py}, {pz} in scene units",
                 open.reason.text(),
                 open.depth
             );
         }
+        if !self.steps.is_empty() {
+            text.push_str("points and distances are in scene units\n");
+        }
         for step in &self.steps {
             let indent = "  ".repeat(usize::from(step.depth) + 1);
             let _ = write!(text, "{indent}{}", step.event);
+            if let Some(light) = step.light {
+                let _ = write!(text, " {light}");
+                if let Some(name) = self.lights.get(&light) {
+                    let _ = write!(text, " `{}`", printable(name));
+                }
+            }
             if let (Some(primitive), Some(object)) = (step.primitive, step.object) {
                 let _ = write!(text, ", primitive {primitive} of object {object}");
             }

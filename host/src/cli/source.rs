@@ -18,7 +18,7 @@ use gridel_host::scene::{self, Imported, Posed, Track};
 use gridel_host::state::{self, State, StateError};
 use gridel_host::table::{counted, grouped, printable, significant};
 use std::path::Path;
-use warnings::{far_moved, leave_out, names_changed};
+use warnings::{leave_out, of_compiler};
 
 /// A blob, from a file or from the compiler.
 pub struct Source {
@@ -184,12 +184,7 @@ impl Source {
             warn(&warning);
             warnings.push(warning);
         }
-        warnings.extend(report.environment.and_then(|it| it.warning()));
-        if let Some(warning) = far_moved(&report, compiling.lattice_bits) {
-            warn(&warning);
-            warnings.push(warning);
-        }
-        if let Some(warning) = names_changed(&report) {
+        for warning in of_compiler(&report, compiling.lattice_bits) {
             warn(&warning);
             warnings.push(warning);
         }
@@ -491,14 +486,7 @@ fn import_from(input: &Input, options: &SceneOptions) -> Result<(Imported, bool)
     }
     options.view.apply(&mut imported.scene)?;
     for change in &options.lights {
-        let scene::Scene {
-            lights,
-            light_forms,
-            ..
-        } = &mut imported.scene;
-        let form = |number: usize| light_forms.get(number).copied().flatten();
-        let is_spot = |number: usize| form(number).is_some_and(|form| form.spot.is_some());
-        change.apply(lights, is_spot)?;
+        change.apply_to_scene(&mut imported.scene)?;
     }
     let replaced = |track: &Track| {
         let by_light = |change: &LightChange| change.replaces(track.target, track.index);

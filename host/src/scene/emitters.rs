@@ -135,6 +135,69 @@ impl Scene {
         }
     }
 
+    /// Returns the object with the surface of a light.
+    pub(super) fn object_of_light(&self, number: usize) -> Option<usize> {
+        let form = self.light_forms.get(number).copied().flatten()?;
+        let Light::Point { position, .. } = *self.lights.get(number)? else {
+            return None;
+        };
+        let shape = seen(position, &form.shape).filter(|_| form.is_surface)?;
+        let mut objects = self.objects.iter();
+        objects.position(|it| it.shape == shape && self.materials[it.material].is_sampled)
+    }
+
+    /// Replaces a light. The object that shows it moves with it, and changes its radiance.
+    ///
+    /// # Errors
+    /// If the light is one of several faces of an object, which cannot change alone: the cause.
+    ///
+    /// # Panics
+    /// If there is no such light.
+    ///
+    /// ```
+    /// # let file = "[[light]]\nkind = 'sphere'\ncenter = [0, 0, 0]\nradius = 1\nradiance = 1\nvisible = true";
+    /// # let imported = gridel_host::scene::read("lamp.toml".as_ref(), file.into(), &Default::default())?;
+    /// use glam::DVec3;
+    /// use gridel_host::scene::Light;
+    ///
+    /// let mut scene = imported.scene;
+    /// let (position, color) = (DVec3::Y, [2.0; 3]);
+    /// scene.replace_light(0, Light::Point { position, color })?;
+    /// assert_eq!(scene.objects[0].shape.bounds(), [DVec3::new(-1.0, 0.0, -1.0), DVec3::new(1.0, 2.0, 1.0)]);
+    /// assert_eq!(scene.materials[scene.objects[0].material].emission, color);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    pub fn replace_light(&mut self, number: usize, to: Light) -> Result<(), String> {
+        let form = self.light_forms.get(number).copied().flatten();
+        let form = form.filter(|form| form.is_surface && self.lights[number] != to);
+        let object = self.object_of_light(number);
+        let before = std::mem::replace(&mut self.lights[number], to);
+        let Some(form) = form else {
+            return Ok(());
+        };
+        let (Some(object), Light::Point { color: old, .. }, Light::Point { position, color }) =
+            (object, before, to)
+        else {
+            self.lights[number] = before;
+            return Err(format!(
+                "light {number} is a face of an object that glows, and cannot change without it"
+            ));
+        };
+        if let Some(shape) = seen(position, &form.shape) {
+            self.objects[object].shape = shape;
+        }
+        let material = self.objects[object].material;
+        if old != color && self.materials[material].emission == old {
+            let users = self.all_objects().filter(|it| it.material == material);
+            if users.count() > 1 {
+                self.objects[object].material = self.materials.len();
+                self.materials.push(self.materials[material].clone());
+            }
+            self.materials[self.objects[object].material].emission = color;
+        }
+        Ok(())
+    }
+
     /// Names of objects that glow and do not light others, though they should: those of parts, and those with shapes that
     /// no light has, with too many faces, or with alpha.
     pub fn emitters_without_light(&self) -> impl Iterator<Item = &str> {
@@ -184,6 +247,10 @@ fn faces(shape: &Shape) -> Vec<(DVec3, LightShape)> {
                 });
                 let mut above = low;
                 above[axis] = high[axis];
+                // A flat box has four sides without area.
+                if first.cross(second) == DVec3::ZERO {
+                    continue;
+                }
                 for (corner, edges) in [(low, [second, first]), (above, [first, second])] {
                     faces.push((corner, LightShape::Rectangle { edges }));
                 }
@@ -323,6 +390,46 @@ mod tests {
             assert_eq!(color, [4.0, 3.0, 2.0]);
             assert!(area(&scene, number).1.dot(position - middle) > 0.0);
         }
+    }
+
+    #[test]
+    fn flat_boxes_shine_from_two_faces() {
+        let scene = scene(
+            "[material.lamp]\nemission = 4\n\
+             [[object]]\nkind = 'box'\nmin = [0, 1, 0]\nmax = [2, 1, 3]\nmaterial = 'lamp'",
+        );
+        assert_eq!(scene.lights.len(), 2);
+        for number in 0..2 {
+            assert_eq!(area(&scene, number).0, 6.0);
+        }
+    }
+
+    #[test]
+    fn objects_that_show_lights_move_and_change_with_them() {
+        let mut scene = scene(
+            "[[light]]\nkind = 'sphere'\ncenter = [0, 5, 0]\nradius = 1\nradiance = 3\nvisible = true",
+        );
+        let (position, color) = (DVec3::new(1.0, 2.0, 3.0), [4.0; 3]);
+        let to = Light::Point { position, color };
+        scene.replace_light(0, to).unwrap();
+        assert_eq!(scene.lights, [to]);
+        assert_eq!(scene.objects.len(), 1);
+        let lamp = &scene.objects[0];
+        assert_eq!(lamp.shape.bounds(), [position - 1.0, position + 1.0]);
+        assert_eq!(scene.materials[lamp.material].emission, color);
+    }
+
+    #[test]
+    fn faces_of_objects_that_glow_do_not_change_alone() {
+        let mut scene = scene(
+            "[material.lamp]\nemission = 4\n\
+             [[object]]\nkind = 'box'\nmin = [0, 0, 0]\nmax = [1, 1, 1]\nmaterial = 'lamp'",
+        );
+        let before = scene.clone();
+        let (position, color) = (DVec3::ONE, [4.0; 3]);
+        let error = scene.replace_light(2, Light::Point { position, color });
+        assert!(error.unwrap_err().contains("light 2"));
+        assert_eq!(scene, before);
     }
 
     #[test]

@@ -33,6 +33,8 @@ pub struct Scene {
     pub display_values: bool,
     /// Light that reaches every surface from everywhere, multiplied with its diffuse color.
     pub ambient: Color,
+    /// True if a scene without any light is meant to be dark. Otherwise the compiler supplies a light.
+    pub is_dark: bool,
     /// The light around the scene, in place of the background.
     pub environment: Option<Environment>,
     /// Point and directional lights.
@@ -393,6 +395,14 @@ impl Scene {
         self.objects.iter().chain(parts)
     }
 
+    /// Returns whether the scene states a light of any kind, black ones included.
+    pub(crate) fn is_lit(&self) -> bool {
+        let glows = |object: &Object| self.materials[object.material].emission != [0.0; 3];
+        let lights_itself = self.render.bounces > 0 && self.all_objects().any(glows);
+        let from_around = self.ambient != [0.0; 3] || self.environment.is_some();
+        !self.lights.is_empty() || from_around || lights_itself
+    }
+
     /// Returns whether there is anything of an instance: whether its part has primitives.
     pub(crate) fn is_placed(&self, instance: &Instance) -> bool {
         let mut objects = self.parts[instance.part].objects.iter();
@@ -409,6 +419,7 @@ impl Default for Scene {
             background: None,
             display_values: false,
             ambient: [0.0; 3],
+            is_dark: false,
             environment: None,
             lights: Vec::new(),
             light_names: Vec::new(),

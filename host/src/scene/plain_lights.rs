@@ -39,10 +39,13 @@ fn side(shape: &LightShape) -> Option<DVec3> {
     }
 }
 
-/// Makes points of areas, as bright from far away.
+/// Makes points of areas, as bright from far away. Spheres around these points are removed: they would block all light.
 pub(super) fn shrink_areas(scene: &mut Scene) {
     if let Cow::Owned(expanded) = scene.with_emitters() {
         *scene = expanded;
+    }
+    if scene.render.shadows {
+        remove_spheres_of_lights(scene);
     }
     for (number, form) in scene.light_forms.iter_mut().enumerate() {
         let Some(form) = form.as_mut().filter(|it| it.shape != LightShape::Point) else {
@@ -66,6 +69,19 @@ pub(super) fn shrink_areas(scene: &mut Scene) {
             }),
             ..*form
         };
+    }
+}
+
+/// Removes the spheres that have the surface of a light.
+fn remove_spheres_of_lights(scene: &mut Scene) {
+    let is_sphere = |form: &LightForm| matches!(form.shape, LightShape::Sphere { .. });
+    for number in 0..scene.lights.len() {
+        let form = scene.light_forms.get(number).copied().flatten();
+        if form.is_some_and(|form| is_sphere(&form))
+            && let Some(object) = scene.object_of_light(number)
+        {
+            scene.objects.remove(object);
+        }
     }
 }
 
@@ -130,5 +146,51 @@ fn change_tracks<'t>(
                 }
             }
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::scene::{Light, Scene, leave_out, read};
+    use gridel_core::Effects;
+
+    const FLOOR: &str =
+        "[[object]]\nkind = 'box'\nmin = [-5, -1, -5]\nmax = [5, 0, 5]\nname = 'floor'\n";
+    const GLOWING: &str = "[material.lamp]\nemission = 2\n\
+        [[object]]\nkind = 'sphere'\ncenter = [0, 1, 0]\nradius = 0.5\nmaterial = 'lamp'\nname = 'bulb'\n";
+    const VISIBLE: &str = "[[light]]\nkind = 'sphere'\ncenter = [0, 1, 0]\nradius = 0.5\nradiance = 2\n\
+        visible = true\nname = 'bulb'\n";
+
+    fn scene(text: &str) -> Scene {
+        let imported = read("lamp.toml".as_ref(), text.into(), &Default::default());
+        imported.unwrap_or_else(|error| panic!("{error}")).scene
+    }
+
+    #[test]
+    fn spheres_that_glow_do_not_block_the_points_in_their_middles() {
+        for lamp in [GLOWING, VISIBLE] {
+            for effect in [Effects::AREA_LIGHT, Effects::FALLOFF] {
+                let mut scene = scene(&format!("{lamp}{FLOOR}"));
+                assert_eq!(scene.objects.len(), 2);
+                let names = leave_out(&mut scene, effect).unwrap();
+                assert!(names.contains(&String::from("object `bulb`")), "{names:?}");
+                assert!(
+                    !names.contains(&String::from("object `floor`")),
+                    "{names:?}"
+                );
+                let [object] = &scene.objects[..] else {
+                    panic!("{} objects", scene.objects.len());
+                };
+                assert_eq!(object.name, "floor");
+                assert!(matches!(scene.lights[..], [Light::Point { .. }]));
+            }
+        }
+    }
+
+    #[test]
+    fn spheres_that_glow_stay_where_nothing_blocks_light() {
+        let mut scene = scene(&format!("render.shadows = false\n{GLOWING}{FLOOR}"));
+        scene.remove_effects(Effects::AREA_LIGHT);
+        assert_eq!(scene.objects.len(), 2);
     }
 }

@@ -111,12 +111,12 @@ const REMOVALS: [(Effects, &str, Removal); Effects::NAMED.len()] = [
     ),
     (
         Effects::FALLOFF,
-        "lights are as bright everywhere as where the camera looks",
+        "lights are as bright everywhere as where the camera looks, and spheres that shine are not seen",
         remove_falloff,
     ),
     (
         Effects::AREA_LIGHT,
-        "lights shine from their middles, and shadows have hard edges",
+        "lights shine from their middles, shadows have hard edges, and spheres that shine are not seen",
         shrink_areas,
     ),
     (
@@ -167,7 +167,7 @@ fn remove_tracks(scene: &mut Scene, target: TrackTarget) {
 impl Scene {
     /// Removes all that calls for some effects: the blob has no byte of them, and the program no code. Settings for
     /// other effects stay, except those that depend on them. Without glass nothing absorbs, and without a falloff
-    /// lights have no area.
+    /// lights have no area. A scene that loses its only light is dark.
     ///
     /// ```
     /// # let file = "[[object]]\nkind = 'sphere'\ncenter = [0, 0, 0]\nradius = 1\nname = 'ball'";
@@ -182,11 +182,14 @@ impl Scene {
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
     pub fn remove_effects(&mut self, effects: Effects) {
+        let was_lit = self.is_lit();
         for (effect, _, remove) in REMOVALS {
             if effects.contains(effect) {
                 remove(self);
             }
         }
+        // No other light replaces what is gone.
+        self.is_dark |= was_lit && !self.is_lit();
     }
 }
 
@@ -200,8 +203,12 @@ pub fn leave_out(scene: &mut Scene, effect: Effects) -> Option<Vec<String>> {
     }
     let materials = before.materials.iter().zip(&scene.materials);
     let materials = materials.filter(|(old, new)| old != new);
-    let objects = before.all_objects().zip(scene.all_objects());
-    let objects = objects.filter(|(old, new)| old != new);
+    // Some objects may be gone.
+    let mut left = scene.all_objects().peekable();
+    let objects = before.all_objects().filter(move |old| {
+        let new = left.next_if(|new| (&new.name, &new.place) == (&old.name, &old.place));
+        new != Some(old)
+    });
     let lights = (0..before.lights.len()).filter(|&number| {
         let form = |scene: &Scene| scene.light_forms.get(number).copied().flatten();
         form(&before) != form(scene)
@@ -211,7 +218,7 @@ pub fn leave_out(scene: &mut Scene, effect: Effects) -> Option<Vec<String>> {
         _ => format!("light {number}"),
     });
     let names = lights.chain(materials.map(|(old, _)| format!("material `{}`", old.name)));
-    let names = names.chain(objects.map(|(old, _)| format!("object `{}`", old.name)));
+    let names = names.chain(objects.map(|old| format!("object `{}`", old.name)));
     Some(names.collect())
 }
 
@@ -260,9 +267,9 @@ mod tests {
         [material.lamp]
         emission = 2
         [[object]]
-        kind = 'sphere'
-        center = [9, 9, 9]
-        radius = 1
+        kind = 'box'
+        min = [8, 8, 8]
+        max = [9, 9, 9]
         material = 'lamp'
         [[light]]
         kind = 'rectangle'
@@ -316,6 +323,28 @@ mod tests {
     fn effects(scene: &Scene) -> Effects {
         let blob = compile(scene, &Options::default()).unwrap().blob;
         blob.scene().unwrap().effects()
+    }
+
+    #[test]
+    fn scenes_that_lose_their_only_light_are_dark() {
+        let sphere =
+            "[[object]]\nkind = 'sphere'\ncenter = [0, 0, 0]\nradius = 1\nmaterial = 'own'\n";
+        let environment = "[environment]\nzenith = 1\nhorizon = 1\nground = 1\n[material.own]\n";
+        let glow = "render.bounces = 1\n[material.own]\nemission = 1\nlights = false\n";
+        for (text, effect) in [
+            (environment, Effects::ENVIRONMENT),
+            (glow, Effects::EMISSION),
+            (glow, Effects::INDIRECT),
+        ] {
+            let text = format!("{text}{sphere}");
+            let imported = read("dark.toml".as_ref(), text.into(), &Default::default());
+            let mut scene = imported.unwrap().scene;
+            scene.remove_effects(effect);
+            let blob = compile(&scene, &Options::default()).unwrap().blob;
+            let compiled = blob.scene().unwrap();
+            assert_eq!(compiled.lights().len(), 0, "{effect}");
+            assert_eq!(compiled.view().ambient, [0; 3], "{effect}");
+        }
     }
 
     /// A new effect needs what calls for it in the scene above, and a row in the table of removals.

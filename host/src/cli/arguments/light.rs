@@ -3,7 +3,7 @@
 use super::values::{numbers, vector};
 use crate::cli::failure::Failure;
 use glam::DVec3;
-use gridel_host::scene::{Color, Light, TrackTarget};
+use gridel_host::scene::{Color, Light, Scene, TrackTarget};
 use gridel_host::table::counted;
 
 /// One number or vector of a light, and its new value.
@@ -69,6 +69,25 @@ impl LightChange {
             }
         }
         Ok(())
+    }
+
+    /// Changes one of the lights of a scene file, and the object that shows it.
+    ///
+    /// # Errors
+    /// As [`apply`](Self::apply), and if the light is a face of an object that stays.
+    pub fn apply_to_scene(&self, scene: &mut Scene) -> Result<(), Failure> {
+        let mut lights = scene.lights.clone();
+        let form = |number: usize| scene.light_forms.get(number).copied().flatten();
+        self.apply(&mut lights, |number| {
+            form(number).is_some_and(|form| form.spot.is_some())
+        })?;
+        let changed = scene.replace_light(self.number, lights[self.number]);
+        changed.map_err(|cause| Failure::usage(cause, "change the object in the scene file"))
+    }
+
+    /// The light's number.
+    pub fn number(&self) -> usize {
+        self.number
     }
 
     /// Returns whether this replaces the property that a track moves.

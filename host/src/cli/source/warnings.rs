@@ -6,8 +6,18 @@ use gridel_host::scene::{self, Scene};
 use gridel_host::table::{grouped, printable};
 use std::path::Path;
 
+/// All warnings of a compiled scene.
+pub fn of_compiler(report: &Report, lattice_bits: u8) -> Vec<String> {
+    let all = [
+        report.environment.and_then(|it| it.warning()),
+        far_moved(report, lattice_bits),
+        names_changed(report),
+    ];
+    all.into_iter().flatten().collect()
+}
+
 /// Names the primitives that the lattice moves far.
-pub fn far_moved(report: &Report, lattice_bits: u8) -> Option<String> {
+fn far_moved(report: &Report, lattice_bits: u8) -> Option<String> {
     const NAMED: usize = 3;
     if report.far_moved.count() == 0 {
         return None;
@@ -24,7 +34,7 @@ pub fn far_moved(report: &Report, lattice_bits: u8) -> Option<String> {
 }
 
 /// Says which names the blob lacks or has in part.
-pub fn names_changed(report: &Report) -> Option<String> {
+fn names_changed(report: &Report) -> Option<String> {
     let names = report.names?;
     if names.left_out {
         return Some(String::from(
@@ -45,15 +55,20 @@ pub fn names_changed(report: &Report) -> Option<String> {
 /// Leaves effects out of the scene of a file, and reports what each of them loses.
 pub fn leave_out(scene: &mut Scene, path: &Path, effects: &[Effects]) -> Vec<String> {
     let file = path.display();
+    let whole = scene.clone();
     let lost = effects
         .iter()
-        .map(|&effect| match scene::leave_out(scene, effect) {
-            None => format!("{file}: the scene does not call for {effect}, so nothing is left out"),
-            Some(names) => format!(
+        .filter_map(|&effect| match scene::leave_out(scene, effect) {
+            // It went with an effect before.
+            None if scene::leave_out(&mut whole.clone(), effect).is_some() => None,
+            None => Some(format!(
+                "{file}: the scene does not call for {effect}, so nothing is left out"
+            )),
+            Some(names) => Some(format!(
                 "{file}: without {effect}{}: {}",
                 lost_by(&names),
                 scene::shown_without(effect)
-            ),
+            )),
         });
     lost.collect()
 }
@@ -73,5 +88,41 @@ fn lost_by(names: &[String]) -> String {
     match shown.is_empty() {
         true => String::new(),
         false => format!(" ({}{more})", shown.join(", ")),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use gridel_host::compile::{Options, compile};
+
+    fn scene(text: &str) -> Scene {
+        let sphere = "[[object]]\nkind = 'sphere'\ncenter = [0, 0, 0]\nradius = 1\n";
+        let file = format!("{text}{sphere}");
+        let imported = scene::read("s.toml".as_ref(), file.into(), &Default::default());
+        imported.unwrap().scene
+    }
+
+    #[test]
+    fn effects_that_are_left_out_twice_are_named_once() {
+        let light = "[[light]]\nkind = 'sphere'\ncenter = [0, 5, 0]\nradius = 1\nradiance = 1\n";
+        for effects in [
+            [Effects::AREA_LIGHT; 2],
+            [Effects::FALLOFF, Effects::AREA_LIGHT],
+        ] {
+            let lines = leave_out(&mut scene(light), "s.toml".as_ref(), &effects);
+            assert_eq!(lines.len(), 1, "{lines:?}");
+            assert!(!lines[0].contains("does not call"), "{lines:?}");
+        }
+        let lines = leave_out(&mut scene(light), "s.toml".as_ref(), &[Effects::GLASS]);
+        assert!(lines[0].contains("does not call for glass"), "{lines:?}");
+    }
+
+    #[test]
+    fn lost_light_of_an_environment_is_a_warning_of_the_compiler() {
+        let sky = "[environment]\nzenith = 2000\nhorizon = 1\nground = 0\n";
+        let report = compile(&scene(sky), &Options::default()).unwrap().report;
+        let lines = of_compiler(&report, 16);
+        assert!(lines[0].contains("of its light is lost"), "{lines:?}");
     }
 }

@@ -46,14 +46,48 @@ impl Exposure {
     }
 
     /// Changes the colors that tracks give to lights.
-    pub fn change_tracks(&self, tracks: &mut [Track]) {
+    pub fn change_tracks(&self, tracks: &mut [Track]) -> Result<(), CompileError> {
         let of_lights = tracks.iter_mut();
         for track in of_lights.filter(|it| it.target == TrackTarget::LightColor) {
             for key in &mut track.keys {
+                let [red, green, blue, _] = key.value;
+                self.of_color([red, green, blue], || {
+                    let Track { index, place, .. } = track;
+                    format!("light {index} at {} s ({place})", key.seconds)
+                })?;
                 for values in [&mut key.value, &mut key.entering, &mut key.leaving] {
                     *values = values.map(|value| value * self.factor);
                 }
             }
         }
+        Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::compile::{CompileError, Options, compile};
+    use crate::scene::read;
+
+    const FILE: &str = "render.exposure = 1\n\
+        [[light]]\nkind = 'point'\nposition = [0, 4, 0]\ncolor = 1\n\
+        [[object]]\nkind = 'sphere'\ncenter = [0, 0, 0]\nradius = 1\n\
+        [[track]]\ntarget = 'light.0.color'\ntimes = [0, 1]\n";
+
+    fn compiled(values: &str) -> Result<(), CompileError> {
+        let file = format!("{FILE}values = {values}");
+        let imported = read("lamp.toml".as_ref(), file.into(), &Default::default()).unwrap();
+        compile(&imported.scene, &Options::default()).map(|_| ())
+    }
+
+    #[test]
+    fn colors_of_tracks_that_exposure_makes_too_bright_are_rejected() {
+        compiled("[[1, 1, 1], [1000, 1, 1]]").unwrap();
+        let error = compiled("[[1, 1, 1], [1, 1030, 1]]").unwrap_err();
+        assert!(matches!(
+            error,
+            CompileError::TooBright { value: 2060.0, .. }
+        ));
+        assert!(error.to_string().contains("light 0 at 1 s"), "{error}");
     }
 }

@@ -148,6 +148,15 @@ pub fn form_record(
         }
         range => range,
     };
+    let value = color.into_iter().fold(0.0, f64::max);
+    // Rounding may bring a color that is as bright as possible beyond.
+    if value > BRIGHTEST * (1.0 + 1e-9) {
+        return Err(CompileError::TooBright {
+            what: light.label.to_owned(),
+            value,
+            most: BRIGHTEST,
+        });
+    }
     let q30 = |ratio: f64| (ratio * f64::from(1 << 30)).round() as i32;
     let cosine = |degrees: f64| degrees.to_radians().cos();
     let cone = form
@@ -164,4 +173,60 @@ pub fn form_record(
         edges: edges.map(|edge| edge.to_array().map(q13)),
     };
     Ok((record, color))
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::compile::{Options, compile};
+    use crate::scene::read;
+
+    /// The record of the light of a scene in millimeters, in scene units, and its error.
+    fn color_at_reference(light: &str) -> Result<f64, String> {
+        let file = format!(
+            "{light}\n[[object]]\nkind = 'box'\nmin = [-2000, -200, -2000]\nmax = [2000, 0, 2000]\n"
+        );
+        let imported = read("mm.toml".as_ref(), file.into(), &Default::default());
+        let imported = imported.map_err(|error| error.to_string())?;
+        let blob = compile(&imported.scene, &Options::default());
+        let blob = blob.map_err(|error| error.to_string())?.blob;
+        let scene = blob.scene().unwrap();
+        let unit = f64::powi(2.0, scene.header().unit_exponent.into());
+        let light = &scene.lights()[0];
+        let form = scene.light_form(light).unwrap();
+        let reference = f64::from(form.reference) / 8192.0 * unit;
+        Ok(f64::from(light.color[0]) / f64::from(1 << 20) * reference * reference)
+    }
+
+    #[test]
+    fn lights_with_a_falloff_or_an_area_may_be_as_bright_as_their_scene_is_large() {
+        let point =
+            "[[light]]\nkind = 'point'\nposition = [0, 500, 0]\nfalloff = 'square'\ncolor = 250000";
+        let sphere =
+            "[[light]]\nkind = 'sphere'\ncenter = [0, 500, 0]\nradius = 2\nradiance = 62500";
+        for light in [point, sphere] {
+            let found = color_at_reference(light).unwrap();
+            assert!((found / 250_000.0 - 1.0).abs() < 1e-4, "{light}: {found}");
+        }
+    }
+
+    #[test]
+    fn lights_that_their_records_cannot_hold_are_rejected() {
+        let bright = "color = 250000\n[[light]]\nkind = 'point'\nposition = [0, 1, 0]";
+        let track = "\n[[track]]\ntarget = 'light.0.color'\ntimes = [0, 1]\nvalues = [[1, 1, 1], [2, 2, 2]]";
+        for (rest, told) in [
+            (format!("falloff = 'square'\n{bright}{track}"), "250000"),
+            (format!("range = 9\n{bright}"), "at most 2047"),
+            (
+                String::from("range = 9\ncolor = 2000\n[render]\nexposure = 1"),
+                "4000",
+            ),
+        ] {
+            let light = format!("[[light]]\nkind = 'point'\nposition = [0, 500, 0]\n{rest}");
+            let error = color_at_reference(&light).unwrap_err();
+            assert!(
+                error.contains(told) || error.contains("2.5000e5") || error.contains("4.0000e3"),
+                "{error}"
+            );
+        }
+    }
 }

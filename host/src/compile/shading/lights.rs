@@ -5,7 +5,7 @@ use super::light_forms::{FormedLight, form_record, lift};
 use super::radiance;
 use crate::compile::CompileError;
 use crate::compile::section::{Section, section};
-use crate::scene::{Color, Light, LightForm, Scene};
+use crate::scene::{Color, Light, LightForm, Scene, Track};
 use crate::shape::{Lattice, unit};
 use crate::table::printable;
 use glam::DVec3;
@@ -89,6 +89,9 @@ impl LightData {
         let mut tracks = scene.tracks.iter();
         let has_color_track =
             tracks.any(|track| (track.target, track.index) == (TrackTarget::LightColor, number));
+        if form.is_surface {
+            check_stays(scene, number)?;
+        }
         let formed = FormedLight {
             form,
             color,
@@ -113,6 +116,27 @@ impl LightData {
             section(SectionKind::LightForms, &self.forms),
             section(SectionKind::ShownForms, &self.shown_forms),
         ]
+    }
+}
+
+/// Checks that no track moves or changes a light that an object shows.
+fn check_stays(scene: &Scene, number: usize) -> Result<(), CompileError> {
+    use TrackTarget::{LightColor, LightPosition};
+    let mut tracks = scene.tracks.iter();
+    let changes = |track: &&Track| {
+        track.index == number && matches!(track.target, LightColor | LightPosition)
+    };
+    match tracks.find(changes) {
+        None => Ok(()),
+        Some(track) => Err(CompileError::Track {
+            place: track.place.clone(),
+            target: track.target.name(),
+            cause: format!(
+                "{} is visible, and the object that shows it cannot change with time",
+                label(scene, number)
+            ),
+            remedy: "set the light's `visible = false`, or leave the track out",
+        }),
     }
 }
 
@@ -170,4 +194,31 @@ pub fn light_record(
             }
         }
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::compile::{CompileError, Options, compile};
+    use crate::scene::read;
+
+    fn compiled(is_visible: bool, track: &str) -> Result<(), CompileError> {
+        let file = format!(
+            "[[light]]\nkind = 'sphere'\ncenter = [0, 4, 0]\nradius = 1\nradiance = 1\nname = 'bulb'\n\
+             visible = {is_visible}\n\
+             [[object]]\nkind = 'sphere'\ncenter = [0, 0, 0]\nradius = 1\n\
+             [[track]]\ntarget = 'light.0.{track}'\ntimes = [0, 1]\nvalues = [[0, 4, 0], [0, 5, 0]]"
+        );
+        let imported = read("lamp.toml".as_ref(), file.into(), &Default::default()).unwrap();
+        compile(&imported.scene, &Options::default()).map(|_| ())
+    }
+
+    #[test]
+    fn tracks_of_visible_lights_are_rejected() {
+        for track in ["position", "color"] {
+            compiled(false, track).unwrap();
+            let error = compiled(true, track).unwrap_err().to_string();
+            let told = [track, "light 0 (bulb) is visible", "lamp.toml:1"];
+            assert!(told.iter().all(|it| error.contains(it)), "{error}");
+        }
+    }
 }

@@ -117,7 +117,7 @@ impl ShadingData {
         let coordinates = Coordinates::choose(lattice, corners, camera.eye, &scene.lights, &places);
         let placed = place(&camera, &coordinates.header)?;
         let mut tracks = joints::kept_tracks(scene);
-        exposure.change_tracks(&mut tracks);
+        exposure.change_tracks(&mut tracks)?;
         let mut motion =
             tracks::sections(tracks, &camera, &materials.numbers, &coordinates.header)?;
         motion.extend(joints::sections(scene, &coordinates.header)?);

@@ -2,7 +2,7 @@
 
 use crate::compile::extent::Shapes;
 use crate::compile::framing::{BACKGROUND, framing_of};
-use crate::scene::{Camera, Color, Light, Object};
+use crate::scene::{Camera, Color, Light};
 use crate::shape::unit;
 use glam::DVec3;
 
@@ -32,10 +32,7 @@ impl Setting {
             None => BACKGROUND,
         });
         let (mut lights, mut ambient) = (scene.lights.clone(), scene.ambient);
-        let glows = |object: &Object| scene.materials[object.material].emission != [0.0; 3];
-        let lights_itself = scene.render.bounces > 0 && scene.all_objects().any(glows);
-        let is_lit = lights_itself || scene.environment.is_some();
-        if lights.is_empty() && ambient == [0.0; 3] && !is_lit {
+        if !scene.is_lit() && !scene.is_dark {
             let (direction, shoulder) = over_a_shoulder(shapes, &camera);
             supplied.push(format!(
                 "a directional light from above the camera's {shoulder} shoulder, and some light from \

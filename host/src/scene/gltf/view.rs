@@ -31,6 +31,7 @@ pub(super) struct View {
     light_nodes: Vec<usize>,
     has_broken: bool,
     has_moving_spots: bool,
+    has_narrow_spots: bool,
 }
 
 /// A light of the file.
@@ -117,8 +118,10 @@ impl View {
                 outer_cone_angle,
             } => {
                 let degrees = |radians: f32| f64::from(radians).to_degrees();
-                // The range that the extension allows; more is an error there.
-                let outer = degrees(outer_cone_angle).clamp(0.1, 90.0);
+                // The extension allows no more than 90 degrees.
+                let asked = degrees(outer_cone_angle);
+                self.has_narrow_spots |= asked < Spot::LEAST_OUTER;
+                let outer = asked.clamp(Spot::LEAST_OUTER, 90.0);
                 Some(Spot {
                     direction: world.transform_vector3(-DVec3::Z),
                     inner: degrees(inner_cone_angle).clamp(0.0, outer),
@@ -187,7 +190,7 @@ impl View {
             Some(_) => motion.camera(self.camera_node, place)?,
             None => Vec::new(),
         };
-        // Without any strength there are no lights.
+        // Without any strength lights are black, wherever they are.
         let lit = self.lights.iter().any(|lamp| lamp.intensity > 0.0);
         let lights = self.lights.iter().zip(&self.light_nodes).enumerate();
         for (index, (lamp, &node)) in lights.filter(|_| lit) {
@@ -215,6 +218,10 @@ impl View {
                 "spot lights that move keep the direction that they have at rest",
             ),
             (
+                self.has_narrow_spots,
+                "spot lights narrower than 0.3 degrees are widened to 0.3, so that `f32` holds their light",
+            ),
+            (
                 self.has_broken,
                 "lights without a direction or a strength are left out",
             ),
@@ -239,11 +246,13 @@ impl View {
             }
         };
         let strongest = self.lights.iter().map(strength).fold(0.0, f64::max);
-        if strongest == 0.0 {
-            return;
-        }
         for lamp in self.lights {
-            let dim = |color: Color| color.map(|channel| channel * lamp.intensity / strongest);
+            // Lights without any strength are black: the scene is dark, and no other light is supplied.
+            let part = match strongest {
+                0.0 => 0.0,
+                _ => lamp.intensity / strongest,
+            };
+            let dim = |color: Color| color.map(|channel| channel * part);
             scene.lights.push(match lamp.light {
                 Light::Directional { direction, color } => Light::Directional {
                     direction,

@@ -58,16 +58,27 @@ fn light(table: Value<'_>) -> Result<Lit, SceneError> {
         }
         "point" | "spot" => {
             let position = fields.require("position")?.vector()?;
-            let color = fields.or("color", [1.0; 3], Value::radiance)?;
-            (Light::Point { position, color }, of_point(kind, &fields)?)
+            let form = of_point(kind, &fields)?;
+            // Light that falls off has an exponent of its own in the blob.
+            let read = match form.is_some_and(|form| form.falls_off) {
+                true => Value::bright_radiance,
+                false => Value::radiance_of_points,
+            };
+            let color = fields.or("color", [1.0; 3], read)?;
+            (Light::Point { position, color }, form)
         }
         _ => {
             let (position, shape) = area(kind, &fields)?;
-            let color = fields.require("radiance")?.radiance()?;
             let form = LightForm {
                 shape,
                 is_visible: fields.or("visible", false, Value::boolean)?,
                 ..LightForm::default()
+            };
+            let radiance = fields.require("radiance")?;
+            // Surfaces that are seen hold less.
+            let color = match form.is_visible {
+                true => radiance.radiance_of_visible()?,
+                false => radiance.bright_radiance()?,
             };
             (Light::Point { position, color }, Some(form))
         }
@@ -90,6 +101,11 @@ fn of_point(kind: &str, fields: &Fields<'_>) -> Result<Option<LightForm>, SceneE
             let cause = format!("the spot's `inner` angle, {inner} degrees, must be at most its `outer` one, {outer}, and that above 0");
             let value = value.unwrap_or(fields.require("kind")?);
             return Err(value.error(cause, "write half the angle of the cone, such as `outer = 30`"));
+        }
+        let least = Spot::LEAST_OUTER;
+        if let Some(value) = fields.get("outer").filter(|_| outer < least) {
+            let cause = format!("the spot's `outer` angle is {outer} degrees; it must be at least {least}, so that `f32` holds its light");
+            return Err(value.error(cause, "write at least 0.3, or use a directional light"));
         }
         let direction = fields.require("direction")?.direction()?;
         Some(Spot {
@@ -140,4 +156,37 @@ fn area(kind: &str, fields: &Fields<'_>) -> Result<(DVec3, LightShape), SceneErr
         LightShape::Disc { normal, radius }
     };
     Ok((center, shape))
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::scene::{Imported, SceneError};
+
+    fn light(text: &str) -> Result<Imported, SceneError> {
+        let file = format!("[[light]]\n{text}");
+        crate::scene::read("light.toml".as_ref(), file.into(), &Default::default())
+    }
+
+    #[test]
+    fn spots_that_are_too_narrow_for_f32_are_rejected() {
+        let spot = "kind = 'spot'\nposition = [0, 9, 0]\ndirection = [0, -1, 0]\nouter = ";
+        light(&format!("{spot}0.3")).unwrap();
+        for outer in ["0.29", "0.05", "1e-9"] {
+            let error = light(&format!("{spot}{outer}")).unwrap_err();
+            assert!(error.cause.contains("at least 0.3"), "{error}");
+            assert_eq!(error.line, Some(5));
+        }
+    }
+
+    #[test]
+    fn lights_that_fall_off_or_have_an_area_may_be_bright() {
+        let point = "kind = 'point'\nposition = [0, 9, 0]\ncolor = 1e6\n";
+        light(&format!("{point}falloff = 'square'")).unwrap();
+        let error = light(point).unwrap_err();
+        assert!(error.remedy.contains("falloff"), "{}", error.remedy);
+        let sphere = "kind = 'sphere'\ncenter = [0, 9, 0]\nradius = 1\nradiance = 1e6\n";
+        light(sphere).unwrap();
+        let error = light(&format!("{sphere}visible = true")).unwrap_err();
+        assert!(error.remedy.contains("visible"), "{}", error.remedy);
+    }
 }

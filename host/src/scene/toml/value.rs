@@ -171,6 +171,27 @@ impl<'a> Value<'a> {
         self.color_up_to(2047.0, "write numbers from 0 to 2047; 1 is display white")
     }
 
+    /// A color of a point or a spot without a falloff.
+    pub(crate) fn radiance_of_points(self) -> Result<Color, SceneError> {
+        self.color_up_to(
+            2047.0,
+            "write numbers from 0 to 2047; with `falloff = \"square\"` a light may be brighter",
+        )
+    }
+
+    /// The radiance of a light that is seen.
+    pub(crate) fn radiance_of_visible(self) -> Result<Color, SceneError> {
+        self.color_up_to(
+            2047.0,
+            "write numbers from 0 to 2047; with `visible = false` a light may be brighter",
+        )
+    }
+
+    /// A color of a light that falls off or has an area. The compiler knows how bright it may be in its scene.
+    pub(crate) fn bright_radiance(self) -> Result<Color, SceneError> {
+        self.color_up_to(1e15, "write numbers from 0 to 1e15; 1 is display white")
+    }
+
     fn color_up_to(self, most: f64, remedy: &str) -> Result<Color, SceneError> {
         let color = self.color()?;
         if let Some(channel) = color.iter().find(|&&channel| channel > most) {

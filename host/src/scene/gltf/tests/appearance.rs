@@ -1,6 +1,7 @@
 //! Materials, textures, cameras and lights.
 
 use super::*;
+use crate::compile::{Options, compile};
 
 fn material(made: Value) -> Material {
     let mut document = document();
@@ -115,6 +116,44 @@ fn a_camera_and_lights() {
     assert_eq!(warnings.len(), 1, "{warnings:?}");
     assert!(warnings[0].contains("several cameras"));
     assert!(matches!(scene.camera, Some(Camera { .. })));
+}
+
+/// A scene of a mesh and a light.
+fn lit(light: &Value) -> Imported {
+    let mut document = document();
+    document["extensions"] = json!({"KHR_lights_punctual": {"lights": [light]}});
+    document["nodes"] = json!([
+        {"mesh": 0},
+        {"extensions": {"KHR_lights_punctual": {"light": 0}}, "translation": [0, 5, 0]},
+    ]);
+    document["scenes"][0]["nodes"] = json!([0, 1]);
+    read(document.to_string().as_bytes()).unwrap()
+}
+
+#[test]
+fn a_scene_whose_lights_have_no_strength_is_dark() {
+    let scene = lit(&json!({"type": "directional", "intensity": 0})).scene;
+    let color = [0.0; 3];
+    assert!(matches!(scene.lights[..], [Light::Directional { color: own, .. }] if own == color));
+    let blob = compile(&scene, &Options::default()).unwrap().blob;
+    let compiled = blob.scene().unwrap();
+    assert_eq!(compiled.lights().len(), 1);
+    assert_eq!(compiled.view().ambient, [0; 3]);
+}
+
+#[test]
+fn spots_that_are_too_narrow_for_f32_are_widened_with_a_warning() {
+    let spot = |outer: f64| {
+        let cone = json!({"innerConeAngle": 0, "outerConeAngle": outer.to_radians()});
+        let imported = lit(&json!({"type": "spot", "spot": cone}));
+        let form = imported.scene.light_forms[0].unwrap();
+        (form.spot.unwrap().outer, imported.warnings)
+    };
+    let (outer, warnings) = spot(0.01);
+    assert_eq!(outer, 0.3);
+    assert!(warnings[0].contains("0.3 degrees"), "{warnings:?}");
+    let (outer, warnings) = spot(0.5);
+    assert!((outer - 0.5).abs() < 1e-5 && warnings.is_empty());
 }
 
 #[test]
