@@ -2,10 +2,12 @@
 
 mod carry;
 mod direction_scale;
+mod frame;
 mod rejection;
 mod unit_ray;
 
 pub use direction_scale::DirectionScale;
+pub use frame::Frame;
 pub use rejection::{Rejection, Rejections};
 pub use unit_ray::UnitRay;
 
@@ -15,8 +17,7 @@ use gridel_core::accel::DynAccel;
 use gridel_core::format::limits::MAX_STACK_DEPTH;
 use gridel_core::{
     Accel, Bvh, Counters, DualSplit, Fixed, Flagged, Format, NoCount, Number, Observer,
-    PrimitiveHit, Ray, RayError, RayKind, Scene, Stack, StackView, Structure, Wide, any_hit,
-    closest_primitive,
+    PrimitiveHit, Ray, RayKind, Scene, Stack, Structure, Wide, any_hit, closest_primitive,
 };
 use std::ops::Range;
 
@@ -77,11 +78,6 @@ impl SceneHit {
         instance: u32::MAX,
         normal: [0.0; 3],
     };
-
-    /// Returns whether nothing was met.
-    fn is_miss(&self) -> bool {
-        self.object == Self::MISS.object
-    }
 
     /// Returns whether the ray was rejected.
     pub fn is_rejected(&self) -> bool {
@@ -249,9 +245,8 @@ fn any_of_each<N: Number, A: Accel, C: Observer>(
         load_ahead(rays, hits, first + BATCH..first + 2 * BATCH);
         let rays = &rays[first..rays.len().min(first + BATCH)];
         frame.fill(&mut batch, scene, rays);
-        let answers = rays.iter().zip(&batch).zip(&mut hits[first..]);
-        for (place, ((scene_ray, ready), hit)) in answers.enumerate() {
-            let (ray, direction_scale) = match ready {
+        for (place, (ready, hit)) in batch.iter().zip(&mut hits[first..]).enumerate() {
+            let (ray, _) = match ready {
                 Ok(ready) => ready,
                 Err(why) => {
                     *hit = rejections.add(first + place, *why);
@@ -259,17 +254,10 @@ fn any_of_each<N: Number, A: Accel, C: Observer>(
                 }
             };
             count.ray(RayKind::Primary, ray);
-            let found = if direction_scale.has_every_multiple() {
-                Ok(any_hit::<N, A, C>(scene, ray, stack.as_view(), count))
+            *hit = if any_hit::<N, A, C>(scene, ray, stack.as_view(), count) {
+                SceneHit::ANY
             } else {
-                // Rays whose closest hit has no t are rejected, as where it is asked for.
-                let met = closest_of_extreme::<N, A, C>(scene, ray, stack.as_view(), count);
-                answer(scene, scene_ray, (ray, direction_scale), met).map(|it| !it.is_miss())
-            };
-            *hit = match found {
-                Ok(true) => SceneHit::ANY,
-                Ok(false) => SceneHit::MISS,
-                Err(why) => rejections.add(first + place, why),
+                SceneHit::MISS
             };
         }
     }
@@ -311,18 +299,6 @@ fn closest_of_each<N: Number, A: Accel, C: Observer>(
     rejections
 }
 
-/// Finds what a ray of an extreme length meets first, where any hit suffices.
-#[cold]
-#[inline(never)]
-fn closest_of_extreme<N: Number, A: Accel, C: Observer>(
-    scene: &Scene<'_>,
-    ray: &Ray<N>,
-    stack: &mut StackView,
-    count: &mut C,
-) -> Option<PrimitiveHit<N>> {
-    closest_primitive::<N, A, C>(scene, ray, stack, count)
-}
-
 /// The answer to a ray by what it meets first.
 // Inlining lets the compiler compute only the values that are used here.
 #[inline(always)]
@@ -360,172 +336,6 @@ fn load_ahead(rays: &[SceneRay], hits: &[SceneHit], places: Range<usize>) {
     }
     #[cfg(not(target_arch = "x86_64"))]
     let _ = (rays, hits, places);
-}
-
-/// How a scene's coordinates relate to the core's.
-#[derive(Clone, Copy, Debug)]
-pub struct Frame {
-    origin: DVec3,
-    /// A power of two, whose exponent is at most 1,000 in magnitude.
-    unit: f64,
-    /// One over the unit: a product with it has the bits of the quotient, and takes less time.
-    per_unit: f64,
-}
-
-impl Frame {
-    /// The frame of a blob.
-    pub fn of(scene: &Scene<'_>) -> Self {
-        let header = scene.header();
-        let exponent = i32::from(header.unit_exponent);
-        Self {
-            origin: DVec3::from_array(header.origin),
-            unit: f64::powi(2.0, exponent),
-            per_unit: f64::powi(2.0, -exponent),
-        }
-    }
-
-    /// A point in scene coordinates, from units.
-    pub fn place(&self, units: [f64; 3]) -> DVec3 {
-        self.origin + DVec3::from_array(units) * self.unit
-    }
-
-    /// A length in scene units, from units.
-    pub fn length(&self, units: f64) -> f64 {
-        units * self.unit
-    }
-
-    /// A ray in scene units, from one in units.
-    pub fn scene_ray(&self, ray: &UnitRay) -> SceneRay {
-        let direction = DVec3::from_array(ray.direction);
-        let (direction_scale, _) = DirectionScale::of(direction, self.unit, self.per_unit);
-        let along = |t: f64| {
-            if t == 0.0 {
-                0.0
-            } else {
-                direction_scale.nearest(t)
-            }
-        };
-        SceneRay {
-            origin: self.place(ray.origin),
-            tmin: along(ray.tmin),
-            direction,
-            tmax: along(ray.tmax),
-        }
-    }
-
-    /// Makes a batch of rays ready.
-    #[inline(always)]
-    fn fill<N: Number>(&self, batch: &mut Vec<Ready<N>>, scene: &Scene<'_>, rays: &[SceneRay]) {
-        batch.clear();
-        batch.extend(rays.iter().map(
-            #[inline(always)]
-            |ray| self.ray(scene, ray),
-        ));
-    }
-
-    /// A ray in the core's form, and by how much its t is larger.
-    ///
-    /// # Errors
-    /// As [`Ray::from_f64`].
-    #[inline(always)]
-    pub fn ray<N: Number>(
-        &self,
-        scene: &Scene<'_>,
-        ray: &SceneRay,
-    ) -> Result<(Ray<N>, DirectionScale), Rejection> {
-        let origin = (ray.origin - self.origin) * self.per_unit;
-        let direction_scale = DirectionScale::of_ordinary(ray.direction, self.per_unit);
-        // NaN and infinity are not ordinary. Apart from the others, few values wait in memory.
-        let Some(direction_scale) = direction_scale.filter(|_| is_near(origin)) else {
-            return self.extreme_ray(scene, ray);
-        };
-        let start = Start {
-            origin,
-            tmin: direction_scale.length(ray.tmin),
-            tmax: direction_scale.length(ray.tmax),
-            begin: 0.0,
-        };
-        Ok((start.ray(scene, ray.direction)?, direction_scale))
-    }
-
-    /// A ray whose direction is very long or short, or none, or whose origin is far from the scene.
-    #[cold]
-    #[inline(never)]
-    fn extreme_ray<N: Number>(
-        &self,
-        scene: &Scene<'_>,
-        ray: &SceneRay,
-    ) -> Result<(Ray<N>, DirectionScale), Rejection> {
-        // Multiples of the direction become lengths along its largest component.
-        let (mut direction_scale, direction) =
-            DirectionScale::of(ray.direction, self.unit, self.per_unit);
-        let mut start = Start {
-            origin: (ray.origin - self.origin) * self.per_unit,
-            tmin: direction_scale.length(ray.tmin),
-            tmax: direction_scale.length(ray.tmax),
-            begin: 0.0,
-        };
-        if !is_near(start.origin) {
-            start = self.far_start::<N>(scene, ray, start, direction)?;
-            direction_scale.begin_at(start.begin);
-        }
-        Ok((start.ray(scene, direction)?, direction_scale))
-    }
-
-    /// The start of a ray from an origin far from the scene.
-    fn far_start<N: Number>(
-        &self,
-        scene: &Scene<'_>,
-        ray: &SceneRay,
-        start: Start,
-        direction: DVec3,
-    ) -> Result<Start, Rejection> {
-        match start.ray::<N>(scene, direction) {
-            Ok(_) => (),
-            // Infinite in units alone.
-            Err(RayError::Origin) if ray.origin.is_finite() => {
-                return Err(RayError::Distance.into());
-            }
-            Err(why) => return Err(why.into()),
-        }
-        let ends = [ray.origin, self.origin];
-        let Some((place, along)) = carry::carry(ends, self.unit, direction) else {
-            return Ok(start);
-        };
-        let carried = Start {
-            origin: DVec3::from_array(place),
-            tmin: start.tmin - along,
-            tmax: start.tmax - along,
-            begin: along,
-        };
-        // Else it passes by the scene so far away that its origin is not representable.
-        let is_ray = carried.ray::<N>(scene, direction).is_ok();
-        Ok(if is_ray { carried } else { start })
-    }
-}
-
-/// Returns whether an origin in units is near the scene; one with NaN need not be.
-#[inline(always)]
-fn is_near(origin: DVec3) -> bool {
-    origin.abs().max_element() <= carry::FAR
-}
-
-/// Where a ray starts, and its interval, in units.
-#[derive(Clone, Copy, Debug)]
-struct Start {
-    origin: DVec3,
-    tmin: f64,
-    tmax: f64,
-    /// The length at which the interval counts 0.
-    begin: f64,
-}
-
-impl Start {
-    #[inline(always)]
-    fn ray<N: Number>(&self, scene: &Scene<'_>, direction: DVec3) -> Result<Ray<N>, RayError> {
-        let (origin, direction) = (self.origin.to_array(), direction.to_array());
-        Ray::from_f64(scene.bounds(), origin, direction, self.tmin, self.tmax)
-    }
 }
 
 #[cfg(test)]

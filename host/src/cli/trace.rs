@@ -38,8 +38,9 @@ use std::time::Instant;
 /// A ray is rejected if it has a NaN, if its direction is zero, or if its origin or direction is
 /// infinite. It is rejected, too, if tmin is greater than tmax, or if its origin is more than 2^37
 /// units away (2^21 times the width of the largest scene). A ray whose closest hit has a t beyond
-/// double precision is rejected, with --any too. t of a rejected ray is nan in the file. Rejected rays
-/// are counted separately from misses. The first one is printed with its row and the reason.
+/// double precision is rejected; with --any, which needs no t, it is answered. t of a rejected ray is
+/// nan in the file. Rejected rays are counted separately from misses. The first one is printed with
+/// its row and the reason.
 #[derive(Args)]
 #[command(after_help = super::failure::EXIT_CODES)]
 pub struct Arguments {

@@ -30,7 +30,8 @@ pub(super) const IMPORTER: Importer = Importer {
     example: "solid tip\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\n\
               endloop\nendfacet\nendsolid tip\n",
     recognizes: |bytes| {
-        begins_with_solid(bytes) || announced(bytes).is_some_and(|it| length(it) == bytes.len() as u64)
+        begins_with_solid(bytes)
+            || announced(bytes).is_some_and(|it| length(it) == bytes.len() as u64)
     },
     read,
 };

@@ -83,12 +83,6 @@ impl DirectionScale {
         libm::scalbn(length / self.factor, -self.exponent)
     }
 
-    /// Returns whether every length is a multiple of the direction that double precision holds.
-    #[inline(always)]
-    pub(super) fn has_every_multiple(&self) -> bool {
-        self.exponent == 0
-    }
-
     /// Multiples of the direction, from a length in units that is known within `error`.
     ///
     /// # Errors

@@ -9,12 +9,12 @@ fn ball() -> Compiled {
     compile(&imported.scene, &Options::default()).unwrap()
 }
 
-fn queries(any: bool) -> impl Iterator<Item = Query> {
+fn queries() -> impl Iterator<Item = Query> {
     [Format::Fixed, Format::F32, Format::F64]
         .map(|format| Query {
             format,
             structure: Structure::DualSplit,
-            any,
+            any: false,
         })
         .into_iter()
 }
@@ -29,7 +29,7 @@ fn t_is_never_outside_of_the_interval() {
         direction: DVec3::new(0.0, 0.0, -0.37),
         tmax,
     };
-    for query in queries(false) {
+    for query in queries() {
         let numbers = || 0..200;
         let endless: Vec<_> = numbers().map(|it| ray(it, 0.0, f64::INFINITY)).collect();
         let mut hits = vec![SceneHit::MISS; endless.len()];
@@ -56,34 +56,5 @@ fn t_is_never_outside_of_the_interval() {
             );
         }
         assert!(found > 0, "{query:?}");
-    }
-}
-
-#[test]
-fn any_hit_rejects_the_rays_that_closest_hit_rejects() {
-    let compiled = ball();
-    let scene = compiled.blob.scene().unwrap();
-    let lengths = [5e-324, 1e-310, 1e-300, 1.0, 1e300, 1.7e308];
-    let rays = lengths.map(|length| {
-        [-1.0, 1.0].map(|sign| SceneRay {
-            origin: DVec3::new(0.0, 0.0, 5.0),
-            tmin: 0.0,
-            direction: DVec3::new(0.0, 0.0, sign * length),
-            tmax: f64::INFINITY,
-        })
-    });
-    let rays = rays.concat();
-    for (closest, any) in queries(false).zip(queries(true)) {
-        let (mut first, mut some) = ([SceneHit::MISS; 12], [SceneHit::MISS; 12]);
-        let rejected = trace(&scene, &rays, closest, &mut first);
-        assert!(rejected.count > 0);
-        assert_eq!(trace(&scene, &rays, any, &mut some), rejected);
-        for (first, some) in first.iter().zip(&some) {
-            assert_eq!(first.is_rejected(), some.is_rejected());
-            assert_eq!(
-                first.is_rejected() || first.is_miss(),
-                some.object == u32::MAX
-            );
-        }
     }
 }

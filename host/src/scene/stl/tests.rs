@@ -79,7 +79,11 @@ fn binary_files_share_vertices_and_say_what_is_too_much() {
     );
     assert_eq!(imported.scene.objects[0].name, "thing");
     bytes.extend([7; 3]);
-    for head in [&b"thing"[..], b"solid", b"solid fake\nfacet normal 0 0 1\nouter loop\n"] {
+    for head in [
+        &b"thing"[..],
+        b"solid",
+        b"solid fake\nfacet normal 0 0 1\nouter loop\n",
+    ] {
         bytes[..head.len()].copy_from_slice(head);
         let imported = read(&bytes).unwrap();
         assert_eq!(mesh(&imported.scene.objects[0]).1.len(), 2);
