@@ -48,7 +48,11 @@ fn t_is_never_outside_of_the_interval() {
         let rejected = trace(&scene, &beside, query, &mut hits);
         assert_eq!(rejected.count, 0);
         let mut found = 0;
-        for (ray, hit) in beside.iter().zip(&hits).filter(|(_, hit)| !hit.is_miss()) {
+        for (ray, hit) in beside
+            .iter()
+            .zip(&hits)
+            .filter(|(_, hit)| hit.object != u32::MAX)
+        {
             found += 1;
             assert!(
                 ray.tmin <= hit.t && hit.t <= ray.tmax,
