@@ -3,7 +3,7 @@
 //! The map is octahedral: see `gridel_core::format::environment`. Every texel is the mean of the radiance in it.
 
 use super::exposure::Exposure;
-use super::radiance;
+use super::radiance::radiance;
 use crate::compile::CompileError;
 use crate::compile::section::{Section, section};
 use crate::scene::{Color, Environment, Panorama, Sky};

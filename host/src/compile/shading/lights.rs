@@ -2,7 +2,7 @@
 
 use super::exposure::Exposure;
 use super::light_forms::{FormedLight, form_record, lift};
-use super::radiance;
+use super::radiance::radiance;
 use crate::compile::CompileError;
 use crate::compile::section::{Section, section};
 use crate::scene::{Color, Light, LightForm, Scene, Track};

@@ -3,7 +3,7 @@
 use super::checkerboard::{LARGEST_CELL, checker_origin, has_large_cells};
 use super::exposure::Exposure;
 use super::media::media;
-use super::radiance;
+use super::radiance::radiance;
 use super::textures::{TextureFigures, Textures};
 use crate::compile::CompileError;
 use crate::compile::requirements::Requirements;

@@ -8,11 +8,13 @@ mod light_forms;
 mod lights;
 mod materials;
 mod media;
+mod radiance;
 mod setting;
 mod textures;
 
 pub use environment::EnvironmentFigures;
 pub use lights::light_record;
+pub use radiance::radiance;
 pub use textures::{TextureFigures, root};
 
 use super::CompileError;
@@ -23,7 +25,7 @@ use super::joints;
 use super::requirements::Requirements;
 use super::section::{Section, section};
 use super::tracks;
-use crate::scene::{Color, Scene, ToneMapping};
+use crate::scene::{Scene, ToneMapping};
 use crate::shape::Lattice;
 use bytemuck::Zeroable;
 use environment::EnvironmentData;
@@ -196,14 +198,4 @@ fn view_record(scene: &Scene) -> Result<View, CompileError> {
         encoding,
         ..View::zeroed()
     })
-}
-
-/// A color of light as a blob's records hold it: 20 fraction bits, 0 to 2,047.999999; saturates.
-///
-/// ```
-/// assert_eq!(gridel_host::compile::radiance([1.0, 0.5, 0.0]), [1 << 20, 1 << 19, 0]);
-/// assert_eq!(gridel_host::compile::radiance([1e9; 3]), [i32::MAX; 3]);
-/// ```
-pub fn radiance(color: Color) -> [i32; 3] {
-    color.map(|channel| (channel * f64::from(1 << 20)).round().max(0.0) as i32)
 }
