@@ -62,22 +62,6 @@ impl Spot {
     pub const LEAST_OUTER: f64 = 0.3;
 }
 
-#[cfg(test)]
-mod tests {
-    use super::Spot;
-
-    #[test]
-    fn a_step_of_f32_changes_the_narrowest_spot_by_less_than_a_percent() {
-        let change = |degrees: f64| {
-            let width = 1.0 - degrees.to_radians().cos();
-            let step = f64::from(f32::EPSILON) / 2.0;
-            1.0 - (1.0 - step / width).powi(2)
-        };
-        assert!(change(Spot::LEAST_OUTER) < 0.01);
-        assert!(change(0.9 * Spot::LEAST_OUTER) > 0.01);
-    }
-}
-
 /// By how much a transform lengthens, on the mean of all directions.
 pub(super) fn scale_of(by: &DAffine3) -> f64 {
     by.matrix3.determinant().abs().cbrt()
@@ -133,5 +117,21 @@ impl LightForm {
             }),
             ..*self
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::Spot;
+
+    #[test]
+    fn a_step_of_f32_changes_the_narrowest_spot_by_less_than_a_percent() {
+        let change = |degrees: f64| {
+            let width = 1.0 - degrees.to_radians().cos();
+            let step = f64::from(f32::EPSILON) / 2.0;
+            1.0 - (1.0 - step / width).powi(2)
+        };
+        assert!(change(Spot::LEAST_OUTER) < 0.01);
+        assert!(change(0.9 * Spot::LEAST_OUTER) > 0.01);
     }
 }

@@ -120,7 +120,7 @@ mod tests {
 
     #[test]
     fn lost_light_of_an_environment_is_a_warning_of_the_compiler() {
-        let sky = "[environment]\nzenith = 2000\nhorizon = 1\nground = 0\n";
+        let sky = "[environment]\nzenith = 2000\nhorizon = 1\nground = 0\n[render]\nexposure = 2\n";
         let report = compile(&scene(sky), &Options::default()).unwrap().report;
         let lines = of_compiler(&report, 16);
         assert!(lines[0].contains("of its light is lost"), "{lines:?}");
