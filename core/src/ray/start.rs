@@ -10,8 +10,7 @@ use core::cmp::Ordering;
 
 inline_unless_small!(
     /// The lengths by which rays are moved that run up or down one axis, from a coordinate on it. They are moved to the
-    /// plane in which the scene's box begins. For hits behind the point they are moved to a unit before that plane, or
-    /// towards there: rounding moves no hit before the start.
+    /// plane in which the scene's box begins, or towards it for hits behind the point.
     pub(super) fn distance_to_box<N: Arithmetic>(
         bounds: &UnitBox,
         origin: N::Wide,
@@ -29,13 +28,26 @@ inline_unless_small!(
         if to_box > zero {
             to_box
         } else if tmin < zero {
-            let before_box = N::difference(to_box, N::from_unit(1).widen());
-            if tmin > before_box { tmin } else { before_box }
+            if tmin > to_box { tmin } else { to_box }
         } else {
             zero
         }
     }
 );
+
+/// Returns a start that is moved back to where the scene's box begins, in that plane: rounding can have moved it off, and
+/// hits in the plane before it.
+#[inline(always)]
+pub(super) fn onto_box<N: Arithmetic>(
+    bounds: &UnitBox,
+    (axis, forward): (usize, bool),
+    start: [N; 3],
+) -> [N; 3] {
+    let [first, last] = pick(bounds.0, axis);
+    let plane = N::from_unit(if forward { first } else { last });
+    let on = |k: usize| if k == axis { plane } else { start[k] };
+    [on(0), on(1), on(2)]
+}
 
 /// An interval counted from the moved origin of a ray.
 #[inline(always)]
@@ -107,11 +119,7 @@ inline_unless_small!(
             // Rounded slopes and lengths would lose the ray's place.
             let [first, last] = pick(bounds.0, major);
             let forward = pick(slope, major) > N::ZERO;
-            let mut plane = N::from_unit(if forward { first } else { last });
-            if start_t < N::Wide::default() {
-                // For hits behind the point.
-                plane = plane - N::from_unit(if forward { 1 } else { -1 });
-            }
+            let plane = N::from_unit(if forward { first } else { last });
             let (from, stride) = (pick(origin, major), pick(direction, major));
             let start = |axis: usize| N::carry(origin[axis], from, plane, direction[axis], stride);
             let depth = plane.widen() - from;

@@ -27,7 +27,7 @@ fn hits(
     hits
 }
 
-/// A ray to a point of the sphere around the origin: from without, from within to behind itself, or from beyond.
+/// A ray from without to a point of a surface with this normal.
 fn ray_to(point: DVec3, normal: DVec3, random: &mut Random) -> SceneRay {
     let direction = loop {
         let direction = DVec3::from_array(random.direction());
@@ -35,10 +35,9 @@ fn ray_to(point: DVec3, normal: DVec3, random: &mut Random) -> SceneRay {
             break direction * random.magnitude(0.1, 10.0);
         }
     };
-    let back = random.magnitude(0.01, 100.0) * [1.0, 1.0, -0.1, -1.0][random.below(4)];
     SceneRay {
-        origin: point - back * direction,
-        tmin: if back > 0.0 { 0.0 } else { -1e6 },
+        origin: point - random.magnitude(0.01, 100.0) * direction,
+        tmin: 0.0,
         direction,
         tmax: f64::INFINITY,
     }
