@@ -11,13 +11,13 @@ pub use pencil::Pencil;
 
 use crate::axis::pick;
 use crate::format::record::UnitBox;
-use crate::number::{Arithmetic, Format};
+use crate::number::Arithmetic;
 use crate::observe::event::Event;
 use crate::target::{inline_on_hosts, inline_on_hosts_hint_on_boards, inline_unless_small};
 use given::{RayPoint, given};
 use start::{
-    check_interval, check_origin, distance_to_box, end_after, far_start, interval, is_near,
-    near_start, onto_box,
+    check_interval, check_origin, distance_to_box, end_after, far_start, further_back, interval,
+    is_near, near_start,
 };
 
 /// A half-line with an interval, ready to be traced through one scene.
@@ -91,7 +91,7 @@ impl<N: Arithmetic> Ray<N> {
             let forward = pick(slope, major) > N::ZERO;
             let start_t = distance_to_box::<N>(bounds, pick(origin, major), (major, forward), tmin);
             let single = (origin.map(N::narrow), N::narrow(start_t));
-            let (mut start, start_t, within) = if is_near(single.0, major, single.1) {
+            let (mut start, mut start_t, within) = if is_near(single.0, major, single.1) {
                 (near_start(single.0, single.1, slope), start_t, true)
             } else {
                 let [x, y, z] = origin;
@@ -99,8 +99,8 @@ impl<N: Arithmetic> Ray<N> {
                 far_start::<N, false>(bounds, origin, direction, (slope, major), start_t)
             };
             let is_moved_back = tmin < start_t && start_t < N::Wide::default();
-            if N::FORMAT != Format::Fixed && is_moved_back && within {
-                start = onto_box(bounds, (major, forward), start);
+            if is_moved_back && within {
+                (start, start_t) = further_back(start, start_t, slope);
             }
             let given = given(|| origin, [tmin, tmax], within);
             let [tmin, tmax] = interval(tmin, tmax, start_t);

@@ -35,18 +35,20 @@ inline_unless_small!(
     }
 );
 
-/// Returns a start that is moved back to where the scene's box begins, in that plane: rounding can have moved it off, and
-/// hits in the plane before it.
+/// Moves a start four units further back. Rounding moves no hit of the scene's box before it, as it does where the start
+/// lies on the box. (One unit would do; after four, slopes with few bits keep their products short.)
 #[inline(always)]
-pub(super) fn onto_box<N: Arithmetic>(
-    bounds: &UnitBox,
-    (axis, forward): (usize, bool),
+pub(super) fn further_back<N: Arithmetic>(
     start: [N; 3],
-) -> [N; 3] {
-    let [first, last] = pick(bounds.0, axis);
-    let plane = N::from_unit(if forward { first } else { last });
-    let on = |k: usize| if k == axis { plane } else { start[k] };
-    [on(0), on(1), on(2)]
+    start_t: N::Wide,
+    slope: [N; 3],
+) -> ([N; 3], N::Wide) {
+    let length = N::from_unit(4);
+    let back = |k: usize| start[k] - length * slope[k];
+    (
+        [back(0), back(1), back(2)],
+        N::difference(start_t, length.widen()),
+    )
 }
 
 /// An interval counted from the moved origin of a ray.

@@ -9,6 +9,7 @@ use crate::render::{Pixel, RenderError, Renderer, Settings, WorkspaceView};
 ///
 /// Each moment is exact, and has its own camera, lights, materials and poses. The samples of a pixel are spread over
 /// the moments in order. Of `n` samples and `k` moments, sample `i` is rendered at moment `i * k / n`, rounded down.
+/// If `k` does not divide `n`, some moments have one sample more than others, and count for more.
 /// Such a run of samples fills the pixel evenly, and so do the random points of effects. (Every `k`-th sample would
 /// not: the points of every second sample lie in one half of the pixel.) Colors are averaged as those of other samples
 /// are.

@@ -154,11 +154,11 @@ fn atom<'a>(
 /// or have something else: line numbers of old files, or a part of a longer word.
 fn stated_symbol(line: &str) -> Option<&str> {
     let symbol = columns(line, 77, 78).trim();
-    let is_letter = |text: &str| text.contains(|c: char| c.is_ascii_alphabetic());
+    let has_letter = |text: &str| text.contains(|c: char| c.is_ascii_alphabetic());
     // A charge begins with a digit or a sign.
-    let is_word = is_letter(columns(line, 79, 79));
+    let is_word = has_letter(columns(line, 79, 79));
     let is_known = || Element::from_symbol(symbol).is_some();
-    (is_letter(symbol) && (!is_word || is_known())).then_some(symbol)
+    (has_letter(symbol) && (!is_word || is_known())).then_some(symbol)
 }
 
 /// Returns the element from the four columns of an atom's name, whose first two are the symbol,

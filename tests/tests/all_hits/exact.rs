@@ -112,21 +112,30 @@ fn triangles_are_listed_as_exact_arithmetic_finds_them() {
             let structures = Structure::ALL.into_iter().filter_map(|it| scene.choose(it));
             let structures: Vec<_> = structures.collect();
             let listed = list::<N, 4>(&structures[number % structures.len()], &ready);
-            let found: Vec<usize> = listed
+            let primitives = listed
                 .iter()
-                .filter_map(|hit| Some(hit.0?.primitive as usize))
-                .collect();
-            let mut as_expected: Vec<usize> = expected.iter().map(|it| it.2).collect();
+                .filter_map(|hit| Some((hit, hit.0?.primitive as usize)));
+            // Diagonal rays can meet the spheres, too.
+            let triangles_only = primitives.filter(|(_, number)| *number < triangles.len());
             let about = || format!("{}: {ray:?}", N::FORMAT.name());
-            for (hit, number) in listed.iter().zip(&found) {
-                let (over, under, _) = expected.iter().find(|it| it.2 == *number).expect("crossed");
+            let mut found = Vec::new();
+            for (hit, number) in triangles_only {
+                let crossed = expected.iter().find(|it| it.2 == number);
+                let Some((over, under, _)) = crossed else {
+                    panic!("triangle {number} is not crossed: {}", about());
+                };
                 let t = *over as f64 / *under as f64;
-                let found = f64::from_bits(hit.2);
-                let most = most::<N>(triangles[*number], slope);
-                assert!((found - t).abs() <= most, "{found}, {t}: {}", about());
+                let listed = f64::from_bits(hit.2);
+                let most = most::<N>(triangles[number], slope);
+                assert!(
+                    (listed - t).abs() <= most.min(0.1),
+                    "{listed}, {t}: {}",
+                    about()
+                );
+                found.push(number);
             }
+            let mut as_expected: Vec<usize> = expected.iter().map(|it| it.2).collect();
             // Hits that rounding puts into another order, as at an edge.
-            let mut found = found;
             found.sort_unstable();
             as_expected.sort_unstable();
             assert_eq!(found, as_expected, "{}", about());

@@ -27,7 +27,7 @@ fn hits(
     hits
 }
 
-/// A ray from without to a point of a surface with this normal.
+/// A ray to a point of a surface with this normal: from without, or from within or beyond to behind its origin.
 fn ray_to(point: DVec3, normal: DVec3, random: &mut Random) -> SceneRay {
     let direction = loop {
         let direction = DVec3::from_array(random.direction());
@@ -35,9 +35,10 @@ fn ray_to(point: DVec3, normal: DVec3, random: &mut Random) -> SceneRay {
             break direction * random.magnitude(0.1, 10.0);
         }
     };
+    let back = random.magnitude(0.01, 100.0) * [1.0, 1.0, -0.01, -1.0][random.below(4)];
     SceneRay {
-        origin: point - random.magnitude(0.01, 100.0) * direction,
-        tmin: 0.0,
+        origin: point - back * direction,
+        tmin: if back > 0.0 { 0.0 } else { -1e6 },
         direction,
         tmax: f64::INFINITY,
     }

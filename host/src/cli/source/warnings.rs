@@ -55,12 +55,16 @@ fn names_changed(report: &Report) -> Option<String> {
 /// Leaves effects out of the scene of a file, and reports what each of them loses.
 pub fn leave_out(scene: &mut Scene, path: &Path, effects: &[Effects]) -> Vec<String> {
     let file = path.display();
-    let whole = scene.clone();
+    // One that is left out can take another along.
+    let whole = (effects.len() > 1).then(|| scene.clone());
+    let was_called_for = |effect| {
+        let whole = whole.clone();
+        whole.is_some_and(|mut scene| scene::leave_out(&mut scene, effect).is_some())
+    };
     let lost = effects
         .iter()
         .filter_map(|&effect| match scene::leave_out(scene, effect) {
-            // It went with an effect before.
-            None if scene::leave_out(&mut whole.clone(), effect).is_some() => None,
+            None if was_called_for(effect) => None,
             None => Some(format!(
                 "{file}: the scene does not call for {effect}, so nothing is left out"
             )),
@@ -95,6 +99,7 @@ fn lost_by(names: &[String]) -> String {
 mod tests {
     use super::*;
     use gridel_host::compile::{Options, compile};
+    use gridel_host::scene::{Environment, Panorama, Sky};
 
     fn scene(text: &str) -> Scene {
         let sphere = "[[object]]\nkind = 'sphere'\ncenter = [0, 0, 0]\nradius = 1\n";
@@ -120,8 +125,12 @@ mod tests {
 
     #[test]
     fn lost_light_of_an_environment_is_a_warning_of_the_compiler() {
-        let sky = "[environment]\nzenith = 2000\nhorizon = 1\nground = 0\n[render]\nexposure = 2\n";
-        let report = compile(&scene(sky), &Options::default()).unwrap().report;
+        let mut pixels = vec![[1.0; 3]; 64 * 32];
+        pixels[500] = [1e5; 3];
+        let sky = Panorama::new("sky", 64, 32, pixels).unwrap();
+        let mut scene = scene("");
+        scene.environment = Some(Environment::of(Sky::Picture(sky.into())));
+        let report = compile(&scene, &Options::default()).unwrap().report;
         let lines = of_compiler(&report, 16);
         assert!(lines[0].contains("of its light is lost"), "{lines:?}");
     }
