@@ -7,13 +7,13 @@
 
 use crate::axis::pick;
 use crate::format::layout::records;
-use crate::format::limits::FARTHEST_POINT;
+use crate::format::limits::{FARTHEST_HIT, FARTHEST_POINT};
 use crate::format::range::Ranges;
 use crate::format::record::UnitBox;
 use crate::format::{BlobError, Reason};
 use crate::geometry::primitive::{InScene, Primitive};
 use crate::geometry::{Crossing, Part, Surface, cross_plane, flat};
-use crate::number::{Arithmetic, extent};
+use crate::number::{Arithmetic, Format, extent};
 use crate::ray::Ray;
 use bytemuck::{Pod, Zeroable};
 
@@ -99,7 +99,15 @@ impl Primitive for Plane {
         if near.map(N::widen) == far && t.abs() < N::FAR {
             return Some(t.widen());
         }
-        Some(N::far_over(far_dot(far, normal), approach))
+        let t = N::far_over(far_dot(far, normal), approach);
+        let is_met = -N::far(FARTHEST_HIT) < t && t < N::far(FARTHEST_HIT);
+        if N::FORMAT != Format::Fixed || !is_met {
+            return Some(t);
+        }
+        // That quotient is right to a part in 2^31. So the rest is counted from there.
+        let place = [0, 1, 2].map(|k| pick(place, k) + N::wide_scale(t, pick(slope, k)));
+        let rest = far_dot(self.seen_from::<N>(place), normal);
+        Some(t + N::far_over(rest, approach))
     }
 
     fn surface<N: Arithmetic>(&self, ray: &Ray<N>, _: Part, point: [N; 3]) -> Surface<N> {

@@ -1,11 +1,11 @@
 //! Records the found figures in place of the expected ones, where these are broken.
 
 use super::manifest::Manifest;
-use super::report::{Figure, Key, Record, Report};
+use super::report::{Figure, Finding, Key, Outcome, Record, Report};
 use crate::output::Files;
 use std::collections::BTreeSet;
 use std::io;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use toml_edit::{DocumentMut, InlineTable, Item, Value};
 
 /// A manifest with the new records.
@@ -15,7 +15,9 @@ pub struct Blessed {
     old: String,
     new: String,
     references: Vec<(PathBuf, super::Image)>,
-    /// Failures that cannot be recorded: names of checks, and the key of each.
+    /// References that no picture would do for.
+    conflicts: BTreeSet<PathBuf>,
+    /// Failures that cannot be recorded: names of checks, the key of each, and why, where the table does not say it.
     pub left: Vec<String>,
 }
 
@@ -46,6 +48,7 @@ pub fn bless(manifest: &Manifest, report: &Report) -> Blessed {
         old: manifest.text.clone(),
         new: manifest.text.clone(),
         references: Vec::new(),
+        conflicts: BTreeSet::new(),
         left: Vec::new(),
     };
     // It was read before, so it is TOML.
@@ -53,7 +56,6 @@ pub fn bless(manifest: &Manifest, report: &Report) -> Blessed {
         return blessed;
     };
     let mut values = Vec::<((usize, &[Key]), &Figure)>::new();
-    let mut pictures = BTreeSet::new();
     for finding in &report.findings {
         match &finding.record {
             Some(Record::Value {
@@ -69,20 +71,17 @@ pub fn bless(manifest: &Manifest, report: &Report) -> Blessed {
                     None => values.push((place, figure)),
                 }
             }
-            // The first format's picture becomes the reference of all.
-            Some(Record::Picture(path, image)) if pictures.insert(path) => {
-                blessed.references.push((path.clone(), image.clone()));
-            }
-            None if matches!(finding.outcome, super::Outcome::Failed(_)) => {
+            None if matches!(finding.outcome, Outcome::Failed(_)) => {
                 let what = format!("{}: {}", finding.check, finding.what);
                 // In several formats it is still one thing.
                 if !blessed.left.contains(&what) {
                     blessed.left.push(what);
                 }
             }
-            Some(Record::Picture(..)) | None => {}
+            Some(Record::Picture(_)) | None => {}
         }
     }
+    blessed.record_pictures(report);
     if values.is_empty() {
         return blessed;
     }
@@ -97,6 +96,49 @@ pub fn bless(manifest: &Manifest, report: &Report) -> Blessed {
 }
 
 impl Blessed {
+    /// Records a picture for each reference that is broken: the first that is not like it. All that name the reference
+    /// must be like that picture then.
+    fn record_pictures(&mut self, report: &Report) {
+        let all = || {
+            report.findings.iter().filter_map(|it| match &it.record {
+                Some(Record::Picture(picture)) => Some((it, picture)),
+                _ => None,
+            })
+        };
+        let broken = all().filter(|(it, _)| matches!(it.outcome, Outcome::Failed(_)));
+        for (_, new) in broken {
+            if self.conflicts.contains(&new.path) || self.records(&new.path) {
+                continue;
+            }
+            let mut others = all().filter(|(_, other)| other.path == new.path);
+            match others.find(|(_, other)| !other.is_like(&new.image)) {
+                Some((it, _)) => {
+                    let on = it.on.as_deref().unwrap_or_default();
+                    self.left.push(format!(
+                        "{}: {} on {on} (another picture has the same one, and they differ by more than the \
+                         `tolerance`; name a file for each)",
+                        it.check, it.what
+                    ));
+                    self.conflicts.insert(new.path.clone());
+                }
+                None => self.references.push((new.path.clone(), new.image.clone())),
+            }
+        }
+    }
+
+    fn records(&self, reference: &Path) -> bool {
+        self.references.iter().any(|(path, _)| path == reference)
+    }
+
+    /// Returns whether a broken finding holds once this is recorded.
+    pub(super) fn mends(&self, finding: &Finding) -> bool {
+        match &finding.record {
+            Some(Record::Value { .. }) => true,
+            Some(Record::Picture(picture)) => self.records(&picture.path),
+            None => false,
+        }
+    }
+
     /// The change of the manifest as a unified diff, and the references that are written; empty if
     /// nothing changes.
     pub fn diff(&self) -> String {

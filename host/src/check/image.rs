@@ -36,7 +36,7 @@ impl Image {
         }
     }
 
-    /// Reads a PNG of three or four channels of 8 bits; transparency is left out.
+    /// Reads a PNG of one to four channels of 8 bits; transparency is left out.
     pub(super) fn read(path: &Path) -> io::Result<Self> {
         let file = File::open(path)?;
         // A picture in memory may take this much, however small its file is.
@@ -44,12 +44,14 @@ impl Image {
         let decoder = png::Decoder::new_with_limits(BufReader::new(file), limits);
         let mut reader = decoder.read_info()?;
         let channels = match reader.output_color_type() {
+            (png::ColorType::Grayscale, png::BitDepth::Eight) => 1,
+            (png::ColorType::GrayscaleAlpha, png::BitDepth::Eight) => 2,
             (png::ColorType::Rgb, png::BitDepth::Eight) => 3,
             (png::ColorType::Rgba, png::BitDepth::Eight) => 4,
             (color, depth) => {
                 return Err(io::Error::other(format!(
-                    "it has {color:?} pixels of {depth:?} bits, and only RGB of 8 bits per channel \
-                     is compared"
+                    "it has {color:?} pixels of {depth:?} bits, and only RGB and gray of 8 bits per channel are \
+                     compared"
                 )));
             }
         };
@@ -60,8 +62,11 @@ impl Image {
         let frame = reader.next_frame(&mut pixels)?;
         let pixels = pixels
             .chunks_exact(channels)
-            .flat_map(|pixel| &pixel[..3])
-            .copied();
+            .flat_map(|pixel| match *pixel {
+                [gray] | [gray, _] => [gray; 3],
+                [red, green, blue, ..] => [red, green, blue],
+                [] => [0; 3],
+            });
         Ok(Self {
             size: [frame.width, frame.height],
             pixels: pixels.collect(),

@@ -1,15 +1,19 @@
 //! The findings of a run, for people and for programs.
 
+use super::bless::Blessed;
 use super::image::Image;
-use crate::table::{Align, Table, grouped};
+use super::manifest::Reference;
+use crate::table::{Align, Table, grouped, printable, significant};
 use serde::{Serialize, Serializer};
+use std::collections::BTreeSet;
 use std::fmt;
+use std::path::PathBuf;
 
 /// All findings, in the order of the manifest.
 #[derive(Clone, Debug, Default, Serialize)]
 pub struct Report {
     pub findings: Vec<Finding>,
-    /// Warnings of importers, each once.
+    /// Warnings of importers and of the compiler, each once.
     pub warnings: Vec<String>,
 }
 
@@ -27,7 +31,7 @@ pub struct Finding {
     pub allowed: Option<Figure>,
     #[serde(flatten)]
     pub outcome: Outcome,
-    /// The record with which this check passes.
+    /// The record with which this check passes; that of a picture also where it passes already.
     #[serde(skip)]
     pub(super) record: Option<Record>,
     /// The picture that is not as it should be.
@@ -67,7 +71,36 @@ pub(super) enum Record {
         figure: Figure,
     },
     /// A reference picture.
-    Picture(std::path::PathBuf, Image),
+    Picture(ReferencePicture),
+}
+
+/// A picture that can become a reference, and how others may differ from it.
+#[derive(Clone, Debug)]
+pub(super) struct ReferencePicture {
+    pub(super) path: PathBuf,
+    pub(super) image: Image,
+    /// Codes of 255 that a channel may differ.
+    pub(super) channel: u8,
+    /// Pixels that may differ by more.
+    pub(super) pixels: u64,
+}
+
+impl ReferencePicture {
+    /// A picture in place of a reference.
+    pub(super) fn new(reference: &Reference, image: Image) -> Self {
+        Self {
+            path: reference.picture.path.clone(),
+            image,
+            channel: reference.channel,
+            pixels: reference.pixels,
+        }
+    }
+
+    /// Returns whether the picture would pass with another as its reference.
+    pub(super) fn is_like(&self, reference: &Image) -> bool {
+        let difference = self.image.difference(reference, self.channel);
+        difference.is_some_and(|it| it.beyond <= self.pixels)
+    }
 }
 
 /// A step of the path to a value.
@@ -119,10 +152,17 @@ impl Report {
         self.count(|outcome| *outcome == Outcome::Recorded)
     }
 
-    /// Takes note that all was recorded that [`bless`](super::bless()) can record.
-    pub fn take_as_recorded(&mut self) {
+    /// Keeps the first of warnings that checks of one scene have in common.
+    pub(super) fn name_warnings_once(&mut self) {
+        let mut seen = BTreeSet::new();
+        self.warnings.retain(|it| seen.insert(it.clone()));
+    }
+
+    /// Takes note of what was recorded.
+    pub fn take_as_recorded(&mut self, blessed: &Blessed) {
         for finding in &mut self.findings {
-            if finding.record.is_some() {
+            let is_broken = matches!(finding.outcome, Outcome::Failed(_));
+            if is_broken && blessed.mends(finding) {
                 finding.outcome = Outcome::Recorded;
             }
         }
@@ -147,7 +187,7 @@ impl Report {
             |figure: &Option<Figure>| figure.as_ref().map_or(String::from("-"), Figure::to_string);
         for finding in &self.findings {
             table.row([
-                finding.check.clone(),
+                printable(&finding.check),
                 finding.on.clone().unwrap_or_default(),
                 finding.what.clone(),
                 figure(&finding.found),
@@ -188,7 +228,7 @@ impl fmt::Display for Figure {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Count(count) => f.write_str(&grouped(count)),
-            Self::Mean(mean) => write!(f, "{mean:.3}"),
+            Self::Mean(mean) => f.write_str(&significant(*mean)),
             Self::Hash(hash) => f.write_str(hash),
         }
     }

@@ -3,7 +3,7 @@
 use super::board::{self, BoardRun};
 use super::image::Image;
 use super::manifest::{Check, Manifest, Reference};
-use super::report::{Evidence, Figure, Finding, Key, Outcome, Record, Report};
+use super::report::{Evidence, Figure, Finding, Key, Outcome, Record, ReferencePicture, Report};
 use crate::blob::{Blob, best_structures, is_blob};
 use crate::compile::{self, Options};
 use crate::explained;
@@ -47,6 +47,7 @@ pub fn run(manifest: &Manifest, progress: &dyn Fn()) -> Report {
             run.push(None, "scene", None, None, Outcome::Failed(why));
         }
     }
+    report.name_warnings_once();
     report
 }
 
@@ -164,11 +165,7 @@ impl Run<'_> {
             ));
         }
         self.posed = imported.posed;
-        for warning in imported.warnings {
-            if !self.warnings.contains(&warning) {
-                self.warnings.push(warning);
-            }
-        }
+        self.warnings.extend(imported.warnings);
         let mut scene = imported.scene;
         // As part of the blob, so that a board renders the same picture.
         if let Some([width, height]) = check.size {
@@ -182,6 +179,9 @@ impl Run<'_> {
         options.lattice_bits = check.lattice_bits.unwrap_or(options.lattice_bits);
         let compiled = compile::compile(&scene, &options)
             .map_err(|error| format!("{}: {}", path.display(), explained(&error)))?;
+        let warnings = compiled.report.warnings(options.lattice_bits);
+        let named = |warning| format!("{}: {warning}", path.display());
+        self.warnings.extend(warnings.into_iter().map(named));
         Ok(compiled.blob)
     }
 
@@ -296,7 +296,7 @@ impl Run<'_> {
                 let remedy = if may_be_recorded {
                     "check the path, or let `gridel check --bless` record the picture there"
                 } else {
-                    "write the path of a PNG with 8 bits per channel; `--bless` overwrites no others"
+                    "write the path of an RGB or gray PNG with 8 bits per channel; `--bless` overwrites no others"
                 };
                 let cause = format!("cannot be read: {error}");
                 let error = self.manifest.error(&reference.picture, cause, remedy);
@@ -327,10 +327,10 @@ impl Run<'_> {
         );
         let finding = self.push(on, "reference", found, allowed, outcome);
         if broken {
-            finding.record =
-                may_be_recorded.then(|| Record::Picture(reference.picture.path.clone(), image));
             finding.evidence = Some(evidence);
         }
+        finding.record =
+            may_be_recorded.then(|| Record::Picture(ReferencePicture::new(reference, image)));
     }
 
     /// Runs a program on a board and compares its figures.

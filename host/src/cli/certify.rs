@@ -105,7 +105,6 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let options = arguments.geometry.clone().into();
     let source = Source::open(input, &options, None, compiling)?;
     let scene = source.scene()?;
-    source.warn_of_collapsed();
     let structure = source.structure(&scene, None)?;
     let settings = arguments.picture.settings(&scene);
     let count = usize::from(settings.width) * usize::from(settings.height);

@@ -70,8 +70,10 @@ impl Changes {
         let own = scene.lights();
         let mut lights: Vec<Light> = own.iter().map(|it| Light::of_blob(scene, it)).collect();
         let before = lights.clone();
+        // The last are those of the environment, which no scene file has among its lights.
+        let stated = own.iter().take_while(|it| !it.is_environment()).count();
         for change in &options.lights {
-            change.apply(&mut lights, |number| is_spot(scene, &own[number]))?;
+            change.apply(&mut lights[..stated], |number| is_spot(scene, &own[number]))?;
         }
         let mut numbers = options.lights.iter().map(LightChange::number);
         let is_shown =

@@ -6,7 +6,7 @@ use super::progress::Progress;
 use clap::Args;
 use gridel_host::check::{self, Blessed, Manifest, Outcome, Report};
 use gridel_host::output::Files;
-use gridel_host::table::counted;
+use gridel_host::table::{counted, printable};
 use serde::Serialize;
 use std::path::{Path, PathBuf};
 
@@ -82,8 +82,8 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         Some(blessed) => blessed.files(),
         None => Ok(Files::default()),
     };
-    if blessed.is_some() && staged.is_ok() {
-        report.take_as_recorded();
+    if let Some(blessed) = blessed.as_ref().filter(|_| staged.is_ok()) {
+        report.take_as_recorded(blessed);
     }
     // Everything runs, whatever fails. A report that cannot be written does not lose findings, and the findings set the
     // exit code in either case. The changes to recorded figures were printed before.
@@ -171,7 +171,8 @@ fn reasons(report: &Report) -> String {
             continue;
         };
         let on = finding.on.as_ref().map(|on| format!(" on {on}"));
-        let line = format!("{}{}: {why}\n", finding.check, on.unwrap_or_default());
+        let check = printable(&finding.check);
+        let line = format!("{check}{}: {why}\n", on.unwrap_or_default());
         if !lines.contains(&line) {
             lines.push(line);
         }

@@ -22,8 +22,9 @@ use std::path::PathBuf;
 ///
 /// Prints the rays of a pixel as a tree: what each ray hits and with what error bound, which lights
 /// reach the surface and what blocks the others, and what mirrors, glass and each ray contribute.
-/// The contributions add up to the pixel. Then it prints the nodes that the ray visits, the nodes
-/// that it skips with the planes that exclude them, and every primitive that is tested.
+/// The contributions add up to the samples, each limited to display white, and tone mapping changes
+/// their mean. Then it prints the nodes that the ray visits, the nodes that it skips with the planes
+/// that exclude them, and every primitive that is tested.
 ///
 /// The code that renders reports all of this. Points and distances are in scene units, distances
 /// along the ray. Colors are linear; 1 is display white.
@@ -100,7 +101,6 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         Structure::DualSplit,
     )?;
     let scene = source.scene()?;
-    source.warn_of_collapsed();
     let structure = source.structure(&scene, arguments.with.accel)?;
     let settings = arguments.picture.settings(&scene);
     let Settings { width, height, .. } = settings;

@@ -168,7 +168,6 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         Structure::Wide,
     )?;
     let scene = source.scene()?;
-    source.warn_of_collapsed();
     let unresolved = source.warn_of_unresolved(&scene, Some(arguments.with.format));
     let job = job(arguments, (&source, &scene), target.most_pixels())?;
     let pool = rayon::ThreadPoolBuilder::new()

@@ -12,13 +12,14 @@ use super::progress::Progress;
 use gridel_core::{BlobError, Effects, Format, Scene, Structure, Tracks};
 use gridel_host::blob::{self, Blob};
 use gridel_host::compile::{self, CompileError, Compiled, Names};
+use gridel_host::measure::Deforming;
 use gridel_host::measure::board::{Fit, MemoryReport};
 use gridel_host::resolution::{FACTOR, Unresolved, unresolved};
 use gridel_host::scene::{self, Imported, Posed, Track};
 use gridel_host::state::{self, State, StateError};
 use gridel_host::table::{counted, grouped, printable, significant};
 use std::path::Path;
-use warnings::{leave_out, of_compiler};
+use warnings::leave_out;
 
 /// A blob, from a file or from the compiler.
 pub struct Source {
@@ -163,6 +164,10 @@ impl Source {
         }
         if let Some(room) = options.geometry.room {
             compiling.room = room;
+            // Of all structures only these can be refitted.
+            if room > 0.0 {
+                compiling.structures = Deforming::STRUCTURES.to_vec();
+            }
         }
         compiling.texture_bytes = options.geometry.texture_bytes.or(compiling.texture_bytes);
         let progress = Progress::unknown("compiling");
@@ -184,7 +189,8 @@ impl Source {
             warn(&warning);
             warnings.push(warning);
         }
-        for warning in of_compiler(&report, compiling.lattice_bits) {
+        for warning in report.warnings(compiling.lattice_bits) {
+            let warning = format!("{}: {warning}", input.path().display());
             warn(&warning);
             warnings.push(warning);
         }
@@ -361,25 +367,6 @@ impl Source {
                     ),
                     format!("build it with `--accel {}`", structure.name()),
                 ))
-            }
-        }
-    }
-
-    /// Warns of primitives that were left out, for commands that do not name them.
-    pub fn warn_of_collapsed(&self) {
-        let Some(report) = &self.report else {
-            return;
-        };
-        for (left_out, why) in [
-            (&report.without_area, "without area"),
-            (&report.collapsed, "too small for the lattice"),
-        ] {
-            if left_out.count() > 0 {
-                warn(format!(
-                    "{}: {} {why}, left out; `gridel build` lists the first",
-                    self.input.path().display(),
-                    counted(left_out.count(), "primitive")
-                ));
             }
         }
     }

@@ -171,7 +171,6 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let options = arguments.geometry.clone().into();
     let source = Source::to_trace(&arguments.input, &options, &arguments.with, Structure::Wide)?;
     let scene = source.scene()?;
-    source.warn_of_collapsed();
     let query = Query {
         format: arguments.with.format,
         structure: source.structure(&scene, arguments.with.accel)?,

@@ -76,7 +76,6 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let options = arguments.geometry.clone().into();
     let source = Source::open(input, &options, other, compiling)?;
     let scene = source.scene()?;
-    source.warn_of_collapsed();
     let progress = Progress::steps("verifying", steps(arguments.rays));
     let report = verify(&scene, arguments.rays, &|| progress.step());
     drop(progress);

@@ -84,7 +84,6 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         &STRUCTURES,
     )?;
     let scene = source.scene()?;
-    source.warn_of_collapsed();
     let structure = source.structure(&scene, arguments.with.accel)?;
     let settings = arguments.picture.settings(&scene);
     let state = State::new(&scene, arguments.with.format, structure, settings);

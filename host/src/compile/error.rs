@@ -43,7 +43,7 @@ pub enum CompileError {
         pieces: usize,
         most: usize,
     },
-    #[error("{object} has texture coordinates beyond {most} repetitions of its texture")]
+    #[error("{object} has texture coordinates of {most} and more repetitions of its texture")]
     #[diagnostic(help(
         "move the coordinates towards 0, or let the texture's `scale` make them smaller"
     ))]

@@ -38,6 +38,7 @@ mod support;
 mod tracks;
 mod vertices;
 mod volumes;
+mod warnings;
 mod wide;
 mod writer;
 

@@ -4,7 +4,7 @@ use super::walk::Walk;
 use crate::trace::Frame;
 use gridel_core::observe::event::{QueryHit, Source};
 use gridel_core::{Event, RayKind, Scene};
-use serde::Serialize;
+use serde::{Serialize, Serializer};
 
 /// A pixel, or a ray of one's own, explained. Colors are linear, 1 being display white.
 #[derive(Clone, Debug, Default, Serialize)]
@@ -18,10 +18,33 @@ pub struct Explanation {
     /// Structure.
     pub accel: &'static str,
     pub samples: Vec<Sample>,
-    /// The pixel's linear color; 65535 is white.
+    /// The pixel's linear color; 65535 is white. As JSON a ratio, like other colors.
+    #[serde(serialize_with = "as_ratios")]
     pub linear: [u16; 3],
     /// The pixel's color in sRGB, as displays take it.
     pub srgb: [u8; 3],
+}
+
+impl Explanation {
+    /// The pixel's linear color, 1 being display white.
+    pub fn color(&self) -> [f64; 3] {
+        ratios(&self.linear)
+    }
+
+    /// The mean of the samples, which is the pixel's color before it is tone mapped or encoded for display.
+    pub fn mean(&self) -> [f64; 3] {
+        let count = self.samples.len().max(1) as f64;
+        let channel = |k: usize| self.samples.iter().map(|it| it.radiance[k]).sum::<f64>() / count;
+        [channel(0), channel(1), channel(2)]
+    }
+}
+
+fn ratios(linear: &[u16; 3]) -> [f64; 3] {
+    linear.map(|channel| f64::from(channel) / f64::from(u16::MAX))
+}
+
+fn as_ratios<S: Serializer>(linear: &[u16; 3], serializer: S) -> Result<S::Ok, S::Error> {
+    ratios(linear).serialize(serializer)
 }
 
 /// A ray from the camera, with all that it causes.

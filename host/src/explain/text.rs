@@ -26,7 +26,7 @@ impl Display for Shown<'_> {
             format,
             accel,
             samples,
-            linear,
+            linear: _,
             srgb,
         } = self.explanation;
         let [r, g, b] = srgb;
@@ -35,12 +35,18 @@ impl Display for Shown<'_> {
             None => write!(f, "The ray")?,
         }
         // Sixteen bits hold no more digits.
-        let [red, green, blue] = linear.map(|channel| f64::from(channel) / 65535.0);
+        let shown = self.explanation.color();
+        let [red, green, blue] = shown;
         writeln!(
             f,
             " is #{r:02x}{g:02x}{b:02x}: linear {red:.4} {green:.4} {blue:.4}, in {format} through \
              {accel}."
         )?;
+        let mean = self.explanation.mean();
+        if mean.iter().zip(shown).any(|(a, b)| (a - b).abs() > 1e-3) {
+            let mean = color(mean);
+            writeln!(f, "The scene shows the mean of its samples, {mean}, so.")?;
+        }
         for sentence in self.sentences() {
             writeln!(f, "{sentence}")?;
         }

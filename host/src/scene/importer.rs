@@ -77,6 +77,7 @@ impl Importers {
     /// The importer that recognizes the content of a file.
     fn of_content(self, path: &Path, bytes: &[u8]) -> Result<&'static Importer, SceneError> {
         check_encoding(path, bytes)?;
+        let bytes = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes);
         let mut all = self.0.iter();
         all.find(|it| (it.recognizes)(bytes)).ok_or_else(|| {
             SceneError::new(

@@ -216,7 +216,7 @@ fn only_pictures_become_references() {
     assert_eq!(run.code, Some(1), "{}", run.stderr);
     for word in [
         "check.toml:4: notes.txt cannot be read",
-        "write the path of a PNG",
+        "write the path of an RGB or gray PNG",
         "0 recorded, 1 failed",
     ] {
         assert!(run.stdout.contains(word), "{}", run.stdout);

@@ -106,3 +106,18 @@ fn changes_that_do_not_fit_are_rejected() {
         assert!(!folder.path("a.ppm").exists());
     }
 }
+
+/// The environment of a blob is no light that a scene file states.
+#[test]
+fn lights_of_an_environment_do_not_change() {
+    let folder = folder();
+    let sky = format!("{SCENE}[environment]\nzenith = 0.5\nhorizon = 0.5\nground = 0\n");
+    folder.write("sky.toml", sky.as_bytes());
+    folder.done(&["build", "sky.toml", "-o", "sky.gridel"]);
+    for input in ["sky.toml", "sky.gridel"] {
+        let render = ["render", input, "-o", "sky.ppm"];
+        let light = ["--light", "2.color=0,0,0"];
+        let words = ["there is no light 2", "2 lights", "0 to 1"];
+        folder.fails(2, &[&render[..], &SIZE, &light].concat(), &words);
+    }
+}

@@ -209,3 +209,87 @@ fn junit_names_suites_cases_and_reasons() {
     }
     assert!(xml.contains("blob_bytes is"), "{xml}");
 }
+
+/// Of two that differ, neither would pass with the other as its reference.
+#[test]
+fn pictures_that_differ_are_not_recorded_as_one_reference() {
+    let folder = Folder::new();
+    fs::write(folder.path("dark.toml"), BALL.replace("= 0.5", "= 0.4")).unwrap();
+    let check = |scene: &str, tolerance: &str| {
+        format!("[[check]]\nscene = \"{scene}.toml\"\nreference = \"one.png\"\n{tolerance}")
+    };
+    let both = |tolerance: &str| check("ball", tolerance) + &check("dark", tolerance);
+    for _ in 0..2 {
+        let (manifest, mut report) = folder.run(&both(""));
+        let blessed = bless(&manifest, &report);
+        assert!(
+            blessed.left[0].contains("name a file for each"),
+            "{:?}",
+            blessed.left
+        );
+        assert_eq!((blessed.left.len(), blessed.diff().as_str()), (1, ""));
+        report.take_as_recorded(&blessed);
+        assert_eq!(report.recorded(), 0, "{}", report.table());
+        // The same where one of them passes with the reference that is there.
+        let (manifest, mut report) = folder.run(&check("ball", ""));
+        let blessed = bless(&manifest, &report);
+        record(&blessed);
+        report.take_as_recorded(&blessed);
+        assert_eq!(report.failed(), 0, "{}", report.table());
+    }
+
+    fs::remove_file(folder.path("one.png")).unwrap();
+    let (manifest, _) = folder.run(&both("tolerance = { channel = 40 }\n"));
+    record(&bless(&manifest, &run(&manifest, &|| ())));
+    let (_, report) = folder.run(&folder.text());
+    assert_eq!(
+        (report.passed(), report.failed()),
+        (2, 0),
+        "{}",
+        report.table()
+    );
+}
+
+#[test]
+fn gray_references_are_compared() {
+    let folder = Folder::new();
+    for (color, channels) in [
+        (png::ColorType::Grayscale, 1),
+        (png::ColorType::GrayscaleAlpha, 2),
+    ] {
+        let file = fs::File::create(folder.path("gray.png")).unwrap();
+        let mut encoder = png::Encoder::new(file, 16, 12);
+        encoder.set_color(color);
+        let mut writer = encoder.write_header().unwrap();
+        writer
+            .write_image_data(&vec![188; 16 * 12 * channels])
+            .unwrap();
+        writer.finish().unwrap();
+        let text = "[[check]]\nscene = \"ball.toml\"\nreference = \"gray.png\"\n";
+        let (_, report) = folder.run(text);
+        // The background is that gray, and the ball is not.
+        assert!(
+            why(&report.findings[0]).contains("pixels differ"),
+            "{}",
+            report.table()
+        );
+        assert!(matches!(
+            report.findings[0].found,
+            Some(Figure::Count(1..100))
+        ));
+    }
+}
+
+#[test]
+fn what_the_lattice_leaves_out_is_a_warning() {
+    let folder = Folder::new();
+    let speck = BALL.replace(
+        "object = [",
+        "object = [{ kind = \"sphere\", center = [9e6, 0, 0], radius = 1e6 }, ",
+    );
+    fs::write(folder.path("ball.toml"), speck).unwrap();
+    let (_, report) =
+        folder.run("[[check]]\nscene = \"ball.toml\"\nhash = {}\nlattice_bits = 16\n");
+    assert_eq!(report.warnings.len(), 1, "{:?}", report.warnings);
+    assert!(report.warnings[0].contains("too small for the lattice, left out"));
+}

@@ -1,56 +1,9 @@
-//! Changes of the compiler to a scene that its author would want to know.
+//! Effects that are left out of a scene file, and what that loses.
 
 use gridel_core::Effects;
-use gridel_host::compile::{LATTICE_BITS, Report};
 use gridel_host::scene::{self, Scene};
-use gridel_host::table::{grouped, printable};
+use gridel_host::table::printable;
 use std::path::Path;
-
-/// All warnings of a compiled scene.
-pub fn of_compiler(report: &Report, lattice_bits: u8) -> Vec<String> {
-    let all = [
-        report.environment.and_then(|it| it.warning()),
-        far_moved(report, lattice_bits),
-        names_changed(report),
-    ];
-    all.into_iter().flatten().collect()
-}
-
-/// Names the primitives that the lattice moves far.
-fn far_moved(report: &Report, lattice_bits: u8) -> Option<String> {
-    const NAMED: usize = 3;
-    if report.far_moved.count() == 0 {
-        return None;
-    }
-    let remedy = if lattice_bits < *LATTICE_BITS.end() {
-        "use more `--lattice-bits`"
-    } else {
-        "make them thicker or larger"
-    };
-    Some(format!(
-        "the lattice moves the surfaces of some solids by several steps, {}; {remedy}",
-        report.far_moved.names(NAMED).join(", ")
-    ))
-}
-
-/// Says which names the blob lacks or has in part.
-fn names_changed(report: &Report) -> Option<String> {
-    let names = report.names?;
-    if names.left_out {
-        return Some(String::from(
-            "the names are left out, because the blob would exceed `--max-bytes`; raise it to keep them",
-        ));
-    }
-    (names.shortened > 0).then(|| {
-        format!(
-            "{} cut to 255 bytes in the blob; give shorter names",
-            match names.shortened {
-                1 => String::from("1 name is"),
-                many => format!("{} names are", grouped(many)),
-            }
-        )
-    })
-}
 
 /// Leaves effects out of the scene of a file, and reports what each of them loses.
 pub fn leave_out(scene: &mut Scene, path: &Path, effects: &[Effects]) -> Vec<String> {
@@ -98,8 +51,6 @@ fn lost_by(names: &[String]) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use gridel_host::compile::{Options, compile};
-    use gridel_host::scene::{Environment, Panorama, Sky};
 
     fn scene(text: &str) -> Scene {
         let sphere = "[[object]]\nkind = 'sphere'\ncenter = [0, 0, 0]\nradius = 1\n";
@@ -121,17 +72,5 @@ mod tests {
         }
         let lines = leave_out(&mut scene(light), "s.toml".as_ref(), &[Effects::GLASS]);
         assert!(lines[0].contains("does not call for glass"), "{lines:?}");
-    }
-
-    #[test]
-    fn lost_light_of_an_environment_is_a_warning_of_the_compiler() {
-        let mut pixels = vec![[1.0; 3]; 64 * 32];
-        pixels[500] = [1e5; 3];
-        let sky = Panorama::new("sky", 64, 32, pixels).unwrap();
-        let mut scene = scene("");
-        scene.environment = Some(Environment::of(Sky::Picture(sky.into())));
-        let report = compile(&scene, &Options::default()).unwrap().report;
-        let lines = of_compiler(&report, 16);
-        assert!(lines[0].contains("of its light is lost"), "{lines:?}");
     }
 }

@@ -63,8 +63,7 @@ pub(super) const IMPORTER: Entry = Entry {
 "data:application/octet-stream;base64,AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAgD8AAAAA"}]}
 "#,
     recognizes: |bytes| {
-        let text = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes);
-        bytes.starts_with(b"glTF") || text.trim_ascii_start().starts_with(b"{")
+        bytes.starts_with(b"glTF") || bytes.trim_ascii_start().starts_with(b"{")
     },
     read,
 };

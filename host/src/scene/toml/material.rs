@@ -265,9 +265,9 @@ fn texture(
             _ => Wrap::Clamp,
         })
     };
-    let scale = fields.or("scale", DVec2::ONE, |value| match value.number() {
-        Ok(number) => Ok(DVec2::splat(number)),
-        Err(_) => pair(value),
+    let scale = fields.or("scale", DVec2::ONE, |value| match value.items("numbers") {
+        Ok(_) => pair(value),
+        Err(_) => value.number().map(DVec2::splat),
     })?;
     let rotation = fields.or("rotation", 0.0, Value::number)?;
     let offset = fields.or("offset", DVec2::ZERO, pair)?;

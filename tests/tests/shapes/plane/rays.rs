@@ -288,6 +288,63 @@ fn planes_are_met_from_two_to_the_twentieth_scene_widths() {
     every_format!(judge(DVec3::new(0.123, 1.0, 0.377)));
 }
 
+/// Far beside the scene as well, `t` is that of exact arithmetic within the bounds of hits.
+#[test]
+fn planes_far_beside_the_scene_are_met_in_their_place() {
+    fn judge<N: Number>(normal: DVec3) {
+        let mut scene = scenes::soup(175, 8, 0.5);
+        let ground = plane(DVec3::new(0.25, 0.5, 0.5), normal);
+        scene.objects.splice(0..0, scenes::of([ground]).objects);
+        let blob = scenes::blob(&scene, 24);
+        let scene = blob.scene().expect("a scene");
+        let gridel_core::geometry::Geometry::Plane(record) =
+            scene.geometry(Kind::Plane, 0).expect("a plane")
+        else {
+            unreachable!("it is a plane")
+        };
+        let dot = |v: [i64; 3]| -> i128 {
+            let products = v.iter().zip(record.normal);
+            products.map(|(&x, n)| i128::from(x) * i128::from(n)).sum()
+        };
+        let length = DVec3::from_array(record.normal.map(f64::from)).length();
+        let mut random = Random(176);
+        for _ in 0..part_of(500, 5000) {
+            let far = f64::powi(2.0, 18 + random.below(18) as i32);
+            let mut origin = [(); 3].map(|()| (far * random.signed()) as i64);
+            // Beside the scene on one axis, and so on all of the ray's way.
+            let major = random.below(3);
+            origin[(major + 1) % 3] |= 1 << 18;
+            let mut slope = [(); 3].map(|()| i64::from(random.within(-64, 64)));
+            slope[(major + 1) % 3] = 0;
+            slope[major] = if random.one_in(2) { 64 } else { -64 };
+            let approach = dot(slope);
+            let apart = [0, 1, 2].map(|k| i64::from(record.point[k]) - 256 * origin[k]);
+            // Steps of 1/256 unit along the major axis.
+            let exact = (64 * dot(apart)) as f64 / approach as f64 / 256.0;
+            let sine = (approach as f64 / 64.0 / length).abs();
+            if !(0.0..f64::powi(2.0, 40)).contains(&exact) || sine < 0.05 {
+                continue;
+            }
+            let ray = UnitRay::new(origin.map(|x| x as f64), slope.map(|x| x as f64));
+            let ready = ray.ready::<N>(&scene).expect("a ray");
+            let hit = closest::<N, gridel_core::List>(&scene, &ready, &mut gridel_core::NoCount);
+            let hit = hit.expect("a hit");
+            assert_eq!(hit.primitive, 0, "{ray:?}");
+            let off = (N::far_to_f64(hit.t) - exact).abs() * sine;
+            let magnitude = far.max(exact);
+            let most = 8.0 * gridel_tests::bounds::length_step::<N>(magnitude);
+            assert!(
+                off <= most,
+                "{} {ray:?}: {off} {most}, {}",
+                N::FORMAT.name(),
+                exact
+            );
+        }
+    }
+    every_format!(judge(DVec3::Y));
+    every_format!(judge(DVec3::new(1.0, 3.0, 2.0)));
+}
+
 /// A ray's interval holds for planes, before the scene's box and behind it.
 #[test]
 fn planes_are_met_in_the_interval_that_was_given() {

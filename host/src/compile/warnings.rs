@@ -1,0 +1,98 @@
+//! What the compiler changes of a scene that its author would want to know.
+
+use super::LATTICE_BITS;
+use super::report::Report;
+use crate::table::{counted, grouped};
+
+/// Primitives that a warning names; the rest are counted.
+const NAMED: usize = 3;
+
+impl Report {
+    /// All warnings of a scene that was compiled with so many lattice bits.
+    ///
+    /// ```
+    /// use gridel_host::compile::{Options, compile};
+    /// use gridel_host::scene;
+    ///
+    /// let sphere = |x: f64, radius: f64| {
+    ///     format!("[[object]]\nkind = 'sphere'\ncenter = [{x}, 0, 0]\nradius = {radius}\n")
+    /// };
+    /// let file = sphere(0.0, 1e6) + &sphere(3.0, 1e-3);
+    /// let imported = scene::read("s.toml".as_ref(), file.into(), &Default::default())?;
+    /// let report = compile(&imported.scene, &Options::default())?.report;
+    /// assert!(report.warnings(24)[0].starts_with("1 primitive too small for the lattice, left out: "));
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    pub fn warnings(&self, lattice_bits: u8) -> Vec<String> {
+        let remedy = |otherwise| match lattice_bits < *LATTICE_BITS.end() {
+            true => "use more `--lattice-bits`",
+            false => otherwise,
+        };
+        let all = [
+            self.environment.and_then(|it| it.warning()),
+            (self.without_area.count() > 0).then(|| {
+                format!(
+                    "{} without area, left out: {}",
+                    counted(self.without_area.count(), "primitive"),
+                    self.without_area.names(NAMED).join(", ")
+                )
+            }),
+            (self.collapsed.count() > 0).then(|| {
+                format!(
+                    "{} too small for the lattice, left out: {}; {}",
+                    counted(self.collapsed.count(), "primitive"),
+                    self.collapsed.names(NAMED).join(", "),
+                    remedy("make them larger, or the scene smaller")
+                )
+            }),
+            (self.far_moved.count() > 0).then(|| {
+                format!(
+                    "the lattice moves the surfaces of some solids by several steps, {}; {}",
+                    self.far_moved.names(NAMED).join(", "),
+                    remedy("make them thicker or larger")
+                )
+            }),
+            self.names_changed(),
+        ];
+        all.into_iter().flatten().collect()
+    }
+
+    /// Says which names the blob lacks or has in part.
+    fn names_changed(&self) -> Option<String> {
+        let names = self.names?;
+        if names.left_out {
+            return Some(String::from(
+                "the names are left out, because the blob would exceed `--max-bytes`; raise it to keep them",
+            ));
+        }
+        (names.shortened > 0).then(|| {
+            format!(
+                "{} cut to 255 bytes in the blob; give shorter names",
+                match names.shortened {
+                    1 => String::from("1 name is"),
+                    many => format!("{} names are", grouped(many)),
+                }
+            )
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::compile::{Options, compile};
+    use crate::scene::{self, Environment, Panorama, Sky};
+
+    #[test]
+    fn lost_light_of_an_environment_is_a_warning_of_the_compiler() {
+        let mut pixels = vec![[1.0; 3]; 64 * 32];
+        pixels[500] = [1e5; 3];
+        let sky = Panorama::new("sky", 64, 32, pixels).unwrap();
+        let sphere = "[[object]]\nkind = 'sphere'\ncenter = [0, 0, 0]\nradius = 1\n";
+        let imported = scene::read("s.toml".as_ref(), sphere.into(), &Default::default());
+        let mut scene = imported.unwrap().scene;
+        scene.environment = Some(Environment::of(Sky::Picture(sky.into())));
+        let report = compile(&scene, &Options::default()).unwrap().report;
+        let lines = report.warnings(24);
+        assert!(lines[0].contains("of its light is lost"), "{lines:?}");
+    }
+}
