@@ -45,7 +45,10 @@ impl Display for Shown<'_> {
         let mean = self.explanation.mean();
         if mean.iter().zip(shown).any(|(a, b)| (a - b).abs() > 1e-3) {
             let mean = color(mean);
-            writeln!(f, "The scene shows the mean of its samples, {mean}, so.")?;
+            writeln!(
+                f,
+                "It is the mean of the samples, {mean}, as the scene's tone mapping or encoding shows it."
+            )?;
         }
         for sentence in self.sentences() {
             writeln!(f, "{sentence}")?;

@@ -225,8 +225,10 @@ impl Importer<'_> {
         let Some(info) = material.normal_texture() else {
             return Ok(None);
         };
-        let (Some(placed), Some(source)) = (Placed::of_normals(material, &self.normal_transforms), info.texture().source())
-        else {
+        let (Some(placed), Some(source)) = (
+            Placed::of_normals(material, &self.normal_transforms),
+            info.texture().source(),
+        ) else {
             self.warn(format!(
                 "the normal map of material {name:?} names no image that Gridel reads; it is not drawn"
             ));

@@ -36,7 +36,10 @@ fn name(material: &gltf::Material<'_>) -> String {
 /// Sentences on what of a material is ignored or taken otherwise.
 pub(super) fn ignored(material: &gltf::Material<'_>) -> impl Iterator<Item = String> {
     let name = name(material);
-    let has_texture = material.pbr_metallic_roughness().base_color_texture().is_some();
+    let has_texture = material
+        .pbr_metallic_roughness()
+        .base_color_texture()
+        .is_some();
     let is_masked = material.alpha_mode() == AlphaMode::Mask && !is_there(material) && !has_texture;
     let glows = material.emissive_factor() != [0.0; 3];
     let index = material.ior().filter(|ior| !(1.0..=4.0).contains(ior));
@@ -95,10 +98,9 @@ pub(super) fn read(material: &gltf::Material<'_>, alpha_is_used: bool) -> Materi
         _ => 1.0,
     };
     // Factors of a texture that is not read say little, and a mirror has no texture.
-    let is_plain = surface.metallic_roughness_texture().is_none()
-        && surface.base_color_texture().is_none();
-    let is_glossy =
-        metal > 0.0 && is_plain && (Material::LEAST_ROUGHNESS..1.0).contains(&rough);
+    let is_plain =
+        surface.metallic_roughness_texture().is_none() && surface.base_color_texture().is_none();
+    let is_glossy = metal > 0.0 && is_plain && (Material::LEAST_ROUGHNESS..1.0).contains(&rough);
     let times = |factor: f64| base.map(|channel| channel * factor * there);
     let power = 2.0 / (rough * rough * rough * rough).max(1e-9) - 2.0;
     let shininess = power.round().clamp(1.0, 1024.0);

@@ -62,9 +62,7 @@ pub(super) const IMPORTER: Entry = Entry {
 "buffers": [{"byteLength": 36, "uri":
 "data:application/octet-stream;base64,AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAgD8AAAAA"}]}
 "#,
-    recognizes: |bytes| {
-        bytes.starts_with(b"glTF") || bytes.trim_ascii_start().starts_with(b"{")
-    },
+    recognizes: |bytes| bytes.starts_with(b"glTF") || bytes.trim_ascii_start().starts_with(b"{"),
     read,
 };
 

@@ -17,10 +17,7 @@ const EXTENSION: &str = "KHR_texture_transform";
 /// # Errors
 /// If a transform is not one of the extension.
 pub(super) fn read(path: &Path, text: &[u8]) -> Result<NormalTransforms, SceneError> {
-    let has = |word: &str| {
-        text.windows(word.len())
-            .any(|part| part == word.as_bytes())
-    };
+    let has = |word: &str| text.windows(word.len()).any(|part| part == word.as_bytes());
     // Few files have both, so that few are read twice.
     if !has(EXTENSION) || !has("normalTexture") {
         return Ok(NormalTransforms::default());

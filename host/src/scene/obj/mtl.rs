@@ -88,7 +88,11 @@ pub(super) fn read(
             "d" => material.dissolve = Some(reader.number()?.clamp(0.0, 1.0)),
             "Tr" => material.transparency = Some(reader.number()?.clamp(0.0, 1.0)),
             "illum" => material.illumination = Some(reader.number()?.clamp(0.0, 255.0) as u32),
-            "Ke" => material.emission = reader.color_up_to(2047.0, number, warnings)?.unwrap_or_default(),
+            "Ke" => {
+                material.emission = reader
+                    .color_up_to(2047.0, number, warnings)?
+                    .unwrap_or_default()
+            }
             "Pr" => material.roughness = taken_roughness(reader.number()?),
             "Ka" | "sharpness" => {}
             "map_Kd" => material.texture = reader.texture(number, images, warnings)?,
@@ -334,7 +338,10 @@ impl Reader<'_> {
                 return Err(self.source.error_at(
                     self.line,
                     format!("{} has {} numbers", self.keyword, numbers.len()),
-                    format!("write `{} r g b`, with numbers from 0 to {most}", self.keyword),
+                    format!(
+                        "write `{} r g b`, with numbers from 0 to {most}",
+                        self.keyword
+                    ),
                 ));
             }
         };

@@ -1,8 +1,8 @@
 //! The lines of an OBJ file: vertices, and parts of faces that share a name and a material.
 
-use crate::srgb::linear_of_srgb;
 use crate::scene::text::{Source, Warnings};
 use crate::scene::{Color, SceneError};
+use crate::srgb::linear_of_srgb;
 use glam::{DVec2, DVec3};
 
 #[derive(Default)]

@@ -1,7 +1,7 @@
-use crate::srgb::linear_of_srgb;
 use super::*;
 use crate::scene::test_scenes::{self, load, load_allowing_outside, mesh};
 use crate::scene::{Diffuse, Imported, Wrap};
+use crate::srgb::linear_of_srgb;
 use std::path::Path;
 
 fn read(text: &str) -> Result<Imported, SceneError> {

@@ -139,7 +139,9 @@ pub(super) fn read(input: Input<'_>, imports: &mut Imports) -> Result<Scene, Sce
         imported_tracks.extend(place.tracks(&source, item, import)?);
         if let (None, Some(camera)) = (scene.camera, import.camera) {
             scene.camera = Some(moved_camera(&source, item, &camera)?);
-            scene.lens = import.lens.map(|lens| lens.scaled(scale_of(&item.transform)));
+            scene.lens = import
+                .lens
+                .map(|lens| lens.scaled(scale_of(&item.transform)));
             scene.render = render.unwrap_or(import.render);
         }
         if !lit {

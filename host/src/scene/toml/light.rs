@@ -7,7 +7,14 @@ use glam::DVec3;
 /// A light, its name and its form.
 pub(super) type Lit = (Light, String, Option<LightForm>);
 
-const KINDS: [&str; 6] = ["point", "directional", "spot", "sphere", "rectangle", "disc"];
+const KINDS: [&str; 6] = [
+    "point",
+    "directional",
+    "spot",
+    "sphere",
+    "rectangle",
+    "disc",
+];
 
 /// The keys that belong to some kinds only, with these.
 const OWN: [(&str, &[&str]); 14] = [
@@ -98,13 +105,20 @@ fn of_point(kind: &str, fields: &Fields<'_>) -> Result<Option<LightForm>, SceneE
         let inner = fields.or("inner", 0.0, angle)?;
         if inner > outer || outer == 0.0 {
             let value = fields.get("outer").or(fields.get("inner"));
-            let cause = format!("the spot's `inner` angle, {inner} degrees, must be at most its `outer` one, {outer}, and that above 0");
+            let cause = format!(
+                "the spot's `inner` angle, {inner} degrees, must be at most its `outer` one, {outer}, and that above 0"
+            );
             let value = value.unwrap_or(fields.require("kind")?);
-            return Err(value.error(cause, "write half the angle of the cone, such as `outer = 30`"));
+            return Err(value.error(
+                cause,
+                "write half the angle of the cone, such as `outer = 30`",
+            ));
         }
         let least = Spot::LEAST_OUTER;
         if let Some(value) = fields.get("outer").filter(|_| outer < least) {
-            let cause = format!("the spot's `outer` angle is {outer} degrees; it must be at least {least}, so that `f32` holds its light");
+            let cause = format!(
+                "the spot's `outer` angle is {outer} degrees; it must be at least {least}, so that `f32` holds its light"
+            );
             return Err(value.error(cause, "write at least 0.3, or use a directional light"));
         }
         let direction = fields.require("direction")?.direction()?;
@@ -145,7 +159,12 @@ fn area(kind: &str, fields: &Fields<'_>) -> Result<(DVec3, LightShape), SceneErr
             return Err(value.error(cause, remedy));
         }
         let corner = fields.require("corner")?.vector()?;
-        return Ok((corner, LightShape::Rectangle { edges: [first, second] }));
+        return Ok((
+            corner,
+            LightShape::Rectangle {
+                edges: [first, second],
+            },
+        ));
     }
     let center = fields.require("center")?.vector()?;
     let radius = fields.require("radius")?.positive()?;

@@ -8,6 +8,7 @@ mod import;
 mod imported_track;
 mod item;
 mod joint;
+mod light;
 mod material;
 mod object;
 mod part;
@@ -17,7 +18,6 @@ pub(crate) mod source;
 mod track;
 mod transform;
 pub(crate) mod value;
-mod light;
 mod view;
 
 #[cfg(test)]

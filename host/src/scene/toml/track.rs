@@ -8,7 +8,8 @@ use super::transform;
 use super::value::{Fields, Value};
 use super::view::field_of_view;
 use crate::scene::{
-    Diffuse, Interpolation, Key, LARGEST_SCALE, LEAST_SCALE, Light, LightForm, SceneError, Track, TrackTarget,
+    Diffuse, Interpolation, Key, LARGEST_SCALE, LEAST_SCALE, Light, LightForm, SceneError, Track,
+    TrackTarget,
 };
 use crate::table::counted;
 use glam::{DQuat, DVec3};

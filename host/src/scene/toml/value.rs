@@ -1,8 +1,8 @@
 //! Typed reads of TOML values whose errors point at the value.
 
-use crate::srgb::linear_of_srgb;
 use super::source::{Name, Source, Span, nearest};
 use crate::scene::{Color, SceneError};
+use crate::srgb::linear_of_srgb;
 use glam::DVec3;
 use std::ops::RangeInclusive;
 use toml::Spanned;

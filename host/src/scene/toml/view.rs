@@ -83,7 +83,15 @@ pub(super) fn field_of_view(value: Value<'_>) -> Result<f64, SceneError> {
 
 pub(super) fn render(table: Value<'_>) -> Result<RenderSettings, SceneError> {
     let keys = [
-        "width", "height", "samples", "depth", "bounces", "cutoff", "shadows", "exposure", "tone_mapping",
+        "width",
+        "height",
+        "samples",
+        "depth",
+        "bounces",
+        "cutoff",
+        "shadows",
+        "exposure",
+        "tone_mapping",
     ];
     let fields = table.fields("render table", &[&keys])?;
     let default = RenderSettings::default();

@@ -115,7 +115,8 @@ fn normal_maps_lie_as_the_texture_does() {
         map(turned).texture.transform,
         material(turned).texture.unwrap().transform
     );
-    let own = map("normal_map = { file = 'two.png', scale = 2, filter = 'nearest' }\nnormal_scale = 0.5");
+    let own =
+        map("normal_map = { file = 'two.png', scale = 2, filter = 'nearest' }\nnormal_scale = 0.5");
     assert_eq!((own.scale, own.texture.bilinear), (0.5, false));
     let found = own.texture.transform.transform_point2(DVec2::ONE);
     assert_eq!(found, DVec2::splat(2.0));
