@@ -1,7 +1,7 @@
 //! Records the found figures in place of the expected ones, where these are broken.
 
 use super::manifest::Manifest;
-use super::report::{Figure, Finding, Key, Outcome, Record, Report};
+use super::report::{Figure, Key, Outcome, Record, Report};
 use crate::output::Files;
 use std::collections::BTreeSet;
 use std::io;
@@ -130,12 +130,17 @@ impl Blessed {
         self.references.iter().any(|(path, _)| path == reference)
     }
 
-    /// Returns whether a broken finding holds once this is recorded.
-    pub(super) fn mends(&self, finding: &Finding) -> bool {
-        match &finding.record {
-            Some(Record::Value { .. }) => true,
-            Some(Record::Picture(picture)) => self.records(&picture.path),
-            None => false,
+    /// Notes in a report which findings hold once this is recorded.
+    pub fn note_in(&self, report: &mut Report) {
+        for finding in &mut report.findings {
+            let is_mended = match &finding.record {
+                Some(Record::Value { .. }) => true,
+                Some(Record::Picture(picture)) => self.records(&picture.path),
+                None => false,
+            };
+            if is_mended && matches!(finding.outcome, Outcome::Failed(_)) {
+                finding.outcome = Outcome::Recorded;
+            }
         }
     }
 

@@ -1,6 +1,5 @@
 //! The findings of a run, for people and for programs.
 
-use super::bless::Blessed;
 use super::image::Image;
 use super::manifest::Reference;
 use crate::table::{Align, Table, grouped, printable, significant};
@@ -156,16 +155,6 @@ impl Report {
     pub(super) fn name_warnings_once(&mut self) {
         let mut seen = BTreeSet::new();
         self.warnings.retain(|it| seen.insert(it.clone()));
-    }
-
-    /// Takes note of what was recorded.
-    pub fn take_as_recorded(&mut self, blessed: &Blessed) {
-        for finding in &mut self.findings {
-            let is_broken = matches!(finding.outcome, Outcome::Failed(_));
-            if is_broken && blessed.mends(finding) {
-                finding.outcome = Outcome::Recorded;
-            }
-        }
     }
 
     /// How many could not be measured.

@@ -83,7 +83,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         None => Ok(Files::default()),
     };
     if let Some(blessed) = blessed.as_ref().filter(|_| staged.is_ok()) {
-        report.take_as_recorded(blessed);
+        blessed.note_in(&mut report);
     }
     // Everything runs, whatever fails. A report that cannot be written does not lose findings, and the findings set the
     // exit code in either case. The changes to recorded figures were printed before.

@@ -133,17 +133,22 @@ pub fn render_aovs(scene: &Scene<'_>, job: &Job, aovs: &[Aov]) -> Result<Vec<Val
     values.collect()
 }
 
-/// The picture under white ambient light alone, on black.
+/// The picture under white ambient light alone, on black, as if glass absorbed nothing.
 fn albedo(scene: &Scene<'_>, job: &Job) -> Result<Vec<[f32; 3]>, RenderError> {
     let view = View {
         background: [0; 3],
         ambient: [1 << 20; 3],
         ..*scene.view()
     };
+    let mut materials = scene.materials().to_vec();
+    for material in &mut materials {
+        material.absorption = [0; 3];
+    }
     let lit = scene
         .with_lights(&[])
-        .and_then(|scene| scene.with_view(&view));
-    let lit = lit.expect("a scene without lights requires no effect");
+        .and_then(|scene| scene.with_view(&view))
+        .and_then(|scene| scene.with_materials(&materials));
+    let lit = lit.expect("a scene with less requires no other effect");
     Ok(render_linear(&lit, job, &|| ())?.pixels)
 }
 

@@ -228,13 +228,13 @@ fn pictures_that_differ_are_not_recorded_as_one_reference() {
             blessed.left
         );
         assert_eq!((blessed.left.len(), blessed.diff().as_str()), (1, ""));
-        report.take_as_recorded(&blessed);
+        blessed.note_in(&mut report);
         assert_eq!(report.recorded(), 0, "{}", report.table());
         // The same where one of them passes with the reference that is there.
         let (manifest, mut report) = folder.run(&check("ball", ""));
         let blessed = bless(&manifest, &report);
         record(&blessed);
-        report.take_as_recorded(&blessed);
+        blessed.note_in(&mut report);
         assert_eq!(report.failed(), 0, "{}", report.table());
     }
 

@@ -156,3 +156,27 @@ fn instances_are_numbered_in_scene_file_order() {
         assert!((nearest - 8.1).abs() < 0.1, "{nearest}");
     }
 }
+
+/// The eye is inside of glass, whose far side is met after two units.
+#[test]
+fn albedo_is_not_absorbed_on_the_way_to_a_surface() {
+    let scene = "
+        camera = { eye = [0, 0, 0], target = [0, 0, -1] }
+        [material.glass]
+        diffuse = 0.5
+        transmit = 0.4
+        absorption = [1, 0.1, 0]
+        [[object]]
+        kind = 'sphere'
+        center = [0, 0, 0]
+        radius = 2
+        material = 'glass'";
+    let blob = blob("test.toml", scene);
+    let scene = blob.scene().expect("a scene");
+    for format in Format::ALL {
+        let [_, _, albedo, ..] = all(&scene, &job(&scene, format, 4));
+        for channel in vectors(&albedo)[MIDDLE] {
+            assert!((channel - 0.5).abs() < 1e-3, "{format:?}: {channel}");
+        }
+    }
+}
