@@ -17,6 +17,9 @@ use crate::number::{Arithmetic, Format, extent};
 use crate::ray::Ray;
 use bytemuck::{Pod, Zeroable};
 
+/// Up to this distance with 13 fraction bits, 31 bits of a quotient are right to a sub-step.
+const PRECISE: i64 = 1 << 31;
+
 records! {
     /// An infinite plane.
     ///
@@ -61,6 +64,14 @@ impl Plane {
         [axis(0), axis(1), axis(2)]
     }
 
+    /// The distance from a far place to the plane along a ray, in [`Fixed`](crate::Fixed) with 31 bits.
+    #[inline(never)]
+    fn far_t<N: Arithmetic>(&self, place: [N::Wide; 3], slope: [N; 3]) -> N::Wide {
+        let normal = self.direction();
+        let along_normal = far_dot(self.seen_from::<N>(place), normal);
+        N::far_over(along_normal, N::dot(normal, slope))
+    }
+
     /// A point of the plane, moved towards the plane's own point until it is a length on every axis. So it stays in the
     /// plane.
     fn within_reach<N: Arithmetic>(&self, mut place: [N::Wide; 3]) -> [N::Wide; 3] {
@@ -99,15 +110,14 @@ impl Primitive for Plane {
         if near.map(N::widen) == far && t.abs() < N::FAR {
             return Some(t.widen());
         }
-        let t = N::far_over(far_dot(far, normal), approach);
-        let is_met = -N::far(FARTHEST_HIT) < t && t < N::far(FARTHEST_HIT);
-        if N::FORMAT != Format::Fixed || !is_met {
+        let t = self.far_t(place, slope);
+        let is_beyond = |end: i64| !(-N::far(end) < t && t < N::far(end));
+        if N::FORMAT != Format::Fixed || !is_beyond(PRECISE) || is_beyond(FARTHEST_HIT) {
             return Some(t);
         }
-        // That quotient is right to a part in 2^31. So the rest is counted from there.
-        let place = [0, 1, 2].map(|k| pick(place, k) + N::wide_scale(t, pick(slope, k)));
-        let rest = far_dot(self.seen_from::<N>(place), normal);
-        Some(t + N::far_over(rest, approach))
+        let along = |k: usize| pick(place, k) + N::wide_scale(t, pick(slope, k));
+        let rest = self.far_t([along(0), along(1), along(2)], slope);
+        Some(t + rest)
     }
 
     fn surface<N: Arithmetic>(&self, ray: &Ray<N>, _: Part, point: [N; 3]) -> Surface<N> {
