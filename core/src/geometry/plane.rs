@@ -17,7 +17,7 @@ use crate::number::{Arithmetic, Format, extent};
 use crate::ray::Ray;
 use bytemuck::{Pod, Zeroable};
 
-/// Up to this distance with 13 fraction bits, 31 bits of a quotient are right to a sub-step.
+/// In sub-steps: up to this distance, a quotient with 31 bits is right to a sub-step.
 const PRECISE: i64 = 1 << 31;
 
 records! {
@@ -64,7 +64,8 @@ impl Plane {
         [axis(0), axis(1), axis(2)]
     }
 
-    /// The distance from a far place to the plane along a ray, in [`Fixed`](crate::Fixed) with 31 bits.
+    /// The distance from a far place to the plane along a ray, in [`Fixed`](crate::Fixed) with 31 bits. Out of line,
+    /// because it is called in several places.
     #[inline(never)]
     fn far_t<N: Arithmetic>(&self, place: [N::Wide; 3], slope: [N; 3]) -> N::Wide {
         let normal = self.direction();

@@ -126,12 +126,9 @@ fn triangles_are_listed_as_exact_arithmetic_finds_them() {
                 };
                 let t = *over as f64 / *under as f64;
                 let listed = f64::from_bits(hit.2);
-                let most = most::<N>(triangles[number], slope);
-                assert!(
-                    (listed - t).abs() <= most.min(0.1),
-                    "{listed}, {t}: {}",
-                    about()
-                );
+                // Of a plane nearly along the ray, not all that the bound allows.
+                let most = most::<N>(triangles[number], slope).min(0.1);
+                assert!((listed - t).abs() <= most, "{listed}, {t}: {}", about());
                 found.push(number);
             }
             let mut as_expected: Vec<usize> = expected.iter().map(|it| it.2).collect();

@@ -3,13 +3,22 @@
 use super::plane;
 use crate::shapes::{hold, of_every_sort};
 use glam::DVec3;
-use gridel_core::{Kind, Number};
+use gridel_core::geometry::{self, Geometry};
+use gridel_core::{Kind, Number, Scene};
 use gridel_host::shape::{Plane, Solid};
 use gridel_tests::cases::{Case, lattice, slope};
 use gridel_tests::effort::part_of;
 use gridel_tests::query::{UnitRay, closest, through};
 use gridel_tests::random::Random;
 use gridel_tests::{every_format, scenes};
+
+/// The first plane of a scene.
+fn stored(scene: &Scene<'_>) -> geometry::plane::Plane {
+    match scene.geometry(Kind::Plane, 0) {
+        Some(Geometry::Plane(record)) => record,
+        other => panic!("{other:?} is no plane"),
+    }
+}
 
 #[test]
 fn planes_and_rays_of_every_sort() {
@@ -242,11 +251,7 @@ fn planes_are_met_from_two_to_the_twentieth_scene_widths() {
         scene.objects.splice(0..0, scenes::of([ground]).objects);
         let blob = scenes::blob(&scene, 24);
         let scene = blob.scene().expect("a scene");
-        let gridel_core::geometry::Geometry::Plane(record) =
-            scene.geometry(Kind::Plane, 0).expect("a plane")
-        else {
-            unreachable!("it is a plane")
-        };
+        let record = stored(&scene);
         let through = DVec3::from_array(record.point.map(|x| f64::from(x) / 256.0));
         let unit = DVec3::from_array(record.normal.map(f64::from)).normalize();
         let mut random = Random(174);
@@ -288,58 +293,72 @@ fn planes_are_met_from_two_to_the_twentieth_scene_widths() {
     every_format!(judge(DVec3::new(0.123, 1.0, 0.377)));
 }
 
-/// Far beside the scene as well, `t` is that of exact arithmetic within the bounds of hits.
+/// Far beside the scene as well, `t` is that of exact arithmetic within the bounds of hits, up to 2^49 units. A plane
+/// farther away is not met.
 #[test]
 fn planes_far_beside_the_scene_are_met_in_their_place() {
+    /// Parts of a slope, which no format rounds.
+    const PARTS: i64 = 1 << 13;
     fn judge<N: Number>(normal: DVec3) {
         let mut scene = scenes::soup(175, 8, 0.5);
         let ground = plane(DVec3::new(0.25, 0.5, 0.5), normal);
         scene.objects.splice(0..0, scenes::of([ground]).objects);
         let blob = scenes::blob(&scene, 24);
         let scene = blob.scene().expect("a scene");
-        let gridel_core::geometry::Geometry::Plane(record) =
-            scene.geometry(Kind::Plane, 0).expect("a plane")
-        else {
-            unreachable!("it is a plane")
-        };
+        let record = stored(&scene);
         let dot = |v: [i64; 3]| -> i128 {
             let products = v.iter().zip(record.normal);
             products.map(|(&x, n)| i128::from(x) * i128::from(n)).sum()
         };
         let length = DVec3::from_array(record.normal.map(f64::from)).length();
         let mut random = Random(176);
-        for _ in 0..part_of(500, 5000) {
-            let far = f64::powi(2.0, 18 + random.below(18) as i32);
+        let (mut farthest, mut beyond) = (0.0_f64, 0);
+        for _ in 0..part_of(4000, 40_000) {
+            let far = 0.99 * f64::powi(2.0, 18 + random.below(20) as i32);
             let mut origin = [(); 3].map(|()| (far * random.signed()) as i64);
             // Beside the scene on one axis, and so on all of the ray's way.
             let major = random.below(3);
-            origin[(major + 1) % 3] |= 1 << 18;
-            let mut slope = [(); 3].map(|()| i64::from(random.within(-64, 64)));
-            slope[(major + 1) % 3] = 0;
-            slope[major] = if random.one_in(2) { 64 } else { -64 };
+            let aside = (major + 1) % 3;
+            origin[aside] += if origin[aside] < 0 { -1 << 18 } else { 1 << 18 };
+            let mut slope = [(); 3].map(|()| i64::from(random.within(-64, 64)) * PARTS / 64);
+            slope[major] = if random.one_in(2) { PARTS } else { -PARTS };
+            slope[aside] = 0;
+            if random.one_in(2) {
+                // Nearly along the plane.
+                let third = (major + 2) % 3;
+                let lean = record.normal.map(i64::from);
+                let along = (-slope[major] * lean[major]).checked_div(lean[third]);
+                let along = along.unwrap_or(0) + i64::from(random.within(-2, 2));
+                slope[third] = along.clamp(-PARTS, PARTS);
+            }
             let approach = dot(slope);
             let apart = [0, 1, 2].map(|k| i64::from(record.point[k]) - 256 * origin[k]);
-            // Steps of 1/256 unit along the major axis.
-            let exact = (64 * dot(apart)) as f64 / approach as f64 / 256.0;
-            let sine = (approach as f64 / 64.0 / length).abs();
-            if !(0.0..f64::powi(2.0, 40)).contains(&exact) || sine < 0.05 {
+            if approach == 0 {
                 continue;
             }
+            let exact = (i128::from(PARTS) * dot(apart)) as f64 / approach as f64 / 256.0;
+            let sine = (approach as f64 / PARTS as f64 / length).abs();
             let ray = UnitRay::new(origin.map(|x| x as f64), slope.map(|x| x as f64));
             let ready = ray.ready::<N>(&scene).expect("a ray");
             let hit = closest::<N, gridel_core::List>(&scene, &ready, &mut gridel_core::NoCount);
-            let hit = hit.expect("a hit");
-            assert_eq!(hit.primitive, 0, "{ray:?}");
-            let off = (N::far_to_f64(hit.t) - exact).abs() * sine;
-            let magnitude = far.max(exact);
-            let most = 8.0 * gridel_tests::bounds::length_step::<N>(magnitude);
-            assert!(
-                off <= most,
-                "{} {ray:?}: {off} {most}, {}",
-                N::FORMAT.name(),
-                exact
-            );
+            let about = || format!("{} {ray:?}: {exact} {hit:?}", N::FORMAT.name());
+            let end = f64::powi(2.0, 49);
+            if exact < 0.0 || exact > end * 1.001 {
+                assert!(hit.is_none(), "{}", about());
+                beyond += usize::from(exact > end);
+            } else if exact < end * 0.999 {
+                let Some(hit) = hit else {
+                    panic!("{}", about());
+                };
+                assert_eq!(hit.primitive, 0, "{}", about());
+                let off = (N::far_to_f64(hit.t) - exact).abs() * sine;
+                let most = 8.0 * gridel_tests::bounds::length_step::<N>(far.max(exact));
+                assert!(off <= most, "{off} {most}, {}", about());
+                farthest = farthest.max(exact);
+            }
         }
+        assert!(farthest > f64::powi(2.0, 45), "{farthest}");
+        assert!(normal != DVec3::Y || beyond > 0);
     }
     every_format!(judge(DVec3::Y));
     every_format!(judge(DVec3::new(1.0, 3.0, 2.0)));
