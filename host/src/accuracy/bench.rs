@@ -3,7 +3,7 @@
 use super::setting::Setting;
 use super::truth::{Truth, exact_pixels};
 use crate::blob::Blob;
-use crate::compile::{self, CompileError, Quality};
+use crate::compile::{self, CompileError, Compiled, Quality};
 use crate::measure::board::instructions;
 use crate::measure::{
     Errors, FirstHit, InstanceCount, Rendered, board_memory, first_hits, rmse_and_largest, time,
@@ -161,7 +161,7 @@ pub struct Bench<'s> {
     pub copied: usize,
     /// The pictures that errors are measured against.
     pub truth: Truth,
-    blobs: HashMap<(u8, u64, u32), Blob>,
+    compiled: HashMap<(u8, u64, u32), Compiled>,
     hits: HashMap<(u8, u64, u32, &'static str), Vec<Option<FirstHit>>>,
     /// Pictures that others are measured against, by the names of their settings.
     pictures: HashMap<String, Vec<[u16; 3]>>,
@@ -191,7 +191,7 @@ impl<'s> Bench<'s> {
             size,
             copied: 0,
             truth: Truth::F64,
-            blobs: HashMap::new(),
+            compiled: HashMap::new(),
             hits: HashMap::new(),
             pictures: HashMap::new(),
             exact: HashMap::new(),
@@ -229,11 +229,21 @@ impl<'s> Bench<'s> {
         Ok(self.blob(&base)?.scene()?.effects_with_parts())
     }
 
+    /// Returns the compiler's warnings of the scene as it is stated.
+    pub fn warnings(&mut self) -> Result<Vec<String>, MeasureError> {
+        let base = self.base();
+        Ok(self.compiled(&base)?.report.warnings(base.lattice_bits))
+    }
+
     /// The blob of a setting.
     pub(super) fn blob(&mut self, setting: &Setting) -> Result<&Blob, MeasureError> {
+        Ok(&self.compiled(setting)?.blob)
+    }
+
+    fn compiled(&mut self, setting: &Setting) -> Result<&Compiled, MeasureError> {
         let cutoff = setting.cutoff.to_bits();
         let key = (setting.lattice_bits, cutoff, setting.without.0);
-        if !self.blobs.contains_key(&key) {
+        if !self.compiled.contains_key(&key) {
             let mut scene = self.scene.clone();
             scene.render.cutoff = setting.cutoff;
             scene.remove_effects(setting.without);
@@ -244,10 +254,10 @@ impl<'s> Bench<'s> {
                 quality: self.quality,
                 ..compile::Options::default()
             };
-            let blob = compile::compile(&scene, &options)?.blob;
-            self.blobs.insert(key, blob);
+            let compiled = compile::compile(&scene, &options)?;
+            self.compiled.insert(key, compiled);
         }
-        Ok(&self.blobs[&key])
+        Ok(&self.compiled[&key])
     }
 
     fn rendered(&mut self, setting: &Setting, count: bool) -> Result<Rendered, MeasureError> {

@@ -15,8 +15,6 @@ pub struct Blessed {
     old: String,
     new: String,
     references: Vec<(PathBuf, super::Image)>,
-    /// References that no picture would do for.
-    conflicts: BTreeSet<PathBuf>,
     /// Failures that cannot be recorded: names of checks, the key of each, and why, where the table does not say it.
     pub left: Vec<String>,
 }
@@ -48,7 +46,6 @@ pub fn bless(manifest: &Manifest, report: &Report) -> Blessed {
         old: manifest.text.clone(),
         new: manifest.text.clone(),
         references: Vec::new(),
-        conflicts: BTreeSet::new(),
         left: Vec::new(),
     };
     // It was read before, so it is TOML.
@@ -96,8 +93,8 @@ pub fn bless(manifest: &Manifest, report: &Report) -> Blessed {
 }
 
 impl Blessed {
-    /// Records a picture for each reference that is broken: the first that is not like it. All that name the reference
-    /// must be like that picture then.
+    /// Records a picture for each reference that is broken: the first that differs from it. All pictures with this
+    /// reference must be like the recorded one; else it is left.
     fn record_pictures(&mut self, report: &Report) {
         let all = || {
             report.findings.iter().filter_map(|it| match &it.record {
@@ -106,20 +103,17 @@ impl Blessed {
             })
         };
         let broken = all().filter(|(it, _)| matches!(it.outcome, Outcome::Failed(_)));
-        for (_, new) in broken {
-            if self.conflicts.contains(&new.path) || self.records(&new.path) {
-                continue;
-            }
+        let mut judged = BTreeSet::new();
+        for (_, new) in broken.filter(|(_, it)| judged.insert(&it.path)) {
             let mut others = all().filter(|(_, other)| other.path == new.path);
             match others.find(|(_, other)| !other.is_like(&new.image)) {
                 Some((it, _)) => {
                     let on = it.on.as_deref().unwrap_or_default();
                     self.left.push(format!(
-                        "{}: {} on {on} (another picture has the same one, and they differ by more than the \
+                        "{}: {} on {on} (another picture has the same reference, and differs by more than the \
                          `tolerance`; name a file for each)",
                         it.check, it.what
                     ));
-                    self.conflicts.insert(new.path.clone());
                 }
                 None => self.references.push((new.path.clone(), new.image.clone())),
             }

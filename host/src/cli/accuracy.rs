@@ -11,7 +11,7 @@ pub use arguments::Arguments;
 use super::arguments::{GeometryOptions, SceneOptions, check_quality};
 use super::failure::Failure;
 use super::output::{check_writable, print, print_json_warned, write_texts};
-use super::source::import;
+use super::source::{import, warn_of_file};
 use choice::{Choice, choice};
 use folder::{CSV, PAGE, PLOT, kept, pictures};
 use gridel_host::accuracy::{
@@ -101,6 +101,8 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
             format!("ask for at least {least} with `--reference-samples`, or leave it out"),
         ));
     }
+    let mut warnings = imported.warnings;
+    warn_of_file(path, bench.warnings().map_err(failed)?, &mut warnings);
     let key = format!(
         "gridel {} scene {:08x} size {size:?} structure {} reference {}{}",
         env!("CARGO_PKG_VERSION"),
@@ -143,7 +145,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
             sentences: sentences(&results.base, &results.points),
             cheapest: choice.as_ref(),
         };
-        print_json_warned(&printed, &imported.warnings)?;
+        print_json_warned(&printed, &warnings)?;
     } else {
         print(text(&folder, size, &results, choice.as_ref()))?;
     }

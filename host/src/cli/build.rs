@@ -1,7 +1,7 @@
 //! `gridel build`: a scene file becomes a blob.
 
 use super::arguments::{
-    self, SceneOptions, StructureOptions, TargetOptions, check_hierarchy, scene_help,
+    self, SceneOptions, StructureOptions, TargetOptions, check_hierarchy, check_room, scene_help,
     scene_long_help,
 };
 use super::effects::CalledFor;
@@ -19,7 +19,6 @@ use gridel_host::compile::{
     TextureFigures,
 };
 use gridel_host::emit::{self, Emitted};
-use gridel_host::measure::Deforming;
 use gridel_host::measure::InstanceCount;
 use gridel_host::measure::board::Board;
 use gridel_host::measure::board::{Account, MemoryReport};
@@ -40,7 +39,8 @@ pub struct Arguments {
     #[arg(help = scene_help(), long_help = scene_long_help())]
     scene: PathBuf,
 
-    /// Blob to write; with `-` it goes to standard output, and the report to standard error
+    /// Blob to write; with `-` it goes to standard output, and the report to standard error, behind
+    /// warnings
     #[arg(short, long, value_name = "BLOB")]
     output: PathBuf,
 
@@ -172,13 +172,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let accel = &arguments.accel;
     check_hierarchy("--leaf-size", arguments.leaf_size.is_some(), accel)?;
     check_hierarchy("--builder", arguments.builder.is_some(), accel)?;
-    let room = arguments.scene_options.geometry.room.unwrap_or(0.0);
-    if room > 0.0 && accel.iter().any(|it| !Deforming::STRUCTURES.contains(it)) {
-        return Err(Failure::usage(
-            "--room is for meshes that deform, and of all structures only bvh can be refitted",
-            "build with --accel bvh alone",
-        ));
-    }
+    check_room(arguments.scene_options.geometry.room, accel)?;
     let compiling = arguments.structure_options.apply(compile::Options {
         structures: accel.clone(),
         leaf_size: arguments.leaf_size.map_or(0, usize::from),

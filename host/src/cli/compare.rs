@@ -7,7 +7,7 @@ use super::arguments::{
 use super::failure::Failure;
 use super::output::{print, print_json_warned, write_texts};
 use super::progress::Progress;
-use super::source::import;
+use super::source::{import, warn_of_file};
 use clap::Args;
 use gridel_core::{Format, Structure};
 use gridel_host::compare::{
@@ -141,6 +141,7 @@ pub fn run(arguments: &Arguments, memory: &PeakAlloc) -> Result<(), Failure> {
     };
     let comparison =
         compare(&imported.scene, &options, &show).map_err(|error| Failure::in_file(path, error))?;
+    let mut warnings = imported.warnings;
     let grown = match &arguments.plot {
         Some(_) => Some(
             growth(&imported.scene, &options, &show)
@@ -149,6 +150,7 @@ pub fn run(arguments: &Arguments, memory: &PeakAlloc) -> Result<(), Failure> {
         None => None,
     };
     drop(progress);
+    warn_of_file(path, comparison.warnings.clone(), &mut warnings);
     let report = Report {
         scene: path.display().to_string(),
         comparison: &comparison,
@@ -156,7 +158,7 @@ pub fn run(arguments: &Arguments, memory: &PeakAlloc) -> Result<(), Failure> {
         growth: grown.as_ref(),
     };
     if arguments.json {
-        print_json_warned(&report, &imported.warnings)?;
+        print_json_warned(&report, &warnings)?;
     } else {
         print(text(&report))?;
     }

@@ -3,7 +3,7 @@
 
 mod warnings;
 
-use super::arguments::{LightChange, SceneOptions, TraceOptions, check_quality};
+use super::arguments::{LightChange, SceneOptions, TraceOptions, check_quality, check_room};
 use super::changes::{Changes, fault};
 use super::failure::Failure;
 use super::input::Input;
@@ -20,6 +20,7 @@ use gridel_host::state::{self, State, StateError};
 use gridel_host::table::{counted, grouped, printable, significant};
 use std::path::Path;
 use warnings::leave_out;
+pub use warnings::warn_of_file;
 
 /// A blob, from a file or from the compiler.
 pub struct Source {
@@ -65,6 +66,7 @@ impl Source {
         with: &TraceOptions,
         usual: &[Structure],
     ) -> Result<Self, Failure> {
+        check_room(options.geometry.room, with.accel.as_slice())?;
         let compiling = compile::Options {
             structures: with.accel.map_or(usual.to_vec(), |accel| vec![accel]),
             quality: with.quality.unwrap_or_default(),
@@ -183,17 +185,13 @@ impl Source {
             compiled.map_err(|error| Failure::compiling(input.path(), error))?;
         let names = Names::of_scene(&imported.scene);
         let mut warnings = imported.warnings;
+        let mut sentences = report.warnings(compiling.lattice_bits);
         if imported.scene.objects.is_empty() && imported.scene.instances.is_empty() {
-            let file = input.path().display();
-            let warning = format!("{file}: the scene has no object: pictures show the background");
-            warn(&warning);
-            warnings.push(warning);
+            sentences.push(String::from(
+                "the scene has no object: pictures show the background",
+            ));
         }
-        for warning in report.warnings(compiling.lattice_bits) {
-            let warning = format!("{}: {warning}", input.path().display());
-            warn(&warning);
-            warnings.push(warning);
-        }
+        warn_of_file(input.path(), sentences, &mut warnings);
         Ok(Self {
             input,
             blob,

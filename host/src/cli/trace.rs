@@ -52,7 +52,8 @@ pub struct Arguments {
     #[arg(long, value_name = "RAYS.npy")]
     rays: PathBuf,
 
-    /// Hits to write, a NumPy file; with `-` they go to standard output, and the counts to standard error
+    /// Hits to write, a NumPy file; with `-` they go to standard output, and the counts to standard error, behind
+    /// warnings
     #[arg(short, long, value_name = "HITS.npy")]
     output: PathBuf,
 

@@ -25,6 +25,9 @@ pub struct Comparison {
     pub rows: Vec<Row>,
     /// Structures whose tables do not fit their budget.
     pub rejected: Vec<Rejected>,
+    /// Warnings of the compiler.
+    #[serde(skip)]
+    pub warnings: Vec<String>,
 }
 
 impl Comparison {

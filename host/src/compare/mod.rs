@@ -163,6 +163,10 @@ fn compare_in<N: Number>(
         listed: verdict.listed,
         rows,
         rejected,
+        warnings: list
+            .compiled
+            .report
+            .warnings(options.compiling.lattice_bits),
     })
 }
 

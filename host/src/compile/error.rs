@@ -43,7 +43,7 @@ pub enum CompileError {
         pieces: usize,
         most: usize,
     },
-    #[error("{object} has texture coordinates of {most} and more repetitions of its texture")]
+    #[error("{object} has texture coordinates of {most} repetitions of its texture or more")]
     #[diagnostic(help(
         "move the coordinates towards 0, or let the texture's `scale` make them smaller"
     ))]

@@ -25,7 +25,7 @@ impl Report {
     /// ```
     pub fn warnings(&self, lattice_bits: u8) -> Vec<String> {
         let remedy = |otherwise| match lattice_bits < *LATTICE_BITS.end() {
-            true => "use more `--lattice-bits`",
+            true => "use more lattice bits",
             false => otherwise,
         };
         let all = [

@@ -1,6 +1,7 @@
 //! Options that would change nothing are rejected, and never ignored.
 
 use crate::program::Folder;
+use crate::trace::npy;
 
 /// Options of one structure alone, where it is not built.
 #[test]
@@ -175,4 +176,93 @@ fn pipes_are_not_waited_for() {
     let made = std::process::Command::new("mkfifo").arg(&pipe).status();
     assert!(made.unwrap().success());
     folder.fails(1, &["inspect", "pipe.toml"], &["it is not a file"]);
+}
+
+/// Each command that compiles a scene names in its JSON what the lattice leaves out.
+#[test]
+fn what_the_lattice_leaves_out_is_in_the_json_of_every_command() {
+    let folder = Folder::new();
+    let sphere = |x: f64, radius: f64| {
+        format!("[[object]]\nkind = 'sphere'\ncenter = [{x}, 0, 0]\nradius = {radius}\n")
+    };
+    let scene = sphere(0.0, 1e6) + &sphere(3.0, 1e-3);
+    folder.write("a.toml", scene.as_bytes());
+    let ray = [0.0, 0.0, 1e7, 0.0, 0.0, 0.0, -1.0, 1e9];
+    folder.write("rays.npy", &npy("<f8", &[ray]));
+    for command in [
+        &["build", "-o", "a.gridel"][..],
+        &["render", "-o", "a.png", "--size", "8x6"],
+        &["trace", "--rays", "rays.npy", "-o", "hits.npy"],
+        &["inspect"],
+        &["explain", "--pixel", "4,3", "--size", "8x6"],
+        &["verify"],
+        &["certify", "-o", "certified", "--size", "8x6"],
+        &["compare", "--size", "8x6", "--repeat", "0"],
+        &[
+            "accuracy", "-o", "accuracy", "--size", "8x6", "--repeat", "1",
+        ],
+    ] {
+        let report = folder.json(&[&command[..1], &["a.toml"], &command[1..]].concat());
+        let warnings = report["warnings"].to_string();
+        let words = "a.toml: 1 primitive too small for the lattice, left out: sphere 2";
+        assert!(warnings.contains(words), "{command:?}: {warnings}");
+    }
+}
+
+/// Only bvh can be refitted, so it is what a scene with room for moving vertices is compiled for.
+#[test]
+fn scenes_with_room_are_compiled_for_bvh() {
+    let folder = Folder::new();
+    let mesh = "[[object]]\nkind = 'mesh'\nvertices = [[0, 0, 0], [1, 0, 0], [0, 1, 0]]\nfaces = [[0, 1, 2]]\n";
+    folder.write("a.toml", mesh.as_bytes());
+    fn with_room<'a>(start: &[&'a str]) -> Vec<&'a str> {
+        [start, &["--room", "1"]].concat()
+    }
+    folder.done(&with_room(&[
+        "build", "a.toml", "-o", "a.gridel", "--accel", "bvh",
+    ]));
+    let of_scene = folder.json(&with_room(&["inspect", "a.toml"]));
+    let of_blob = folder.json(&["inspect", "a.gridel"]);
+    for key in ["contents", "memory_map"] {
+        assert!(
+            !of_blob[key].is_null() && of_scene[key] == of_blob[key],
+            "{key}: {of_scene}"
+        );
+    }
+    for start in [
+        &["build", "a.toml", "-o", "b.gridel"][..],
+        &["render", "a.toml", "-o", "b.png", "--accel", "wide"],
+    ] {
+        folder.fails(
+            2,
+            &with_room(start),
+            &["only bvh can be refitted", "--accel bvh"],
+        );
+    }
+}
+
+/// The mean of the samples is shown where tone mapping changes it, and colors are ratios in JSON.
+#[test]
+fn explained_colors_are_ratios_before_and_after_tone_mapping() {
+    let folder = Folder::new();
+    let scene = |curve: &str| {
+        format!(
+            "ambient = 1\ncamera = {{ eye = [0, 0, 4], target = [0, 0, 0] }}\n\
+             render = {{ tone_mapping = '{curve}' }}\nmaterial.m = {{ diffuse = 0.5 }}\n\
+             object = [{{ kind = 'sphere', center = [0, 0, 0], radius = 1, material = 'm' }}]\n"
+        )
+    };
+    for (curve, shown) in [("none", 0.5), ("reinhard", 0.5 / 1.5)] {
+        folder.write("a.toml", scene(curve).as_bytes());
+        let explain = ["explain", "a.toml", "--pixel", "160,120"];
+        let report = folder.json(&explain);
+        let found = report["linear"][0].as_f64().unwrap();
+        assert!((found - shown).abs() < 1e-3, "{curve}: {found}");
+        let text = folder.done(&explain);
+        assert_eq!(
+            text.contains("mean of the samples, 0.5"),
+            curve != "none",
+            "{text}"
+        );
+    }
 }

@@ -64,6 +64,12 @@ fn every_format_is_recognised_on_standard_input() {
         let (found, _) = done(&folder, &build, importer.example.as_bytes());
         assert!(found == folder.read("a.gridel"), "{name}");
     }
+    // Editors may put a mark of the encoding before the text.
+    let quick = String::from_utf8(fixture("quick")).unwrap();
+    let build = ["build", "-", "-o", "-", "--strip-names"];
+    let [(plain, _), (marked, _)] =
+        ["", "\u{feff}"].map(|mark| done(&folder, &build, format!("{mark}{quick}").as_bytes()));
+    assert!(marked == plain);
 }
 
 #[test]

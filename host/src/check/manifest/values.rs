@@ -83,7 +83,7 @@ pub(super) fn hashes(
             .all(|it| matches!(it, b'0'..=b'9' | b'a'..=b'f'));
         if hash.len() != 16 || !digits {
             return Err(value.error(
-                format!("`{hash}` is not a picture hash; a hash has 16 hexadecimal digits, letters small"),
+                format!("`{hash}` is not a picture hash; a hash has 16 hexadecimal digits, in small letters"),
                 "remove it, and let `gridel check --bless` record the hash",
             ));
         }

@@ -20,7 +20,7 @@ pub use light::LightChange;
 pub use scene::{
     GeometryOptions, ImportOptions, SceneOptions, TargetPoint, scene_help, scene_long_help,
 };
-pub use structures::{StructureOptions, check_hierarchy, check_quality};
+pub use structures::{StructureOptions, check_hierarchy, check_quality, check_room};
 pub use target::TargetOptions;
 pub use values::{
     aov, builder, bytes, cutoff, distinct, format, open_seconds, quoted, rows, seconds, size,

@@ -7,6 +7,7 @@ use clap::builder::{PossibleValuesParser, TypedValueParser};
 use gridel_core::Structure;
 use gridel_core::shared::DIRECTION_COUNTS;
 use gridel_host::compile::{self, Quality, takes_hierarchy};
+use gridel_host::measure::Deforming;
 
 /// How structures are built.
 #[derive(Args, Clone, Debug)]
@@ -112,6 +113,21 @@ pub fn check_quality(quality: Option<Quality>, built: &[Structure]) -> Result<()
 /// If it was given.
 pub fn check_hierarchy(option: &str, given: bool, built: &[Structure]) -> Result<(), Failure> {
     check_takers(option, given, built, takes_hierarchy)
+}
+
+/// Rejects `--room` where a structure is built that cannot be refitted.
+///
+/// # Errors
+/// If a room above 0 was given.
+pub fn check_room(room: Option<f64>, built: &[Structure]) -> Result<(), Failure> {
+    let is_room = room.is_some_and(|room| room > 0.0);
+    if !is_room || built.iter().all(|it| Deforming::STRUCTURES.contains(it)) {
+        return Ok(());
+    }
+    Err(Failure::usage(
+        "--room is for meshes that deform, and of all structures only bvh can be refitted",
+        "choose `--accel bvh` alone",
+    ))
 }
 
 fn directions() -> impl TypedValueParser<Value = usize> {

@@ -35,7 +35,7 @@ pub struct OutputOptions {
     /// Picture to write: .png, .ppm, or .rgb565 (two bytes per pixel, little-endian, without a
     /// header); or linear radiance, 1 being display white and no value limited: .npy (float32, shape
     /// (height, width, 3)) or .exr (with the feature `exr`). With `-` a PNG goes to standard output,
-    /// and the report to standard error
+    /// and the report to standard error, behind warnings
     #[arg(short, long, value_name = "PICTURE")]
     pub output: PathBuf,
 

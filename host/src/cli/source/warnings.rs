@@ -1,9 +1,19 @@
-//! Effects that are left out of a scene file, and what that loses.
+//! Warnings of a scene file: what the compiler reports, and what is lost with effects that are left out.
 
+use crate::cli::output::warn;
 use gridel_core::Effects;
 use gridel_host::scene::{self, Scene};
 use gridel_host::table::printable;
 use std::path::Path;
+
+/// Warns of what the compiler reports of a file, and adds it to the file's other warnings.
+pub fn warn_of_file(path: &Path, sentences: Vec<String>, warnings: &mut Vec<String>) {
+    for sentence in sentences {
+        let warning = format!("{}: {sentence}", path.display());
+        warn(&warning);
+        warnings.push(warning);
+    }
+}
 
 /// Leaves effects out of the scene of a file, and reports what each of them loses.
 pub fn leave_out(scene: &mut Scene, path: &Path, effects: &[Effects]) -> Vec<String> {
