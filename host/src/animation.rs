@@ -105,8 +105,8 @@ impl Animation {
     }
 
     fn write_gif(&self, out: &mut dyn Write, next: NextPicture<'_>) -> io::Result<()> {
-        /// How carefully colors are chosen, from 1 to 30, the fastest.
-        const SPEED: i32 = 10;
+        /// Pixels from which the colors of a frame are chosen; of larger frames, each second or third, up to each 10th.
+        const LOOKED_AT: usize = 1 << 18;
         let plain = |error: gif::EncodingError| match error {
             gif::EncodingError::Io(error) => error,
             error => io::Error::other(error),
@@ -123,7 +123,8 @@ impl Animation {
             if pixels.len() != 3 * usize::from(width) * usize::from(height) {
                 return Err(io::Error::other("the pictures are not of one size"));
             }
-            let mut frame = Frame::from_rgb_speed(width, height, &pixels, SPEED);
+            let speed = (pixels.len() / 3 / LOOKED_AT).clamp(1, 10) as i32;
+            let mut frame = Frame::from_rgb_speed(width, height, &pixels, speed);
             frame.delay = (time(number + 1) - time(number)) as u16;
             encoder.write_frame(&frame).map_err(plain)?;
         }
@@ -250,6 +251,39 @@ mod tests {
         }
         assert!(decoder.read_next_frame().unwrap().is_none());
         assert_eq!(hundredths, 50);
+    }
+
+    #[test]
+    fn gif_chooses_the_colors_of_small_pictures_from_all_of_their_pixels() {
+        // More colors than a frame holds, each of them once.
+        let pixels: Vec<u8> = (0..40 * 30)
+            .flat_map(|it| [it % 40 * 6, it / 40 * 8, 128].map(|it| it as u8))
+            .collect();
+        let animation = Animation {
+            format: AnimationFormat::Gif,
+            size: [40, 30],
+            pictures: 1,
+            per_second: 10,
+        };
+        let mut file = Vec::new();
+        animation
+            .write(&mut file, &mut |_| Ok(pixels.clone()))
+            .unwrap();
+        let mut options = gif::DecodeOptions::new();
+        options.set_color_output(gif::ColorOutput::RGBA);
+        let mut decoder = options.read_info(&file[..]).unwrap();
+        let frame = decoder.read_next_frame().unwrap().unwrap();
+        let colors = frame.buffer.chunks_exact(4).flat_map(|pixel| &pixel[..3]);
+        let off = |colors: &mut dyn Iterator<Item = u8>| {
+            let errors = colors.zip(&pixels).map(|(a, b)| u32::from(a.abs_diff(*b)));
+            errors.sum::<u32>()
+        };
+        let all = off(&mut colors.copied());
+        let tenth = Frame::from_rgb_speed(40, 30, &pixels, 10);
+        let palette = tenth.palette.as_ref().unwrap();
+        let indices = tenth.buffer.iter().map(|&it| usize::from(it));
+        let tenth = off(&mut indices.flat_map(|it| palette[3 * it..][..3].to_vec()));
+        assert!(all < tenth * 2 / 3, "{all} {tenth}");
     }
 
     #[test]

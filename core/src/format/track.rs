@@ -234,6 +234,11 @@ impl TrackTarget {
         (self as u16) < Self::LightPosition as u16
     }
 
+    /// Returns true if it is a property of a light.
+    pub const fn is_of_light(self) -> bool {
+        self as u16 >= Self::LightPosition as u16 && (self as u16) < Self::MaterialDiffuse as u16
+    }
+
     /// Returns true if it is a property of a material.
     pub const fn is_of_material(self) -> bool {
         self as u16 >= Self::MaterialDiffuse as u16 && (self as u16) < Self::JointRotation as u16

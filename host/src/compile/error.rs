@@ -14,6 +14,11 @@ pub enum CompileError {
     Scene(#[from] SceneError),
     #[error("{object} has a coordinate or a length that is infinite or not a number")]
     NotFinite { object: String },
+    #[error("{object} names {lost} that the scene does not have")]
+    #[diagnostic(help(
+        "number materials, and corners of triangles, within the scene's and the mesh's lists"
+    ))]
+    Reference { object: String, lost: &'static str },
     #[error("the scene's size is {size:e}, which no lattice can hold")]
     #[diagnostic(help("scale the scene to a size between 1e-250 and 1e250"))]
     Extent { size: f64 },
@@ -184,6 +189,18 @@ pub enum CompileError {
     SmallInstance {
         instance: String,
         size: f64,
+        least: f64,
+    },
+    #[error(
+        "the joints of the instance {instance} shrink it to {shrinks:.1e} of its size at rest, too small for the scene"
+    )]
+    #[diagnostic(help(
+        "give their tracks of `scale` values whose product is at least {least:.1e}, bring nearer what is far away, or \
+         use `--instances flatten`"
+    ))]
+    ShrinkingInstance {
+        instance: String,
+        shrinks: f64,
         least: f64,
     },
     #[error("the instance {instance} has a scale of {scale:e}, which no lattice can hold")]

@@ -206,6 +206,13 @@ impl Parts {
         let [least, most] = INSTANCE_EXPONENT;
         let [smallest, largest] = scales.map(libm::log2);
         let [lowest, highest] = [exponent as f64 - largest, exponent as f64 - smallest];
+        if highest > most as f64 && exponent <= most {
+            return Err(CompileError::ShrinkingInstance {
+                instance: instance_name(instance),
+                shrinks: scales[0],
+                least: exp2((exponent - most) as i32),
+            });
+        }
         if highest > most as f64 {
             return Err(CompileError::SmallInstance {
                 instance: instance_name(instance),

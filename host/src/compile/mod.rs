@@ -27,6 +27,7 @@ mod pairs;
 mod primitives;
 mod reach;
 mod records;
+mod references;
 mod report;
 mod requirements;
 mod room;
@@ -335,7 +336,7 @@ fn snap(
     }
 }
 
-/// That coordinates are numbers, and that there are as many lattice bits as can be.
+/// That coordinates are numbers, that items which are named exist, and that there are as many lattice bits as can be.
 fn check(scene: &Scene, options: &Options) -> Result<(), CompileError> {
     if !LATTICE_BITS.contains(&options.lattice_bits) {
         return Err(CompileError::LatticeBits {
@@ -346,6 +347,7 @@ fn check(scene: &Scene, options: &Options) -> Result<(), CompileError> {
     if !(room.is_finite() && room >= 0.0) {
         return Err(CompileError::Room { room });
     }
+    references::check(scene)?;
     let bad = |object: &&Object| !object.shape.is_finite();
     let is_valid = |part: usize| part < scene.parts.len();
     let mut instances = scene.instances.iter();

@@ -23,6 +23,24 @@ pub(super) struct Access {
     pub(super) texels: Texels,
 }
 
+/// Why a file that a scene names cannot be used: `E` says it in words.
+#[derive(Debug)]
+pub(super) enum FileError<E> {
+    /// It cannot be read. Pictures are often left behind, so importers can go on without them.
+    Unreadable(E),
+    /// It holds something else, or lies where it must not.
+    Unusable(E),
+}
+
+impl<E> FileError<E> {
+    /// The words, where both are errors.
+    pub(super) fn words(self) -> E {
+        match self {
+            Self::Unreadable(error) | Self::Unusable(error) => error,
+        }
+    }
+}
+
 impl Access {
     /// For the scene that begins with this file.
     pub(super) fn of(scene: &Path, allow_outside: bool) -> Self {

@@ -50,6 +50,21 @@ pub struct Imported {
     pub copied: usize,
 }
 
+impl Imported {
+    /// A scene from a file of one kind, which holds no molecules and leaves no choices.
+    pub(super) fn of(scene: Scene, warnings: Vec<String>) -> Self {
+        Self {
+            scene,
+            warnings,
+            molecules: false,
+            choices: false,
+            assemblies: false,
+            posed: None,
+            copied: 0,
+        }
+    }
+}
+
 /// Where [copies](Instances::Flatten) of instances that move stand.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Posed {

@@ -76,15 +76,7 @@ fn read(input: Input<'_>) -> Result<Imported, SceneError> {
         }],
         ..Scene::default()
     };
-    Ok(Imported {
-        scene,
-        warnings: warnings.into_sentences(),
-        molecules: false,
-        choices: false,
-        assemblies: false,
-        posed: None,
-        copied: 0,
-    })
+    Ok(Imported::of(scene, warnings.into_sentences()))
 }
 
 /// The colors of vertices, if all have one.

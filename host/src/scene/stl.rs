@@ -216,15 +216,7 @@ fn scene(path: &Path, objects: Vec<Object>, warnings: Vec<String>) -> Result<Imp
         objects,
         ..Scene::default()
     };
-    Ok(Imported {
-        scene,
-        warnings,
-        molecules: false,
-        choices: false,
-        assemblies: false,
-        posed: None,
-        copied: 0,
-    })
+    Ok(Imported::of(scene, warnings))
 }
 
 /// Triangles whose vertices find each other by their coordinates.

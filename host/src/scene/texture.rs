@@ -1,6 +1,7 @@
 //! Textures of materials.
 
 use super::access::Access;
+use super::access::FileError;
 use super::image::{Fault, Image};
 use glam::{DAffine2, DVec2};
 use std::collections::HashMap;
@@ -96,9 +97,16 @@ impl<'a> Images<'a> {
     /// Returns the image in the file that `name` in a scene file refers to.
     ///
     /// # Errors
-    /// If it lies outside of the scene's folder, or is no image: cause and remedy.
-    pub(super) fn file(&mut self, scene: &Path, name: &str) -> Result<Arc<Image>, Fault> {
-        let path = self.access.resolve(scene, name)?;
+    /// If it lies outside of the scene's folder, cannot be read, or is no image: cause and remedy.
+    pub(super) fn file(
+        &mut self,
+        scene: &Path,
+        name: &str,
+    ) -> Result<Arc<Image>, FileError<Fault>> {
+        let path = self
+            .access
+            .resolve(scene, name)
+            .map_err(FileError::Unusable)?;
         // One file can have several names; one that is not there is missed below.
         let key = self
             .access
@@ -111,8 +119,9 @@ impl<'a> Images<'a> {
         let bytes = self
             .access
             .read(&path)
-            .map_err(|error| of_file([error.cause, error.remedy]))?;
-        let image = Image::decode(name, &bytes, &self.access.texels).map_err(of_file)?;
+            .map_err(|error| FileError::Unreadable(of_file([error.cause, error.remedy])))?;
+        let image = Image::decode(name, &bytes, &self.access.texels)
+            .map_err(|fault| FileError::Unusable(of_file(fault)))?;
         let image = Arc::new(image);
         self.files.insert(key, Arc::clone(&image));
         Ok(image)

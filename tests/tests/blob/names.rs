@@ -152,6 +152,7 @@ fn names_that_exceed_the_largest_size_are_left_out() {
 fn lights_that_the_compiler_adds_have_no_name() {
     let mut scene = named_scene();
     (scene.lights, scene.light_names) = (Vec::<Light>::new(), Vec::new());
+    scene.tracks.clear();
     scene.ambient = [0.0; 3];
     let blob = built(&scene, true);
     assert_eq!(blob.scene().expect("a scene").lights().len(), 1);

@@ -1,17 +1,19 @@
 //! The animations of a glTF file: tracks of its camera and its lights.
 //!
 //! A node's own translation and rotation keep their keys. Where nodes above it move as well, or tracks do not have such
-//! an interpolation, they are sampled [`RATE`] times per second.
+//! an interpolation, they are sampled [`RATE`] times per second and at their keys.
 
 use super::buffers::Buffers;
 use super::curve::Curve;
 use super::place::transform;
-use crate::scene::{Choice, Interpolation, Key, SceneError, SourceSpan, Track, TrackTarget};
+use crate::scene::{
+    Choice, Interpolation, Key, SceneError, SourceSpan, TICKS_PER_SECOND, Track, TrackTarget,
+};
 use crate::table::printable;
 use glam::{DAffine3, DMat3, DMat4, DQuat, DVec3};
 use gltf::animation::Property;
 use gltf::{Animation, Document};
-use std::collections::HashMap;
+use std::collections::{BTreeSet, HashMap};
 use std::path::Path;
 
 /// Samples per second of a motion that has no keys of its own.
@@ -44,7 +46,9 @@ pub(super) struct Motion {
     /// The transform of each node in the one above, at rest.
     rest: Vec<DMat4>,
     /// How many samples were taken of all curves.
-    pub(super) samples: usize,
+    samples: usize,
+    /// The least samples per second of a curve, if any was sampled.
+    pub(super) least_rate: Option<f64>,
 }
 
 /// The chosen animation: its name, and whether the user chose it.
@@ -211,16 +215,31 @@ impl Motion {
     fn sample_times(&mut self, node: usize) -> Result<Vec<f64>, Fault> {
         let moves = self.chain(node).filter_map(|it| self.nodes.get(&it));
         let curves = moves.flat_map(|it| [&it.translation, &it.rotation, &it.scale]);
-        let times = curves.flatten().flat_map(|curve| curve.keys.iter());
-        let times: Vec<f64> = times.map(|key| key.seconds).collect();
-        let first = times.iter().copied().fold(f64::INFINITY, f64::min);
-        let last = times.iter().copied().fold(f64::NEG_INFINITY, f64::max);
-        let steps = ((last - first) * RATE).ceil().clamp(0.0, MOST_SAMPLES);
-        let time = |step: u32| match steps {
-            0.0 => first,
-            _ => first + (last - first) * f64::from(step) / steps,
-        };
-        self.samples += steps as usize + 1;
+        // In ticks, as the blob has times.
+        let tick = |seconds: f64| (seconds * f64::from(TICKS_PER_SECOND)).round() as i64;
+        let mut ticks = BTreeSet::new();
+        for curve in curves.flatten() {
+            ticks.extend(curve.keys.iter().map(|key| tick(key.seconds)));
+            if curve.interpolation == Interpolation::Step {
+                // The value before a key stays until it.
+                let later = curve.keys.iter().skip(1);
+                ticks.extend(later.map(|key| tick(key.seconds) - 1));
+            }
+        }
+        if let (Some(&first), Some(&last)) = (ticks.first(), ticks.last()) {
+            let span = (last - first) as f64;
+            let seconds = span / f64::from(TICKS_PER_SECOND);
+            let steps = (seconds * RATE).ceil().clamp(0.0, MOST_SAMPLES);
+            let between = (1..steps as u32).map(|step| f64::from(step) / steps);
+            ticks.extend(between.map(|share| first + (share * span).round() as i64));
+            let rate = if steps < MOST_SAMPLES {
+                RATE
+            } else {
+                steps / seconds
+            };
+            self.least_rate = Some(self.least_rate.map_or(rate, |least| least.min(rate)));
+        }
+        self.samples += ticks.len();
         if self.samples > MOST_SAMPLES_OF_ALL {
             return Err([
                 format!(
@@ -231,7 +250,8 @@ impl Motion {
                 ),
             ]);
         }
-        Ok((0..=steps as u32).map(time).collect())
+        let seconds = |tick: i64| tick as f64 / f64::from(TICKS_PER_SECOND);
+        Ok(ticks.into_iter().map(seconds).collect())
     }
 
     /// The tracks of a camera at a node; none if it stands still.
@@ -307,6 +327,28 @@ impl Motion {
         Some([eye, rotation])
     }
 
+    /// Returns the direction in which a node shines, with its own keys; none if it always shines in one. `None` if it has
+    /// to be sampled: where a node above it moves, it is scaled, or it turns smoothly, for which directions are too few.
+    fn own_direction(&self, node: usize) -> Option<Option<Curve>> {
+        if self.chain(node).skip(1).any(|it| self.moves_itself(it)) {
+            return None;
+        }
+        let moves = self.nodes.get(&node)?;
+        match (&moves.rotation, &moves.scale) {
+            (None, None) => Some(None),
+            (Some(curve), None) if curve.interpolation == Interpolation::Step => {
+                let above = self.above(node);
+                let aimed = curve.map(|value| {
+                    let forward = DQuat::from_array(value) * -DVec3::Z;
+                    let [x, y, z] = above.transform_vector3(forward).to_array();
+                    [x, y, z, 0.0]
+                });
+                Some(Some(aimed))
+            }
+            _ => None,
+        }
+    }
+
     /// The track of a light at a node, if it moves.
     pub(super) fn light(
         &mut self,
@@ -318,9 +360,16 @@ impl Motion {
         if !self.moves(node) {
             return Ok(None);
         }
-        let own = self.own_curves(node).filter(|_| !directional);
+        let own = match directional {
+            true => match self.own_direction(node) {
+                Some(None) => return Ok(None),
+                Some(turning) => turning,
+                None => None,
+            },
+            false => self.own_curves(node).map(|[eye, _]| eye),
+        };
         let curve = match own {
-            Some([curve, _]) => curve,
+            Some(curve) => curve,
             None => {
                 let times = self.sample_times(node)?;
                 let key = |seconds: f64| {

@@ -3,6 +3,7 @@
 use super::buffers::fetch;
 use super::normal_transforms::NormalTransforms;
 use super::{Importer, material};
+use crate::scene::access::FileError;
 use crate::scene::texture::texture_transform;
 use crate::scene::{Attributes, Image, Material, NormalMap, SceneError, Texture, Wrap};
 use glam::{DAffine2, DVec2};
@@ -280,12 +281,12 @@ impl Importer<'_> {
             Source::Uri { uri, .. } => match fetch(self.path, &what, uri, self.access) {
                 Ok(bytes) => Cow::Owned(bytes),
                 // As with textures of OBJ files: it was often left behind.
-                Err(error) if error.cause.contains("cannot be read") => {
+                Err(FileError::Unreadable(error)) => {
                     self.warn(format!("{}; the plain color is used", error.cause));
                     self.images.insert(key, None);
                     return Ok(None);
                 }
-                Err(error) => return Err(error),
+                Err(FileError::Unusable(error)) => return Err(error),
             },
         };
         let name = image.name().map_or_else(|| what.clone(), str::to_owned);

@@ -3,7 +3,7 @@
 //! The crate's own readers trust offsets, counts and types; here every read is checked.
 
 use crate::scene::SceneError;
-use crate::scene::access::Access;
+use crate::scene::access::{Access, FileError};
 use base64::Engine as _;
 use base64::engine::general_purpose::STANDARD;
 use gltf::Document;
@@ -45,7 +45,8 @@ impl<'a> Buffers<'a> {
                         Some(bytes) => Rc::clone(bytes),
                         None => {
                             let bytes: Rc<[u8]> =
-                                fetch(path, &format!("buffer {}", buffer.index()), uri, access)?
+                                fetch(path, &format!("buffer {}", buffer.index()), uri, access)
+                                    .map_err(FileError::words)?
                                     .into();
                             files.insert(uri.to_owned(), Rc::clone(&bytes));
                             bytes
@@ -314,9 +315,10 @@ pub(super) fn fetch(
     what: &str,
     uri: &str,
     access: &Access,
-) -> Result<Vec<u8>, SceneError> {
-    let wrong =
+) -> Result<Vec<u8>, FileError<SceneError>> {
+    let error =
         |cause: String, remedy: &str| SceneError::new(path, format!("{what} {cause}"), remedy);
+    let wrong = |cause, remedy: &str| FileError::Unusable(error(cause, remedy));
     if let Some(data) = uri.strip_prefix("data:") {
         let encoded = data.split_once(";base64,").map(|(_, encoded)| encoded);
         return encoded
@@ -342,10 +344,10 @@ pub(super) fn fetch(
     let file = access
         .resolve(path, &name)
         .map_err(|[cause, remedy]| wrong(format!("is in a file: {cause}"), &remedy))?;
-    access.read(&file).map_err(|error| {
-        wrong(
-            format!("is in {}: {}", file.display(), error.cause),
+    access.read(&file).map_err(|read| {
+        FileError::Unreadable(error(
+            format!("is in {}: {}", file.display(), read.cause),
             "put that file beside the scene file",
-        )
+        ))
     })
 }

@@ -23,7 +23,7 @@ pub(super) fn read(
     warnings: &mut Warnings,
 ) -> Result<(Document, Option<Vec<u8>>, NormalTransforms), SceneError> {
     let container = container::split(path, bytes, warnings)?;
-    let mut root = parse(path, &container)?;
+    let mut root = parse(path, &container, warnings)?;
     check_version(path, &root.asset.version)?;
     if let Some(least) = &root.asset.min_version {
         check_version(path, least)?;
@@ -37,15 +37,26 @@ pub(super) fn read(
     Ok((document, blob, transforms))
 }
 
-fn parse(path: &Path, container: &Container<'_>) -> Result<Root, SceneError> {
-    gltf::json::deserialize::from_slice(container.text).map_err(|error| {
-        // Other versions have other types where this one has its own.
+fn parse(
+    path: &Path,
+    container: &Container<'_>,
+    warnings: &mut Warnings,
+) -> Result<Root, SceneError> {
+    // Compiled once, in its own crate: the generic function would be compiled again here.
+    Root::from_slice(container.text).or_else(|error| {
         let value = gltf::json::deserialize::from_slice::<Value>(container.text).ok();
+        let aimed = value.clone().and_then(without_aimless_channels);
+        if let Some(root) = aimed {
+            let sentence = "channels of animations without a node are ignored";
+            warnings.add_times(SourceSpan::of(path), 1, sentence);
+            return Ok(root);
+        }
+        // Other versions have other types where this one has its own.
         let version = value
             .as_ref()
             .and_then(|value| value["asset"]["version"].as_str());
         if let Some(Err(wrong)) = version.map(|version| check_version(path, version)) {
-            return wrong;
+            return Err(wrong);
         }
         let cause = error.to_string();
         // The error names the line before the cause.
@@ -53,11 +64,29 @@ fn parse(path: &Path, container: &Container<'_>) -> Result<Root, SceneError> {
             .rsplit_once(" at line ")
             .map_or(cause.as_str(), |(cause, _)| cause);
         let wrong = SceneError::new(path, format!("the JSON is broken: {cause}"), AGAIN);
-        match error.line() {
+        Err(match error.line() {
             line if line > 0 && container.has_lines => wrong.at_line(line),
             _ => wrong,
-        }
+        })
     })
+}
+
+/// Takes out the channels of animations that name no node, which are valid: extensions say what these move. Returns
+/// `None` if there are none, or something else is broken.
+fn without_aimless_channels(mut document: Value) -> Option<Root> {
+    let mut found = false;
+    for animation in document.get_mut("animations")?.as_array_mut()? {
+        let Some(channels) = animation.get_mut("channels").and_then(Value::as_array_mut) else {
+            continue;
+        };
+        channels.retain(|channel| {
+            let is_aimless = channel["target"].is_object() && channel["target"]["node"].is_null();
+            found |= is_aimless;
+            !is_aimless
+        });
+    }
+    // As text, for the function of `parse`.
+    found.then(|| Root::from_slice(document.to_string().as_bytes()).ok())?
 }
 
 fn check_version(path: &Path, version: &str) -> Result<(), SceneError> {

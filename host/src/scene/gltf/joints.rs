@@ -135,7 +135,7 @@ impl Own {
                 own.add(TrackTarget::JointRotation, mapped, DVec4::W);
             }
             _ => own.warnings.push(
-                "turns below a node that is scaled unevenly or sheared, which would bend it; it does not turn",
+                "turns below a node that is scaled unevenly or sheared, where most turns would bend it; it does not turn",
             ),
         }
         match (scale, parts) {
@@ -148,7 +148,7 @@ impl Own {
                     own.add(TrackTarget::JointScale, mapped, DVec4::X);
                 }
                 None => own.warnings.push(
-                    "grows unevenly, from nothing or beyond 64 times its size; it keeps its size at rest",
+                    "grows unevenly, from nothing, beyond 64 times its size or to its mirror image; it keeps its size at rest",
                 ),
             },
             (Some(_), None) => own

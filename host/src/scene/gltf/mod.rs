@@ -122,24 +122,19 @@ fn read(input: Input<'_>) -> Result<Imported, SceneError> {
     scene
         .tracks
         .extend(tracks.map_err(|[cause, remedy]| SceneError::new(path, cause, remedy))?);
-    if motion.samples > 0 {
-        warnings.add_times(
-            place.clone(),
-            1,
-            "a camera or light whose node does not move alone is sampled 60 times per second",
+    if let Some(rate) = motion.least_rate {
+        let sentence = format!(
+            "a camera or light that other nodes carry, or a directional light that turns, is sampled {} times per second",
+            (10.0 * rate).round() / 10.0
         );
+        warnings.add_times(place.clone(), 1, sentence);
     }
     view.finish(&mut scene, &mut |sentence| {
         warnings.add_times(place.clone(), 1, sentence);
     });
     Ok(Imported {
-        scene,
-        warnings: warnings.into_sentences(),
-        molecules: false,
         choices: true,
-        assemblies: false,
-        posed: None,
-        copied: 0,
+        ..Imported::of(scene, warnings.into_sentences())
     })
 }
 
@@ -203,7 +198,7 @@ impl Importer<'_> {
         );
         self.warn_of(
             document.skins().len(),
-            "skins are ignored; meshes stand as they are at rest",
+            "skins are ignored; their meshes stand unbent at their nodes",
         );
         for material in document.materials() {
             for sentence in material::ignored(&material) {
@@ -403,7 +398,7 @@ impl Importer<'_> {
             return Ok(None);
         }
         if part.morph_targets().len() > 0 {
-            self.warn("morph targets are ignored; meshes stand as they are at rest");
+            self.warn("morph targets are ignored; their meshes keep the shape without them");
         }
         // Without positions the file is not valid.
         let Some(positions) = part.get(&Semantic::Positions) else {

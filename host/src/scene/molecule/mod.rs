@@ -73,13 +73,9 @@ pub(super) fn import(
         None => molecule.whole()?,
     };
     Ok(Imported {
-        scene,
-        warnings: warnings.into_sentences(),
         molecules: true,
-        choices: false,
         assemblies: true,
-        posed: None,
-        copied: 0,
+        ..Imported::of(scene, warnings.into_sentences())
     })
 }
 

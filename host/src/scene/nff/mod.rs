@@ -274,15 +274,7 @@ impl<'a> Importer<'a> {
         let stated = |index| self.ambient.get(index).copied().unwrap_or(0.0);
         let ambient = used.iter().map(stated).sum::<f64>() / used.len() as f64;
         self.scene.ambient = [ambient; 3];
-        Ok(Imported {
-            scene: self.scene,
-            warnings: self.warnings.into_sentences(),
-            molecules: false,
-            choices: false,
-            assemblies: false,
-            posed: None,
-            copied: 0,
-        })
+        Ok(Imported::of(self.scene, self.warnings.into_sentences()))
     }
 }
 

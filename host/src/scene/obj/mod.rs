@@ -98,15 +98,7 @@ fn import(source: &Source, access: &Access) -> Result<Imported, SceneError> {
         });
     }
     scene.materials = materials.used;
-    Ok(Imported {
-        scene,
-        warnings: warnings.into_sentences(),
-        molecules: false,
-        choices: false,
-        assemblies: false,
-        posed: None,
-        copied: 0,
-    })
+    Ok(Imported::of(scene, warnings.into_sentences()))
 }
 
 /// Rejects files whose parts repeat a long name until no memory holds it.

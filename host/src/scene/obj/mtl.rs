@@ -9,6 +9,7 @@
 //! `Pr` is the roughness of what mirrors and of glass. `map_Kd` weights `Kd`, with its options `-o`, `-s` and `-clamp`.
 //! `norm` is a normal map, with the same options. Everything else is ignored, with a warning.
 
+use crate::scene::access::FileError;
 use crate::scene::text::{Source, Warnings};
 use crate::scene::texture::Images;
 use crate::scene::{Color, Diffuse, Material, NormalMap, SceneError, Texture, Wrap};
@@ -295,12 +296,12 @@ impl Reader<'_> {
                 ..Texture::of(image)
             })),
             // As with material files: it was often left behind.
-            Err([cause, _]) if cause.contains("cannot be read") => {
+            Err(FileError::Unreadable([cause, _])) => {
                 let sentence = format!("the texture {cause}; the plain color is used");
                 warnings.add(self.source, line, sentence);
                 Ok(None)
             }
-            Err([cause, remedy]) => {
+            Err(FileError::Unusable([cause, remedy])) => {
                 let error = self.source.error(format!("the texture {cause}"), remedy);
                 Err(error.at_line(line))
             }

@@ -289,8 +289,10 @@ fn texture(
 
 fn image(file: Value<'_>, images: &mut Images<'_>) -> Result<Arc<Image>, SceneError> {
     let name = file.filled()?;
-    let wrong = |[cause, remedy]: [String; 2]| file.error(format!("the texture {cause}"), remedy);
-    images.file(&file.source.path, name).map_err(wrong)
+    images.file(&file.source.path, name).map_err(|error| {
+        let [cause, remedy] = error.words();
+        file.error(format!("the texture {cause}"), remedy)
+    })
 }
 
 fn checker(table: Value<'_>) -> Result<Diffuse, SceneError> {

@@ -64,12 +64,9 @@ fn read(input: Input<'_>) -> Result<Imported, SceneError> {
     let mut imports = Imports::new((IMPORTER.name, document::read), &input);
     let scene = imports.root(input)?;
     Ok(Imported {
-        scene,
-        warnings: imports.warnings,
         molecules: imports.kinds.molecules,
         choices: imports.kinds.choices,
         assemblies: imports.kinds.assemblies,
-        posed: None,
-        copied: 0,
+        ..Imported::of(scene, imports.warnings)
     })
 }

@@ -176,6 +176,82 @@ fn a_rig_is_sampled() {
 }
 
 #[test]
+fn a_rig_that_moves_in_steps_is_sampled_at_its_keys() {
+    let mut document = animated(json!([{"channels": [channel(0, 2, "translation")],
+        "samplers": [sampler(3, "STEP")]}]));
+    let nodes = document["nodes"].as_array_mut().unwrap();
+    nodes.push(json!({"children": [1]}));
+    document["scenes"] = json!([{"nodes": [0, 2]}]);
+    let (tracks, _) = tracks(&document);
+    let eye = &tracks[0].keys;
+    let at = |seconds: f64| eye.iter().position(|key| key.seconds == seconds).unwrap();
+    let [before, key] = [at(1.0) - 1, at(1.0)];
+    assert_eq!(eye[before].seconds, 47_999.0 / 48_000.0);
+    assert_eq!(eye[before].vector(), eye[0].vector());
+    assert_eq!(eye[key].vector() - eye[0].vector(), DVec3::X);
+}
+
+#[test]
+fn a_directional_light_keeps_the_keys_of_its_steps_and_is_sampled_where_it_turns_smoothly() {
+    let sun = |animations: Value| {
+        let mut document = animated(animations);
+        document["extensions"]["KHR_lights_punctual"]["lights"] = json!([{"type": "directional"}]);
+        tracks(&document)
+    };
+    let turn = |how: &str| {
+        sun(json!([{"channels": [channel(0, 1, "rotation")], "samplers": [sampler(4, how)]}]))
+    };
+    let of_light = |tracks: Vec<crate::scene::Track>| {
+        let mut tracks = tracks.into_iter();
+        tracks.find(|it| it.target == TrackTarget::LightDirection)
+    };
+    let (steps, warnings) = turn("STEP");
+    assert_eq!(warnings, Vec::<String>::new());
+    let steps = of_light(steps).unwrap();
+    assert_eq!(
+        (steps.keys.len(), steps.interpolation),
+        (3, Interpolation::Step)
+    );
+    assert!(steps.keys[1].vector().distance(DVec3::NEG_X) < 1e-6);
+    let (smooth, warnings) = turn("LINEAR");
+    assert!(warnings[0].contains("60 times"), "{warnings:?}");
+    assert_eq!(of_light(smooth).unwrap().keys.len(), 121);
+    // Where it stands does not matter.
+    let (moved, warnings) = sun(
+        json!([{"channels": [channel(0, 1, "translation")], "samplers": [sampler(3, "STEP")]}]),
+    );
+    assert_eq!((of_light(moved), warnings.len()), (None, 0));
+}
+
+#[test]
+fn channels_without_a_node_are_ignored_with_a_warning() {
+    let mut document = animated(json!([{"channels": [channel(0, 1, "translation")],
+        "samplers": [sampler(3, "LINEAR")]}]));
+    let keys = |tracks: Vec<crate::scene::Track>| -> Vec<_> {
+        tracks.into_iter().map(|it| (it.target, it.keys)).collect()
+    };
+    let (expected, _) = tracks(&document);
+    let channels = document["animations"][0]["channels"]
+        .as_array_mut()
+        .unwrap();
+    channels.push(
+        json!({"sampler": 0, "target": {"path": "pointer", "extensions":
+        {"KHR_animation_pointer": {"pointer": "/nodes/0/rotation"}}}}),
+    );
+    let (found, warnings) = tracks(&document);
+    assert_eq!(keys(found), keys(expected));
+    assert!(
+        warnings.iter().any(|it| it.contains("without a node")),
+        "{warnings:?}"
+    );
+    // Not where something else is broken, or the document is something else.
+    document["nodes"][0]["mesh"] = json!("no number");
+    let broken = read(document.to_string().as_bytes()).unwrap_err();
+    assert!(broken.to_string().contains("broken"), "{broken}");
+    assert!(read(b"[1]").is_err());
+}
+
+#[test]
 fn cameras_and_animations_are_chosen_by_name() {
     let mut document = animated(json!([
         {"name": "still", "channels": [channel(0, 0, "translation")], "samplers": [sampler(3, "STEP")]},
