@@ -1,4 +1,12 @@
-//! Access to components of vectors by the number of their axis.
+//! Components of vectors.
+
+/// The product of two vectors, in their units squared; it wraps beyond 63 bits.
+pub(crate) fn dot([a, b, c]: [i32; 3], [x, y, z]: [i32; 3]) -> i64 {
+    let product = |a: i32, b: i32| i64::from(a).wrapping_mul(b.into());
+    product(a, x)
+        .wrapping_add(product(b, y))
+        .wrapping_add(product(c, z))
+}
 
 /// Returns a component by number. Unlike an index, it keeps the vector in registers.
 #[inline(always)]

@@ -34,7 +34,7 @@ pub fn run(scene_file: &Path, picture_file: &Path) -> Result<SceneHit, Box<dyn E
         any: false,
     };
     let mut hits = [SceneHit::MISS];
-    trace(&scene, &[ray], query, &mut hits);
+    trace(&scene, &[ray], query, &mut hits)?;
 
     let job = Job::whole(format, structure, Settings::of(&scene));
     let picture = render(&scene, &job, &|| ())?;

@@ -2,7 +2,7 @@
 
 use crate::simd;
 use gridel_core::format::record::{ALIGNMENT, Header, MAGIC};
-use gridel_core::{BlobError, Scene, Structure};
+use gridel_core::{BlobError, Scene};
 use std::fmt;
 use std::fs::{self, File};
 use std::io::{self, Read};
@@ -148,42 +148,4 @@ pub fn is_blob(path: &Path) -> io::Result<bool> {
 /// ```
 pub fn begins_as_blob(bytes: &[u8]) -> bool {
     bytes.starts_with(&MAGIC[..6])
-}
-
-/// Returns the structures that a scene holds; a command's default comes first.
-///
-/// ```
-/// # use gridel_host::compile::{Options, compile};
-/// # let file = "[[object]]\nkind = 'sphere'\ncenter = [0, 0, 0]\nradius = 1\nname = 'ball'";
-/// # let imported = gridel_host::scene::read("ball.toml".as_ref(), file.into(), &Default::default())?;
-/// # let blob = compile(&imported.scene, &Options::default())?.blob;
-/// # let scene = blob.scene()?;
-/// use gridel_core::Structure;
-/// use gridel_host::blob::best_structures;
-///
-/// let structures: Vec<_> = best_structures(&scene).collect();
-/// assert_eq!(structures, [Structure::DualSplit, Structure::List]);
-/// # Ok::<(), Box<dyn std::error::Error>>(())
-/// ```
-pub fn best_structures(scene: &Scene<'_>) -> impl Iterator<Item = Structure> {
-    const BEST_FIRST: [Structure; Structure::ALL.len()] = [
-        Structure::Wide,
-        Structure::Apex,
-        Structure::RayClasses,
-        Structure::CylinderCubeEntry,
-        Structure::DualSplit,
-        Structure::Flagged,
-        Structure::Bvh,
-        Structure::FlaggedSlabs,
-        Structure::Slabs,
-        Structure::Grid,
-        Structure::Octree,
-        Structure::Spheres,
-        Structure::CylinderCubeTight,
-        Structure::CylinderCube,
-        Structure::List,
-    ];
-    BEST_FIRST
-        .into_iter()
-        .filter(|&structure| scene.holds(structure))
 }

@@ -2,15 +2,13 @@
 //!
 //! Rays are an array of shape (N, 8), float32 or float64: origin x y z, tmin, direction x y z,
 //! tmax, in scene units. Either byte order and either memory order is read. Hits are a packed
-//! structured array, little-endian, with the fields of [`HIT_FIELDS`].
+//! structured array, little-endian, with the fields that
+//! [`write_hits`] names.
 
 use crate::render::Values;
 use crate::trace::{SceneHit, SceneRay};
 use glam::DVec3;
 use std::io::{self, Write};
-
-/// The fields of a hit, with NumPy's names for their types.
-pub const HIT_FIELDS: &str = "t f8, object u4, primitive u4, normal 3 f4";
 
 /// Why a file holds no rays.
 #[derive(Debug, PartialEq, thiserror::Error, miette::Diagnostic)]
@@ -223,8 +221,8 @@ fn integers(text: &str) -> Option<(Vec<u64>, &str)> {
     Some((integers?, rest))
 }
 
-/// Writes hits, as an array of shape (N,). Hits of scenes with instances have a field more: `instance`, behind
-/// `primitive`.
+/// Writes hits, as an array of shape (N,) with the fields t (f8), object and primitive (u4), and normal (3 f4). Hits of
+/// scenes with instances have a field more: instance (u4), behind primitive.
 ///
 /// # Errors
 /// If `out` has one.

@@ -94,10 +94,18 @@ pub struct Query {
     pub any: bool,
 }
 
+/// The blob does not hold the structure through which rays were to be traced.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("the blob does not hold the structure {}", .0.name())]
+pub struct MissingStructure(pub Structure);
+
 /// Traces rays one after the other on this thread. Returns which were rejected, and why.
 ///
 /// `t` of a hit is never below `tmin` or above `tmax`. The number format rounds both, so it can find or miss a surface
 /// that is as near to one of them as it rounds.
+///
+/// # Errors
+/// If the blob does not hold the structure; then `hits` stays as it was.
 ///
 /// ```
 /// # use gridel_host::compile::{Options, compile};
@@ -121,7 +129,7 @@ pub struct Query {
 ///     any: false,
 /// };
 /// let mut hits = [SceneHit::MISS];
-/// let rejected = trace(&scene, &[ray], query, &mut hits);
+/// let rejected = trace(&scene, &[ray], query, &mut hits)?;
 /// assert_eq!((hits[0].t, rejected.count), (4.0, 0));
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
@@ -130,7 +138,7 @@ pub fn trace(
     rays: &[SceneRay],
     query: Query,
     hits: &mut [SceneHit],
-) -> Rejections {
+) -> Result<Rejections, MissingStructure> {
     match query.format {
         Format::Fixed => with_format::<Fixed>(scene, rays, query, hits),
         Format::F32 => with_format::<f32>(scene, rays, query, hits),
@@ -139,6 +147,9 @@ pub fn trace(
 }
 
 /// Traces rays like [`trace`], and counts their tests.
+///
+/// # Errors
+/// As [`trace`].
 ///
 /// ```
 /// # use gridel_host::compile::{Options, compile};
@@ -161,7 +172,7 @@ pub fn trace(
 ///     any: false,
 /// };
 /// let mut counters = Counters::default();
-/// trace_counted(&scene, &[down], query, &mut [SceneHit::MISS], &mut counters);
+/// trace_counted(&scene, &[down], query, &mut [SceneHit::MISS], &mut counters)?;
 /// assert_eq!(counters.objects, 1);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
@@ -171,11 +182,8 @@ pub fn trace_counted(
     query: Query,
     hits: &mut [SceneHit],
     counters: &mut Counters,
-) -> Rejections {
-    let Some(scene) = scene.choose(query.structure) else {
-        hits.fill(SceneHit::MISS);
-        return Rejections::default();
-    };
+) -> Result<Rejections, MissingStructure> {
+    let scene = chosen(scene, query.structure)?;
     let any = query.any;
     let mut observed = Observed::default();
     let rejections = match query.format {
@@ -184,7 +192,7 @@ pub fn trace_counted(
         Format::F64 => through::<f64, DynAccel, _>(&scene, rays, any, hits, &mut observed),
     };
     *counters = counters.plus(&observed.counters);
-    rejections
+    Ok(rejections)
 }
 
 fn with_format<N: Number>(
@@ -192,22 +200,22 @@ fn with_format<N: Number>(
     rays: &[SceneRay],
     query: Query,
     hits: &mut [SceneHit],
-) -> Rejections {
+) -> Result<Rejections, MissingStructure> {
     let (any, count) = (query.any, &mut NoCount);
+    let scene = &chosen(scene, query.structure)?;
     // Hosts and boards trace with these; the others are for comparison.
-    match query.structure {
+    Ok(match query.structure {
         Structure::Bvh => through::<N, Bvh, _>(scene, rays, any, hits, count),
         Structure::Flagged => through::<N, Flagged, _>(scene, rays, any, hits, count),
         Structure::DualSplit => through::<N, DualSplit, _>(scene, rays, any, hits, count),
         Structure::Wide => through::<N, Wide, _>(scene, rays, any, hits, count),
-        other => match scene.choose(other) {
-            Some(scene) => through::<N, DynAccel, _>(&scene, rays, any, hits, count),
-            None => {
-                hits.fill(SceneHit::MISS);
-                Rejections::default()
-            }
-        },
-    }
+        _ => through::<N, DynAccel, _>(scene, rays, any, hits, count),
+    })
+}
+
+/// The scene, with a structure chosen for [`DynAccel`].
+fn chosen<'a>(scene: &Scene<'a>, structure: Structure) -> Result<Scene<'a>, MissingStructure> {
+    scene.choose(structure).ok_or(MissingStructure(structure))
 }
 
 fn through<N: Number, A: Accel, C: Observer>(

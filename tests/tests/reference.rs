@@ -125,7 +125,7 @@ fn answers_agree_with_brute_force() {
                 any: false,
             };
             let mut hits = vec![SceneHit::MISS; rays.len()];
-            trace(&scene, &rays, query, &mut hits);
+            trace(&scene, &rays, query, &mut hits).expect("a structure");
             compare(mesh, format, step, &answers, &hits);
         }
     }

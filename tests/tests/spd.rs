@@ -39,7 +39,7 @@ fn hits(name: &str, format: Format) -> Option<usize> {
     };
     let mut hits = vec![SceneHit::MISS; rays.len()];
     let scene = blob.scene().expect("a scene");
-    trace(&scene, &rays, query, &mut hits);
+    trace(&scene, &rays, query, &mut hits).expect("a structure");
     assert!(
         hits.iter()
             .all(|hit| !hit.t.is_nan() && hit.normal.iter().all(|x| x.is_finite()))

@@ -114,7 +114,7 @@ fn levels_agree<N: Number>(name: &str, scene: &gridel_core::Scene<'_>) {
             };
             let traced = [&portable, &fast].map(|scene| {
                 let mut hits = vec![SceneHit::MISS; queries.len()];
-                trace(scene, &queries, query, &mut hits);
+                trace(scene, &queries, query, &mut hits).expect("a structure");
                 hits
             });
             assert!(traced[0] == traced[1], "{name}, {}", N::FORMAT.name());

@@ -108,12 +108,30 @@ impl Structure {
         1 << self as u32
     }
 
-    /// Returns the structure of a set that is fastest for most scenes; `set` holds their [bits](Self::bit).
-    pub(crate) fn fastest(set: u32) -> Self {
-        let first = [Self::Wide, Self::DualSplit, Self::Flagged, Self::Bvh];
-        let all = first.into_iter().chain(Self::ALL.into_iter().rev());
-        let mut held = all.filter(|structure| set & structure.bit() != 0);
-        held.next().unwrap_or(Self::List)
+    /// All structures, in the order in which they are chosen where nobody names one. Lists of candidates come early,
+    /// because a blob holds them only where they were asked for.
+    pub const BEST_FIRST: [Self; Self::ALL.len()] = [
+        Self::Wide,
+        Self::Apex,
+        Self::RayClasses,
+        Self::CylinderCubeEntry,
+        Self::DualSplit,
+        Self::Flagged,
+        Self::Bvh,
+        Self::FlaggedSlabs,
+        Self::Slabs,
+        Self::Grid,
+        Self::Octree,
+        Self::Spheres,
+        Self::CylinderCubeTight,
+        Self::CylinderCube,
+        Self::List,
+    ];
+
+    /// Returns the [best](Self::BEST_FIRST) structure of a set, which holds their [bits](Self::bit).
+    pub(crate) fn best_of(set: u32) -> Self {
+        let mut held = Self::BEST_FIRST.into_iter();
+        held.find(|it| set & it.bit() != 0).unwrap_or(Self::List)
     }
 
     /// Returns whether loading proves that this structure gives the answers of the list. Loading cannot prove it for

@@ -59,6 +59,13 @@ macro_rules! registry {
             $($(#[doc = $doc])* $kind(super::$module::$record),)*
         }
 
+        impl Kind {
+            /// Returns true if surfaces of this kind can enclose something: not discs and planes.
+            pub const fn encloses(self) -> bool {
+                matches!(self, Kind::Triangle) || !is_flat(self)
+            }
+        }
+
         /// Whether a shape has no inside: its front is the side to which its normal points.
         #[inline(always)]
         pub(crate) const fn is_flat(kind: Kind) -> bool {

@@ -1,5 +1,6 @@
 //! The box of an instance.
 
+use crate::axis::dot;
 use crate::format::Reason;
 use crate::format::instance::{Instance, MATRIX_BITS};
 use crate::format::record::UnitBox;
@@ -12,14 +13,6 @@ const TOLERANCE: i64 = 1 << (2 * MATRIX_BITS - 20);
 /// except for 2.8 * 2^-18 of the way from the center. That way is at most 2^16 * 3^(1/2) units long. Rounding costs
 /// less than one unit. The rest is for a hit that lies outside its part's box.
 const MARGIN: i64 = 3;
-
-/// The square of a row's length, with twice the fraction bits of an entry. Entries are within their range.
-fn dot([a, b, c]: [i32; 3], [x, y, z]: [i32; 3]) -> i64 {
-    let product = |a: i32, b: i32| i64::from(a).wrapping_mul(b.into());
-    product(a, x)
-        .wrapping_add(product(b, y))
-        .wrapping_add(product(c, z))
-}
 
 /// Returns an error unless a matrix is a rotation times a factor from 1/2 to 1, within a [tolerance](TOLERANCE).
 pub(crate) fn check_rotation(matrix: &[[i32; 3]; 3]) -> Result<(), Reason> {

@@ -8,7 +8,7 @@ use crate::ray::{Ray, RayError};
 use crate::scene::Scene;
 use crate::target::AllStructuresOnly;
 
-/// Queries through the fastest structure of the blob, or the one that was [chosen](Scene::choose).
+/// Queries through the [best](Structure::BEST_FIRST) structure of the blob, or the one that was [chosen](Scene::choose).
 impl Scene<'_> {
     /// Returns the first hit of a ray in its interval, or `None`. `stack` needs
     /// [`stack_depth`](Scene::stack_depth) entries. [`closest_hit`](crate::closest_hit) is the form for one structure,
@@ -95,7 +95,7 @@ impl Scene<'_> {
         query::contains::<N, DynAccel, _>(self, solid, point, stack, &mut NoCount)
     }
 
-    /// Returns the scene with a structure chosen in place of the fastest one, for the queries here and for
+    /// Returns the scene with a structure chosen in place of the best one, for the queries here and for
     /// [`DynAccel`]. Returns `None` if the blob does not hold it.
     ///
     /// ```

@@ -1,10 +1,10 @@
 //! Answers of queries: the primitive that a ray hits, the point, and the surface there.
 
 use crate::accel::Number;
+use crate::format::Leaf;
 use crate::format::instance::Instance;
 use crate::format::limits::UNBOUNDED;
-use crate::format::{Kind, Leaf};
-use crate::geometry::{LEAVING, is_flat};
+use crate::geometry::LEAVING;
 use crate::instances::map::{Map, PlacedSurface};
 use crate::observe::event::QueryHit;
 use crate::query::candidate::Candidate;
@@ -47,8 +47,7 @@ impl<N: Number> PrimitiveHit<N> {
 
     /// Returns true if surfaces of the primitive's kind can enclose something: not discs and planes.
     pub fn encloses(&self) -> bool {
-        let kind = self.best.place.kind;
-        kind == Kind::Triangle || !is_flat(kind)
+        self.best.place.kind.encloses()
     }
 
     inline_on_hosts!(

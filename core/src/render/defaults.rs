@@ -8,7 +8,7 @@ use crate::render::workspace::Workspace;
 use crate::scene::Scene;
 
 impl<'s, 'a> Renderer<'s, 'a, f32, DynAccel, { Effects::AVAILABLE.0 }> {
-    /// Returns a renderer of the picture that the scene file states, in `f32`, through the fastest structure of the
+    /// Returns a renderer of the picture that the scene file states, in `f32`, through the best structure of the
     /// blob. [`with_settings`](Renderer::with_settings) is the form for all other cases.
     ///
     /// ```

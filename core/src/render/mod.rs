@@ -3,6 +3,8 @@
 //! | step | file |
 //! |---|---|
 //! | a camera that the program places | `camera.rs` |
+//! | settings, checked against the scene, and a pixel | `renderer.rs` |
+//! | the ray with which a sample begins | `start.rs` |
 //! | the point of a sample in its pixel, and the direction of its ray | `sample.rs`, `pixel_rays.rs` |
 //! | the radiance of a ray, with its secondary rays | `trace.rs` |
 //! | the rays that wait, and their memory | `workspace.rs` |

@@ -228,6 +228,27 @@ impl<'a> Scene<'a> {
         self.space.holds(structure)
     }
 
+    /// Returns the structures that the blob holds, the [best](Structure::BEST_FIRST) first.
+    ///
+    /// ```
+    /// # static BLOB: &[u8] =
+    /// #     gridel_core::include_blob!(concat!(env!("CARGO_MANIFEST_DIR"), "/../fixtures/blobs/dual-split.gridel"));
+    /// use gridel_core::Structure;
+    ///
+    /// let scene = gridel_core::Scene::from_bytes(BLOB)?;
+    /// assert!(scene.structures().eq([Structure::DualSplit, Structure::List]));
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    pub fn structures(&self) -> impl Iterator<Item = Structure> + use<'_, 'a> {
+        let all = Structure::BEST_FIRST.into_iter();
+        all.filter(|&structure| self.holds(structure))
+    }
+
+    /// Returns the best of the [structures](Self::structures) that the blob holds; every blob has the list.
+    pub fn best_structure(&self) -> Structure {
+        self.structures().next().unwrap_or(Structure::List)
+    }
+
     /// Returns the scene with queries through [`Wide`](crate::Wide) at a level of instructions. The
     /// default is portable. Has no effect in a build without the feature `wide`.
     pub fn with_simd(self, simd: SimdLevel) -> Self {

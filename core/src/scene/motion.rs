@@ -1,5 +1,6 @@
 //! Motions: they move an instance away from its place in the blob.
 
+use crate::axis::dot;
 use crate::format::instance::{Instance, MATRIX_BITS};
 use crate::format::limits::{MAX_COORDINATE_SHIFT, SCALES};
 use crate::format::record::Header;
@@ -252,14 +253,6 @@ const LARGEST_OFFSET: i64 = 1 << 54;
 /// A coordinate with [`OFFSET_BITS`].
 fn fine(steps: i32) -> i64 {
     i64::from(steps) << OFFSET_BITS
-}
-
-/// The product of two vectors, with the fraction bits of both.
-fn dot([a, b, c]: [i32; 3], [x, y, z]: [i32; 3]) -> i64 {
-    let product = |a: i32, b: i32| i64::from(a).wrapping_mul(b.into());
-    product(a, x)
-        .wrapping_add(product(b, y))
-        .wrapping_add(product(c, z))
 }
 
 /// The product of two vectors, the second of which has 30 fraction bits, rounded to nearest.

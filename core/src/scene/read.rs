@@ -148,7 +148,7 @@ pub(crate) fn scene<'a>(
             header,
             shapes,
             leaves: sections.records(SectionKind::Leaves)?,
-            chosen: AllStructuresOnly::new(|| Structure::fastest(header.structures)),
+            chosen: AllStructuresOnly::new(|| Structure::best_of(header.structures)),
             simd: WideOnly::new(SimdLevel::default),
         },
         structures: StructureViews::read(sections)?,

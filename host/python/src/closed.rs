@@ -15,13 +15,12 @@ pub fn closed(scene: &Scene<'_>) -> Vec<bool> {
     });
     for (held_by, first) in std::iter::once((scene, 0)).chain(parts) {
         for kind in Kind::ALL {
-            let is_solid = !matches!(kind, Kind::Triangle | Kind::Disc | Kind::Plane);
             for slot in 0..held_by.count(kind) as u32 {
                 let object = scene.object(first + held_by.primitive(kind, slot));
                 let Some(closed) = closed.get_mut(object as usize) else {
                     continue;
                 };
-                *closed |= is_solid || kind == Kind::Triangle;
+                *closed |= kind.encloses();
                 if kind != Kind::Triangle {
                     continue;
                 }

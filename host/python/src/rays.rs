@@ -254,7 +254,7 @@ fn prepare_from_afar<N: Number>(scene: &Scene<'_>, frame: &Frame, ray: SceneRay)
     let middle = Middle::of(scene);
     let (mut near, t) = middle.nearer(&ray);
     if !t.is_finite() {
-        return Err(Rejection::Multiple("short"));
+        return Err(Rejection::TooShort);
     }
     // A ray that passes by so far away is brought nearer, where it misses all the same; planes it would not.
     if Kind::ALL

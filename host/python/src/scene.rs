@@ -13,7 +13,7 @@ use crate::query::{self, Any, FirstPrimitive, Found, Inside, NONE};
 use crate::rays::{Array, Points, Rays, TwoArrays};
 use crate::threads::in_pool;
 use gridel_core::Settings;
-use gridel_host::blob::{Blob, best_structures};
+use gridel_host::blob::Blob;
 use gridel_host::compile::{Options, compile};
 use gridel_host::picture::srgb;
 use gridel_host::render::{Job, render};
@@ -403,11 +403,12 @@ impl NativeScene {
         Ok(PyBytes::new(py, compiled.map_err(rejected)?.blob.bytes()))
     }
 
-    /// The names of the structures, the fastest first.
+    /// The names of the structures, the best first.
     #[getter]
     fn accels(&self) -> Vec<String> {
         let names = self.scene().map(|scene| {
-            best_structures(scene)
+            scene
+                .structures()
                 .map(|structure| structure.name().to_owned())
                 .collect()
         });

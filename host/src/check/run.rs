@@ -4,7 +4,7 @@ use super::board::{self, BoardRun};
 use super::image::Image;
 use super::manifest::{Check, Manifest, Reference};
 use super::report::{Evidence, Figure, Finding, Key, Outcome, Record, ReferencePicture, Report};
-use crate::blob::{Blob, best_structures, is_blob};
+use crate::blob::{Blob, is_blob};
 use crate::compile::{self, Options};
 use crate::explained;
 use crate::measure::{Rendered, board_memory};
@@ -489,7 +489,7 @@ impl Run<'_> {
 /// Returns the requested structure, or else the best that the blob holds.
 fn structure(check: &Check, scene: &Scene<'_>) -> Result<Structure, String> {
     match check.accel {
-        None => Ok(best_structures(scene).next().unwrap_or(Structure::List)),
+        None => Ok(scene.best_structure()),
         Some(structure) if scene.holds(structure) => Ok(structure),
         Some(structure) => Err(format!(
             "{} has no structure {name}: build it with `--accel {name}`",

@@ -292,15 +292,6 @@ fn write_results(
 
 /// The command that explains a pixel, up to its place.
 fn explain_command(arguments: &Arguments, settings: &Settings) -> String {
-    let GeometryOptions {
-        lattice_bits,
-        room,
-        texture_bytes,
-        import,
-    } = &arguments.geometry;
-    let bits = lattice_bits.map_or(String::new(), |bits| format!(" --lattice-bits {bits}"));
-    let room = room.map_or(String::new(), |room| format!(" --room {room}"));
-    let textures = texture_bytes.map_or(String::new(), |most| format!(" --texture-bytes {most}"));
     let Settings {
         width,
         height,
@@ -309,9 +300,9 @@ fn explain_command(arguments: &Arguments, settings: &Settings) -> String {
         ..
     } = settings;
     format!(
-        "gridel explain {}{}{bits}{room}{textures} --size {width}x{height} --samples {samples} --depth {depth} --pixel ",
+        "gridel explain {}{} --size {width}x{height} --samples {samples} --depth {depth} --pixel ",
         quoted(&arguments.input.to_string_lossy()),
-        import.written(),
+        arguments.geometry.written(),
     )
 }
 

@@ -10,26 +10,30 @@
 //! | `output.rs` | files and standard output |
 //! | `shell.rs` | completion scripts for shells, and man pages |
 //! | `progress.rs` | the sign of life of long work |
+//! | `threads.rs` | threads of long work |
+//! | `names.rs` | the names of hit objects |
+//! | `changes.rs` | what `--light`, `--material` and their like change |
 
 mod arguments;
+mod changes;
 mod effects;
 mod failure;
 mod input;
+mod names;
 mod output;
 mod progress;
 mod source;
+mod threads;
 
 mod accuracy;
 mod build;
 mod certify;
-mod changes;
 mod check;
 mod compare;
 mod explain;
 mod help;
 mod inspect;
 mod merge;
-mod names;
 mod render;
 mod sample;
 #[cfg(feature = "shell")]

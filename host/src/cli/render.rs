@@ -11,6 +11,7 @@ use super::failure::Failure;
 use super::output::{Warned, json, print_about};
 use super::progress::Progress;
 use super::source::Source;
+use super::threads;
 use clap::Args;
 use frames::{Output, Shot, TimeOptions, rejected};
 use gridel_core::{Counters, Scene, Settings, Structure};
@@ -149,36 +150,28 @@ impl<'a> Target<'a> {
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let target = Target::of(arguments)?;
     let TimeOptions { time, shutter, .. } = &arguments.time;
-    if shutter.shutter.is_some() && time.is_none() && arguments.time.frames.is_none() {
+    let opens = shutter.shutter.is_some();
+    if opens && time.is_none() && arguments.time.frames.is_none() {
         return Err(Failure::usage(
             "a shutter is open from a time on, and none is given",
             "add `--time SECONDS`, such as `--time 0`",
         ));
     }
-    // Moments are made of the scene without its tracks.
-    let at = time.filter(|_| shutter.shutter.is_none());
     let source = Source::to_trace(
         &arguments.input,
         &arguments
             .target_point
             .with_target(&arguments.scene_options)
             .sized(arguments.picture.size)
-            .at(at),
+            .at(time.filter(|_| !opens))
+            .opening_at(time.filter(|_| opens)),
         &arguments.with,
         Structure::Wide,
     )?;
     let scene = source.scene()?;
     let unresolved = source.warn_of_unresolved(&scene, Some(arguments.with.format));
     let job = job(arguments, (&source, &scene), target.most_pixels())?;
-    let pool = rayon::ThreadPoolBuilder::new()
-        .num_threads(arguments.threads.unwrap_or(0))
-        .build()
-        .map_err(|error| {
-            Failure::failed(
-                format!("the threads cannot be started: {error}"),
-                "ask for fewer with `--threads N`",
-            )
-        })?;
+    let pool = threads::start(arguments.threads.unwrap_or(0))?;
 
     let outputs = match target {
         Target::Picture(outputs) => outputs,

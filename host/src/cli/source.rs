@@ -10,7 +10,7 @@ use super::input::Input;
 use super::output::warn;
 use super::progress::Progress;
 use gridel_core::{BlobError, Effects, Format, Scene, Structure, Tracks};
-use gridel_host::blob::{self, Blob};
+use gridel_host::blob::Blob;
 use gridel_host::compile::{self, CompileError, Compiled, Names};
 use gridel_host::measure::Deforming;
 use gridel_host::measure::board::{Fit, MemoryReport};
@@ -256,10 +256,17 @@ impl Source {
         let file = self.input.path().display();
         Err(match self.posed {
             None => Failure::usage(
-                format!("nothing in {file} moves: it has no tracks"),
-                "leave the time out, or add a `[[track]]` to the scene file: see `gridel help scene`",
+                format!(
+                    "nothing in {file} moves: it has no tracks, or none that Gridel can follow"
+                ),
+                "leave the time out; a `[[track]]` of a TOML file moves a scene (see `gridel help scene`), and so does an \
+                 animation of a glTF file",
             ),
-            Some(_) => Failure::usage(
+            Some(Posed::AtTime) => Failure::usage(
+                format!("instances alone move in {file}, and copies of them are not blurred"),
+                "leave out `--instances flatten` or `--shutter`",
+            ),
+            Some(Posed::AtRest) => Failure::usage(
                 format!("instances alone move in {file}, and copies of them do not"),
                 "leave out `--instances flatten`, or ask for one picture after the other with `--time`",
             ),
@@ -350,12 +357,11 @@ impl Source {
         scene: &Scene<'_>,
         asked: Option<Structure>,
     ) -> Result<Structure, Failure> {
-        let mut held = blob::best_structures(scene);
         match asked {
             Some(structure) if scene.holds(structure) => Ok(structure),
-            None => Ok(held.next().unwrap_or(Structure::List)),
+            None => Ok(scene.best_structure()),
             Some(structure) => {
-                let held: Vec<_> = held.map(Structure::name).collect();
+                let held: Vec<_> = scene.structures().map(Structure::name).collect();
                 Err(Failure::usage(
                     format!(
                         "{} has no structure {}, only: {}",

@@ -10,11 +10,14 @@ use super::output::{
 };
 use super::progress::Progress;
 use super::source::Source;
+use super::threads;
 use clap::Args;
 use gridel_core::{Counters, Structure};
 use gridel_host::npy::{read_rays, write_hits};
 use gridel_host::table::grouped;
-use gridel_host::trace::{Query, Rejections, SceneHit, SceneRay, trace, trace_counted};
+use gridel_host::trace::{
+    MissingStructure, Query, Rejections, SceneHit, SceneRay, trace, trace_counted,
+};
 use rayon::ThreadPool;
 use rayon::prelude::*;
 use serde::Serialize;
@@ -130,8 +133,8 @@ struct Tests {
     objects: u64,
 }
 
-/// Traces rays and writes what they hit.
-pub fn run(arguments: &Arguments) -> Result<(), Failure> {
+/// That files are named which can be read and written, all of them different.
+fn check_arguments(arguments: &Arguments) -> Result<(), Failure> {
     reject_same(&arguments.input, &arguments.output)?;
     reject_same(&arguments.rays, &arguments.output)?;
     check_extension(&arguments.output, &["npy"], "hits")?;
@@ -169,6 +172,12 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
             "name a file for one of them",
         ));
     }
+    Ok(())
+}
+
+/// Traces rays and writes what they hit.
+pub fn run(arguments: &Arguments) -> Result<(), Failure> {
+    check_arguments(arguments)?;
     let options = arguments.geometry.clone().into();
     let source = Source::to_trace(&arguments.input, &options, &arguments.with, Structure::Wide)?;
     let scene = source.scene()?;
@@ -178,15 +187,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         any: arguments.any,
     };
     let rays = read(&arguments.rays)?;
-    let pool = rayon::ThreadPoolBuilder::new()
-        .num_threads(arguments.threads)
-        .build()
-        .map_err(|error| {
-            Failure::failed(
-                format!("the threads cannot be started: {error}"),
-                "ask for fewer with `--threads N`",
-            )
-        })?;
+    let pool = threads::start(arguments.threads)?;
 
     let passes = u64::from(arguments.repeat) + u64::from(arguments.json);
     let chunks = rays.len().div_ceil(CHUNK) as u64;
@@ -197,25 +198,23 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         pool: &pool,
         progress: &progress,
     };
-    let counters = arguments.json.then(|| {
+    let mut counters = None;
+    if arguments.json {
         let counted = pass.run(&mut hits, |rays, hits| {
             let mut counters = Counters::default();
-            trace_counted(&scene, rays, query, hits, &mut counters);
-            counters
-        });
-        counted
-            .iter()
-            .fold(Counters::default(), |sum, part| sum.plus(part))
-    });
+            trace_counted(&scene, rays, query, hits, &mut counters).map(|_| counters)
+        })?;
+        let parts = counted.iter();
+        counters = Some(parts.fold(Counters::default(), |sum, part| sum.plus(part)));
+    }
     // The rejections of the last pass; all passes reject the same rays.
     let mut parts: Vec<Rejections> = Vec::new();
-    let seconds: Vec<f64> = (0..arguments.repeat)
-        .map(|_| {
-            let begun = Instant::now();
-            parts = pass.run(&mut hits, |rays, hits| trace(&scene, rays, query, hits));
-            begun.elapsed().as_secs_f64()
-        })
-        .collect();
+    let mut seconds = Vec::new();
+    for _ in 0..arguments.repeat {
+        let begun = Instant::now();
+        parts = pass.run(&mut hits, |rays, hits| trace(&scene, rays, query, hits))?;
+        seconds.push(begun.elapsed().as_secs_f64());
+    }
     drop(progress);
     let names = source.names(&scene);
     let write_hits: Content<'_> = &|out| write_hits(out, &hits, !scene.instances().is_empty());
@@ -297,12 +296,12 @@ impl Pass<'_> {
     fn run<T: Send>(
         &self,
         hits: &mut [SceneHit],
-        trace: impl Fn(&[SceneRay], &mut [SceneHit]) -> T + Sync,
-    ) -> Vec<T> {
+        trace: impl Fn(&[SceneRay], &mut [SceneHit]) -> Result<T, MissingStructure> + Sync,
+    ) -> Result<Vec<T>, Failure> {
         let one = |(rays, hits): (&[SceneRay], &mut [SceneHit])| {
             let traced = trace(rays, hits);
             self.progress.step();
-            traced
+            traced.map_err(|error| Failure::usage(error.to_string(), "name one with `--accel`"))
         };
         if self.pool.current_num_threads() == 1 {
             let rays = self.rays.chunks(CHUNK);

@@ -170,18 +170,9 @@ fn text(arguments: &Arguments, report: &Report) -> String {
 
 /// The command that explains a ray, in the scene as it was read here.
 fn explain(arguments: &Arguments, ray: &str, format: &str, structure: &str) -> String {
-    let GeometryOptions {
-        lattice_bits,
-        room,
-        texture_bytes,
-        import,
-    } = &arguments.geometry;
-    let bits = lattice_bits.map_or(String::new(), |bits| format!(" --lattice-bits {bits}"));
-    let room = room.map_or(String::new(), |room| format!(" --room {room}"));
-    let textures = texture_bytes.map_or(String::new(), |most| format!(" --texture-bytes {most}"));
     format!(
-        "gridel explain {}{}{bits}{room}{textures} --ray={ray} --format {format} --accel {structure}",
+        "gridel explain {}{} --ray={ray} --format {format} --accel {structure}",
         quoted(&arguments.input.to_string_lossy()),
-        import.written()
+        arguments.geometry.written()
     )
 }

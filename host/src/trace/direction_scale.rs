@@ -101,12 +101,12 @@ impl DirectionScale {
     fn extreme_multiple(&self, length: f64, error: f64) -> Result<f64, Rejection> {
         let t = self.nearest(length + self.begin);
         if t.is_infinite() {
-            return Err(Rejection::Multiple("short"));
+            return Err(Rejection::TooShort);
         }
         // Denormal numbers are rounded to multiples of 2^-1074.
         let rounding = libm::scalbn(self.factor, self.exponent.saturating_sub(1075));
         if t.abs() < f64::MIN_POSITIVE && length != 0.0 && rounding > error {
-            return Err(Rejection::Multiple("long"));
+            return Err(Rejection::TooLong);
         }
         Ok(t)
     }

@@ -10,9 +10,14 @@ pub enum Rejection {
     Ray(#[from] RayError),
     #[error(
         "the ray's t, in multiples of its direction, is not a number of double precision: the direction \
-         is too {0} for this scene"
+         is too short for this scene"
     )]
-    Multiple(&'static str),
+    TooShort,
+    #[error(
+        "the ray's t, in multiples of its direction, is not a number of double precision: the direction \
+         is too long for this scene"
+    )]
+    TooLong,
 }
 
 impl Rejection {
@@ -25,8 +30,8 @@ impl Rejection {
                 "give an origin nearer to the scene; another point of the ray meets the same surfaces"
             }
             Self::Ray(RayError::Interval) => "give a tmin that is at most tmax",
-            Self::Multiple("short") => "give a longer direction",
-            Self::Multiple(_) => "give a shorter direction",
+            Self::TooShort => "give a longer direction",
+            Self::TooLong => "give a shorter direction",
         }
     }
 }
@@ -69,8 +74,8 @@ mod tests {
             (Rejection::Ray(RayError::Origin), "three finite numbers"),
             (Rejection::Ray(RayError::Distance), "nearer to the scene"),
             (Rejection::Ray(RayError::Interval), "at most tmax"),
-            (Rejection::Multiple("short"), "a longer direction"),
-            (Rejection::Multiple("long"), "a shorter direction"),
+            (Rejection::TooShort, "a longer direction"),
+            (Rejection::TooLong, "a shorter direction"),
         ] {
             assert!(why.remedy().contains(remedy), "{why}: {}", why.remedy());
         }

@@ -33,7 +33,7 @@ fn t_is_never_outside_of_the_interval() {
         let numbers = || 0..200;
         let endless: Vec<_> = numbers().map(|it| ray(it, 0.0, f64::INFINITY)).collect();
         let mut hits = vec![SceneHit::MISS; endless.len()];
-        trace(&scene, &endless, query, &mut hits);
+        trace(&scene, &endless, query, &mut hits).unwrap();
         // Intervals that end or begin just beside the hit, closer than a format resolves.
         let beside = numbers().zip(&hits).flat_map(|(number, hit)| {
             let [low, high] = [hit.t * (1.0 - 1e-12), hit.t * (1.0 + 1e-12)];
@@ -45,7 +45,7 @@ fn t_is_never_outside_of_the_interval() {
         });
         let beside: Vec<_> = beside.collect();
         let mut hits = vec![SceneHit::MISS; beside.len()];
-        let rejected = trace(&scene, &beside, query, &mut hits);
+        let rejected = trace(&scene, &beside, query, &mut hits).unwrap();
         assert_eq!(rejected.count, 0);
         let mut found = 0;
         for (ray, hit) in beside

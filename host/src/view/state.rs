@@ -2,7 +2,6 @@
 
 use super::keys::Action;
 use super::shot::Shot;
-use crate::blob::best_structures;
 use crate::scene::Camera;
 use gridel_core::format::limits::MAX_SAMPLES;
 use gridel_core::format::record::View;
@@ -114,7 +113,7 @@ impl<'s> State<'s> {
                 Effect::Redraw
             }
             Action::NextStructure => {
-                let held: Vec<_> = best_structures(self.scene).collect();
+                let held: Vec<_> = self.scene.structures().collect();
                 self.structure = next(&held, self.structure);
                 Effect::Redraw
             }
@@ -235,7 +234,7 @@ mod tests {
                 state.apply(Action::NextFormat);
                 assert!(state.description().starts_with(format), "{format}");
             }
-            let held: Vec<_> = best_structures(state.scene).collect();
+            let held: Vec<_> = state.scene.structures().collect();
             for _ in 0..held.len() {
                 state.apply(Action::NextStructure);
                 assert!(held.contains(&state.shot().structure));

@@ -214,6 +214,7 @@ fn outputs_and_scenes_that_frames_cannot_have_are_rejected() {
         ("x-%s.png", "%d"),
         ("x-%d-%d.png", "several"),
         ("x-%d.jpg", ".png"),
+        ("x-%d.gif", "one file"),
     ] {
         fails(&[&["a.toml", "-o", output], &some[..]].concat(), &[word]);
     }
@@ -227,6 +228,8 @@ fn outputs_and_scenes_that_frames_cannot_have_are_rejected() {
     );
     fails(&["a.toml", "--frames", "2..2", "-o", "x.apng"], &["empty"]);
     fails(&["a.toml", "--fps", "5", "-o", "x.png"], &["--frames"]);
+    let at = ["a.toml", "--fps", "5", "--time", "1", "-o", "x.png"];
+    fails(&at, &["--fps", "--time"]);
     fails(
         &["a.toml", "--frames", "0..2", "--fps", "60", "-o", "x.gif"],
         &["at most 50"],

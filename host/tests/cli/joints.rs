@@ -185,3 +185,32 @@ fn broken_tracks_are_not_taken_for_none() {
         folder.fails(1, command, &["interpolation is 9"]);
     }
 }
+
+/// The message names the joints, and the limit that it states suffices.
+#[test]
+fn joints_that_shrink_an_instance_too_far_are_rejected_with_the_limit() {
+    let folder = Folder::new();
+    let scene = |least: &str| {
+        format!(
+            "[[object]]\nkind = 'box'\nmin = [-20, -1, -20]\nmax = [20, -0.9, 20]\n\
+             [[part]]\nname = 'p'\nobject = [{{ kind = 'sphere', center = [0, 0, 0], radius = 0.5 }}]\n\
+             [[joint]]\nname = 'j'\n[[instance]]\npart = 'p'\njoint = 'j'\n\
+             [[track]]\ntarget = 'joint.j.scale'\ntimes = [0, 1]\nvalues = [1, {least}]\n"
+        )
+    };
+    folder.write("a.toml", scene("0.00001").as_bytes());
+    let command = ["build", "a.toml", "-o", "a.gridel"];
+    folder.fails(
+        1,
+        &command,
+        &["the joints of the instance", "--instances flatten"],
+    );
+    let error = folder.run(&command).said();
+    let least = error.split("at least ").nth(1).expect("a limit");
+    let least = least.split(',').next().expect("a number");
+    let least: f64 = least.parse().expect("a number");
+    folder.write("a.toml", scene(&(1.06 * least).to_string()).as_bytes());
+    folder.done(&command);
+    folder.write("a.toml", scene("0.00001").as_bytes());
+    folder.done(&[&command[..], &["--instances", "flatten"]].concat());
+}

@@ -83,6 +83,26 @@ fn frames_are_blurred_from_their_times_on() {
     assert!(folder.read("a.apng") == folder.read("b.apng"));
 }
 
+/// Copies of instances stand where they are when the shutter opens; the camera is blurred.
+#[test]
+fn copies_stand_where_they_are_as_the_shutter_opens() {
+    let folder = Folder::new();
+    let part = "[[part]]\nname = 'p'\nobject = [{ kind = 'sphere', center = [0, 0, 0], radius = 1 }]\n\
+                [[joint]]\nname = 'j'\n[[instance]]\npart = 'p'\njoint = 'j'\n";
+    let shift =
+        "[[track]]\ntarget = 'joint.j.shift'\ntimes = [0, 1]\nvalues = [[0, 0, 0], [2, 0, 0]]\n";
+    folder.write("a.toml", format!("{SCENE}{part}{shift}").as_bytes());
+    let at = ["--time", "1", "--instances", "flatten"];
+    let sharp = rendered(&folder, &at);
+    let moment = ["--shutter", "0.0001", "--moments", "1"];
+    assert!(rendered(&folder, &[&at[..], &moment].concat()) == sharp);
+    // Where nothing else moves, nothing is left to blur.
+    let still = SCENE.split("[[track]]").next().expect("a scene");
+    folder.write("b.toml", format!("{still}{part}{shift}").as_bytes());
+    let command = [&["render", "b.toml", "-o", "b.ppm"], &at[..], &moment[..]].concat();
+    folder.fails(2, &command, &["not blurred", "`--shutter`"]);
+}
+
 #[test]
 fn rows_of_a_blurred_picture_are_joined() {
     let folder = folder();

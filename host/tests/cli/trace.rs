@@ -103,7 +103,7 @@ fn the_file_holds_what_the_library_finds() {
                 any: false,
             };
             let mut expected = vec![SceneHit::MISS; rows.len()];
-            trace(&scene, &scene_rays(&rows), query, &mut expected);
+            trace(&scene, &scene_rays(&rows), query, &mut expected).unwrap();
             assert!(expected.iter().any(|hit| hit.object == 2));
             for accel in ["list", "bvh", "flagged", "wide"] {
                 let found = traced(&folder, &["--format", format.name(), "--accel", accel]);

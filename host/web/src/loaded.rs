@@ -5,7 +5,7 @@ use crate::request::{CameraOf, ShotOf};
 use gridel_core::format::limits::MAX_SAMPLES;
 use gridel_core::format::record::View;
 use gridel_core::{BlobError, Scene, Settings};
-use gridel_host::blob::{Blob, best_structures};
+use gridel_host::blob::Blob;
 use gridel_host::compile::Names;
 use gridel_host::scene::Camera;
 use gridel_host::view::Shot;
@@ -51,7 +51,7 @@ impl Loaded {
         let scene = self.scene()?;
         let settings = Settings::of(scene);
         let header = scene.header();
-        let structures: Vec<_> = best_structures(scene).map(|it| it.name()).collect();
+        let structures: Vec<_> = scene.structures().map(|it| it.name()).collect();
         let effects: Vec<_> = scene.effects().names().collect();
         Ok(json!({
             "bytes": self.bytes().len(),

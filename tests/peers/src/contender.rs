@@ -109,7 +109,7 @@ pub fn gridel(
                 structure,
                 any,
             };
-            gridel_host::trace::trace(&scene, rays, query, hits);
+            gridel_host::trace::trace(&scene, rays, query, hits).expect("a structure that is held");
         })),
     }
 }

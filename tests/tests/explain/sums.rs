@@ -132,7 +132,7 @@ fn a_rays_hit_is_the_one_that_is_traced() {
                 any: false,
             };
             let mut hits = [SceneHit::MISS];
-            trace(&scene, &[ray], query, &mut hits);
+            trace(&scene, &[ray], query, &mut hits).expect("a structure");
             let settings = Settings::of(&scene);
             let subject = Subject::Ray(ray);
             let explanation = explain(&scene, format, Structure::Flagged, settings, subject);

@@ -91,7 +91,7 @@ fn the_first_of_faces_in_one_plane_is_met() {
                     structure,
                     any: false,
                 };
-                trace(scene, rays, query, &mut hits);
+                trace(scene, rays, query, &mut hits).expect("a structure");
                 for (ray, hit) in rays.iter().zip(&hits) {
                     let way = (format, structure);
                     assert_eq!(hit.object, 0, "{name}, {way:?}, {ray:?}: {hit:?}");

@@ -23,7 +23,7 @@ fn hits(
         structure,
         any: false,
     };
-    trace(scene, rays, query, &mut hits);
+    trace(scene, rays, query, &mut hits).expect("a structure");
     hits
 }
 

@@ -5,8 +5,8 @@ use crate::closed::closed;
 use crate::model::Model;
 use crate::query::How;
 use crate::rays::Middle;
-use gridel_core::{BlobError, Scene, Structure};
-use gridel_host::blob::{Blob, best_structures};
+use gridel_core::{BlobError, Scene};
+use gridel_host::blob::Blob;
 use gridel_host::compile::Compiled;
 use gridel_host::scene::Shape;
 use pyo3::exceptions::PyKeyError;
@@ -91,7 +91,7 @@ impl NativeScene {
         let scene = self.scene()?;
         let structure = match accel {
             Some(name) => structure(name)?,
-            None => best_structures(scene).next().unwrap_or(Structure::List),
+            None => scene.best_structure(),
         };
         if !scene.holds(structure) {
             return Err(PyKeyError::new_err(format!(

@@ -5,6 +5,7 @@ use super::folder::{RESULTS, encoded, write_picture};
 use crate::cli::failure::Failure;
 use crate::cli::output::write_file;
 use crate::cli::progress::Progress;
+use crate::cli::threads;
 use gridel_host::accuracy::{Bench, MeasureError, Point, Results, Setting, given_up, worths};
 use gridel_host::measure::difference_picture;
 use std::io;
@@ -93,10 +94,7 @@ impl Run<'_, '_> {
             progress.step();
         }
         // One thread, so that times do not depend on the machine's other work.
-        let pool = rayon::ThreadPoolBuilder::new()
-            .num_threads(1)
-            .build()
-            .map_err(|error| Failure::failed(error.to_string(), "end other programs"))?;
+        let pool = threads::start(1)?;
         for repeat in 0..repeats {
             for setting in settings {
                 let missing = |point: &&mut Point| point.cost.seconds.len() <= repeat;

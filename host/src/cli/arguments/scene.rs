@@ -58,6 +58,10 @@ pub struct SceneOptions {
     /// The time of `--time`, in seconds.
     #[arg(skip)]
     pub time: Option<f64>,
+
+    /// When a shutter opens, in seconds: copies of instances stand where they are then, and what else moves is blurred.
+    #[arg(skip)]
+    pub opening: Option<f64>,
 }
 
 /// How the geometry of a scene file is read and compiled.
@@ -81,6 +85,23 @@ pub struct GeometryOptions {
 
     #[command(flatten)]
     pub import: ImportOptions,
+}
+
+impl GeometryOptions {
+    /// Returns the given options as they follow a file's name.
+    pub fn written(&self) -> String {
+        let Self {
+            lattice_bits,
+            room,
+            texture_bytes,
+            import,
+        } = self;
+        let bits = lattice_bits.map_or(String::new(), |bits| format!(" --lattice-bits {bits}"));
+        let room = room.map_or(String::new(), |room| format!(" --room {room}"));
+        let textures =
+            texture_bytes.map_or(String::new(), |most| format!(" --texture-bytes {most}"));
+        format!("{}{bits}{room}{textures}", import.written())
+    }
 }
 
 /// How a scene file is read.
@@ -178,7 +199,7 @@ impl SceneOptions {
     /// The options for importers.
     pub fn for_import(&self) -> scene::ImportOptions {
         scene::ImportOptions {
-            at: self.time,
+            at: self.time.or(self.opening),
             ..self.geometry.import.for_import()
         }
     }
@@ -194,6 +215,12 @@ impl SceneOptions {
         self.time = time;
         self
     }
+
+    /// Sets the time at which a shutter opens, if one does.
+    pub fn opening_at(mut self, time: Option<f64>) -> Self {
+        self.opening = time;
+        self
+    }
 }
 
 impl From<GeometryOptions> for SceneOptions {
@@ -206,7 +233,6 @@ impl From<GeometryOptions> for SceneOptions {
 }
 
 impl ImportOptions {
-    /// Returns the given options as they follow a file's name.
     pub fn written(&self) -> String {
         let outside = if self.allow_outside {
             " --allow-outside"

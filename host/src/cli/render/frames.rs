@@ -38,7 +38,7 @@ pub struct TimeOptions {
     pub frames: Option<Range<u32>>,
 
     /// Frames per second, 1 to 1000; a .gif has at most 50 [default: 24]
-    #[arg(long, value_name = "N", requires = "frames",
+    #[arg(long, value_name = "N", requires = "frames", conflicts_with = "time",
         value_parser = clap::value_parser!(u16).range(1..=1000))]
     pub fps: Option<u16>,
 
@@ -91,7 +91,14 @@ impl Output {
     ) -> Result<Self, Failure> {
         const NAMES: &str = ".apng, .gif or numbered pictures such as out-%03d.png";
         let shown = path.display();
+        let numbered = NumberedName::read(path.to_str().unwrap_or_default());
         if let Some(format) = AnimationFormat::of(path) {
+            if matches!(numbered, Ok(Some(_))) {
+                return Err(Failure::usage(
+                    format!("{shown}: an animation is one file, and has no number"),
+                    "leave %d out, or write pictures: .png, .ppm or .rgb565",
+                ));
+            }
             let (fps, most) = (options.per_second(), format.most_per_second());
             if fps > most {
                 return Err(Failure::usage(
@@ -105,8 +112,7 @@ impl Output {
             check_writable(path)?;
             return Ok(Self::Animation(format));
         }
-        let text = path.to_str();
-        let name = NumberedName::read(text.unwrap_or_default()).map_err(|cause| {
+        let name = numbered.map_err(|cause| {
             Failure::usage(
                 format!("{shown}: {cause}"),
                 "write the frame's number as %d, or as %03d for at least 3 digits",

@@ -14,7 +14,6 @@ use super::Board;
 use super::account::Account;
 use super::estimate::{CODE, PROFILES, ProgramEstimate};
 use super::programs::{Known, Profile, Programs};
-use crate::blob::best_structures;
 use crate::measure::bytes::{MemoryMap, board_memory};
 use crate::measure::deforming::Deforming;
 use crate::table::{counted, grouped};
@@ -125,7 +124,7 @@ impl MemoryReport {
         format: Format,
     ) -> Result<Self, NotMeasured> {
         let board = target.board;
-        let structure = best_structures(scene).next().unwrap_or(Structure::List);
+        let structure = scene.best_structure();
         if !Self::STRUCTURES.contains(&structure) {
             return Err(NotMeasured(structure));
         }
