@@ -195,6 +195,21 @@ macro_rules! with_least {
     };
 }
 
+/// Runs code with the number of entries of the smallest stack that is deep enough. This is the only list of stacks, so
+/// that what is said to be needed is what is used.
+macro_rules! with_stack {
+    ($depth:expr, $use:ident) => {
+        with_least!($depth, [8 16 24 32 48 96], 160, $use)
+    };
+}
+
+/// As `with_stack`, with the places for rays that wait.
+macro_rules! with_waiting {
+    ($depth:expr, $use:ident) => {
+        with_least!($depth, [0 5 9 17 33], 65, $use)
+    };
+}
+
 /// Bytes of the stack that a scene needs.
 pub fn stack_bytes(scene: &Scene<'_>) -> usize {
     macro_rules! bytes {
@@ -202,7 +217,7 @@ pub fn stack_bytes(scene: &Scene<'_>) -> usize {
             size_of::<Stack<$depth>>()
         };
     }
-    with_least!(scene.stack_depth(), [8 16 24 32 48 96], 160, bytes)
+    with_stack!(scene.stack_depth(), bytes)
 }
 
 /// A stack in the caller's memory that is deep enough for a scene.
@@ -219,7 +234,7 @@ pub unsafe fn stack<'m>(
             unsafe { place(buffer, Stack::<$depth>::new()) }?.as_view()
         };
     }
-    Ok(with_least!(scene.stack_depth(), [8 16 24 32 48 96], 160, stack))
+    Ok(with_stack!(scene.stack_depth(), stack))
 }
 
 /// Entries of a workspace: of the stack, and places for rays that wait.
@@ -234,10 +249,10 @@ pub fn workspace_bytes<N: Number>([stack, work]: Depths) -> usize {
                     size_of::<Workspace<N, $stack, $work>>()
                 };
             }
-            with_least!(work, [0 5 9 17 33], 65, bytes)
+            with_waiting!(work, bytes)
         }};
     }
-    with_least!(stack, [8 16 24 32 48 96], 160, with_work)
+    with_stack!(stack, with_work)
 }
 
 /// A workspace in the caller's memory.
@@ -256,10 +271,10 @@ pub unsafe fn workspace<'m, N: Number>(
                     unsafe { place(buffer, Workspace::<N, $stack, $work>::new()) }?.as_view()
                 };
             }
-            with_least!(work, [0 5 9 17 33], 65, workspace)
+            with_waiting!(work, workspace)
         }};
     }
-    Ok(with_least!(stack, [8 16 24 32 48 96], 160, with_work))
+    Ok(with_stack!(stack, with_work))
 }
 
 const _: () = assert!(size_of::<Stack<160>>() <= crate::GRIDEL_STACK_BYTES_MAX);
