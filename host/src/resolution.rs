@@ -10,7 +10,7 @@
 mod bound;
 
 use crate::shape::{ExactMap, Solid};
-use bound::{Extent, bound, placed_bound, step};
+use bound::{Extent, bound, placed_bound, spacing};
 use gridel_core::{Format, Kind, Scene};
 use serde::Serialize;
 
@@ -135,10 +135,10 @@ impl Object {
     fn least(&self, format: Format, map: Option<&ExactMap>) -> f64 {
         let magnitude = self.extent.magnitude();
         match map {
-            None => step(format, magnitude),
+            None => spacing(format, magnitude),
             Some(map) => {
                 let reach = self.extent.reach(map);
-                let in_part = step(format, map.own_length(reach));
+                let in_part = spacing(format, map.own_length(reach));
                 placed_bound(format, map, in_part, [reach, magnitude])
             }
         }
@@ -193,7 +193,7 @@ impl Placed<'_> {
         let own = bound(format, self.solid, in_part.into());
         let magnitude = in_part.into_iter().fold(0.0, |most, x| x.abs().max(most));
         let place_in = [map.reach(place.to_array()), place.abs().max_element()];
-        placed_bound(format, map, own.max(step(format, magnitude)), place_in)
+        placed_bound(format, map, own.max(spacing(format, magnitude)), place_in)
     }
 }
 
@@ -304,7 +304,7 @@ fn largest<'c>(
             let extent = own.placed(map);
             let place = [extent.reach(map), extent.magnitude()];
             let bounds = Format::ALL.into_iter().zip(bounds).map(|(format, &bound)| {
-                let in_part = bound.max(step(format, own.magnitude()));
+                let in_part = bound.max(spacing(format, own.magnitude()));
                 placed_bound(format, map, in_part, place)
             });
             Placed {

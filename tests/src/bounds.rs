@@ -11,13 +11,12 @@ use gridel_core::{Format, Number};
 use gridel_host::shape::Normal;
 use std::sync::LazyLock;
 
-/// Allowed errors of one shape.
+/// Allowed error of one shape, in all number formats.
 #[derive(Clone, Copy, Debug)]
 pub struct Bound {
     pub shape: &'static str,
-    pub fixed: f64,
-    pub f32: f64,
-    pub f64: f64,
+    /// In the format's units.
+    pub error: f64,
     pub reason: &'static str,
 }
 
@@ -29,12 +28,10 @@ pub static NORMAL: LazyLock<Vec<Bound>> = LazyLock::new(|| table(|named| named.n
 
 fn table(bound: impl Fn(&Named) -> (f64, &'static str)) -> Vec<Bound> {
     let bounds = shapes::names().map(|named| {
-        let (k, reason) = bound(named);
+        let (error, reason) = bound(named);
         Bound {
             shape: named.name,
-            fixed: k,
-            f32: k,
-            f64: k,
+            error,
             reason,
         }
     });
@@ -44,42 +41,26 @@ fn table(bound: impl Fn(&Named) -> (f64, &'static str)) -> Vec<Bound> {
 /// By how many units of last place a normal's length may differ from 1.
 pub const NORMAL_LENGTH: f64 = 4.0;
 
-/// The bound of a table for a shape and number format.
-pub fn allowed<N: Number>(table: &[Bound], shape: &str) -> f64 {
-    let Some(bound) = table.iter().find(|bound| bound.shape == shape) else {
-        panic!("no bound for {shape}");
-    };
-    match N::FORMAT {
-        Format::Fixed => bound.fixed,
-        Format::F32 => bound.f32,
-        Format::F64 => bound.f64,
-    }
+/// The bound of a table for a shape.
+pub fn allowed(table: &[Bound], shape: &str) -> f64 {
+    let bound = table.iter().find(|bound| bound.shape == shape);
+    bound
+        .unwrap_or_else(|| panic!("no bound for {shape}"))
+        .error
 }
 
 /// A table as documents print it.
 pub fn markdown(table: &[Bound]) -> String {
-    let mut text =
-        String::from("| shape | `fixed` | `f32` | `f64` | how |\n|---|---|---|---|---|\n");
-    for bound in table {
-        let Bound {
-            shape,
-            fixed,
-            f32,
-            f64,
-            reason,
-        } = bound;
-        text += &format!("| {shape} | {fixed} | {f32} | {f64} | {reason} |\n");
+    let mut text = String::from("| shape | error | how |\n|---|---|---|\n");
+    for Bound {
+        shape,
+        error,
+        reason,
+    } in table
+    {
+        text += &format!("| {shape} | {error} | {reason} |\n");
     }
     text
-}
-
-/// The unit that errors of lengths are counted in, for numbers of a magnitude.
-pub fn length_step<N: Number>(magnitude: f64) -> f64 {
-    match N::FORMAT {
-        Format::Fixed => f64::powi(2.0, -13),
-        Format::F32 => f64::powi(2.0, -24) * magnitude,
-        Format::F64 => f64::powi(2.0, -53) * magnitude,
-    }
 }
 
 /// The distance from 1 to the next number.

@@ -1,6 +1,6 @@
 //! Judges one answer about one shape by arithmetic of 320 bits.
 
-use crate::bounds::{length_step, normal_step, ratio_step, ulp_of_one};
+use crate::bounds::{normal_step, ratio_step, ulp_of_one};
 use crate::exact::Line;
 use crate::exact::{Real, dot, norm, vector};
 use crate::query::{UnitRay, closest, point_of};
@@ -11,6 +11,7 @@ use gridel_host::blob::Blob;
 use gridel_host::scene::Shape;
 use gridel_host::shape::{Normal, Solid, Sphere};
 use gridel_host::verify::judge::Crossings;
+use gridel_host::verify::rounded::step;
 
 /// Returns a blob of shapes whose lattice is known: one unit is one scene unit, and its zero is the
 /// scene's. Two specks at the ends of the lattice ensure that; they come last.
@@ -87,7 +88,7 @@ pub fn verdict<N: Number>(
     let t = hit.map(|hit| N::far_to_f64(hit.t));
     assert!(t.is_none_or(|t| t >= 0.0), "behind: {ray:?}");
     let place = origin.iter().fold(0.0_f64, |most, x| most.max(x.abs()));
-    let step = length_step::<N>(place.max(solid.extent()).max(t.unwrap_or(0.0)));
+    let step = step(N::FORMAT, place.max(solid.extent()).max(t.unwrap_or(0.0)));
     let explains = |&&error: &&f64| is_right(solid, &line, t, error * step);
     let crossing = *LADDER.iter().find(explains).unwrap_or(&f64::INFINITY);
     let spans = solid.spans(&line, &Real::of(0.0));

@@ -1,9 +1,7 @@
 //! Pictures as people compare them: 8 bits per channel, side by side.
 
-use crate::picture::write_png;
+use crate::picture::{srgb, write_png};
 use crate::render;
-use gridel_core::Rgb888;
-use gridel_core::render::Pixel;
 use std::fs::File;
 use std::io::{self, BufReader, Write};
 use std::path::Path;
@@ -26,18 +24,17 @@ pub(super) struct Difference {
 impl Image {
     /// A picture as it is written to a file without dithering.
     pub(super) fn of(picture: &render::Picture) -> Self {
-        let encoded = picture
-            .pixels
-            .iter()
-            .map(|&linear| Rgb888::encode(linear, None).0);
         Self {
             size: [picture.width.into(), picture.rows.len() as u32],
-            pixels: encoded.flatten().collect(),
+            pixels: srgb(picture, false),
         }
     }
 
     /// Reads a PNG of one to four channels of 8 bits; transparency is left out.
-    pub(super) fn read(path: &Path) -> io::Result<Self> {
+    ///
+    /// # Errors
+    /// If the file cannot be read, or is no such picture.
+    pub fn read(path: &Path) -> io::Result<Self> {
         let file = File::open(path)?;
         // A picture in memory may take this much, however small its file is.
         let limits = png::Limits { bytes: 1 << 29 };

@@ -100,6 +100,17 @@ fn only_the_same_run_goes_on_in_its_folder() {
     std::fs::remove_dir_all(folder.path("out/pictures")).unwrap();
     folder.done(&SMALL);
     assert_eq!(pictures(), made);
+    // A picture of another size is not taken for that of a setting.
+    let one = std::fs::read_dir(folder.path("out/pictures"))
+        .unwrap()
+        .next();
+    let one = one.unwrap().unwrap().path();
+    folder.done(&["render", "ball.toml", "--size", "4x3", "-o", "small.png"]);
+    std::fs::copy(folder.path("small.png"), &one).unwrap();
+    let run = folder.run(&SMALL);
+    assert_eq!(run.code, Some(1), "{}", run.stderr);
+    assert!(run.said().contains("4 x 3 pixels"), "{}", run.stderr);
+    std::fs::remove_dir_all(folder.path("out")).unwrap();
     // Nor is a picture begun that no memory holds.
     let huge = [&SMALL[..3], &["65535x65535"], &SMALL[4..6], &["-o", "huge"]].concat();
     folder.fails(2, &huge, &["4,294,836,225 pixels", "smaller `--size`"]);

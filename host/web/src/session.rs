@@ -213,7 +213,10 @@ impl Session {
         let report = report.map_err(|it| {
             Problem::new(
                 format!("{} was not measured on boards", it.0.name()),
-                "choose list, bvh, flagged or dual-split",
+                &format!(
+                    "choose one of {}",
+                    MemoryReport::STRUCTURES.map(Structure::name).join(", ")
+                ),
             )
         })?;
         let (fits, why) = match report.fit() {

@@ -1,7 +1,8 @@
 //! All hits of triangles, against exact arithmetic.
 
 use super::*;
-use gridel_tests::bounds::{CROSSING, allowed, length_step};
+use gridel_host::verify::rounded::step;
+use gridel_tests::bounds::{CROSSING, allowed};
 
 /// The axis along which t is counted.
 fn major_axis(slope: [i64; 3]) -> usize {
@@ -68,7 +69,7 @@ fn most<N: Number>([p, q, r]: [[i64; 3]; 3], slope: [i64; 3]) -> f64 {
     let vector = |v: [i64; 3]| DVec3::from_array(v.map(|x| x as f64));
     let normal = (vector(q) - vector(p)).cross(vector(r) - vector(p));
     let slope = vector(slope) / vector(slope).abs().max_element();
-    let apart = allowed::<N>(&CROSSING, "triangle") * length_step::<N>(MAGNITUDE);
+    let apart = allowed(&CROSSING, "triangle") * step(N::FORMAT, MAGNITUDE);
     apart * normal.length() / normal.dot(slope).abs()
 }
 

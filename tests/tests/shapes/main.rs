@@ -55,8 +55,8 @@ fn hold<N: Number>(what: &str, shape: &str, cases: &[Case]) -> Worst {
             found.1
         );
     };
-    most(&worst.crossing, allowed::<N>(&CROSSING, shape), "t");
-    most(&worst.normal, allowed::<N>(&NORMAL, shape), "normal");
+    most(&worst.crossing, allowed(&CROSSING, shape), "t");
+    most(&worst.normal, allowed(&NORMAL, shape), "normal");
     most(&worst.length, NORMAL_LENGTH, "length of the normal");
     most(&worst.point, 1.0, "point");
     most(&worst.wrong_sides, 0.0, "side");

@@ -5,8 +5,8 @@ use crate::cli::output::write_file;
 use gridel_core::Rgb888;
 use gridel_core::render::Pixel;
 use gridel_host::accuracy::{PagePicture, Results};
+use gridel_host::check::Image;
 use gridel_host::picture::write_png;
-use std::io;
 use std::path::{Path, PathBuf};
 
 /// Files of the output folder.
@@ -84,14 +84,18 @@ pub fn pictures(
 ) -> Result<Vec<PagePicture>, Failure> {
     let read = |name: &str| -> Result<Vec<u8>, Failure> {
         let path = picture(folder, name);
-        let pixels = || -> io::Result<Vec<u8>> {
-            let file = io::BufReader::new(std::fs::File::open(&path)?);
-            let mut reader = png::Decoder::new(file).read_info()?;
-            let mut pixels = vec![0; 3 * usize::from(size[0]) * usize::from(size[1])];
-            reader.next_frame(&mut pixels)?;
-            Ok(pixels)
-        };
-        pixels().map_err(|error| Failure::reading(&path, &error))
+        let image = Image::read(&path).map_err(|error| Failure::reading(&path, &error))?;
+        if image.size != size.map(u32::from) {
+            let [width, height] = image.size;
+            return Err(Failure::failed(
+                format!(
+                    "{}: the picture has {width} x {height} pixels, and its results are of another size",
+                    path.display()
+                ),
+                "remove the folder, or name another",
+            ));
+        }
+        Ok(image.pixels)
     };
     let mut pictures = vec![PagePicture {
         name: String::new(),

@@ -56,9 +56,9 @@ impl StructureOptions {
             it == Structure::Grid
         })?;
         check_takers("--gridels", self.gridels.is_some(), structures, cubes)?;
-        check_takers("--budget", self.budget.is_some(), structures, |it| {
-            cubes(it) || matches!(it, Structure::RayClasses | Structure::Apex)
-        })?;
+        // Lists of candidates, in tables.
+        let tables = |it: Structure| !it.is_proved();
+        check_takers("--budget", self.budget.is_some(), structures, tables)?;
         check_quality(self.quality, structures)?;
         Ok(compile::Options {
             slab_directions: self.slabs.unwrap_or(options.slab_directions),
