@@ -1,7 +1,11 @@
 //! Items that the compiler of blobs and the tests share with this crate. Not part of the public interface: they
 //! change without notice.
 
+pub use crate::accel::candidates::lists::ListSections;
 pub use crate::accel::candidates::ray_classes::{ClassPoint, ClassRange};
+pub use crate::accel::candidates::{
+    apex, cylinder_cube, cylinder_cube_entry, cylinder_cube_tight, ray_classes,
+};
 pub use crate::accel::cells::grid::MARGIN;
 pub use crate::accel::cells::lists::{Divisions, cells_of, divide};
 pub use crate::accel::cells::octree::MOST_LEVELS;

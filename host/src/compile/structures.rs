@@ -16,7 +16,7 @@ use super::section::section;
 use super::writer;
 use gridel_core::Structure;
 use gridel_core::format::SectionKind;
-use gridel_core::shared::ClassPoint;
+use gridel_core::shared::{self, ClassPoint};
 
 /// Lays a structure out.
 ///
@@ -72,17 +72,27 @@ pub fn lay_out(structure: Structure, context: &BuildContext<'_>) -> Result<Layou
         Structure::CylinderCube => {
             let targets = context.targets();
             let form = Cylinders::new(&targets);
-            Layout::of_cube(structure, cylinder_cube::build(&form, &targets, budget)?)
+            let cube = cylinder_cube::build(&form, &targets, budget)?;
+            let sections = (shared::cylinder_cube::GRIDELS, shared::cylinder_cube::LISTS);
+            Layout::of_cube(structure, sections, cube)
         }
         Structure::CylinderCubeTight => {
             let targets = context.targets();
             let cube = cylinder_cube::build(&Hulls(&targets), &targets, budget)?;
-            Layout::of_cube(structure, cube)
+            let sections = (
+                shared::cylinder_cube_tight::GRIDELS,
+                shared::cylinder_cube_tight::LISTS,
+            );
+            Layout::of_cube(structure, sections, cube)
         }
         Structure::CylinderCubeEntry => {
             let targets = context.targets();
             let cube = cylinder_cube::build(&EntryNodes(&targets), &targets, budget)?;
-            Layout::of_cube(structure, cube)
+            let sections = (
+                shared::cylinder_cube_entry::GRIDELS,
+                shared::cylinder_cube_entry::LISTS,
+            );
+            Layout::of_cube(structure, sections, cube)
         }
         Structure::RayClasses => {
             let rays = picture_rays(context)?;

@@ -281,7 +281,8 @@ impl<'a> Views<'a> {
     }
 }
 
-const LISTS: ListSections = ListSections {
+/// The sections of the lists.
+pub const LISTS: ListSections = ListSections {
     cells: SectionKind::ApexCells,
     starts: SectionKind::ApexStarts,
     entries: SectionKind::ApexEntries,

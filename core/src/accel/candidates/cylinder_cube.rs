@@ -63,8 +63,10 @@ impl Traverse for CylinderCube {
 #[derive(Clone, Copy, Debug)]
 pub struct Views<'a>(Table<'a>);
 
-const GRIDELS: SectionKind = SectionKind::CylinderGridels;
-const LISTS: ListSections = ListSections {
+/// The section of the gridels.
+pub const GRIDELS: SectionKind = SectionKind::CylinderGridels;
+/// The sections of the lists.
+pub const LISTS: ListSections = ListSections {
     cells: SectionKind::CylinderCells,
     starts: SectionKind::CylinderStarts,
     entries: SectionKind::CylinderEntries,

@@ -83,8 +83,10 @@ pub struct Views<'a> {
     pairs: Pairs<'a, Pair>,
 }
 
-const GRIDELS: SectionKind = SectionKind::EntryGridels;
-const LISTS: ListSections = ListSections {
+/// The section of the gridels.
+pub const GRIDELS: SectionKind = SectionKind::EntryGridels;
+/// The sections of the lists.
+pub const LISTS: ListSections = ListSections {
     cells: SectionKind::EntryCells,
     starts: SectionKind::EntryStarts,
     entries: SectionKind::EntryNodes,

@@ -55,8 +55,10 @@ impl Traverse for CylinderCubeTight {
 #[derive(Clone, Copy, Debug)]
 pub struct Views<'a>(Table<'a>);
 
-const GRIDELS: SectionKind = SectionKind::TightGridels;
-const LISTS: ListSections = ListSections {
+/// The section of the gridels.
+pub const GRIDELS: SectionKind = SectionKind::TightGridels;
+/// The sections of the lists.
+pub const LISTS: ListSections = ListSections {
     cells: SectionKind::TightCells,
     starts: SectionKind::TightStarts,
     entries: SectionKind::TightEntries,

@@ -11,15 +11,16 @@ use crate::observe::event::{Event, NodeId};
 use core::ops::Range;
 
 /// The sections of one table of lists.
-pub(in crate::accel) struct ListSections {
+#[derive(Clone, Copy, Debug)]
+pub struct ListSections {
     /// For each cell, its list.
-    pub(in crate::accel) cells: SectionKind,
+    pub cells: SectionKind,
     /// For each list, its first entry; then the number of all entries.
-    pub(in crate::accel) starts: SectionKind,
+    pub starts: SectionKind,
     /// The candidates of all lists.
-    pub(in crate::accel) entries: SectionKind,
+    pub entries: SectionKind,
     /// A key for each entry.
-    pub(in crate::accel) keys: Option<SectionKind>,
+    pub keys: Option<SectionKind>,
 }
 
 /// Counts and reports a cell whose list a ray walks.

@@ -20,5 +20,5 @@ pub mod cylinder_cube_tight;
 mod gridel_table;
 pub(crate) mod gridels;
 mod line;
-pub(in crate::accel) mod lists;
+pub(crate) mod lists;
 pub mod ray_classes;

@@ -194,7 +194,8 @@ impl Views<'_> {
     }
 }
 
-const LISTS: ListSections = ListSections {
+/// The sections of the lists.
+pub const LISTS: ListSections = ListSections {
     cells: SectionKind::ClassCells,
     starts: SectionKind::ClassStarts,
     entries: SectionKind::ClassEntries,

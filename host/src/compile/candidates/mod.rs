@@ -32,50 +32,36 @@ use apex::Apexes;
 use cylinder_cube::Cube;
 use gridel_core::Structure;
 use gridel_core::format::SectionKind;
+use gridel_core::shared::{self, ListSections};
 use lists::{Array, Lists};
 use ray_classes::Classes;
 
 /// The sections of a table of lists.
-struct ListSections {
-    cells: SectionKind,
-    starts: SectionKind,
-    entries: SectionKind,
-    keys: Option<SectionKind>,
-}
-
-impl ListSections {
-    fn of(self, lists: Lists) -> Vec<Section> {
-        let array = |kind, Array { width, bytes }| Section {
-            kind,
-            stride: width,
-            bytes,
-        };
-        let mut sections = vec![
-            array(self.cells, lists.cells),
-            array(self.starts, lists.starts),
-            array(self.entries, lists.entries),
-        ];
-        sections.extend(self.keys.map(|kind| Section {
-            kind,
-            stride: 1,
-            bytes: lists.keys,
-        }));
-        sections
-    }
+fn sections_of(kinds: ListSections, lists: Lists) -> Vec<Section> {
+    let array = |kind, Array { width, bytes }| Section {
+        kind,
+        stride: width,
+        bytes,
+    };
+    let mut sections = vec![
+        array(kinds.cells, lists.cells),
+        array(kinds.starts, lists.starts),
+        array(kinds.entries, lists.entries),
+    ];
+    sections.extend(kinds.keys.map(|kind| Section {
+        kind,
+        stride: 1,
+        bytes: lists.keys,
+    }));
+    sections
 }
 
 impl Layout {
     /// The tree over rays and its lists.
     pub fn of_classes(classes: Classes) -> Self {
-        let kinds = ListSections {
-            cells: SectionKind::ClassCells,
-            starts: SectionKind::ClassStarts,
-            entries: SectionKind::ClassEntries,
-            keys: Some(SectionKind::ClassKeys),
-        };
         let figures = classes.lists.figures;
         let mut sections = vec![section(SectionKind::ClassNodes, &classes.nodes)];
-        sections.extend(kinds.of(classes.lists));
+        sections.extend(sections_of(shared::ray_classes::LISTS, classes.lists));
         Self {
             structure: Structure::RayClasses,
             sections,
@@ -88,18 +74,12 @@ impl Layout {
 
     /// The lists of apexes.
     pub fn of_apexes(apexes: Apexes) -> Self {
-        let kinds = ListSections {
-            cells: SectionKind::ApexCells,
-            starts: SectionKind::ApexStarts,
-            entries: SectionKind::ApexEntries,
-            keys: Some(SectionKind::ApexKeys),
-        };
         let figures = apexes.lists.figures;
         let mut sections = vec![
             section(SectionKind::ApexPoints, &apexes.points),
             section(SectionKind::ApexWindows, &apexes.windows),
         ];
-        sections.extend(kinds.of(apexes.lists));
+        sections.extend(sections_of(shared::apex::LISTS, apexes.lists));
         sections.push(section(SectionKind::ApexDirections, &apexes.directions));
         Self {
             structure: Structure::Apex,
@@ -111,41 +91,16 @@ impl Layout {
         }
     }
 
-    /// A table over pairs of gridels.
-    pub fn of_cube(structure: Structure, cube: Cube) -> Self {
-        let (gridels, kinds) = match structure {
-            Structure::CylinderCubeTight => (
-                SectionKind::TightGridels,
-                ListSections {
-                    cells: SectionKind::TightCells,
-                    starts: SectionKind::TightStarts,
-                    entries: SectionKind::TightEntries,
-                    keys: Some(SectionKind::TightKeys),
-                },
-            ),
-            Structure::CylinderCubeEntry => (
-                SectionKind::EntryGridels,
-                ListSections {
-                    cells: SectionKind::EntryCells,
-                    starts: SectionKind::EntryStarts,
-                    entries: SectionKind::EntryNodes,
-                    keys: Some(SectionKind::EntryKeys),
-                },
-            ),
-            _ => (
-                SectionKind::CylinderGridels,
-                ListSections {
-                    cells: SectionKind::CylinderCells,
-                    starts: SectionKind::CylinderStarts,
-                    entries: SectionKind::CylinderEntries,
-                    keys: None,
-                },
-            ),
-        };
+    /// A table over pairs of gridels, in the sections of gridels and lists.
+    pub fn of_cube(
+        structure: Structure,
+        (gridels, lists): (SectionKind, ListSections),
+        cube: Cube,
+    ) -> Self {
         let figures = cube.lists.figures;
         let holds_nodes = structure == Structure::CylinderCubeEntry;
         let mut sections = vec![section(gridels, &[cube.gridels])];
-        sections.extend(kinds.of(cube.lists));
+        sections.extend(sections_of(lists, cube.lists));
         Self {
             structure,
             sections,
