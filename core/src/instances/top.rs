@@ -22,7 +22,7 @@ pub(crate) struct Top<'a> {
 /// An instance as observers know it.
 fn id(node: Node) -> NodeId {
     NodeId {
-        what: "instance",
+        what: NodeId::INSTANCE,
         number: node.number(),
     }
 }

@@ -277,6 +277,11 @@ pub struct NodeId {
     pub number: u32,
 }
 
+impl NodeId {
+    /// What the leaves of the hierarchy above instances are.
+    pub const INSTANCE: &'static str = "instance";
+}
+
 /// Planes of a box that were tested, in units: `[axis][lower, upper]`.
 pub type Sides = [[Option<i16>; 2]; 3];
 

@@ -313,7 +313,9 @@ impl Walk {
             Event::Opened(place) => {
                 self.opened += 1;
                 let place = match scene.instances().get(place.number as usize) {
-                    Some(instance) if place.what == INSTANCE => instance_name(instance.number),
+                    Some(instance) if place.what == NodeId::INSTANCE => {
+                        instance_name(instance.number)
+                    }
                     _ => name(place),
                 };
                 let first = self.inside.map_or(0, |inside| inside.step);
@@ -448,11 +450,8 @@ impl Culled {
     }
 }
 
-/// The core's name for an instance that the hierarchy above leads to.
-const INSTANCE: &str = "instance";
-
 fn instance_name(number: u32) -> String {
-    format!("{INSTANCE} {number}")
+    format!("{} {number}", NodeId::INSTANCE)
 }
 
 fn name(place: NodeId) -> String {
