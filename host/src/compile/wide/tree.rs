@@ -22,6 +22,9 @@ pub struct Tree {
 
 /// From this many items on, the two halves are built in parallel.
 const PARALLEL_SIZE: usize = 2048;
+/// Places that are looked at for one node at most. Meshes and molecules take up to 150; where all items overlap, it would
+/// be all places for each node.
+const MOST_LOOKED_AT: usize = 512;
 /// Below this depth nodes are halved, so that no scene makes the builder recurse without end.
 const DEEP: usize = 96;
 const NOBODY: u32 = u32::MAX;
@@ -146,9 +149,15 @@ impl Tree {
         let hull = self.hull(node);
         let mut without = self.hull(sibling);
         let (mut beside, mut pivot) = (sibling, parent);
+        let mut looked_at = 0;
         loop {
             stack.push((saved, beside));
             while let Some((saved, place)) = stack.pop() {
+                looked_at += 1;
+                if looked_at > MOST_LOOKED_AT {
+                    stack.clear();
+                    break;
+                }
                 if saved - own <= best.0 {
                     continue;
                 }
@@ -166,7 +175,7 @@ impl Tree {
                 without = without.union(&self.hull(beside));
                 saved += self.area(pivot) - without.area();
             }
-            let Some(next) = self.parent(pivot) else {
+            let Some(next) = self.parent(pivot).filter(|_| looked_at <= MOST_LOOKED_AT) else {
                 break;
             };
             beside = self.sibling(pivot)?;
