@@ -6,7 +6,9 @@ use crate::rays::Rays;
 use gridel_core::Scene;
 use gridel_host::trace::SceneRay;
 use numpy::{IntoPyArray, PyArray1, PyArray2, PyArrayMethods};
+use pyo3::exceptions::PyMemoryError;
 use pyo3::prelude::*;
+use std::collections::TryReserveError;
 
 pub type Arrays<'py, T> = Bound<'py, PyArray1<T>>;
 
@@ -39,9 +41,17 @@ pub struct Cast<'py, T> {
     pub uv: Bound<'py, PyArray2<f32>>,
 }
 
-/// Zeros, which are not written to before they are filled in.
-pub fn zeros<T: numpy::Element>(py: Python<'_>, length: usize) -> Arrays<'_, T> {
-    PyArray1::zeros(py, length, false)
+/// Zeros, which are not written to before they are filled in. NumPy's own function, as it reports when memory is short.
+pub fn zeros<T: numpy::Element>(py: Python<'_>, length: usize) -> PyResult<Arrays<'_, T>> {
+    let zeros = py
+        .import("numpy")?
+        .call_method1("zeros", (length, T::get_dtype(py)))?;
+    Ok(zeros.cast_into()?)
+}
+
+/// The error of work that needs more memory than there is.
+pub fn too_large(_: TryReserveError) -> PyErr {
+    PyMemoryError::new_err("the result does not fit in memory: ask for fewer rays at once")
 }
 
 impl<'py, T: numpy::Element + Send + Copy> Cast<'py, T> {
@@ -51,14 +61,14 @@ impl<'py, T: numpy::Element + Send + Copy> Cast<'py, T> {
         py: Python<'py>,
         (scene, rays, how): (&Scene<'_>, Rays<'_>, How),
         has_instances: bool,
-        place: impl Fn(&SceneRay, &Found) -> (f64, [f32; 2]) + Sync + Send,
+        place: impl Fn(&SceneRay, &Found) -> Option<(f64, [f32; 2])> + Sync + Send,
         number: impl Fn(&Found) -> (T, u32) + Sync + Send,
     ) -> PyResult<Self> {
         let length = rays.len();
-        let t = zeros(py, length);
-        let [object, primitive] = [length; 2].map(|length| zeros(py, length));
-        let instance = zeros(py, if has_instances { length } else { 0 });
-        let [normal, uv] = [3 * length, 2 * length].map(|length| zeros(py, length));
+        let t = zeros(py, length)?;
+        let (object, primitive) = (zeros(py, length)?, zeros(py, length)?);
+        let instance = zeros(py, if has_instances { length } else { 0 })?;
+        let (normal, uv) = (zeros(py, 3 * length)?, zeros(py, 2 * length)?);
         {
             let mut t = t.readwrite();
             let [mut object, mut primitive, mut instance] =
@@ -88,13 +98,24 @@ impl<'py, T: numpy::Element + Send + Copy> Cast<'py, T> {
     }
 }
 
+/// Collects what each hit has.
+pub fn collected<T>(
+    hits: &[(usize, Found)],
+    of: impl Fn(&(usize, Found)) -> T,
+) -> PyResult<Vec<T>> {
+    let mut all = Vec::new();
+    all.try_reserve_exact(hits.len()).map_err(too_large)?;
+    all.extend(hits.iter().map(of));
+    Ok(all)
+}
+
 /// Collects one number of each hit.
 pub fn column<'py, T: numpy::Element>(
     py: Python<'py>,
     hits: &[(usize, Found)],
     number: impl Fn(&(usize, Found)) -> T,
-) -> Arrays<'py, T> {
-    hits.iter().map(number).collect::<Vec<_>>().into_pyarray(py)
+) -> PyResult<Arrays<'py, T>> {
+    Ok(collected(hits, number)?.into_pyarray(py))
 }
 
 /// Copies values to the start of a slice, and returns the rest of it.

@@ -15,6 +15,7 @@ use gridel_host::simd;
 use gridel_host::trace::{DirectionScale, Frame};
 use pyo3::prelude::*;
 use rayon::prelude::*;
+use std::collections::TryReserveError;
 use std::ops::Range;
 
 /// Rays whose steps are taken together, as `gridel trace` takes them.
@@ -121,13 +122,15 @@ fn fill<T: Send + Clone>(
     length: usize,
     empty: T,
     chunk: impl Fn(usize, &mut [T]) + Sync,
-) -> Vec<T> {
-    let mut answers = vec![empty; length];
+) -> Result<Vec<T>, TryReserveError> {
+    let mut answers = Vec::new();
+    answers.try_reserve_exact(length)?;
+    answers.resize(length, empty);
     let chunks = answers.chunks_mut(CHUNK).enumerate().collect();
     each_chunk(how, chunks, |(number, answers)| {
         chunk(number * CHUNK, answers)
     });
-    answers
+    Ok(answers)
 }
 
 /// A query for each ray, and its answers.
@@ -260,7 +263,11 @@ fn found<N: Number>(
 }
 
 /// Answers a question about each ray.
-pub fn ask<Q: Question>(scene: &Scene<'_>, rays: Rays<'_>, how: How) -> Vec<Q::Answer> {
+pub fn ask<Q: Question>(
+    scene: &Scene<'_>,
+    rays: Rays<'_>,
+    how: How,
+) -> Result<Vec<Q::Answer>, TryReserveError> {
     fill(how, rays.len(), Q::MISS, |start, answers| {
         ask_some::<Q>(scene, rays, how, (start, answers));
     })

@@ -6,7 +6,9 @@ mod place;
 pub use native::NativeScene;
 
 use crate::arguments::{invalid, options, rejected};
-use crate::hit_arrays::{Arrays, Cast, HitArrays, MeshHitArrays, append, column, rows, zeros};
+use crate::hit_arrays::{
+    Arrays, Cast, HitArrays, MeshHitArrays, append, collected, column, rows, too_large, zeros,
+};
 use crate::meshes::{self, GivenMesh, Mesh};
 use crate::model::{Model, warn};
 use crate::query::{self, Any, FirstPrimitive, Found, Inside, NONE};
@@ -25,6 +27,9 @@ use pyo3::prelude::*;
 use pyo3::types::PyBytes;
 use std::path::PathBuf;
 
+/// Rays of a camera after which signals are noticed: a fraction of a second.
+const RAYS_PER_BAND: u64 = 1 << 19;
+
 #[pymethods]
 impl NativeScene {
     #[staticmethod]
@@ -37,10 +42,12 @@ impl NativeScene {
             )));
         }
         if !path.is_file() {
-            return Err(PyFileNotFoundError::new_err(format!(
-                "{}: no such file",
-                path.display()
-            )));
+            let what = match path.exists() {
+                true => "not a regular file; give its bytes to `from_blob`",
+                false => "no such file",
+            };
+            let sentence = format!("{}: {what}", path.display());
+            return Err(PyFileNotFoundError::new_err(sentence));
         }
         let options = options(&accel, lattice_bits)?;
         if gridel_host::blob::is_blob(&path)? {
@@ -119,7 +126,7 @@ impl NativeScene {
         );
         let (scene, rays) = (self.chosen(how)?, Rays::rows(array.rows("rays")?)?);
         let number = |hit: &Found| (hit.t, hit.primitive);
-        let place = |ray: &SceneRay, hit: &Found| self.weights(ray, hit);
+        let place = |ray: &SceneRay, hit: &Found| Some(self.weights(ray, hit));
         let found = Cast::of(py, (&scene, rays, how), true, place, number)?;
         Ok((
             found.t,
@@ -154,7 +161,10 @@ impl NativeScene {
             let first = self.firsts.get(hit.object as usize).copied();
             (t, first.map_or(NONE, |first| hit.primitive - first))
         };
-        let place = |ray: &SceneRay, hit: &Found| self.weights(ray, hit);
+        // Nor does one whose t leaves single precision.
+        let place = |ray: &SceneRay, hit: &Found| {
+            Some(self.weights(ray, hit)).filter(|(t, _)| (*t as f32).is_finite())
+        };
         let found = Cast::of(py, (&scene, rays, how), false, place, number)?;
         Ok((
             found.t,
@@ -180,7 +190,8 @@ impl NativeScene {
         let scene = self.chosen(how)?;
         let found = query::detach(py, how, rays.len(), || {
             query::ask::<FirstPrimitive>(&scene, rays, how)
-        })?;
+        })?
+        .map_err(too_large)?;
         Ok(found.into_pyarray(py))
     }
 
@@ -197,7 +208,8 @@ impl NativeScene {
         let arrays = TwoArrays::borrow(origins, directions)?;
         let rays = arrays.rays()?;
         let scene = self.chosen(how)?;
-        let found = query::detach(py, how, rays.len(), || query::ask::<Any>(&scene, rays, how))?;
+        let found = query::detach(py, how, rays.len(), || query::ask::<Any>(&scene, rays, how))?
+            .map_err(too_large)?;
         Ok(found.into_pyarray(py))
     }
 
@@ -215,7 +227,8 @@ impl NativeScene {
             Array::borrow(rays, "rays")?,
         );
         let (scene, rays) = (self.chosen(how)?, Rays::rows(array.rows("rays")?)?);
-        let found = query::detach(py, how, rays.len(), || query::ask::<Any>(&scene, rays, how))?;
+        let found = query::detach(py, how, rays.len(), || query::ask::<Any>(&scene, rays, how))?
+            .map_err(too_large)?;
         Ok(found.into_pyarray(py))
     }
 
@@ -233,7 +246,8 @@ impl NativeScene {
             Array::borrow(rays, "rays")?,
         );
         let (scene, rays) = (self.chosen(how)?, Rays::rows(array.rows("rays")?)?);
-        let found = query::detach(py, how, rays.len(), || query::count(&scene, rays, how))?;
+        let found = query::detach(py, how, rays.len(), || query::count(&scene, rays, how))?
+            .map_err(too_large)?;
         Ok(found.into_pyarray(py))
     }
 
@@ -252,20 +266,22 @@ impl NativeScene {
         );
         let (scene, rays) = (self.chosen(how)?, Rays::rows(array.rows("rays")?)?);
         let (hits, uvs) = query::detach(py, how, rays.len(), || {
-            let mut hits = query::all(&scene, rays, how).concat();
-            let uvs = self.place_all(rays, &mut hits);
-            (hits, uvs)
-        })?;
+            let mut hits = query::all(&scene, rays, how)?;
+            let uvs = self.place_all(rays, &mut hits)?;
+            Ok((hits, uvs))
+        })?
+        .map_err(too_large)?;
         let arrays = (
-            column(py, &hits, |(_, hit)| hit.t),
-            column(py, &hits, |(_, hit)| hit.object),
-            column(py, &hits, |(_, hit)| hit.primitive),
-            column(py, &hits, |(_, hit)| hit.instance),
-            rows(py, hits.iter().map(|(_, hit)| hit.normal).collect())?,
+            column(py, &hits, |(_, hit)| hit.t)?,
+            column(py, &hits, |(_, hit)| hit.object)?,
+            column(py, &hits, |(_, hit)| hit.primitive)?,
+            column(py, &hits, |(_, hit)| hit.instance)?,
+            rows(py, collected(&hits, |(_, hit)| hit.normal)?)?,
             rows(py, uvs)?,
         );
-        let leaves = column(py, &hits, |(_, hit)| hit.leaves);
-        Ok((column(py, &hits, |&(ray, _)| ray as i64), arrays, leaves))
+        let leaves = column(py, &hits, |(_, hit)| hit.leaves)?;
+        let numbers = column(py, &hits, |&(ray, _)| ray as i64)?;
+        Ok((numbers, arrays, leaves))
     }
 
     /// Locations, rays and triangles of the hits of rays: all, or the first of each ray.
@@ -295,10 +311,11 @@ impl NativeScene {
                 let (t, place, _) = self.place(ray, hit);
                 (t, place.to_array())
             })
-        })?;
+        })?
+        .map_err(too_large)?;
         let length = chunks.iter().map(|chunk| chunk.0.len()).sum();
-        let places = zeros(py, 3 * length);
-        let [numbers, triangles] = [length; 2].map(|length| zeros(py, length));
+        let places = zeros(py, 3 * length)?;
+        let (numbers, triangles) = (zeros(py, length)?, zeros(py, length)?);
         {
             let mut places = places.readwrite();
             let [mut numbers, mut triangles] =
@@ -338,7 +355,8 @@ impl NativeScene {
         };
         let found = query::detach(py, how, points.len(), || {
             query::contains(&scene, points, inside, how)
-        })?;
+        })?
+        .map_err(too_large)?;
         Ok(found.into_pyarray(py))
     }
 
@@ -371,11 +389,29 @@ impl NativeScene {
             depth: depth.unwrap_or(own.depth),
             ..own
         };
-        let job = Job::whole(how.format, how.structure, settings);
-        let picture = in_pool(py, threads, || render(scene, &job, &|| ()))?;
-        let pixels = srgb(&picture.map_err(invalid)?, false);
-        let shape = [usize::from(height), usize::from(width), 3];
-        pixels.into_pyarray(py).reshape(shape)
+        // NumPy says when a picture is too large; then bands of it, so that signals are noticed between them.
+        let pixels = zeros::<u8>(py, 3 * usize::from(width) * usize::from(height))?;
+        let rays = u64::from(width).max(1) * u64::from(settings.samples).max(1);
+        let band = (RAYS_PER_BAND / rays).clamp(1, u16::MAX.into()) as u16;
+        let mut filled = pixels.readwrite();
+        let mut rest = filled.as_slice_mut().map_err(invalid)?;
+        let mut first = 0_u16;
+        loop {
+            let end = first.saturating_add(band).min(height);
+            let job = Job {
+                rows: first..end,
+                ..Job::whole(how.format, how.structure, settings)
+            };
+            let picture = in_pool(py, threads, || render(scene, &job, &|| ()))?;
+            rest = append(rest, &srgb(&picture.map_err(invalid)?, false));
+            if end == height {
+                break;
+            }
+            py.check_signals()?;
+            first = end;
+        }
+        drop(filled);
+        pixels.reshape([usize::from(height), usize::from(width), 3])
     }
 
     /// Returns the scene as a blob, compiled again where structures or bits are given.

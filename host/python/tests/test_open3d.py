@@ -197,3 +197,30 @@ def test_answers_are_those_of_open3d():
         given = RaycastingScene.create_rays_pinhole(**form).numpy()
         expected = o3d.t.geometry.RaycastingScene.create_rays_pinhole(**form).numpy()
         assert given.shape == expected.shape and np.abs(given - expected).max() < 1e-6
+
+
+def test_hits_beyond_single_precision_are_misses():
+    scene = fill(RaycastingScene())
+    ray = np.array([[0.1, 0.1, -3, 0, 0, 1e-39]], dtype=np.float32)
+    hits = scene.cast_rays(ray)
+    assert hits["t_hit"][0] == np.inf
+    assert hits["primitive_ids"][0] == hits["geometry_ids"][0] == RaycastingScene.INVALID_ID
+    assert (hits["primitive_normals"] == 0).all() and (hits["primitive_uvs"] == 0).all()
+    listed = scene.list_intersections(ray)
+    assert listed["ray_splits"].tolist() == [0, 0] and len(listed["t_hit"]) == 0
+
+
+@pytest.mark.parametrize("nsamples", [2, 0, -1])
+def test_occupancy_takes_odd_numbers_of_samples(nsamples):
+    with pytest.raises(ValueError, match="nsamples"):
+        RaycastingScene().compute_occupancy(np.zeros((1, 3), np.float32), nsamples=nsamples)
+
+
+def test_cameras_of_wrong_shapes_are_rejected():
+    pinhole = RaycastingScene.create_rays_pinhole
+    with pytest.raises(ValueError, match="center"):
+        pinhole(60, [[0], [0], [0]], [0, 0, 3], [0, 1, 0], 4, 3)
+    with pytest.raises(ValueError, match="extrinsic_matrix"):
+        pinhole(np.eye(3), np.eye(4)[:3], 4, 3)
+    with pytest.raises(TypeError):
+        pinhole(np.eye(3), np.eye(4), 4.7, 3)

@@ -471,3 +471,94 @@ def test_docstring_example_holds():
     import doctest
 
     assert doctest.testmod(gridel).failed == 0
+
+
+@pytest.mark.parametrize("format", ["f32", "f64", "fixed"])
+@pytest.mark.parametrize("slope", [3e-4, 1e-5, 1e-7])
+def test_grazing_rays_get_the_t_of_the_given_vertices(format, slope):
+    corners = np.array([[-16, -16, 0], [16, -16, 0], [16, 16, 0], [-16, 16, 0], [0, 0, -16.0]])
+    faces = [[0, 1, 2], [0, 2, 3], [0, 4, 1], [1, 4, 2], [2, 4, 3], [3, 4, 0]]
+    scene = gridel.Scene.from_arrays(corners, faces)
+    assert scene.displacement == 0
+    hits = scene.cast([[0.3, 0.1, 3 * slope, 1.0, 0.5, -slope]], format=format)
+    assert hits.t[0] == pytest.approx(3, rel=1e-12)
+    assert np.isfinite(hits.uv).all()
+
+
+def test_grazing_hits_stay_at_their_triangle():
+    # A thin triangle that the lattice tilts, as a far vertex makes its steps coarse.
+    corners = np.array([[0, 0, 0.3e-3], [1, 0, 0.1e-3], [0, 1, 0.2e-3], [4000, 4000, 4000]])
+    scene = gridel.Scene.from_arrays(corners, [[0, 1, 2], [0, 3, 1]], lattice_bits=16)
+    direction = np.array([1.0, 0.3, -1e-4])
+    rays = np.array([[*(np.array([0.3, 0.3, z]) - 10 * direction), *direction] for z in np.linspace(-0.1, 0.1, 200)])
+    hits = scene.cast(rays)
+    met = hits.primitive == 0
+    places = rays[met, :3] + hits.t[met, None] * rays[met, 3:]
+    assert (np.abs(places[:, :2] - 0.5) < 1.5).all()
+
+
+@pytest.mark.parametrize("power", [-900, -600, -300, 300, 600, 900])
+def test_t_has_double_precision_at_every_length_of_direction(power):
+    corners = np.array([[0.1, 0.2, 0.3], [1.7, 0.1, 0.2], [0.3, 1.9, 0.7]])
+    scene = gridel.Scene.from_arrays(corners, [[0, 1, 2]])
+    origin, direction = np.array([0.5, 0.6, 5.0]), np.array([0.01, -0.02, -1.0])
+    t = scene.cast([[*origin, *direction]]).t[0]
+    long = scene.cast([[*origin, *(direction * 2.0**power)]]).t[0] * 2.0**power
+    assert long == pytest.approx(t, rel=1e-14)
+    if abs(power) == 300:
+        large = gridel.Scene.from_arrays(corners * 2.0 ** (power / 2), [[0, 1, 2]])
+        scaled = np.array([*origin, *direction]) * 2.0 ** (power / 2)
+        assert large.cast([scaled]).t[0] == pytest.approx(t, rel=1e-14)
+
+
+MEMORY = """
+import resource, sys
+import numpy as np, gridel
+scene = gridel.Scene.from_arrays(np.eye(3), [[0, 1, 2]])
+rays = np.tile([0.3, 0.3, -2, 0, 0, 1.0], (2000000, 1))
+scene.cast(rays[:5000]); scene.all(rays[:5000])
+used = int(open("/proc/self/statm").read().split()[0]) * 4096
+resource.setrlimit(resource.RLIMIT_AS, (used + {spare} * 1000000,) * 2)
+try:
+    {call}
+except MemoryError:
+    sys.exit(7)
+"""
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="limits memory as Linux does")
+@pytest.mark.parametrize(
+    "call, spare",
+    [
+        ("scene.render(40000, 40000, samples=1)", 100),
+        ("scene.cast(rays)", 30),
+        ("scene.all(rays)", 60),
+        ("scene.all(rays)", 100),
+    ],
+)
+def test_results_that_do_not_fit_in_memory_are_an_error(call, spare):
+    code = MEMORY.format(call=call, spare=spare)
+    run = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True)
+    assert run.returncode == 7, run.stderr
+
+
+def test_render_is_interrupted(cube):
+    code = (
+        "import numpy as np, gridel, os, signal, threading, time\n"
+        "scene = gridel.Scene.from_arrays(np.eye(3), [[0, 1, 2]])\n"
+        "threading.Timer(0.3, os.kill, (os.getpid(), signal.SIGINT)).start()\n"
+        "scene.render(4000, 4000, samples=4096)\n"
+    )
+    run = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, timeout=60)
+    assert "KeyboardInterrupt" in run.stderr
+
+
+def test_the_classes_for_other_libraries_need_no_import_of_their_own():
+    code = "import gridel; gridel.trimesh.RayMeshIntersector; gridel.open3d.RaycastingScene()"
+    subprocess.run([sys.executable, "-c", code], check=True)
+
+
+def test_from_blob_takes_bytes_alone():
+    for wrong in ("scene.gridel", 10**9):
+        with pytest.raises(TypeError, match="bytes-like"):
+            gridel.Scene.from_blob(wrong)

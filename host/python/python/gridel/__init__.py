@@ -18,6 +18,7 @@ array([2], dtype=uint32)
 names in trimesh and Open3D.
 """
 
+from . import open3d, trimesh
 from ._scene import MISS, AllHits, Hits, Scene
 
-__all__ = ["MISS", "AllHits", "Hits", "Scene"]
+__all__ = ["MISS", "AllHits", "Hits", "Scene", "open3d", "trimesh"]

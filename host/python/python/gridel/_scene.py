@@ -174,8 +174,8 @@ class Scene:
         """Compiles a triangle mesh: vertices (n, 3) of numbers, faces (m, 3) of integers.
 
         Vertices are centered in float64 before they are rounded to the lattice, whose step is about 1e-7 of the mesh's
-        size at 24 bits, wherever the mesh lies; :attr:`displacement` says how far they moved. Vertices of no face do not
-        count. A closed mesh thinner than a step becomes flat: rays hit it, and it contains nothing. Warns (UserWarning)
+        size at 24 bits, wherever the mesh lies within 5e8 times its size of the origin; :attr:`displacement` says how far
+        they moved. Its size is 1e-250 to 1e250. Vertices of no face do not count. A closed mesh thinner than a step becomes flat: rays hit it, and it contains nothing. Warns (UserWarning)
         of triangles that are too small for the lattice. Raises ValueError for vertices that are not finite and faces
         that name no vertex.
         """
@@ -194,7 +194,7 @@ class Scene:
     @classmethod
     def from_blob(cls, blob: bytes) -> "Scene":
         """Takes a scene blob, as ``gridel build`` and :meth:`to_blob` make them. Raises ValueError if it is invalid."""
-        return cls(NativeScene.from_blob(bytes(blob)))
+        return cls(NativeScene.from_blob(bytes(memoryview(blob))))
 
     def cast(
         self, rays: ArrayLike, *, format: str = "f32", accel: Optional[str] = None, threads: int = 0
@@ -285,7 +285,8 @@ class Scene:
     ) -> NDArray[np.uint8]:
         """Renders the scene from its camera: (height, width, 3) uint8 in sRGB, the first row at the top.
 
-        Defaults are those of the scene; give both ``width`` and ``height`` (1 to 65535) or neither. ``samples`` is 1 to
+        Defaults are those of the scene; give both ``width`` and ``height`` (1 to 65535) or neither; the picture is at
+        most 64 times as wide as high. Raises MemoryError for a picture that does not fit in memory. ``samples`` is 1 to
         4096 and ``depth`` 0 to 32. The pixels are those of ``gridel render`` with the same settings. A scene without a
         camera is compiled anew where the ratio of the sides is not its own, because its framing depends on it.
         """

@@ -7,6 +7,7 @@ need not be changed.
 
 from __future__ import annotations
 
+import operator
 import sys
 from typing import Any, Optional, Tuple
 
@@ -162,7 +163,7 @@ class RaycastingScene:
         """Returns the first hits of rays (..., 6).
 
         Keys: ``t_hit`` (...) float32, inf on a miss; ``geometry_ids`` and ``primitive_ids`` (...) uint32,
-        ``INVALID_ID`` on a miss; ``primitive_uvs`` (..., 2) and ``primitive_normals`` (..., 3) float32, 0 on a miss.
+        ``INVALID_ID`` on a miss and where t leaves single precision; ``primitive_uvs`` (..., 2) and ``primitive_normals`` (..., 3) float32, 0 on a miss.
         """
         array = self._rays(rays)
         shape = array.shape[:-1]
@@ -197,7 +198,8 @@ class RaycastingScene:
         if tnear != 0.0 or tfar != float("inf"):
             limited = np.empty(array.shape[:-1] + (8,), dtype=array.dtype)
             limited[..., 0:3], limited[..., 4:7] = array[..., 0:3], array[..., 3:6]
-            limited[..., 3], limited[..., 7] = tnear, tfar
+            with np.errstate(over="ignore"):  # infinite in single precision, which they are near
+                limited[..., 3], limited[..., 7] = tnear, tfar
             array = limited
         return _like(rays, self.scene.any(array, threads=_threads(nthreads, "nthreads")))
 
@@ -223,14 +225,20 @@ class RaycastingScene:
             hits = (splits, none, none, none, np.zeros(0, np.float32), np.zeros((0, 2), np.float32))
         else:
             found = self.scene.all(array, format="f32", threads=_threads(nthreads, "nthreads"))
-            splits = np.searchsorted(found.ray, np.arange(len(array) + 1)).astype(np.uint32)
+            # Beyond single precision nothing is met.
+            kept = found.t <= np.finfo(np.float32).max
+            ray, objects, primitives, t, uv = (
+                column if kept.all() else column[kept]
+                for column in (found.ray, found.object, found.primitive, found.t, found.uv)
+            )
+            splits = np.searchsorted(ray, np.arange(len(array) + 1)).astype(np.uint32)
             hits = (
                 splits,
-                found.ray.astype(np.uint32),
-                found.object,
-                self._identify(found.object, found.primitive),
-                found.t.astype(np.float32),
-                found.uv,
+                ray.astype(np.uint32),
+                objects,
+                self._identify(objects, primitives),
+                t.astype(np.float32),
+                uv,
             )
         keys = ("ray_splits", "ray_ids", "geometry_ids", "primitive_ids", "t_hit", "primitive_uvs")
         return {key: _like(rays, value) for key, value in zip(keys, hits)}
@@ -241,6 +249,8 @@ class RaycastingScene:
         A point in two meshes is outside, as in Open3D. One ray is enough; ``nsamples`` is taken for its place among the
         arguments. Points with nan or infinity are outside.
         """
+        if nsamples < 1 or nsamples % 2 == 0:
+            raise ValueError(f"nsamples is {nsamples}; it must be odd and at least 1")
         points = _rows(_array(query_points), (3,), "query_points")
         if self.scene is None:
             return _like(query_points, np.zeros(points.shape[:-1], dtype=np.float32))
@@ -264,20 +274,25 @@ class RaycastingScene:
         given = {**dict(zip(names, args)), **kwargs}
         if set(given) != set(names) or len(args) + len(kwargs) != len(names):
             raise TypeError(f"create_rays_pinhole takes {', '.join(by_matrices)} or {', '.join(by_field_of_view)}")
-        width, height = int(given["width_px"]), int(given["height_px"])
+        width, height = (operator.index(given[name]) for name in ("width_px", "height_px"))
         if width < 1 or height < 1:
             raise ValueError("width_px and height_px must be above 0")
+
+        def numbers(name: str, shape: Tuple[int, ...]) -> np.ndarray:
+            array = np.asarray(_array(given[name]), dtype=np.float64)
+            if array.shape != shape:
+                raise ValueError(f"{name}: the array has the shape {array.shape}; it must be {shape}")
+            return array
+
         of_tensors = next((value for value in given.values() if _is_tensor(value)), None)
         if names is by_matrices:
-            intrinsic = np.asarray(_array(given["intrinsic_matrix"]), dtype=np.float64)
-            extrinsic = np.asarray(_array(given["extrinsic_matrix"]), dtype=np.float64)
+            intrinsic = numbers("intrinsic_matrix", (3, 3))
+            extrinsic = numbers("extrinsic_matrix", (4, 4))
             turn = extrinsic[:3, :3]
             eye = -turn.T @ extrinsic[:3, 3]
             into = turn.T @ np.linalg.inv(intrinsic)
         else:
-            center, eye, up = (
-                np.asarray(_array(given[name]), dtype=np.float64) for name in ("center", "eye", "up")
-            )
+            center, eye, up = (numbers(name, (3,)) for name in ("center", "eye", "up"))
             ahead = center - eye
             ahead = ahead / np.linalg.norm(ahead)
             across = np.cross(up, ahead)

@@ -1,8 +1,7 @@
 //! All hits of rays.
 
 use super::{
-    BATCH, CHUNK, Closest, Found, How, Met, NONE, Nearest, Question, ask_some, chunks_of,
-    each_chunk, fill,
+    BATCH, Closest, Found, How, Met, NONE, Nearest, Question, ask_some, chunks_of, each_chunk, fill,
 };
 use crate::rays::{Rays, Ready, prepare};
 #[cfg(target_arch = "x86_64")]
@@ -16,13 +15,14 @@ use gridel_core::{
 #[cfg(target_arch = "x86_64")]
 use gridel_host::simd;
 use gridel_host::trace::{Frame, SceneRay};
+use std::collections::TryReserveError;
 use std::ops::Range;
 
 /// Hits that are listed at a time.
 const LISTED: usize = 16;
 
 /// Returns the number of hits of each ray; 0 for an invalid ray.
-pub fn count(scene: &Scene<'_>, rays: Rays<'_>, how: How) -> Vec<u32> {
+pub fn count(scene: &Scene<'_>, rays: Rays<'_>, how: How) -> Result<Vec<u32>, TryReserveError> {
     fill(how, rays.len(), 0, |start, answers| {
         dispatch!(how, count_chunk, [], (scene, rays, start, answers));
     })
@@ -62,10 +62,19 @@ pub(super) fn each_hit<N: Number, A: Accel>(
 }
 
 /// All hits, ray by ray in order, each with the number of its ray.
-pub fn all(scene: &Scene<'_>, rays: Rays<'_>, how: How) -> Vec<Vec<(usize, Found)>> {
-    each_chunk(how, chunks_of(rays.len()), |numbers| {
+pub fn all(
+    scene: &Scene<'_>,
+    rays: Rays<'_>,
+    how: How,
+) -> Result<Vec<(usize, Found)>, TryReserveError> {
+    let chunks = each_chunk(how, chunks_of(rays.len()), |numbers| {
         all_of::<Closest>(scene, rays, how, numbers)
-    })
+    });
+    let chunks = chunks.into_iter().collect::<Result<Vec<_>, _>>()?;
+    let mut all = Vec::new();
+    all.try_reserve_exact(chunks.iter().map(Vec::len).sum())?;
+    chunks.iter().for_each(|chunk| all.extend_from_slice(chunk));
+    Ok(all)
 }
 
 /// All hits of some rays.
@@ -74,7 +83,7 @@ fn all_of<Q: Question<Answer = Found>>(
     rays: Rays<'_>,
     how: How,
     numbers: Range<usize>,
-) -> Vec<(usize, Found)> {
+) -> Result<Vec<(usize, Found)>, TryReserveError> {
     #[cfg(target_arch = "x86_64")]
     if let (Format::F32, Structure::Wide, SimdLevel::Avx2(avx2)) =
         (how.format, how.structure, simd::level())
@@ -92,7 +101,7 @@ fn all_chunk<N: Number, A: Accel, Q: Question<Answer = Found>>(
     scene: &Scene<'_>,
     rays: Rays<'_>,
     numbers: Range<usize>,
-) -> Vec<(usize, Found)> {
+) -> Result<Vec<(usize, Found)>, TryReserveError> {
     all_inline::<N, A, Q>(scene, rays, numbers)
 }
 
@@ -101,9 +110,11 @@ fn all_inline<N: Number, A: Accel, Q: Question<Answer = Found>>(
     scene: &Scene<'_>,
     rays: Rays<'_>,
     numbers: Range<usize>,
-) -> Vec<(usize, Found)> {
+) -> Result<Vec<(usize, Found)>, TryReserveError> {
     let frame = Frame::of(scene);
-    let mut all = Vec::with_capacity(2 * numbers.len());
+    let mut all = Vec::new();
+    all.try_reserve(2 * numbers.len())?;
+    let mut reserved = Ok(());
     let mut ready: Vec<Ready<N>> = Vec::with_capacity(BATCH);
     for first in numbers.clone().step_by(BATCH) {
         let batch = first..numbers.end.min(first + BATCH);
@@ -120,13 +131,17 @@ fn all_inline<N: Number, A: Accel, Q: Question<Answer = Found>>(
                 };
                 let hit = Q::hit(met);
                 // Without one where the t of a plane leaves double precision.
-                if hit.primitive != NONE {
-                    all.push((number, hit));
+                if hit.primitive != NONE && reserved.is_ok() {
+                    reserved = all.try_reserve(1);
+                    if reserved.is_ok() {
+                        all.push((number, hit));
+                    }
                 }
             });
         }
+        reserved.clone()?;
     }
-    all
+    Ok(all)
 }
 
 /// Places, numbers of rays and triangles.
@@ -143,12 +158,12 @@ pub fn locations(
     multiple_hits: bool,
     max_hits: Option<usize>,
     place: impl Fn(&SceneRay, &Found) -> (f64, [f64; 3]) + Sync,
-) -> Vec<Locations> {
+) -> Result<Vec<Locations>, TryReserveError> {
     let most = max_hits.unwrap_or(usize::MAX);
-    each_chunk(how, chunks_of(rays.len()), |numbers| {
-        let mut hits = Vec::with_capacity(2 * CHUNK);
+    let chunks = each_chunk(how, chunks_of(rays.len()), |numbers| {
+        let mut hits = Vec::new();
         if multiple_hits {
-            hits = all_of::<Nearest>(scene, rays, how, numbers);
+            hits = all_of::<Nearest>(scene, rays, how, numbers)?;
         } else {
             let mut first = vec![Found::MISS; numbers.len()];
             ask_some::<Nearest>(scene, rays, how, (numbers.start, &mut first));
@@ -156,6 +171,9 @@ pub fn locations(
             hits.extend(met.filter(|(_, hit)| hit.primitive != NONE));
         }
         let mut locations = Locations::default();
+        locations.0.try_reserve_exact(hits.len())?;
+        locations.1.try_reserve_exact(hits.len())?;
+        locations.2.try_reserve_exact(hits.len())?;
         let (mut last, mut of_ray) = (usize::MAX, 0);
         let mut farthest = (f64::NEG_INFINITY, [0.0; 3]);
         for (number, hit) in &hits {
@@ -172,6 +190,7 @@ pub fn locations(
             locations.1.push(*number as i64);
             locations.2.push(hit.primitive.into());
         }
-        locations
-    })
+        Ok(locations)
+    });
+    chunks.into_iter().collect()
 }

@@ -51,13 +51,13 @@ const WRITTEN: usize = 256;
 
 /// Finds the first hit of each ray and writes it to arrays of as many rows.
 ///
-/// `place` gives the t and the weights of corners of a hit, and `number` its t and its primitive as the arrays have them.
+/// `place` gives the t and the weights of corners of a hit, or none where there is no hit after all, and `number` its t and its primitive as the arrays have them.
 pub fn cast<T: Send + Copy>(
     scene: &Scene<'_>,
     rays: Rays<'_>,
     how: How,
     mut columns: Columns<'_, T>,
-    place: impl Fn(&SceneRay, &Found) -> (f64, [f32; 2]) + Sync,
+    place: impl Fn(&SceneRay, &Found) -> Option<(f64, [f32; 2])> + Sync,
     number: impl Fn(&Found) -> (T, u32) + Sync,
 ) {
     let mut chunks = Vec::with_capacity(rays.len().div_ceil(CHUNK));
@@ -77,7 +77,10 @@ pub fn cast<T: Send + Copy>(
             ask_some::<Closest>(scene, rays, how, (start, hits));
             for (row, hit) in hits.iter_mut().enumerate() {
                 if hit.primitive != NONE {
-                    (hit.t, rows.uv[row]) = place(&rays.get(start + row), hit);
+                    match place(&rays.get(start + row), hit) {
+                        Some(placed) => (hit.t, rows.uv[row]) = placed,
+                        None => *hit = Found::MISS,
+                    }
                 }
                 (rows.t[row], rows.primitive[row]) = number(hit);
                 rows.object[row] = hit.object;

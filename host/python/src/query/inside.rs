@@ -6,6 +6,7 @@ use crate::rays::Points;
 use glam::DVec3;
 use gridel_core::accel::DynAccel;
 use gridel_core::{Accel, Fixed, Format, Number, Scene, Solid, Structure, Wide, containment_ray};
+use std::collections::TryReserveError;
 
 /// When a point is inside.
 #[derive(Clone, Copy)]
@@ -19,7 +20,12 @@ pub enum Inside<'a> {
 }
 
 /// Whether each point is inside.
-pub fn contains(scene: &Scene<'_>, points: Points<'_>, inside: Inside<'_>, how: How) -> Vec<bool> {
+pub fn contains(
+    scene: &Scene<'_>,
+    points: Points<'_>,
+    inside: Inside<'_>,
+    how: How,
+) -> Result<Vec<bool>, TryReserveError> {
     fill(how, points.len(), false, |start, answers| {
         dispatch!(
             how,

@@ -6,6 +6,7 @@ use crate::rays::Rays;
 use glam::DVec3;
 use gridel_host::scene::Shape;
 use gridel_host::trace::SceneRay;
+use std::collections::TryReserveError;
 
 /// Where a ray meets a triangle: its t, the place, and the weights of the second and third corner.
 type Meeting = (f64, DVec3, [f64; 2]);
@@ -42,7 +43,10 @@ impl NativeScene {
             return (t, ray.origin + ray.direction * t, [f64::NAN; 2]);
         };
         let [a, b, c] = corners;
-        let is_ordinary = (b - a).cross(c - a).length_squared().is_normal()
+        // Products of two such squares stay in double precision.
+        let ordinary = 1e-140..1e140;
+        let is_ordinary = ordinary.contains(&(b - a).cross(c - a).length_squared())
+            && ordinary.contains(&ray.direction.length_squared())
             && (a - ray.origin).abs().max_element() < self.middle.far;
         if is_ordinary {
             meet(corners, ray, hit.t)
@@ -51,22 +55,26 @@ impl NativeScene {
         }
     }
 
-    /// [`meet`] for a triangle whose area leaves double precision, or a ray from far away, as precise as from near.
+    /// [`meet`] for a triangle or a direction of an extreme size, or a ray from far away, as precise as from near.
     #[cold]
     #[inline(never)]
     fn meet_extreme(&self, corners: [DVec3; 3], ray: SceneRay, own: f64) -> Meeting {
         let (near, begin) = self.middle.nearer(&ray);
         let [a, b, c] = corners;
         let size = (b - a).abs().max((c - a).abs()).max_element();
-        // A power of two, so that it rounds nothing.
-        let scale = (-size.log2().round()).exp2();
+        // Powers of two, so that they round nothing.
+        let to_one = |size: f64| (-size.log2().round()).clamp(-1000.0, 1000.0).exp2();
+        let scale = to_one(size);
+        let stretch = to_one(near.direction.abs().max_element());
         let scaled = SceneRay {
             origin: near.origin * scale,
-            direction: near.direction * scale,
-            ..near
+            direction: near.direction * stretch * scale,
+            tmin: near.tmin / stretch,
+            tmax: near.tmax / stretch,
         };
-        let (t, place, weights) = meet(corners.map(|it| it * scale), &scaled, own - begin);
-        (ray.within(begin + t), place / scale, weights)
+        let own = (own - begin) / stretch;
+        let (t, place, weights) = meet(corners.map(|it| it * scale), &scaled, own);
+        (ray.within(begin + t * stretch), place / scale, weights)
     }
 
     /// The t of a hit, and the weights of the corners of its triangle.
@@ -78,7 +86,13 @@ impl NativeScene {
 
     /// Gives the hits of rays, ray by ray in their order, their t, and returns the weights of the corners of their
     /// triangles. Triangles closer to each other than the lattice moved them keep the order in which they are hit.
-    pub(super) fn place_all(&self, rays: Rays<'_>, hits: &mut [(usize, Found)]) -> Vec<[f32; 2]> {
+    pub(super) fn place_all(
+        &self,
+        rays: Rays<'_>,
+        hits: &mut [(usize, Found)],
+    ) -> Result<Vec<[f32; 2]>, TryReserveError> {
+        let mut all = Vec::new();
+        all.try_reserve_exact(hits.len())?;
         let mut last = (usize::MAX, f64::NEG_INFINITY);
         let placed = hits.iter_mut().map(|(number, hit)| {
             let (t, _, uv) = self.place(&rays.get(*number), hit);
@@ -86,11 +100,12 @@ impl NativeScene {
             last = (*number, hit.t);
             uv.map(|weight| weight as f32)
         });
-        placed.collect()
+        all.extend(placed);
+        Ok(all)
     }
 }
 
-/// Where a ray meets a triangle, by a t of its own where it is nearly parallel.
+/// Where a ray meets a triangle; `own` is the hit's t as the query has it.
 #[inline(always)]
 fn meet([a, b, c]: [DVec3; 3], ray: &SceneRay, own: f64) -> Meeting {
     let (to_b, to_c) = (b - a, c - a);
@@ -102,7 +117,7 @@ fn meet([a, b, c]: [DVec3; 3], ray: &SceneRay, own: f64) -> Meeting {
     let t = if is_steep {
         normal.dot(a - ray.origin) / approach
     } else {
-        own
+        meet_grazing([a, b, c], (normal, approach), ray, own)
     };
     let t = ray.within(t);
     let place = ray.origin + ray.direction * t;
@@ -110,4 +125,40 @@ fn meet([a, b, c]: [DVec3; 3], ray: &SceneRay, own: f64) -> Meeting {
     let weight = |area: DVec3| (area.dot(normal) / square).clamp(0.0, 1.0);
     let weights = [weight(relative.cross(to_c)), weight(to_b.cross(relative))];
     (t, place, weights)
+}
+
+/// The t at which a ray that is nearly parallel to a triangle meets its plane, or the nearest t at which it is above or
+/// below the triangle: the lattice may have tilted the plane by more than the ray's slope. The hit's own t where it never
+/// is.
+#[cold]
+#[inline(never)]
+fn meet_grazing(
+    corners: [DVec3; 3],
+    (normal, approach): (DVec3, f64),
+    ray: &SceneRay,
+    own: f64,
+) -> f64 {
+    let [mut enters, mut leaves] = [f64::NEG_INFINITY, f64::INFINITY];
+    for side in 0..3 {
+        let [from, to] = [corners[side], corners[(side + 1) % 3]];
+        let inward = normal.cross(to - from);
+        let (height, change) = (inward.dot(ray.origin - from), inward.dot(ray.direction));
+        let crosses = -height / change;
+        if change > 0.0 {
+            enters = enters.max(crosses);
+        } else if change < 0.0 {
+            leaves = leaves.min(crosses);
+        } else if height < 0.0 {
+            return own;
+        }
+    }
+    let t = match approach {
+        0.0 => own,
+        _ => normal.dot(corners[0] - ray.origin) / approach,
+    };
+    if enters <= leaves {
+        t.clamp(enters, leaves)
+    } else {
+        own
+    }
 }
