@@ -13,7 +13,7 @@ use crate::meshes::{self, GivenMesh, Mesh};
 use crate::model::{Model, warn};
 use crate::query::{self, Any, FirstPrimitive, Found, Inside, NONE};
 use crate::rays::{Array, Points, Rays, TwoArrays};
-use crate::threads::in_pool;
+use crate::threads::{in_pool, workers};
 use gridel_core::Settings;
 use gridel_host::blob::Blob;
 use gridel_host::compile::{Options, compile};
@@ -29,6 +29,9 @@ use std::path::PathBuf;
 
 /// Rays of a camera after which signals are noticed: a fraction of a second.
 const RAYS_PER_BAND: u64 = 1 << 19;
+
+/// Rows of a band at least, so that threads end at about the same time.
+const ROWS_PER_THREAD: u64 = 4;
 
 #[pymethods]
 impl NativeScene {
@@ -392,7 +395,9 @@ impl NativeScene {
         // NumPy says when a picture is too large; then bands of it, so that signals are noticed between them.
         let pixels = zeros::<u8>(py, 3 * usize::from(width) * usize::from(height))?;
         let rays = u64::from(width).max(1) * u64::from(settings.samples).max(1);
-        let band = (RAYS_PER_BAND / rays).clamp(1, u16::MAX.into()) as u16;
+        // Threads take whole rows.
+        let least = ROWS_PER_THREAD * workers(threads) as u64;
+        let band = (RAYS_PER_BAND / rays).max(least).min(u16::MAX.into()) as u16;
         let mut filled = pixels.readwrite();
         let mut rest = filled.as_slice_mut().map_err(invalid)?;
         let mut first = 0_u16;

@@ -3,8 +3,10 @@
 use pyo3::exceptions::PyRuntimeError;
 use pyo3::prelude::*;
 use rayon::{ThreadPool, ThreadPoolBuilder};
+use std::num::NonZeroUsize;
 use std::process;
 use std::sync::{Mutex, PoisonError};
+use std::thread;
 
 /// Calls a function without the GIL, in a pool of so many threads; 0 for one per core.
 ///
@@ -20,6 +22,14 @@ pub fn in_pool<T: Send>(
     }
     let pool = pool(threads)?;
     Ok(py.detach(|| pool.install(work)))
+}
+
+/// How many threads [`in_pool`] works with.
+pub fn workers(threads: usize) -> usize {
+    match threads {
+        0 => thread::available_parallelism().map_or(1, NonZeroUsize::get),
+        _ => threads,
+    }
 }
 
 /// The pool of this process, with one thread per core.
