@@ -27,7 +27,7 @@ use pyo3::prelude::*;
 use pyo3::types::PyBytes;
 use std::path::PathBuf;
 
-/// Rays of a camera after which signals are noticed: a fraction of a second.
+/// Rays of a camera after which signals are noticed, where rows are short: a fraction of a second.
 const RAYS_PER_BAND: u64 = 1 << 19;
 
 /// Rows of a band at least, so that threads end at about the same time.

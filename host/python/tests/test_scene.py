@@ -542,14 +542,15 @@ def test_results_that_do_not_fit_in_memory_are_an_error(call, spare):
     assert run.returncode == 7, run.stderr
 
 
-def test_render_is_interrupted(cube):
+def test_render_is_interrupted():
+    # The whole picture would take far longer than the test allows.
     code = (
-        "import numpy as np, gridel, os, signal, threading, time\n"
+        "import numpy as np, gridel, os, signal, threading\n"
         "scene = gridel.Scene.from_arrays(np.eye(3), [[0, 1, 2]])\n"
         "threading.Timer(0.3, os.kill, (os.getpid(), signal.SIGINT)).start()\n"
-        "scene.render(4000, 4000, samples=4096)\n"
+        "scene.render(1024, 65535, samples=64)\n"
     )
-    run = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, timeout=60)
+    run = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, timeout=120)
     assert "KeyboardInterrupt" in run.stderr
 
 
