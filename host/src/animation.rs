@@ -105,8 +105,8 @@ impl Animation {
     }
 
     fn write_gif(&self, out: &mut dyn Write, next: NextPicture<'_>) -> io::Result<()> {
-        /// Pixels from which the colors of a frame are chosen; of larger frames, each second or third, up to each 10th.
-        const LOOKED_AT: usize = 1 << 18;
+        /// The colors of a frame are chosen from so many pixels at least, or from all; and from one in ten at least.
+        const LOOKED_AT: usize = 1 << 16;
         let plain = |error: gif::EncodingError| match error {
             gif::EncodingError::Io(error) => error,
             error => io::Error::other(error),

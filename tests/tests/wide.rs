@@ -26,6 +26,11 @@ fn some_scenes() -> Vec<(String, Scene)> {
     let mut all = vec![
         (String::from("soup of 60"), scenes::soup(11, 60, 0.4)),
         (String::from("soup of 900"), scenes::soup(12, 900, 0.1)),
+        // More than one search of its compiler looks at.
+        (
+            String::from("soup of 3000 that overlap"),
+            scenes::soup(15, 3000, 1.0),
+        ),
     ];
     all.extend(scenes::fixtures());
     let real = ["meshes/cow.obj", "meshes/soup.stl", "spd/balls_s2.nff"];

@@ -277,6 +277,9 @@ pub unsafe fn workspace<'m, N: Number>(
     Ok(with_stack!(stack, with_work))
 }
 
+// Every scene fits the largest of either list.
+const _: () = assert!(gridel_core::format::limits::MAX_STACK_DEPTH <= 160);
+const _: () = assert!(gridel_core::Effects::MAX_WORK_DEPTH <= 65);
 const _: () = assert!(size_of::<Stack<160>>() <= crate::GRIDEL_STACK_BYTES_MAX);
 const _: () = assert!(size_of::<Workspace<f32, 160, 65>>() <= crate::GRIDEL_WORKSPACE_BYTES_MAX);
 const _: () = assert!(

@@ -110,6 +110,14 @@ impl Structure {
 
     /// All structures, in the order in which they are chosen where nobody names one. Lists of candidates come early,
     /// because a blob holds them only where they were asked for.
+    ///
+    /// ```
+    /// use gridel_core::Structure;
+    ///
+    /// let mut all = Structure::BEST_FIRST;
+    /// all.sort();
+    /// assert_eq!(all, Structure::ALL);
+    /// ```
     pub const BEST_FIRST: [Self; Self::ALL.len()] = [
         Self::Wide,
         Self::Apex,

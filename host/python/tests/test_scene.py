@@ -486,15 +486,21 @@ def test_grazing_rays_get_the_t_of_the_given_vertices(format, slope):
 
 
 def test_grazing_hits_stay_at_their_triangle():
-    # A thin triangle that the lattice tilts, as a far vertex makes its steps coarse.
+    # A far vertex makes the lattice coarse: it moves the small triangle by more than the rays descend above it.
     corners = np.array([[0, 0, 0.3e-3], [1, 0, 0.1e-3], [0, 1, 0.2e-3], [4000, 4000, 4000]])
     scene = gridel.Scene.from_arrays(corners, [[0, 1, 2], [0, 3, 1]], lattice_bits=16)
     direction = np.array([1.0, 0.3, -1e-4])
-    rays = np.array([[*(np.array([0.3, 0.3, z]) - 10 * direction), *direction] for z in np.linspace(-0.1, 0.1, 200)])
+    heights = np.linspace(-0.2, 0.2, 40001)
+    rays = np.array([[*(np.array([0.3, 0.3, z]) - 10 * direction), *direction] for z in heights])
     hits = scene.cast(rays)
     met = hits.primitive == 0
+    assert met.sum() > 5
     places = rays[met, :3] + hits.t[met, None] * rays[met, 3:]
-    assert (np.abs(places[:, :2] - 0.5) < 1.5).all()
+    assert (np.abs(places[:, :2] - 0.5) < 0.6).all()
+    # Where the rays meet the plane of the given triangle is beside it.
+    normal = np.cross(corners[1] - corners[0], corners[2] - corners[0])
+    t = (corners[0] - rays[met, :3]) @ normal / (direction @ normal)
+    assert (np.abs(t - hits.t[met]) > 1).all()
 
 
 @pytest.mark.parametrize("power", [-900, -600, -300, 300, 600, 900])
@@ -563,3 +569,11 @@ def test_from_blob_takes_bytes_alone():
     for wrong in ("scene.gridel", 10**9):
         with pytest.raises(TypeError, match="bytes-like"):
             gridel.Scene.from_blob(wrong)
+
+
+def test_meshes_lie_at_up_to_5e8_times_their_size_from_the_origin():
+    scene = gridel.Scene.from_arrays(CUBE + 5e8, FACES)
+    near = 5e8 + np.array([0.5, 0.5, -2.0])
+    assert scene.cast([[*near, 0, 0, 1.0]]).t[0] == 2
+    with pytest.raises(ValueError, match="nearer to the origin"):
+        gridel.Scene.from_arrays(CUBE + 1e9, FACES)

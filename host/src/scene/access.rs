@@ -33,8 +33,8 @@ pub(super) enum FileError<E> {
 }
 
 impl<E> FileError<E> {
-    /// The words, where both are errors.
-    pub(super) fn words(self) -> E {
+    /// The error, for callers to whom both are one.
+    pub(super) fn into_error(self) -> E {
         match self {
             Self::Unreadable(error) | Self::Unusable(error) => error,
         }

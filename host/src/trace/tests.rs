@@ -20,6 +20,43 @@ fn queries() -> impl Iterator<Item = Query> {
 }
 
 #[test]
+fn structures_that_the_blob_does_not_hold_are_an_error() {
+    let compiled = ball();
+    let scene = compiled.blob.scene().unwrap();
+    let ray = SceneRay {
+        origin: DVec3::new(0.0, 0.0, 5.0),
+        tmin: 0.0,
+        direction: DVec3::NEG_Z,
+        tmax: f64::INFINITY,
+    };
+    for query in queries() {
+        for structure in Structure::ALL {
+            for any in [false, true] {
+                let query = Query {
+                    structure,
+                    any,
+                    ..query
+                };
+                let mut hits = [SceneHit::MISS];
+                let traced = trace(&scene, &[ray], query, &mut hits);
+                let mut counted = [SceneHit::MISS];
+                let counters = &mut Counters::default();
+                let with_counters = trace_counted(&scene, &[ray], query, &mut counted, counters);
+                let missing = Err(MissingStructure(structure));
+                if scene.holds(structure) {
+                    assert!(traced.is_ok() && with_counters.is_ok(), "{query:?}");
+                    assert_eq!(hits, counted);
+                    assert!(hits[0] != SceneHit::MISS, "{query:?}");
+                } else {
+                    assert_eq!((traced, with_counters), (missing, missing), "{query:?}");
+                    assert_eq!((hits, counted), ([SceneHit::MISS; 1], [SceneHit::MISS; 1]));
+                }
+            }
+        }
+    }
+}
+
+#[test]
 fn t_is_never_outside_of_the_interval() {
     let compiled = ball();
     let scene = compiled.blob.scene().unwrap();

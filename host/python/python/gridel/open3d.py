@@ -246,8 +246,8 @@ class RaycastingScene:
     def compute_occupancy(self, query_points: Any, nthreads: int = 0, nsamples: int = 1) -> Any:
         """Returns 1 for points (..., 3) that all meshes together enclose an odd number of times, else 0: (...) float32.
 
-        A point in two meshes is outside, as in Open3D. One ray is enough; ``nsamples`` is taken for its place among the
-        arguments. Points with nan or infinity are outside.
+        A point in two meshes is outside, as in Open3D. One ray is enough: ``nsamples``, an odd number, changes nothing.
+        Points with nan or infinity are outside.
         """
         if nsamples < 1 or nsamples % 2 == 0:
             raise ValueError(f"nsamples is {nsamples}; it must be odd and at least 1")

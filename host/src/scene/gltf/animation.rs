@@ -296,7 +296,7 @@ impl Motion {
 
     /// Returns position and rotation of a node with its own keys, if no node above it moves.
     fn own_curves(&self, node: usize) -> Option<[Curve; 2]> {
-        if self.chain(node).skip(1).any(|it| self.moves_itself(it)) {
+        if !self.moves_alone(node) {
             return None;
         }
         let moves = self.nodes.get(&node)?;
@@ -327,26 +327,31 @@ impl Motion {
         Some([eye, rotation])
     }
 
-    /// Returns the direction in which a node shines, with its own keys; none if it always shines in one. `None` if it has
-    /// to be sampled: where a node above it moves, it is scaled, or it turns smoothly, for which directions are too few.
-    fn own_direction(&self, node: usize) -> Option<Option<Curve>> {
-        if self.chain(node).skip(1).any(|it| self.moves_itself(it)) {
+    /// Whether no node above a node moves.
+    fn moves_alone(&self, node: usize) -> bool {
+        !self.chain(node).skip(1).any(|it| self.moves_itself(it))
+    }
+
+    /// Returns whether a node that moves keeps its direction: it is neither turned nor scaled.
+    fn keeps_direction(&self, node: usize) -> bool {
+        let is_kept = |moves: &NodeCurves| moves.rotation.is_none() && moves.scale.is_none();
+        self.moves_alone(node) && self.nodes.get(&node).is_some_and(is_kept)
+    }
+
+    /// Returns the direction in which a node shines with its own keys, if it turns in steps and nothing else changes it.
+    /// (A smooth turn is not the straight way between two directions, so that it is sampled.)
+    fn own_direction(&self, node: usize) -> Option<Curve> {
+        let moves = self.nodes.get(&node).filter(|it| it.scale.is_none())?;
+        let rotation = moves.rotation.as_ref()?;
+        if rotation.interpolation != Interpolation::Step || !self.moves_alone(node) {
             return None;
         }
-        let moves = self.nodes.get(&node)?;
-        match (&moves.rotation, &moves.scale) {
-            (None, None) => Some(None),
-            (Some(curve), None) if curve.interpolation == Interpolation::Step => {
-                let above = self.above(node);
-                let aimed = curve.map(|value| {
-                    let forward = DQuat::from_array(value) * -DVec3::Z;
-                    let [x, y, z] = above.transform_vector3(forward).to_array();
-                    [x, y, z, 0.0]
-                });
-                Some(Some(aimed))
-            }
-            _ => None,
-        }
+        let above = self.above(node);
+        Some(rotation.map(|value| {
+            let forward = DQuat::from_array(value) * -DVec3::Z;
+            let [x, y, z] = above.transform_vector3(forward).to_array();
+            [x, y, z, 0.0]
+        }))
     }
 
     /// The track of a light at a node, if it moves.
@@ -357,15 +362,11 @@ impl Motion {
         directional: bool,
         place: &SourceSpan,
     ) -> Result<Option<Track>, Fault> {
-        if !self.moves(node) {
+        if !self.moves(node) || directional && self.keeps_direction(node) {
             return Ok(None);
         }
         let own = match directional {
-            true => match self.own_direction(node) {
-                Some(None) => return Ok(None),
-                Some(turning) => turning,
-                None => None,
-            },
+            true => self.own_direction(node),
             false => self.own_curves(node).map(|[eye, _]| eye),
         };
         let curve = match own {

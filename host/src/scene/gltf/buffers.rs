@@ -46,7 +46,7 @@ impl<'a> Buffers<'a> {
                         None => {
                             let bytes: Rc<[u8]> =
                                 fetch(path, &format!("buffer {}", buffer.index()), uri, access)
-                                    .map_err(FileError::words)?
+                                    .map_err(FileError::into_error)?
                                     .into();
                             files.insert(uri.to_owned(), Rc::clone(&bytes));
                             bytes

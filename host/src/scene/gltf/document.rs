@@ -45,8 +45,8 @@ fn parse(
     // Compiled once, in its own crate: the generic function would be compiled again here.
     Root::from_slice(container.text).or_else(|error| {
         let value = gltf::json::deserialize::from_slice::<Value>(container.text).ok();
-        let aimed = value.clone().and_then(without_aimless_channels);
-        if let Some(root) = aimed {
+        let repaired = value.clone().and_then(without_untargeted_channels);
+        if let Some(root) = repaired {
             let sentence = "channels of animations without a node are ignored";
             warnings.add_times(SourceSpan::of(path), 1, sentence);
             return Ok(root);
@@ -73,16 +73,17 @@ fn parse(
 
 /// Takes out the channels of animations that name no node, which are valid: extensions say what these move. Returns
 /// `None` if there are none, or something else is broken.
-fn without_aimless_channels(mut document: Value) -> Option<Root> {
+fn without_untargeted_channels(mut document: Value) -> Option<Root> {
     let mut found = false;
     for animation in document.get_mut("animations")?.as_array_mut()? {
         let Some(channels) = animation.get_mut("channels").and_then(Value::as_array_mut) else {
             continue;
         };
         channels.retain(|channel| {
-            let is_aimless = channel["target"].is_object() && channel["target"]["node"].is_null();
-            found |= is_aimless;
-            !is_aimless
+            let is_untargeted =
+                channel["target"].is_object() && channel["target"]["node"].is_null();
+            found |= is_untargeted;
+            !is_untargeted
         });
     }
     // As text, for the function of `parse`.

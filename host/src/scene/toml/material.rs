@@ -290,7 +290,7 @@ fn texture(
 fn image(file: Value<'_>, images: &mut Images<'_>) -> Result<Arc<Image>, SceneError> {
     let name = file.filled()?;
     images.file(&file.source.path, name).map_err(|error| {
-        let [cause, remedy] = error.words();
+        let [cause, remedy] = error.into_error();
         file.error(format!("the texture {cause}"), remedy)
     })
 }

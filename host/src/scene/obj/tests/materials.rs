@@ -104,7 +104,9 @@ fn textured(faces: &str, material: &str) -> Result<Imported, SceneError> {
     let pixels = [[255, 0, 0, 255], [0, 0, 255, 255]];
     let image = crate::scene::image::tests::png_of(2, 1, &pixels);
     std::fs::write(folder.path().join("two colors.png"), image).unwrap();
-    std::fs::write(folder.path().join("broken.png"), "PNG").unwrap();
+    for broken in ["broken.png", "it cannot be read.png"] {
+        std::fs::write(folder.path().join(broken), "PNG").unwrap();
+    }
     load(&path)
 }
 
@@ -193,6 +195,7 @@ fn textures_that_cannot_be_read_are_named() {
     );
     for (statement, expected) in [
         ("map_Kd broken.png", "is neither PNG nor JPEG"),
+        ("map_Kd it cannot be read.png", "is neither PNG nor JPEG"),
         ("map_Kd ../two.png", "outside of the scene's folder"),
         ("map_Kd", "names no file"),
     ] {
