@@ -2,9 +2,9 @@
 //!
 //! The rule is that of [`Cull`](crate::accel::cull::Cull), with wider margins. The lateral margin is half a unit
 //! instead of a quarter. The margin along the ray is four units, where the integers' three steps and roundings come to
-//! less than three. Rounding moves `p / s - o / s` by less than 2^-5 unit laterally (coordinates are below 2^17), so a
-//! box's interval here holds its interval there. Hits are clamped to the latter, so the answers are the same. The
-//! margins lie in the ray's constants, so they cost nothing per box. No number is NaN: an inverse slope is at most 4096
+//! less than three. Rounding moves `p / s - o / s` by less than 2^-5 unit laterally (coordinates are below 2^17), and
+//! less where product and sum are rounded together, so a box's interval here holds its interval there. Hits are clamped
+//! to the latter, so the answers are the same. The margins lie in the ray's constants, so they cost nothing per box. No number is NaN: an inverse slope is at most 4096
 //! in magnitude, and all products are finite.
 
 use crate::accel::cull_axis::CullArithmetic;

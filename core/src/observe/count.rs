@@ -33,6 +33,9 @@ use core::any::Any;
 pub trait Observer {
     /// True if [`event`](Self::event) is called.
     const ENABLED: bool = false;
+    /// False if no count is used. Queries then take the fastest steps of the processor. Their answers do not depend on
+    /// that, but the numbers of steps do.
+    const COUNTS: bool = true;
 
     /// Planes of boxes were tested.
     #[inline(always)]
@@ -65,7 +68,9 @@ pub trait Observer {
 #[derive(Clone, Copy, Debug, Default)]
 pub struct NoCount;
 
-impl Observer for NoCount {}
+impl Observer for NoCount {
+    const COUNTS: bool = false;
+}
 
 /// Counts everything.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]

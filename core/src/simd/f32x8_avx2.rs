@@ -63,6 +63,11 @@ impl F32x8 for gridel_x86::F32x8 {
     }
 
     #[inline(always)]
+    fn mul_add(self, factor: Self, summand: Self) -> Self {
+        self.mul_add(factor, summand)
+    }
+
+    #[inline(always)]
     fn abs(self) -> Self {
         self.abs()
     }

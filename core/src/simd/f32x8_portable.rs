@@ -93,6 +93,11 @@ impl F32x8 for Vec4x2 {
     }
 
     #[inline(always)]
+    fn mul_add(self, factor: Self, summand: Self) -> Self {
+        self * factor + summand
+    }
+
+    #[inline(always)]
     fn abs(self) -> Self {
         Self([self.0[0].abs(), self.0[1].abs()])
     }

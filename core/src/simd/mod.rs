@@ -1,7 +1,7 @@
 //! Eight numbers of single precision at once, with the instructions that the processor has.
 //!
-//! Additions, subtractions and products are those of IEEE 754 in every lane, never fused. So a kernel gives the same
-//! bits here as one number at a time, and the same bits with any instructions.
+//! Additions, subtractions and products are those of IEEE 754 in every lane. Only [`F32x8::mul_add`] may be fused. So a
+//! kernel without it gives the same bits here as one number at a time, and the same bits with any instructions.
 //!
 //! A kernel is generic over [`Simd`], whose values prove that the processor has the instructions. [`Simd::call`]
 //! compiles it for them: every function that the kernel calls must be inlined into it.
@@ -100,6 +100,8 @@ pub trait F32x8: Copy + Add<Output = Self> + Sub<Output = Self> + Mul<Output = S
     fn min(self, other: Self) -> Self;
     /// The larger in every lane; which zero and which NaN is not specified.
     fn max(self, other: Self) -> Self;
+    /// `self * factor + summand`, rounded once or twice, whichever is faster.
+    fn mul_add(self, factor: Self, summand: Self) -> Self;
     /// Magnitudes.
     fn abs(self) -> Self;
     /// Every lane's neighbor above; the last stays.

@@ -36,6 +36,12 @@ fn check_lanes<S: Simd>(simd: S) {
         check(a - b, |a, b| a - b);
         check(a * b, |a, b| a * b);
         check(a.abs(), |a, _| a.abs());
+        let sums = a.mul_add(b, a).to_array().into_iter().enumerate();
+        for (lane, found) in sums {
+            let (a, b) = (NUMBERS[lane], others[lane]);
+            let allowed = [a * b + a, a.mul_add(b, a)].map(f32::to_bits);
+            assert!(allowed.contains(&found.to_bits()), "lane {lane}: {found}");
+        }
         let bits = |of: fn(f32, f32) -> bool| {
             let lanes = NUMBERS.iter().zip(others).enumerate();
             lanes.fold(0, |bits, (lane, (&a, b))| {

@@ -11,8 +11,8 @@ pub struct F32x8(__m256);
 /// One call of intrinsics.
 macro_rules! avx2 {
     ($call:expr) => {
-        // SAFETY: an `Avx2` or an `F32x8` is available, either of which proves that the processor has AVX2. Loads read
-        // an array of the size that is loaded.
+        // SAFETY: an `Avx2` or an `F32x8` is available, either of which proves that the processor has AVX2 and FMA. Loads
+        // read an array of the size that is loaded.
         unsafe { $call }
     };
 }
@@ -87,6 +87,12 @@ impl F32x8 {
     #[inline(always)]
     pub fn max(self, other: Self) -> Self {
         Self(avx2!(_mm256_max_ps(self.0, other.0)))
+    }
+
+    /// `self * factor + summand`, rounded once.
+    #[inline(always)]
+    pub fn mul_add(self, factor: Self, summand: Self) -> Self {
+        Self(avx2!(_mm256_fmadd_ps(self.0, factor.0, summand.0)))
     }
 
     /// Magnitudes.

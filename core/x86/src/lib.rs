@@ -8,7 +8,7 @@
 //! The operations compile to single instructions only inside of [`Avx2::call`], whose function must be
 //! inlined into it. Anywhere else they are correct, but each is a call.
 //!
-//! No operation is fused, so every lane holds the bits that scalar code gives.
+//! No operation but [`F32x8::mul_add`] is fused, so every lane holds the bits that scalar code gives.
 #![cfg(target_arch = "x86_64")]
 
 mod f32x8;
@@ -30,7 +30,7 @@ pub fn prefetch_to_write<T>(value: &T) {
     unsafe { _mm_prefetch::<_MM_HINT_ET0>((&raw const *value).cast()) }
 }
 
-/// Proof that this processor has AVX2, BMI1, BMI2, LZCNT and POPCNT.
+/// Proof that this processor has AVX2, FMA, BMI1, BMI2, LZCNT and POPCNT.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Avx2(());
 
@@ -38,6 +38,7 @@ impl Avx2 {
     /// Returns the proof, on processors that have the instructions. The processor is queried only once.
     pub fn detect() -> Option<Self> {
         let has_all = is_x86_feature_detected!("avx2")
+            && is_x86_feature_detected!("fma")
             && is_x86_feature_detected!("bmi1")
             && is_x86_feature_detected!("bmi2")
             && is_x86_feature_detected!("lzcnt")
@@ -53,7 +54,7 @@ impl Avx2 {
         function: impl FnOnce(Self, A, B, C, D, E) -> R,
         (a, b, c, d, e): (A, B, C, D, E),
     ) -> R {
-        #[target_feature(enable = "avx2,bmi1,bmi2,lzcnt,popcnt")]
+        #[target_feature(enable = "avx2,fma,bmi1,bmi2,lzcnt,popcnt")]
         #[inline(never)]
         #[expect(clippy::too_many_arguments, reason = "its arguments stay in registers")]
         fn with_avx2<A, B, C, D, E, R>(

@@ -23,7 +23,15 @@ pub trait WideCulling<N: CullArithmetic>: Culling<N> {
     fn span(&self, bounds: &UnitBox, limit: i32) -> [f64; 2];
     /// Returns the children that the ray can hit up to a limit, one bit each, and the places where it enters them.
     /// These compare with a limit.
-    fn children<S: Simd>(&self, simd: S, node: &WideNode, limit: i32) -> (u32, [i32; LANES]);
+    ///
+    /// If `fused`, places are rounded once or twice, whichever is faster on the processor.
+    fn children<S: Simd>(
+        &self,
+        simd: S,
+        node: &WideNode,
+        limit: i32,
+        fused: bool,
+    ) -> (u32, [i32; LANES]);
 }
 
 /// The culling form of a ray in eight lanes of `f32`: t in units.
@@ -40,10 +48,11 @@ pub struct WideLanes {
 }
 
 impl WideLanes {
-    /// The row of an axis' near planes.
+    /// The rows of the axes' near planes.
     #[inline(always)]
-    fn near_row(&self, axis: usize) -> usize {
-        (self.descends >> axis & 1) as usize
+    fn near_rows(&self) -> [usize; 3] {
+        let descends = self.descends as usize;
+        [descends & 1, descends >> 1 & 1, descends >> 2 & 1]
     }
 }
 
@@ -83,7 +92,7 @@ impl<N: CullArithmetic> WideCulling<N> for WideLanes {
     fn span(&self, bounds: &UnitBox, limit: i32) -> [f64; 2] {
         let (mut enters, mut leaves) = (f64::from(self.near.w), Single::units(limit));
         for (axis, sides) in bounds.0.iter().enumerate() {
-            let row = self.near_row(axis);
+            let row = self.near_rows()[axis];
             let t = |plane: i16, rest: f32| f64::from(f32::from(plane) * self.inverse[axis] + rest);
             enters = enters.max(t(sides[row], self.near[axis]));
             leaves = leaves.min(t(sides[row ^ 1], self.far[axis]));
@@ -92,15 +101,21 @@ impl<N: CullArithmetic> WideCulling<N> for WideLanes {
     }
 
     #[inline(always)]
-    fn children<S: Simd>(&self, simd: S, node: &WideNode, limit: i32) -> (u32, [i32; LANES]) {
+    fn children<S: Simd>(
+        &self,
+        simd: S,
+        node: &WideNode,
+        limit: i32,
+        fused: bool,
+    ) -> (u32, [i32; LANES]) {
         let Self {
             inverse, near, far, ..
         } = self;
         // Each is a function, because a function is certainly inlined and a closure is not.
-        let [x, y, z] = &node.planes;
-        let (near_x, far_x) = between(simd, x, self.near_row(0), [inverse.x, near.x, far.x]);
-        let (near_y, far_y) = between(simd, y, self.near_row(1), [inverse.y, near.y, far.y]);
-        let (near_z, far_z) = between(simd, z, self.near_row(2), [inverse.z, near.z, far.z]);
+        let ([x, y, z], [row_x, row_y, row_z]) = (&node.planes, self.near_rows());
+        let (near_x, far_x) = between(simd, x, row_x, [inverse.x, near.x, far.x], fused);
+        let (near_y, far_y) = between(simd, y, row_y, [inverse.y, near.y, far.y], fused);
+        let (near_z, far_z) = between(simd, z, row_z, [inverse.z, near.z, far.z], fused);
         let start = near.w;
         let limit = f32::from_bits(limit as u32);
         let near = near_x.max(near_y).max(near_z.max(simd.splat(start)));
@@ -121,12 +136,19 @@ fn between<S: Simd>(
     rows: &[[i16; LANES]; 2],
     near: usize,
     [inverse, to_near, to_far]: [f32; 3],
+    fused: bool,
 ) -> (S::F32x8, S::F32x8) {
+    let (enters, leaves) = (simd.of_i16(&rows[near]), simd.of_i16(&rows[near ^ 1]));
     let inverse = simd.splat(inverse);
-    (
-        simd.of_i16(&rows[near]) * inverse + simd.splat(to_near),
-        simd.of_i16(&rows[near ^ 1]) * inverse + simd.splat(to_far),
-    )
+    let (to_near, to_far) = (simd.splat(to_near), simd.splat(to_far));
+    if fused {
+        (
+            enters.mul_add(inverse, to_near),
+            leaves.mul_add(inverse, to_far),
+        )
+    } else {
+        (enters * inverse + to_near, leaves * inverse + to_far)
+    }
 }
 
 impl<N: CullArithmetic> WideCulling<N> for Cull {
@@ -140,7 +162,7 @@ impl<N: CullArithmetic> WideCulling<N> for Cull {
     }
 
     #[inline(always)]
-    fn children<S: Simd>(&self, _: S, node: &WideNode, limit: i32) -> (u32, [i32; LANES]) {
+    fn children<S: Simd>(&self, _: S, node: &WideNode, limit: i32, _: bool) -> (u32, [i32; LANES]) {
         let mut met = 0;
         let mut near = [0; LANES];
         for (lane, near) in near.iter_mut().enumerate() {

@@ -285,7 +285,7 @@ fn open<'n, S: Simd, N: Number, C: Observer>(
         count.event(Event::Opened(Child::node(number).id()));
         observe_tested::<N, C>(node, cull, limit, count);
     }
-    let (met, near) = cull.children(simd, node, limit);
+    let (met, near) = cull.children(simd, node, limit, !C::COUNTS);
     (met != 0).then_some((node, met, near))
 }
 
