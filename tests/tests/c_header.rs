@@ -55,7 +55,8 @@ fn header_declares_the_functions_of_the_library() {
         let (list, _) = rest.split_once(')').expect("an end");
         let name = before.rsplit([' ', '*']).next().expect("a name");
         let names = parameters(list, |one| one.rsplit([' ', '*']).next().map(String::from));
-        declared.insert(String::from(name), names);
+        let before = declared.insert(String::from(name), names);
+        assert_eq!(before, None, "{name} is declared twice");
     }
     assert_eq!(defined, declared);
     assert!(defined.len() > 15);

@@ -189,7 +189,7 @@ fn hit_along_an_axis<N: Number>() {
             assert_eq!(scene.distance(&ray, &hit), 2 * unit as u64);
             let mut met = place;
             met[axis] = -sign * unit;
-            assert_eq!(scene.hit_position(&hit).0, met);
+            assert_eq!(scene.hit_position(&ray, &hit).0, met);
         }
     }
 }
@@ -215,4 +215,50 @@ fn rejected<N: Number>() {
     assert_eq!(ray([0, 1, 0], [2, 1]), Some(RayError::Interval));
     assert_eq!(ray([0, 1, 0], [u64::MAX, u64::MAX]), None);
     assert_eq!(ray([i32::MIN; 3], [0, u64::MAX - 1]), None);
+}
+
+/// Planes go on beyond the places that a length in units holds.
+#[test]
+fn places_on_a_plane_are_where_the_ray_meets_it() {
+    every_format!(places_on_a_plane());
+}
+
+fn places_on_a_plane<N: Number>() {
+    let ball = Sphere {
+        center: DVec3::ZERO,
+        radius: 1.0,
+    };
+    let ground = gridel_host::shape::Plane {
+        point: DVec3::NEG_Y,
+        normal: DVec3::Y,
+    };
+    let shapes = [Shape::Sphere(ball), Shape::Plane(ground)];
+    let compiled = compile(&scenes::of(shapes), &Options::default()).expect("a ball on a plane");
+    let scene = compiled.blob.scene().expect("the compiler's own blob");
+    let unit = f64::powi(2.0, -scene.coordinate_exponent());
+    let height = 2.0;
+    for run in [1, 4, 5, 6, 7, 9, 10, 15, 40, -5, -10] {
+        // 3 down for each `run` along x.
+        let ray = scene
+            .ray_within::<N>(
+                Position([0, (height * unit) as i32, 0]),
+                [run, -1, 0],
+                [0, u64::MAX],
+            )
+            .expect("a ray");
+        let mut stack = Stack::<0>::new();
+        let hit = closest_hit::<N, List, _>(&scene, &ray, stack.as_view(), &mut NoCount)
+            .expect("the plane");
+        let place = scene
+            .hit_position(&ray, &hit)
+            .0
+            .map(|x| f64::from(x) / unit);
+        let farthest = 2_147_483_647.0 / unit;
+        let x = (3.0 * f64::from(run)).clamp(-farthest - 1.0 / unit, farthest);
+        let near = |found: f64, expected: f64| (found - expected).abs() < 1e-4 * (1.0 + x.abs());
+        assert!(
+            near(place[0], x) && near(place[1], -1.0) && near(place[2], 0.0),
+            "{run}: {place:?}"
+        );
+    }
 }

@@ -44,6 +44,35 @@ fn right_scenes_are_right() {
     }
 }
 
+/// Of some structures a blob holds primitives in clusters alone.
+#[test]
+fn scenes_of_every_structure_alone_are_right() {
+    for structure in Structure::ALL {
+        let all = scenes::of(examples().into_iter().map(|(_, shape)| shape));
+        for scene in [scenes::soup(23, 40, 0.4), all] {
+            let options = gridel_host::compile::Options {
+                structures: vec![structure],
+                ..Default::default()
+            };
+            let name = structure.name();
+            let compiled = gridel_host::compile::compile(&scene, &options).expect(name);
+            let view = compiled.blob.scene().expect("a scene");
+            let primitives = Kind::ALL.map(|kind| (kind, view.count(kind)));
+            for (kind, slot) in primitives
+                .into_iter()
+                .flat_map(|(kind, n)| (0..n).map(move |it| (kind, it)))
+            {
+                assert!(
+                    view.geometry(kind, slot).is_some(),
+                    "{name}: {kind:?} {slot}"
+                );
+            }
+            let report = verify(&view, 300, &|| ());
+            assert_eq!(report.broken(), 0, "{name}: {report:#?}");
+        }
+    }
+}
+
 /// A ray through the hole of a torus meets it again, and one towards a plane meets it far from the scene's box.
 #[test]
 fn every_shape_keeps_its_promises() {

@@ -54,6 +54,14 @@ static int print_picture(const gridel_picture *picture, const gridel_camera *cam
   return 1;
 }
 
+/* A length in scene units as steps, limited to the range of coordinates. A step is 2^exponent scene units. */
+static int32_t steps(int32_t units, int32_t exponent) {
+  int64_t length = units;
+  for (; exponent < 0 && length <= INT32_MAX; exponent++) length *= 2;
+  for (; exponent > 0; exponent--) length /= 2;
+  return length > INT32_MAX ? INT32_MAX : (int32_t)length;
+}
+
 int main(void) {
   const size_t blob_bytes = (size_t)(blob_end - blob_start);
   gridel_buffer for_rays = {stack, sizeof stack};
@@ -67,10 +75,9 @@ int main(void) {
   status = gridel_info_of(&scene, &info);
   if (status != GRIDEL_STATUS_OK) return failed("gridel_info_of", status);
 
-  /* A range finder above the scene turns from left to right. A scene unit is 2^-exponent steps. */
+  /* A range finder above the scene turns from left to right. */
   for (int32_t turn = 0; turn < RAYS; turn++) {
-    const int32_t unit = (int32_t)1 << -info.coordinate_exponent;
-    const gridel_ray ray = {{0, 4 * unit, 0}, {turn - RAYS / 2, -RAYS / 2, 1}, 0, UINT64_MAX};
+    const gridel_ray ray = {{0, steps(4, info.coordinate_exponent), 0}, {turn - RAYS / 2, -RAYS / 2, 1}, 0, UINT64_MAX};
     gridel_hit hit;
     uint32_t any;
     status = CAST(&scene, &ray, for_rays, &hit);
@@ -91,7 +98,7 @@ int main(void) {
   if (!print_picture(&picture, &camera)) return 1;
 
   /* An eighth of a turn around the scene's middle, raised by a sixteenth; the height is seen under an eighth. */
-  circle.distance = (uint32_t)8 << -info.coordinate_exponent;
+  circle.distance = (uint32_t)steps(8, info.coordinate_exponent);
   status = gridel_orbit(&scene, &circle, &camera);
   if (status != GRIDEL_STATUS_OK) return failed("gridel_orbit", status);
   if (!print_picture(&picture, &camera)) return 1;

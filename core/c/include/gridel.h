@@ -9,8 +9,9 @@
 #include <stdint.h>
 
 /* Bytes of the stack that a ray needs in a scene whose stack is so deep (see `gridel inspect` and
- * `gridel_info`), for memory that the compiler reserves. */
-#define GRIDEL_STACK_BYTES(depth) (sizeof(size_t) + 12 * (size_t)GRIDEL_STACK_ENTRIES(depth))
+ * `gridel_info`), for memory that the compiler reserves: a multiple of 8. */
+#define GRIDEL_STACK_BYTES(depth) \
+  ((sizeof(size_t) + 12 * (size_t)GRIDEL_STACK_ENTRIES(depth) + 7) / 8 * 8)
 #define GRIDEL_STACK_ENTRIES(depth) \
   ((depth) <= 8 ? 8 : (depth) <= 16 ? 16 : (depth) <= 24 ? 24 : (depth) <= 32 ? 32 \
    : (depth) <= 48 ? 48 : (depth) <= 96 ? 96 : 160)
@@ -67,11 +68,11 @@ enum gridel_status
   GRIDEL_STATUS_BLOB_MISSING_PART = 17,
   // The blob does not hold the structure that the library was built for.
   GRIDEL_STATUS_BLOB_MISSING_STRUCTURE = 18,
-  // The blob has parts, for which there is too little memory.
+  // The blob has parts, which `gridel_load` does not load.
   GRIDEL_STATUS_BLOB_PARTS = 19,
   // A record of the blob is invalid.
   GRIDEL_STATUS_BLOB_INVALID = 20,
-  // The ray's direction is zero, infinite or NaN.
+  // The ray's direction is zero, infinite or NaN, or so short or long that t is no number of the hit's type.
   GRIDEL_STATUS_RAY_DIRECTION = 30,
   // The ray's origin is infinite or NaN.
   GRIDEL_STATUS_RAY_ORIGIN = 31,
@@ -91,7 +92,7 @@ enum gridel_status
   GRIDEL_STATUS_PICTURE_RESOLUTION = 44,
   // A row or a rectangle leaves the picture.
   GRIDEL_STATUS_PICTURE_RECTANGLE = 45,
-  // The field of view is 0, or half a turn or more.
+  // The field of view is below 2^-31 turn, or half a turn or more.
   GRIDEL_STATUS_CAMERA_FIELD_OF_VIEW = 50,
   // Eye and target of a camera are the same place.
   GRIDEL_STATUS_CAMERA_DIRECTION = 51,
@@ -158,7 +159,7 @@ typedef struct gridel_look {
   int32_t target[3];
   // The direction that is upwards in the picture, of any length.
   int32_t up[3];
-  // The angle of the picture's height, in 2^-32 turn: above 0 and below half a turn.
+  // The angle of the picture's height, in 2^-32 turn: at least 2 and below half a turn.
   uint32_t field_of_view;
 } gridel_look;
 
@@ -173,7 +174,7 @@ typedef struct gridel_circle {
   uint32_t azimuth;
   // The angle by which it is raised, in 2^-32 turn; it can pass over the pole.
   uint32_t elevation;
-  // The angle of the picture's height, in 2^-32 turn: above 0 and below half a turn.
+  // The angle of the picture's height, in 2^-32 turn: at least 2 and below half a turn.
   uint32_t field_of_view;
   // The axis that points up: 2 for z, else y.
   uint32_t up_axis;
@@ -419,7 +420,7 @@ gridel_status gridel_any_f64(const struct gridel_scene *loaded,
 
 // Checks a blob and fills in a scene. The blob starts at a multiple of 16 bytes and stays where it is, unchanged, for as
 // long as the scene is used. Takes time linear in its length, and about 2 KiB of stack. A scene with parts is loaded by
-// `gridel_load_with_parts`.
+// `gridel_load_with_parts`. If it fails, the scene stays as it was.
 //
 // # Safety
 // Each pointer is null, or points to what its type states.
@@ -434,7 +435,8 @@ gridel_status gridel_load(struct gridel_scene *to,
 gridel_status gridel_parts_bytes(const void *blob, size_t blob_bytes, size_t *needed);
 
 // Checks a blob that has parts and fills in a scene. The memory of the parts starts at a multiple of 8 bytes. It has
-// as many bytes as `gridel_parts_bytes` states, and belongs to the scene for as long as that is used.
+// as many bytes as `gridel_parts_bytes` states, and belongs to the scene for as long as that is used. If it fails, the
+// scene is not loaded. Takes about 2.5 KiB of stack.
 //
 // # Safety
 // Each pointer is null, or points to what its type states.
@@ -444,8 +446,9 @@ gridel_status gridel_load_with_parts(struct gridel_scene *to,
                                      struct gridel_buffer parts);
 
 // Writes the reason why a blob is rejected as a sentence, with the section, the record and the expected value. The
-// sentence ends with 0 and is cut off where the buffer ends. Returns the code. Takes some KiB of code and of stack; a
-// program that does not call it does not hold it.
+// sentence ends with 0 and is cut off where the buffer ends. Returns the code. What places the parts of a blob is checked
+// by `gridel_load_with_parts` alone, and not here. Takes some KiB of code and of stack; a program that does not call it
+// does not hold it.
 //
 // # Safety
 // Each pointer is null, or points to what its type states.
@@ -566,228 +569,6 @@ gridel_status gridel_render_from_f64(const struct gridel_scene *loaded,
 
 // Returns the sentence for a code, which says what to do; it lives forever.
 const char *gridel_text(uint32_t status);
-
-// Returns the sentence for a code, which says what to do; it lives forever.
-const char *gridel_text(uint32_t status);
-
-// Checks a blob and fills in a scene. The blob starts at a multiple of 16 bytes and stays where it is, unchanged, for as
-// long as the scene is used. Takes time linear in its length, and about 2 KiB of stack. A scene with parts is loaded by
-// `gridel_load_with_parts`.
-//
-// # Safety
-// Each pointer is null, or points to what its type states.
-gridel_status gridel_load(struct gridel_scene *to,
-                          const void *blob,
-                          size_t blob_bytes);
-
-// Writes the bytes of memory that `gridel_load_with_parts` needs; 0 for a blob without parts.
-//
-// # Safety
-// Each pointer is null, or points to what its type states.
-gridel_status gridel_parts_bytes(const void *blob, size_t blob_bytes, size_t *needed);
-
-// Checks a blob that has parts and fills in a scene. The memory of the parts starts at a multiple of 8 bytes. It has
-// as many bytes as `gridel_parts_bytes` states, and belongs to the scene for as long as that is used.
-//
-// # Safety
-// Each pointer is null, or points to what its type states.
-gridel_status gridel_load_with_parts(struct gridel_scene *to,
-                                     const void *blob,
-                                     size_t blob_bytes,
-                                     struct gridel_buffer parts);
-
-// Writes the reason why a blob is rejected as a sentence, with the section, the record and the expected value. The
-// sentence ends with 0 and is cut off where the buffer ends. Returns the code. Takes some KiB of code and of stack; a
-// program that does not call it does not hold it.
-//
-// # Safety
-// Each pointer is null, or points to what its type states.
-gridel_status gridel_blob_error(const void *blob,
-                                size_t blob_bytes,
-                                char *text,
-                                size_t text_bytes);
-
-// Writes the properties and requirements of a scene.
-//
-// # Safety
-// Each pointer is null, or points to what its type states.
-gridel_status gridel_info_of(const struct gridel_scene *loaded, struct gridel_info *info);
-
-// Writes the bytes of the stack that rays need, which starts at a multiple of 8 bytes.
-//
-// # Safety
-// Each pointer is null, or points to what its type states.
-gridel_status gridel_stack_bytes(const struct gridel_scene *loaded, size_t *needed);
-
-// Finds the first hit of a ray, in integers. `stack` is memory of `gridel_stack_bytes` bytes.
-//
-// # Safety
-// Each pointer is null, or points to what its type states.
-gridel_status gridel_cast_fixed(const struct gridel_scene *loaded,
-                                const struct gridel_ray *ray,
-                                struct gridel_buffer stack,
-                                struct gridel_hit *hit);
-
-// Finds the first hit of a ray in steps, in single precision.
-//
-// # Safety
-// Each pointer is null, or points to what its type states.
-gridel_status gridel_cast_steps_f32(const struct gridel_scene *loaded,
-                                    const struct gridel_ray *ray,
-                                    struct gridel_buffer stack,
-                                    struct gridel_hit *hit);
-
-// Finds the first hit of a ray in scene units, in single precision.
-//
-// # Safety
-// Each pointer is null, or points to what its type states.
-gridel_status gridel_cast_f32(const struct gridel_scene *loaded,
-                              const struct gridel_ray_f32 *ray,
-                              struct gridel_buffer stack,
-                              struct gridel_hit_f32 *hit);
-
-// Finds the first hit of a ray in scene units, in double precision.
-//
-// # Safety
-// Each pointer is null, or points to what its type states.
-gridel_status gridel_cast_f64(const struct gridel_scene *loaded,
-                              const struct gridel_ray_f64 *ray,
-                              struct gridel_buffer stack,
-                              struct gridel_hit_f64 *hit);
-
-// Writes 1 if a ray hits anything, else 0: in integers. Takes less time than `gridel_cast_fixed`.
-//
-// # Safety
-// Each pointer is null, or points to what its type states.
-gridel_status gridel_any_fixed(const struct gridel_scene *loaded,
-                               const struct gridel_ray *ray,
-                               struct gridel_buffer stack,
-                               uint32_t *any);
-
-// Writes 1 if a ray in steps hits anything, else 0: in single precision.
-//
-// # Safety
-// Each pointer is null, or points to what its type states.
-gridel_status gridel_any_steps_f32(const struct gridel_scene *loaded,
-                                   const struct gridel_ray *ray,
-                                   struct gridel_buffer stack,
-                                   uint32_t *any);
-
-// Writes 1 if a ray in scene units hits anything, else 0: in single precision.
-//
-// # Safety
-// Each pointer is null, or points to what its type states.
-gridel_status gridel_any_f32(const struct gridel_scene *loaded,
-                             const struct gridel_ray_f32 *ray,
-                             struct gridel_buffer stack,
-                             uint32_t *any);
-
-// Writes 1 if a ray in scene units hits anything, else 0: in double precision.
-//
-// # Safety
-// Each pointer is null, or points to what its type states.
-gridel_status gridel_any_f64(const struct gridel_scene *loaded,
-                             const struct gridel_ray_f64 *ray,
-                             struct gridel_buffer stack,
-                             uint32_t *any);
-
-// Writes the settings of the scene file, without dithering, in RGB888.
-//
-// # Safety
-// Each pointer is null, or points to what its type states.
-gridel_status gridel_picture_of(const struct gridel_scene *loaded, struct gridel_picture *picture);
-
-// Writes the bytes of the workspace that a picture needs in `fixed`, which starts at a multiple of 8 bytes.
-//
-// # Safety
-// Each pointer is null, or points to what its type states.
-gridel_status gridel_workspace_bytes_fixed(const struct gridel_scene *loaded,
-                                           const struct gridel_picture *picture,
-                                           size_t *needed);
-
-// Writes the bytes of the workspace that a picture needs in `f32`, which starts at a multiple of 8 bytes.
-//
-// # Safety
-// Each pointer is null, or points to what its type states.
-gridel_status gridel_workspace_bytes_f32(const struct gridel_scene *loaded,
-                                         const struct gridel_picture *picture,
-                                         size_t *needed);
-
-// Writes the bytes of the workspace that a picture needs in `f64`, which starts at a multiple of 8 bytes.
-//
-// # Safety
-// Each pointer is null, or points to what its type states.
-gridel_status gridel_workspace_bytes_f64(const struct gridel_scene *loaded,
-                                         const struct gridel_picture *picture,
-                                         size_t *needed);
-
-// Renders a rectangle of a picture, such as a row, in integers. `pixels` holds its rows one behind the other; `workspace`
-// is memory of `gridel_workspace_bytes_fixed` bytes. Pixels do not depend on each other: a picture is the same bytes
-// whatever its rectangles.
-//
-// # Safety
-// Each pointer is null, or points to what its type states.
-gridel_status gridel_render_fixed(const struct gridel_scene *loaded,
-                                  const struct gridel_picture *picture,
-                                  const struct gridel_rectangle *rectangle,
-                                  struct gridel_buffer pixels,
-                                  struct gridel_buffer workspace);
-
-// Renders a rectangle of a picture, such as a row, in single precision: see `gridel_render_fixed`.
-//
-// # Safety
-// Each pointer is null, or points to what its type states.
-gridel_status gridel_render_f32(const struct gridel_scene *loaded,
-                                const struct gridel_picture *picture,
-                                const struct gridel_rectangle *rectangle,
-                                struct gridel_buffer pixels,
-                                struct gridel_buffer workspace);
-
-// Renders a rectangle of a picture, such as a row, in double precision: see `gridel_render_fixed`.
-//
-// # Safety
-// Each pointer is null, or points to what its type states.
-gridel_status gridel_render_f64(const struct gridel_scene *loaded,
-                                const struct gridel_picture *picture,
-                                const struct gridel_rectangle *rectangle,
-                                struct gridel_buffer pixels,
-                                struct gridel_buffer workspace);
-
-// Renders a rectangle of a picture as seen by a camera that was made for this scene, in integers: see
-// `gridel_render_fixed`.
-//
-// # Safety
-// Each pointer is null, or points to what its type states.
-gridel_status gridel_render_from_fixed(const struct gridel_scene *loaded,
-                                       const struct gridel_camera *camera,
-                                       const struct gridel_picture *picture,
-                                       const struct gridel_rectangle *rectangle,
-                                       struct gridel_buffer pixels,
-                                       struct gridel_buffer workspace);
-
-// Renders a rectangle of a picture as seen by a camera that was made for this scene, in single precision: see
-// `gridel_render_fixed`.
-//
-// # Safety
-// Each pointer is null, or points to what its type states.
-gridel_status gridel_render_from_f32(const struct gridel_scene *loaded,
-                                     const struct gridel_camera *camera,
-                                     const struct gridel_picture *picture,
-                                     const struct gridel_rectangle *rectangle,
-                                     struct gridel_buffer pixels,
-                                     struct gridel_buffer workspace);
-
-// Renders a rectangle of a picture as seen by a camera that was made for this scene, in double precision: see
-// `gridel_render_fixed`.
-//
-// # Safety
-// Each pointer is null, or points to what its type states.
-gridel_status gridel_render_from_f64(const struct gridel_scene *loaded,
-                                     const struct gridel_camera *camera,
-                                     const struct gridel_picture *picture,
-                                     const struct gridel_rectangle *rectangle,
-                                     struct gridel_buffer pixels,
-                                     struct gridel_buffer workspace);
 
 #ifdef __cplusplus
 }  // extern "C"

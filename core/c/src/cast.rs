@@ -3,7 +3,7 @@
 //! In steps of scene coordinates there is no floating point in `fixed`, and rays and hits are those of
 //! `Scene::ray_within` and `Scene::distance`. In scene units a ray is brought to the scene in double precision and then
 //! rounded to the number format, as `gridel trace` does. The bits are the same for origins within 16 times the width of
-//! the scene. Directions longer than 2^100 units or shorter than 2^-100 are rejected.
+//! the scene.
 
 use crate::load::{read, status};
 use crate::memory::{output, scene, stack};
@@ -12,7 +12,7 @@ use crate::{
     gridel_ray_f32, gridel_ray_f64, gridel_scene, gridel_status,
 };
 use gridel_core::{
-    Fixed, Hit, NoCount, Number, Position, Ray, Scene, StackView, any_hit, closest_hit,
+    Fixed, Hit, NoCount, Number, Position, Ray, RayError, Scene, StackView, any_hit, closest_hit,
 };
 
 /// Finds the first hit of a ray, in integers. `stack` is memory of `gridel_stack_bytes` bytes.
@@ -61,8 +61,13 @@ pub unsafe extern "C" fn gridel_cast_f32(
         let (ray, hit) = unsafe { (read(ray)?, output(hit)?) };
         // SAFETY: the caller's promise.
         let found = unsafe { cast_units::<f32>(loaded, &ray.into(), stack) }?;
+        let t = found.t as f32;
+        // Beyond the range of single precision, or rounded to fewer digits than it has.
+        if found.t.is_finite() && found.t != 0.0 && !t.is_normal() {
+            return Err(gridel_status::RayDirection);
+        }
         hit.write(gridel_hit_f32 {
-            t: found.t as f32,
+            t,
             point: found.point.map(|x| x as f32),
             normal: found.normal.map(|x| x as f32),
             object: found.object,
@@ -193,7 +198,7 @@ unsafe fn cast_steps<N: Number>(
     };
     to.write(gridel_hit {
         distance: scene.distance(&ray, &hit),
-        position: scene.hit_position(&hit).0,
+        position: scene.hit_position(&ray, &hit).0,
         normal: hit.normal.map(N::to_q30),
         object: hit.object,
         primitive: hit.primitive,
@@ -237,7 +242,7 @@ unsafe fn cast_units<N: Number>(
     // SAFETY: the caller's promise.
     let stack: &mut StackView = unsafe { stack(scene, memory) }?;
     let units = Units::of(scene);
-    let (ray, factor) = units.ray::<N>(scene, ray)?;
+    let (ray, scale) = units.ray::<N>(scene, ray)?;
     let Some(hit) = closest_hit::<N, Accel, _>(scene, &ray, stack, &mut NoCount) else {
         return Ok(gridel_hit_f64 {
             t: f64::INFINITY,
@@ -250,7 +255,7 @@ unsafe fn cast_units<N: Number>(
         });
     };
     Ok(gridel_hit_f64 {
-        t: N::far_to_f64(hit.t) / factor,
+        t: scale.multiple(N::far_to_f64(hit.t))?,
         point: units.place(hit.point.map(N::length_to_f64)),
         normal: hit.normal.map(N::ratio_to_f64),
         object: hit.object,
@@ -306,6 +311,37 @@ struct Units {
 /// Limits of a direction's length, in units of either kind, within which every product is in the range of numbers.
 const ORDINARY: core::ops::Range<f64> = 1.0 / (1_u128 << 100) as f64..(1_u128 << 100) as f64;
 
+/// The largest component of a direction in the core's units, by which t is larger there: a factor and a power of two.
+struct DirectionScale {
+    factor: f64,
+    exponent: i32,
+}
+
+impl DirectionScale {
+    /// A length in units, from multiples of the direction; infinite beyond all numbers.
+    fn length(&self, t: f64) -> f64 {
+        match self.exponent {
+            _ if t == 0.0 => 0.0,
+            0 => t * self.factor,
+            exponent => libm::scalbn(t * self.factor, exponent),
+        }
+    }
+
+    /// Multiples of the direction, from a length in units.
+    fn multiple(&self, length: f64) -> Result<f64, gridel_status> {
+        if self.exponent == 0 {
+            return Ok(length / self.factor);
+        }
+        let t = libm::scalbn(length / self.factor, -self.exponent);
+        // Beyond the range of double precision, or rounded to fewer digits than it has.
+        if t.is_normal() || length == 0.0 {
+            Ok(t)
+        } else {
+            Err(gridel_status::RayDirection)
+        }
+    }
+}
+
 impl Units {
     fn of(scene: &Scene<'_>) -> Self {
         let header = scene.header();
@@ -325,25 +361,40 @@ impl Units {
         [a + x * self.unit, b + y * self.unit, c + z * self.unit]
     }
 
-    /// A ray in the core's form, and the factor by which its t is larger.
+    /// A ray in the core's form, and the scale of its t.
     fn ray<N: Number>(
         &self,
         scene: &Scene<'_>,
         ray: &gridel_ray_f64,
-    ) -> Result<(Ray<N>, f64), gridel_status> {
+    ) -> Result<(Ray<N>, DirectionScale), gridel_status> {
         let larger = |a: f64, b: f64| if a < b { b } else { a };
         let [x, y, z] = ray.direction.map(|x| if x < 0.0 { -x } else { x });
         let largest = larger(larger(x, y), z);
-        let factor = largest * self.per_unit;
         // True for NaN as well.
-        if !ORDINARY.contains(&largest) || !ORDINARY.contains(&factor) {
+        if largest == 0.0 || !largest.is_finite() {
             return Err(gridel_status::RayDirection);
         }
+        let factor = largest * self.per_unit;
+        let (direction, scale) = if ORDINARY.contains(&largest) && ORDINARY.contains(&factor) {
+            let exponent = 0;
+            (ray.direction, DirectionScale { factor, exponent })
+        } else {
+            let (factor, exponent) = libm::frexp(largest);
+            let direction = ray.direction.map(|x| libm::scalbn(x, -exponent));
+            // A unit is a power of two, which is half of two to its exponent.
+            let (_, unit) = libm::frexp(self.unit);
+            let exponent = exponent.saturating_sub(unit.saturating_sub(1));
+            (direction, DirectionScale { factor, exponent })
+        };
         let ([x, y, z], [a, b, c]) = (ray.origin, self.origin);
         let origin = [x - a, y - b, z - c].map(|x| x * self.per_unit);
-        let length = |t: f64| if t == 0.0 { 0.0 } else { t * factor };
-        let (t_min, t_max) = (length(ray.t_min), length(ray.t_max));
-        let ray = Ray::from_f64(scene.bounds(), origin, ray.direction, t_min, t_max)?;
-        Ok((ray, factor))
+        let (t_min, t_max) = (scale.length(ray.t_min), scale.length(ray.t_max));
+        let ready = Ray::from_f64(scene.bounds(), origin, direction, t_min, t_max);
+        let ready = ready.map_err(|error| match error {
+            // Infinite in units alone.
+            RayError::Origin if ray.origin.iter().all(|x| x.is_finite()) => RayError::Distance,
+            error => error,
+        })?;
+        Ok((ready, scale))
     }
 }

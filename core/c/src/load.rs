@@ -9,7 +9,7 @@ use gridel_core::{BlobError, Scene};
 
 /// Checks a blob and fills in a scene. The blob starts at a multiple of 16 bytes and stays where it is, unchanged, for as
 /// long as the scene is used. Takes time linear in its length, and about 2 KiB of stack. A scene with parts is loaded by
-/// `gridel_load_with_parts`.
+/// `gridel_load_with_parts`. If it fails, the scene stays as it was.
 ///
 /// # Safety
 /// Each pointer is null, or points to what its type states.
@@ -20,8 +20,8 @@ pub unsafe extern "C" fn gridel_load(
     blob_bytes: usize,
 ) -> gridel_status {
     let load = || {
-        // SAFETY: the caller's promise.
-        unsafe { clear(to) }?;
+        // SAFETY: the caller's promise. Nothing is written before everything is known.
+        unsafe { output(to) }?;
         // SAFETY: the caller's promise.
         let blob = unsafe { bytes(blob.cast(), blob_bytes) }?;
         let loaded = held(Scene::from_bytes(blob)?)?;
@@ -46,7 +46,7 @@ pub unsafe extern "C" fn gridel_parts_bytes(
         let needed = unsafe { output(needed) }?;
         // SAFETY: the caller's promise.
         let blob = unsafe { bytes(blob.cast(), blob_bytes) }?;
-        let count = part_blobs(blob)?.count();
+        let count = part_blobs(blob).map_err(|error| why(blob, error))?.count();
         needed.write(count.saturating_mul(size_of::<Scene<'_>>()));
         Ok(())
     };
@@ -54,7 +54,8 @@ pub unsafe extern "C" fn gridel_parts_bytes(
 }
 
 /// Checks a blob that has parts and fills in a scene. The memory of the parts starts at a multiple of 8 bytes. It has
-/// as many bytes as `gridel_parts_bytes` states, and belongs to the scene for as long as that is used.
+/// as many bytes as `gridel_parts_bytes` states, and belongs to the scene for as long as that is used. If it fails, the
+/// scene is not loaded. Takes about 2.5 KiB of stack.
 ///
 /// # Safety
 /// Each pointer is null, or points to what its type states.
@@ -72,14 +73,23 @@ pub unsafe extern "C" fn gridel_load_with_parts(
         let blob = unsafe { bytes(blob.cast(), blob_bytes) }?;
         // SAFETY: the caller's promise.
         let mut views = unsafe { PartViews::new(parts) }?;
-        for part in part_blobs(blob)? {
-            views.push(Scene::from_bytes(part)?)?;
+        for part in part_blobs(blob).map_err(|error| why(blob, error))? {
+            views.push(Scene::from_bytes(part).map_err(|error| why(blob, error))?)?;
         }
         let loaded = held(Scene::with_parts(blob, views.finish())?)?;
         // SAFETY: the caller's promise.
         unsafe { store(to, loaded) }
     };
     status(load())
+}
+
+/// The reason why a blob is rejected, one of whose parts, or the list of them, was found to be invalid: what is wrong
+/// with the whole, such as its checksum, is said first.
+fn why(blob: &[u8], part: BlobError) -> gridel_status {
+    match Scene::from_bytes(blob) {
+        Ok(_) | Err(BlobError::Parts { .. }) => part.into(),
+        Err(error) => error.into(),
+    }
 }
 
 /// A scene that this library can trace.
@@ -92,8 +102,9 @@ fn held(scene: Scene<'static>) -> Result<Scene<'static>, gridel_status> {
 }
 
 /// Writes the reason why a blob is rejected as a sentence, with the section, the record and the expected value. The
-/// sentence ends with 0 and is cut off where the buffer ends. Returns the code. Takes some KiB of code and of stack; a
-/// program that does not call it does not hold it.
+/// sentence ends with 0 and is cut off where the buffer ends. Returns the code. What places the parts of a blob is checked
+/// by `gridel_load_with_parts` alone, and not here. Takes some KiB of code and of stack; a program that does not call it
+/// does not hold it.
 ///
 /// # Safety
 /// Each pointer is null, or points to what its type states.
@@ -114,17 +125,28 @@ pub unsafe extern "C" fn gridel_blob_error(
         // SAFETY: the caller's promise.
         let blob = unsafe { bytes(blob.cast(), blob_bytes) }?;
         let mut sentence = Sentence { text, used: 0 };
-        match Scene::from_bytes(blob) {
+        let checked = match Scene::from_bytes(blob) {
             // It is rejected only because its parts are missing; they are checked one by one.
             Err(BlobError::Parts { .. }) => part_blobs(blob)
                 .and_then(|mut parts| parts.try_for_each(|part| Scene::from_bytes(part).map(drop))),
+            Ok(scene) if !scene.holds(STRUCTURE) => Err(BlobError::MissingPart {
+                missing: STRUCTURE.name(),
+            }),
             result => result.map(drop),
-        }
-        .map_err(|error| {
-            // The rest is cut off.
-            let _ = write!(sentence, "{error}");
-            gridel_status::from(error)
-        })
+        };
+        let Err(error) = checked else { return Ok(()) };
+        let name = STRUCTURE.name();
+        // What does not fit is cut off.
+        let _ = match error {
+            // No Cargo feature of this library helps.
+            BlobError::MissingPart { missing } if missing == name || missing == "wide" => write!(
+                sentence,
+                "the blob does not hold the structure {name}, for which this library was built: build it with \
+                 `gridel build --accel {name}`"
+            ),
+            error => write!(sentence, "{error}"),
+        };
+        Err(error.into())
     };
     status(explain())
 }

@@ -200,6 +200,7 @@ unsafe fn count<N: Number>(
     // SAFETY: the caller's promise.
     let (scene, picture, needed) = unsafe { (scene(loaded)?, read(picture)?, output(needed)?) };
     let settings = settings(&picture)?;
+    Renderer::<N, Accel, EFFECTS>::with_settings(scene, settings)?;
     needed.write(workspace_bytes::<N>(depths(scene, settings.depth)));
     Ok(())
 }

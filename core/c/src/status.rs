@@ -1,5 +1,6 @@
 //! The codes that functions return, and their texts.
 
+use crate::STRUCTURE;
 use core::ffi::{CStr, c_char};
 use gridel_core::render::{CameraError, RenderError};
 use gridel_core::{BlobError, RayError};
@@ -37,11 +38,11 @@ pub enum gridel_status {
     BlobMissingPart = 17,
     /// The blob does not hold the structure that the library was built for.
     BlobMissingStructure = 18,
-    /// The blob has parts, for which there is too little memory.
+    /// The blob has parts, which `gridel_load` does not load.
     BlobParts = 19,
     /// A record of the blob is invalid.
     BlobInvalid = 20,
-    /// The ray's direction is zero, infinite or NaN.
+    /// The ray's direction is zero, infinite or NaN, or so short or long that t is no number of the hit's type.
     RayDirection = 30,
     /// The ray's origin is infinite or NaN.
     RayOrigin = 31,
@@ -61,7 +62,7 @@ pub enum gridel_status {
     PictureResolution = 44,
     /// A row or a rectangle leaves the picture.
     PictureRectangle = 45,
-    /// The field of view is 0, or half a turn or more.
+    /// The field of view is below 2^-31 turn, or half a turn or more.
     CameraFieldOfView = 50,
     /// Eye and target of a camera are the same place.
     CameraDirection = 51,
@@ -83,6 +84,12 @@ impl From<BlobError> for gridel_status {
             BlobError::Version { .. } => Self::BlobVersion,
             BlobError::Checksum { .. } => Self::BlobChecksum,
             BlobError::MissingEffects { .. } => Self::BlobMissingEffects,
+            // No Cargo feature of this library adds to its structure, or adds `wide`, which is for hosts.
+            BlobError::MissingPart { missing }
+                if missing == STRUCTURE.name() || missing == "wide" =>
+            {
+                Self::BlobMissingStructure
+            }
             BlobError::MissingPart { .. } => Self::BlobMissingPart,
             BlobError::MissingStructure { .. } => Self::BlobMissingStructure,
             BlobError::Parts { .. } => Self::BlobParts,
@@ -151,7 +158,7 @@ fn text(status: u32) -> &'static CStr {
         18 => c"the blob does not hold the structure of this library: build it with `gridel build --accel`",
         19 => c"the scene has parts: load it by gridel_load_with_parts, with the memory that gridel_parts_bytes states",
         20 => c"a record of the blob is invalid: gridel_blob_error says which",
-        30 => c"the ray's direction is zero, infinite, NaN, or too short or long for the scene's units",
+        30 => c"the ray's direction is zero, infinite or NaN, or so short or long that t is no number of the hit's type",
         31 => c"the ray's origin is infinite or NaN",
         32 => c"the ray's origin is too far from the scene: move it closer along the ray",
         33 => c"the ray's interval ends before it begins, or is NaN",
@@ -161,7 +168,7 @@ fn text(status: u32) -> &'static CStr {
         43 => c"the format of the pixels is unknown: use one of gridel_pixel_format",
         44 => c"the pixels are too narrow for the number format: use fewer pixels, or gridel_render_f64",
         45 => c"the rectangle leaves the picture",
-        50 => c"the camera's field of view must be above 0 and below half a turn",
+        50 => c"the camera's field of view must be at least 2 and below half a turn",
         51 => c"the camera looks nowhere: move its eye or its target",
         52 => c"the camera looks along the direction that points up: give one across the view",
         53 => c"the camera's eye is beyond the range of scene coordinates",

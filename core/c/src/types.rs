@@ -180,7 +180,7 @@ pub struct gridel_look {
     pub target: [i32; 3],
     /// The direction that is upwards in the picture, of any length.
     pub up: [i32; 3],
-    /// The angle of the picture's height, in 2^-32 turn: above 0 and below half a turn.
+    /// The angle of the picture's height, in 2^-32 turn: at least 2 and below half a turn.
     pub field_of_view: u32,
 }
 
@@ -197,7 +197,7 @@ pub struct gridel_circle {
     pub azimuth: u32,
     /// The angle by which it is raised, in 2^-32 turn; it can pass over the pole.
     pub elevation: u32,
-    /// The angle of the picture's height, in 2^-32 turn: above 0 and below half a turn.
+    /// The angle of the picture's height, in 2^-32 turn: at least 2 and below half a turn.
     pub field_of_view: u32,
     /// The axis that points up: 2 for z, else y.
     pub up_axis: u32,

@@ -2,6 +2,7 @@
  * codes, and nothing else. Compiles as C99 and as C++17. The argument is a blob with the structure `list` alone beside
  * the one that is loaded. */
 #include "gridel.h"
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -119,7 +120,13 @@ int main(int count_of_arguments, char **arguments) {
   EXPECT(NULL_POINTER, gridel_blob_error(NULL, blob_bytes, text, sizeof text));
   EXPECT(NULL_POINTER, gridel_blob_error(blob, blob_bytes, NULL, sizeof text));
   EXPECT(GRIDEL_STATUS_BLOB_MISSING_STRUCTURE, gridel_load(&scene, list, list_bytes));
+  EXPECT(GRIDEL_STATUS_BLOB_MISSING_STRUCTURE, gridel_blob_error(list, list_bytes, text, sizeof text));
+  CHECK(strstr(text, "gridel build --accel") != NULL);
   EXPECT(NOT_LOADED, gridel_info_of(&scene, &info));
+  memcpy(damaged, blob, blob_bytes);
+  damaged[100] ^= 1;
+  EXPECT(GRIDEL_STATUS_BLOB_CHECKSUM, gridel_parts_bytes(damaged, blob_bytes, &parts));
+  EXPECT(GRIDEL_STATUS_BLOB_CHECKSUM, gridel_load_with_parts(&scene, damaged, blob_bytes, stack));
   EXPECT(NULL_POINTER, gridel_parts_bytes(NULL, blob_bytes, &parts));
   EXPECT(NULL_POINTER, gridel_parts_bytes(blob, blob_bytes, NULL));
   EXPECT(GRIDEL_STATUS_OK, gridel_parts_bytes(blob, blob_bytes, &parts));
@@ -127,6 +134,9 @@ int main(int count_of_arguments, char **arguments) {
   EXPECT(NULL_POINTER, gridel_load_with_parts(&scene, blob, blob_bytes, none));
   EXPECT(GRIDEL_STATUS_OK, gridel_load_with_parts(&scene, blob, blob_bytes, stack));
   EXPECT(GRIDEL_STATUS_OK, gridel_load(&scene, blob, blob_bytes));
+  /* A blob that cannot be loaded leaves the scene as it was. */
+  EXPECT(GRIDEL_STATUS_BLOB_CHECKSUM, gridel_load(&scene, damaged, blob_bytes));
+  EXPECT(GRIDEL_STATUS_OK, gridel_info_of(&scene, &info));
 
   /* What a scene needs; a copy is a scene, too. */
   memcpy(&copy, &scene, sizeof scene);
@@ -189,6 +199,33 @@ int main(int count_of_arguments, char **arguments) {
   CHECK(any == 1);
   EXPECT(NULL_POINTER, gridel_any_f32(&scene, &ray_f32, stack, NULL));
   EXPECT(NULL_POINTER, gridel_any_f64(&scene, NULL, stack, &any));
+  /* Directions of any length. */
+  {
+    const double down = ray_f64.direction[1], t = hit_f64.t;
+    const double lengths[] = {1e-250, 1e-200, 1e-31, 1e31, 1e200, 1e250};
+    ray_f64.t_max = HUGE_VAL;
+    ray_f32.t_max = HUGE_VALF;
+    for (k = 0; k < 6; k++) {
+      ray_f64.direction[1] = down * lengths[k];
+      EXPECT(GRIDEL_STATUS_OK, gridel_cast_f64(&scene, &ray_f64, stack, &hit_f64));
+      CHECK(hit_f64.object == hit.object && hit_f64.t * lengths[k] > 0.999999 * t && hit_f64.t * lengths[k] < 1.000001 * t);
+      EXPECT(GRIDEL_STATUS_OK, gridel_any_f64(&scene, &ray_f64, stack, &any));
+      CHECK(any == 1);
+    }
+    ray_f64.direction[1] = down * 1e-310;
+    EXPECT(GRIDEL_STATUS_RAY_DIRECTION, gridel_cast_f64(&scene, &ray_f64, stack, &hit_f64));
+    ray_f64.direction[1] = down;
+    ray_f32.direction[1] = (float)down * 1e-37f;
+    EXPECT(GRIDEL_STATUS_OK, gridel_cast_f32(&scene, &ray_f32, stack, &hit_f32));
+    CHECK(hit_f32.t > 1e37f && hit_f32.object == hit.object);
+    /* Four units away, t is more than single precision holds. */
+    ray_f32.direction[1] = (float)down * 1e-39f;
+    EXPECT(GRIDEL_STATUS_RAY_DIRECTION, gridel_cast_f32(&scene, &ray_f32, stack, &hit_f32));
+    ray_f32.direction[1] = (float)down;
+  }
+  /* Finite, but not in the scene's units. */
+  ray_f64.origin[0] = 1.7e308;
+  EXPECT(GRIDEL_STATUS_RAY_DISTANCE, gridel_cast_f64(&scene, &ray_f64, stack, &hit_f64));
   ray_f32.t_max = -1;
   EXPECT(GRIDEL_STATUS_RAY_INTERVAL, gridel_cast_f32(&scene, &ray_f32, stack, &hit_f32));
   ray_f64.origin[0] = 1e300;
@@ -204,12 +241,19 @@ int main(int count_of_arguments, char **arguments) {
   rectangle.height = 1;
   for (k = 0; k < 3; k++) {
     gridel_picture wrong = picture;
+    size_t needed;
     gridel_rectangle beyond = rectangle;
     const gridel_buffer row = buffer(pixels, sizeof pixels);
     EXPECT(NOT_LOADED, counts[k](&fresh, &picture, &bytes));
     EXPECT(NULL_POINTER, counts[k](&scene, NULL, &bytes));
     EXPECT(NULL_POINTER, counts[k](&scene, &picture, NULL));
     EXPECT(GRIDEL_STATUS_OK, counts[k](&scene, &picture, &bytes));
+    wrong.depth = 33;
+    EXPECT(GRIDEL_STATUS_PICTURE_DEPTH, counts[k](&scene, &wrong, &needed));
+    wrong = picture;
+    wrong.width = 0;
+    EXPECT(GRIDEL_STATUS_PICTURE_SIZE, counts[k](&scene, &wrong, &needed));
+    wrong = picture;
     CHECK(bytes <= (k == 2 ? GRIDEL_WORKSPACE_BYTES_MAX_F64 : GRIDEL_WORKSPACE_BYTES_MAX));
     EXPECT(NOT_LOADED, renders[k](&fresh, &picture, &rectangle, row, stack));
     EXPECT(NULL_POINTER, renders[k](&scene, NULL, &rectangle, row, stack));

@@ -58,7 +58,7 @@ macro_rules! registry {
             }
 
             /// Whether a structure of the scene leads to the shared leaves. A structure whose code
-            /// is not here is taken to.
+            /// is not here is taken to if there are any.
             pub(crate) fn uses_leaves(space: &Space<'_>) -> bool {
                 let uses = |structure| match structure {
                     $(
@@ -66,7 +66,7 @@ macro_rules! registry {
                         Structure::$variant => <super::$($module)::+::Views<'a> as Records>::USES_LEAVES,
                     )*
                     #[cfg(not(feature = "all-structures"))]
-                    _ => true,
+                    _ => !space.leaves.is_empty(),
                 };
                 Structure::ALL.into_iter().any(|it| space.holds(it) && uses(it))
             }

@@ -221,7 +221,7 @@ macro_rules! registry {
                 Some(match kind {
                     Kind::Triangle => Geometry::Triangle(self.triangle(index)?),
                     Kind::Sphere => {
-                        let (center, radius) = self.spheres.get(index)?;
+                        let (center, radius) = self.sphere(index)?;
                         Geometry::Sphere { center, radius }
                     }
                     $(Kind::$kind => Geometry::$kind(*self.$field.get(index)?),)*
@@ -430,13 +430,18 @@ impl<'a> Shapes<'a> {
         Some(SmoothTriangle { corners, normals })
     }
 
+    /// A sphere, of which some blobs have no record but in a cluster.
+    fn sphere(&self, index: usize) -> Option<([i32; 3], i32)> {
+        let id = self.place(Kind::Sphere, index as u32);
+        match id.lane() {
+            Some(lane) => self.clusters().packs.sphere(id.number, lane),
+            None => self.spheres.get(index),
+        }
+    }
+
     /// The box of a sphere.
     fn sphere_bounds(&self, index: usize) -> Option<UnitBox> {
-        let id = self.place(Kind::Sphere, index as u32);
-        let (center, radius) = match id.lane() {
-            Some(lane) => self.clusters().packs.sphere(id.number, lane)?,
-            None => self.spheres.get(index)?,
-        };
+        let (center, radius) = self.sphere(index)?;
         Some(sphere::bounds(center, radius))
     }
 

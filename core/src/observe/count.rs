@@ -116,6 +116,18 @@ impl Counters {
         self.shadow + self.reflected + self.refracted + self.diffuse
     }
 
+    /// All tests of boxes, bounding spheres and primitives, and all cells that were entered.
+    ///
+    /// ```
+    /// use gridel_core::Counters;
+    ///
+    /// let counters = Counters { planes: 9, boxes: 3, objects: 2, cells: 1, ..Counters::default() };
+    /// assert_eq!(counters.tests(), 6);
+    /// ```
+    pub fn tests(&self) -> u64 {
+        self.boxes + self.cells + self.objects
+    }
+
     /// The counts of two parts of the work.
     pub fn plus(&self, other: &Self) -> Self {
         Self {

@@ -9,6 +9,10 @@ use crate::query::Hit;
 use crate::ray::{Ray, RayError};
 use crate::scene::{Position, Scene};
 
+/// The largest coordinate at which a hit's point is the place of its t, whatever was hit: 2^17 units, with 13 fraction
+/// bits.
+const NEAR: u64 = 1 << 30;
+
 impl Scene<'_> {
     /// Returns the ray from a place in a direction of any length but 0, limited to the interval between two distances.
     /// Distances are straight lines, in steps of [`coordinate_exponent`](Self::coordinate_exponent). `u64::MAX` is
@@ -72,7 +76,9 @@ impl Scene<'_> {
     /// [`coordinate_exponent`](Self::coordinate_exponent), rounded to nearest.
     ///
     /// Before rounding, it is exact to two sub-steps of 2^-13 unit and to one part in 2^28 of itself in `fixed`. In
-    /// `f32` the relative error is one part in 2^21, and in `f64` one in 2^50.
+    /// `f32` the relative error is one part in 2^21, and in `f64` one in 2^50. That holds for the ray with its slopes as
+    /// the format rounds them, in `fixed` to 2^-30: a plane that it meets at a small angle can be that much nearer or
+    /// farther.
     ///
     /// ```
     /// # static BLOB: &[u8] =
@@ -84,7 +90,7 @@ impl Scene<'_> {
     /// let place = Position([0, 4 << 25, 0]);
     /// let ray = scene.ray_from::<Fixed>(place, [0, -1, 0])?;
     /// let hit = closest_hit::<_, DualSplit, _>(&scene, &ray, stack.as_view(), &mut NoCount).expect("a ball");
-    /// let found = scene.hit_position(&hit);
+    /// let found = scene.hit_position(&ray, &hit);
     /// // Straight down: the distance is the difference of the heights, but for the rounding of the point.
     /// let fallen = (place.0[1] - found.0[1]) as u64;
     /// assert!(scene.distance(&ray, &hit).abs_diff(fallen) <= 8 << 2);
@@ -98,7 +104,9 @@ impl Scene<'_> {
         q13.saturating_add(half) >> shift
     }
 
-    /// Returns the place of a hit in scene coordinates: that of [`Hit::point`], rounded to a step.
+    /// Returns the place of a hit in scene coordinates, rounded to a step: that of [`Hit::point`], or on a plane far from
+    /// the scene's box the place of `t` on the ray. Coordinates beyond the range of [`Position`] are its ends. `ray` is
+    /// that of the query.
     ///
     /// ```
     /// # static BLOB: &[u8] =
@@ -109,10 +117,18 @@ impl Scene<'_> {
     /// let ray = scene.ray_from::<Fixed>(Position([0, 4 << 25, 0]), [0, -1, 0])?;
     /// let mut stack = Stack::<32>::new();
     /// let hit = scene.closest_hit(&ray, stack.as_view()).expect("a ball");
-    /// assert_eq!(scene.hit_position(&hit).0[0], 0);
+    /// assert_eq!(scene.hit_position(&ray, &hit).0[0], 0);
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
-    pub fn hit_position<N: Number>(&self, hit: &Hit<N>) -> Position {
+    pub fn hit_position<N: Number>(&self, ray: &Ray<N>, hit: &Hit<N>) -> Position {
+        if hit.is_unbounded()
+            && let Some(place) = ray.far_point(hit.t)
+        {
+            let place = place.map(N::far_to_q13);
+            if place.iter().any(|x| x.unsigned_abs() > NEAR) {
+                return self.position(place);
+            }
+        }
         self.position(hit.point.map(|component| component.to_q13().into()))
     }
 

@@ -25,8 +25,8 @@ impl fmt::Display for RayError {
             RayError::Direction => "the ray's direction is zero, infinite or NaN",
             RayError::Origin => "the ray's origin is infinite or NaN",
             RayError::Distance => {
-                "the ray's origin is too far from the scene: more than 2^37 units, which is 2^21 times \
-                 the width of the largest scene; move it closer along the ray"
+                "the ray's origin is too far from the scene: more than 2^37 units of the lattice, which \
+                 is 2^21 times the lattice's width; move it closer along the ray"
             }
             RayError::Interval => "the ray's tmin is greater than its tmax, or one of them is NaN",
         })

@@ -1,7 +1,7 @@
 //! The worth of each effect of a scene: the loss without it, its cost, and the order in which to leave effects out.
 
 use super::{Bench, MeasureError, Parameter, Point, Results, Setting};
-use crate::measure::board::{Board, MemoryReport, Target, instructions};
+use crate::measure::board::{Board, MemoryReport, Rendering, Target, instructions};
 use crate::measure::{Errors, time};
 use crate::scene::shown_without;
 use gridel_core::Effects;
@@ -130,7 +130,11 @@ fn code(bench: &mut Bench<'_>, base: &Setting, effect: &str) -> Result<Option<i6
         ram: board.ram,
     };
     let blob = bench.blob(base)?;
-    let report = MemoryReport::of(&blob.scene()?, blob.bytes(), &target, board.format());
+    let report = {
+        let scene = blob.scene()?;
+        let rendering = Rendering::of(&scene, board.format());
+        MemoryReport::of(&scene, blob.bytes(), &target, &rendering)
+    };
     let report = report.ok();
     Ok(report
         .and_then(|it| it.code_of(effect))

@@ -2,7 +2,7 @@
 
 use super::manifest::Manifest;
 use super::report::{Figure, Key, Outcome, Record, Report};
-use crate::output::Files;
+use crate::output::{Files, place};
 use std::collections::BTreeSet;
 use std::io;
 use std::path::{Path, PathBuf};
@@ -104,8 +104,9 @@ impl Blessed {
         };
         let broken = all().filter(|(it, _)| matches!(it.outcome, Outcome::Failed(_)));
         let mut judged = BTreeSet::new();
-        for (_, new) in broken.filter(|(_, it)| judged.insert(&it.path)) {
-            let mut others = all().filter(|(_, other)| other.path == new.path);
+        for (_, new) in broken.filter(|(_, it)| judged.insert(place(&it.path))) {
+            let here = place(&new.path);
+            let mut others = all().filter(|(_, other)| place(&other.path) == here);
             match others.find(|(_, other)| !other.is_like(&new.image)) {
                 Some((it, _)) => {
                     let on = it.on.as_deref().unwrap_or_default();
@@ -121,7 +122,8 @@ impl Blessed {
     }
 
     fn records(&self, reference: &Path) -> bool {
-        self.references.iter().any(|(path, _)| path == reference)
+        let here = place(reference);
+        self.references.iter().any(|(path, _)| place(path) == here)
     }
 
     /// Notes in a report which findings hold once this is recorded.
@@ -152,7 +154,7 @@ impl Blessed {
     /// The references and the manifest, complete: [`Files::keep`] gives them their names.
     ///
     /// # Errors
-    /// If a file cannot be written, with its path.
+    /// If a file cannot be written, or the manifest has changed since it was read; with its path.
     pub fn files(&self) -> Result<Files, (PathBuf, io::Error)> {
         let mut files = Files::default();
         for (path, image) in &self.references {
@@ -160,8 +162,14 @@ impl Blessed {
             added.map_err(|error| (path.clone(), error))?;
         }
         if self.old != self.new {
+            let here = |error| (self.path.clone(), error);
+            let now = std::fs::read_to_string(&self.path).map_err(here)?;
+            if now.trim_start_matches('\u{feff}') != self.old {
+                let why = "it has changed while the checks ran, so nothing is recorded; run the command again";
+                return Err(here(io::Error::other(why)));
+            }
             let added = files.add(&self.path, |out| out.write_all(self.new.as_bytes()));
-            added.map_err(|error| (self.path.clone(), error))?;
+            added.map_err(here)?;
         }
         Ok(files)
     }

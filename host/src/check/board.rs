@@ -68,14 +68,26 @@ fn try_run(manifest: &Manifest, board: &Board, blob: &Blob) -> Result<Output, Ob
         }
     };
     let printed = emulate(board, &program, folder.path())?;
-    let pairs = printed.lines().filter_map(|line| line.split_once(' '));
-    let figures = pairs.filter_map(|(name, value)| Some((name.into(), value.trim().parse().ok()?)));
+    let mut figures = BTreeMap::new();
+    for (name, value) in printed.lines().filter_map(|line| line.split_once(' ')) {
+        let Ok(value) = value.trim().parse::<u64>() else {
+            continue;
+        };
+        let other = figures.insert(String::from(name), value);
+        if let Some(other) =
+            other.filter(|&other| other != value && board.budget.contains_key(name))
+        {
+            return Err(Obstacle::Failure(format!(
+                "the program prints the figure {name:?} twice: {other} and {value}"
+            )));
+        }
+    }
     let picture = match &board.picture {
         Some(name) => fs::read(folder.path().join(name))
             .map_err(|error| format!("the program's file {name:?} cannot be read: {error}")),
         None => Ok(Vec::new()),
     };
-    Ok((figures.collect(), picture))
+    Ok((figures, picture))
 }
 
 /// A program that was built before, if it is one.

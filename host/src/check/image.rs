@@ -30,7 +30,7 @@ impl Image {
         }
     }
 
-    /// Reads a PNG of one to four channels of 8 bits; transparency is left out.
+    /// Reads a PNG of one to four channels of 8 bits without transparent pixels.
     ///
     /// # Errors
     /// If the file cannot be read, or is no such picture.
@@ -57,6 +57,15 @@ impl Image {
             .filter(|&bytes| bytes <= limits.bytes);
         let mut pixels = vec![0; bytes.ok_or_else(|| io::Error::other("it is too large"))?];
         let frame = reader.next_frame(&mut pixels)?;
+        if matches!(channels, 2 | 4)
+            && pixels
+                .chunks_exact(channels)
+                .any(|it| it[channels - 1] < 255)
+        {
+            return Err(io::Error::other(
+                "it has transparent pixels, and rendered pictures have none; save it without transparency",
+            ));
+        }
         let pixels = pixels
             .chunks_exact(channels)
             .flat_map(|pixel| match *pixel {

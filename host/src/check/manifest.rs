@@ -164,8 +164,12 @@ impl Manifest {
 
     /// All files that are read: the manifest, and those that it names.
     pub fn inputs(&self) -> impl Iterator<Item = &Path> {
-        let references = self.references().map(|picture| picture.path.as_path());
-        self.sources().chain(references)
+        self.sources().chain(self.pictures())
+    }
+
+    /// The reference pictures, which may be recorded.
+    pub fn pictures(&self) -> impl Iterator<Item = &Path> {
+        self.references().map(|picture| picture.path.as_path())
     }
 
     /// The names of all [evidence](super::Evidence) that a run may find; no two are equal.
@@ -301,7 +305,6 @@ impl Check {
             call_stack: _,
         } = self.budget;
         let bytes = [blob_bytes, working_bytes, stack_entries];
-        let idle = |board: &Board| board.budget.is_empty() && board.picture.is_none();
         self.hash.is_none()
             && self.reference.is_none()
             && bytes.iter().all(Option::is_none)
@@ -309,7 +312,7 @@ impl Check {
             && self.certified.is_none()
             && self.max_proved_error.is_none()
             && self.target.is_none()
-            && self.boards.iter().all(idle)
+            && self.boards.is_empty()
     }
 }
 
@@ -385,7 +388,9 @@ fn name_evidence(checks: &mut [Check]) {
         let formats = check.formats.iter().map(|format| format.name());
         let boards = check.boards.iter().map(|board| board.machine.as_str());
         let names = formats.chain(boards).map(|on| {
-            let name: String = format!("{}-{on}", check.name).chars().map(plain).collect();
+            // Names of files are limited to some 255 bytes.
+            let short = check.name.chars().take(50);
+            let name: String = short.chain(['-']).chain(on.chars()).map(plain).collect();
             let numbered = (2..).map(|number| format!("{name}-{number}"));
             std::iter::once(name.clone())
                 .chain(numbered)

@@ -4,29 +4,40 @@
 use super::manifest::Budget;
 use super::report::{Figure, Key, Outcome};
 use super::run::{Compared, Run};
-use crate::measure::board::{Account, Board, MemoryReport, NotMeasured, Target};
+use crate::measure::board::{Account, Board, MemoryReport, NotMeasured, Rendering, Target};
 use crate::table::grouped;
 use gridel_core::{Format, Scene, Structure};
 
 impl Run<'_> {
     /// Holds the scene to its `target` in each number format that the board computes.
-    pub(super) fn memory(&mut self, scene: &Scene<'_>, blob: &[u8]) {
+    pub(super) fn memory(&mut self, scene: &Scene<'_>, structure: Structure, blob: &[u8]) {
         let Some(board) = self.check.target else {
             return;
         };
         for format in formats(board, &self.check.formats) {
-            self.memory_in(board, format, scene, blob);
+            let rendering = Rendering {
+                format,
+                structure,
+                width: self.settings(scene).width,
+            };
+            self.memory_in(board, &rendering, scene, blob);
         }
     }
 
-    fn memory_in(&mut self, board: &'static Board, format: Format, scene: &Scene<'_>, blob: &[u8]) {
-        let on = || Some(format!("{} {}", board.name, format.name()));
+    fn memory_in(
+        &mut self,
+        board: &'static Board,
+        rendering: &Rendering,
+        scene: &Scene<'_>,
+        blob: &[u8],
+    ) {
+        let on = || Some(format!("{} {}", board.name, rendering.format.name()));
         let target = Target {
             board,
             flash: board.flash,
             ram: board.ram,
         };
-        let report = match MemoryReport::of(scene, blob, &target, format) {
+        let report = match MemoryReport::of(scene, blob, &target, rendering) {
             Ok(report) => report,
             Err(NotMeasured(structure)) => {
                 let why = format!(

@@ -14,6 +14,9 @@ pub struct Report {
     pub findings: Vec<Finding>,
     /// Warnings of importers and of the compiler, each once.
     pub warnings: Vec<String>,
+    /// The files from which scenes were read.
+    #[serde(skip)]
+    pub files: BTreeSet<PathBuf>,
 }
 
 /// One thing that was compared with what the manifest says.
@@ -209,6 +212,19 @@ impl Figure {
             Self::Count(count) => count.to_string(),
             Self::Mean(mean) => mean.to_string(),
             Self::Hash(hash) => hash.clone(),
+        }
+    }
+}
+
+impl Figure {
+    /// The figure and the most that is allowed, with as many digits as show which is larger.
+    pub(super) fn beside(&self, most: Option<&Self>) -> (String, String) {
+        let allowed = most.map(Self::to_string).unwrap_or_default();
+        match (self, most) {
+            (Self::Mean(found), Some(Self::Mean(most))) if self.to_string() == allowed => {
+                (found.to_string(), most.to_string())
+            }
+            _ => (self.to_string(), allowed),
         }
     }
 }

@@ -39,8 +39,7 @@ pub fn run(manifest: &Manifest, progress: &dyn Fn()) -> Report {
             manifest,
             index,
             check,
-            findings: &mut report.findings,
-            warnings: &mut report.warnings,
+            report: &mut report,
             posed: None,
         };
         if let Err(why) = run.all(progress) {
@@ -56,8 +55,7 @@ pub(super) struct Run<'r> {
     manifest: &'r Manifest,
     index: usize,
     pub(super) check: &'r Check,
-    findings: &'r mut Vec<Finding>,
-    warnings: &'r mut Vec<String>,
+    report: &'r mut Report,
     /// Where instances that move were copied, if they were.
     posed: Option<Posed>,
 }
@@ -97,7 +95,7 @@ impl Run<'_> {
             entries,
             budget.stack_entries.map(Figure::Count),
         );
-        self.memory(&scene, blob.bytes());
+        self.memory(&scene, structure, blob.bytes());
         for (&format, name) in check.formats.iter().zip(&check.evidence) {
             self.format(&shown, structure, format, name)?;
             progress();
@@ -165,7 +163,8 @@ impl Run<'_> {
             ));
         }
         self.posed = imported.posed;
-        self.warnings.extend(imported.warnings);
+        self.report.warnings.extend(imported.warnings);
+        self.report.files.extend(imported.files);
         let mut scene = imported.scene;
         // As part of the blob, so that a board renders the same picture.
         if let Some([width, height]) = check.size {
@@ -181,7 +180,7 @@ impl Run<'_> {
             .map_err(|error| format!("{}: {}", path.display(), explained(&error)))?;
         let warnings = compiled.report.warnings(options.lattice_bits);
         let named = |warning| format!("{}: {warning}", path.display());
-        self.warnings.extend(warnings.into_iter().map(named));
+        self.report.warnings.extend(warnings.into_iter().map(named));
         Ok(compiled.blob)
     }
 
@@ -345,30 +344,26 @@ impl Run<'_> {
         let board = &check.boards[number];
         let on = || Some(board.machine.clone());
         let ran = board::run(self.manifest, board, blob);
-        let figures = board.budget.iter();
         let broken = match &ran {
             BoardRun::Printed(..) => None,
             BoardRun::NotRun(why) => Some(Outcome::NotRun(why.clone())),
             BoardRun::Failed(why) => Some(Outcome::Failed(why.clone())),
         };
-        let mut printed = None;
-        if let BoardRun::Printed(figures, picture) = ran {
-            printed = Some((figures, picture));
-        }
-        for (name, &most) in figures {
+        let printed = match ran {
+            BoardRun::Printed(figures, picture) => Some((figures, picture)),
+            BoardRun::NotRun(_) | BoardRun::Failed(_) => None,
+        };
+        for (name, &most) in &board.budget {
             let most = Some(Figure::Count(most));
             let found = printed
                 .as_ref()
                 .map(|(figures, _)| figures.get(name).copied());
             match (found, &broken) {
                 (Some(Some(found)), _) => {
+                    let board = [Key::Name("board".into()), Key::Item(number)];
+                    let entry = ["budget", name].map(|name| Key::Name(name.into()));
+                    let keys = board.into_iter().chain(entry).collect();
                     let found = Figure::Count(found);
-                    let keys = [
-                        Key::Name("board".into()),
-                        Key::Item(number),
-                        Key::Name("budget".into()),
-                    ];
-                    let keys = keys.into_iter().chain([Key::Name(name.clone())]).collect();
                     let compared = Compared {
                         what: name,
                         found,
@@ -448,7 +443,7 @@ impl Run<'_> {
         let outcome = if within {
             Outcome::Passed
         } else {
-            let most = most.as_ref().map(Figure::to_string).unwrap_or_default();
+            let (found, most) = found.beside(most.as_ref());
             let help = help.map_or(String::new(), |help| format!("; what helps: {help}"));
             Outcome::Failed(format!(
                 "{what} is {found}, and at most {most} is allowed{help}"
@@ -473,7 +468,7 @@ impl Run<'_> {
         allowed: Option<Figure>,
         outcome: Outcome,
     ) -> &mut Finding {
-        self.findings.push_mut(Finding {
+        self.report.findings.push_mut(Finding {
             check: self.check.name.clone(),
             on,
             what: what.to_owned(),

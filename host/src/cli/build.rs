@@ -185,6 +185,10 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     })?;
     let scene_options = arguments.target.with_target(&arguments.scene_options)?;
     let source = Source::compile(&arguments.scene, &scene_options, compiling)?;
+    source.reject_lost([&arguments.output])?;
+    if let Some(folder) = &arguments.emit_rust {
+        source.reject_lost([emit::BLOB, emit::MODULE].map(|name| folder.join(name)))?;
+    }
     let scene = source.scene()?;
     let target = arguments.target.target();
     let board = target.map(|target| target.board);

@@ -1,6 +1,7 @@
 //! `gridel check`: compares scenes and their memory with recorded figures.
 
 use super::failure::Failure;
+use super::input::is_standard;
 use super::output::{check_writable, print, print_json, reject_inputs, warn, write_file};
 use super::progress::Progress;
 use clap::Args;
@@ -77,6 +78,10 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     for warning in &report.warnings {
         warn(warning);
     }
+    let recorded = manifest.pictures().filter(|_| arguments.bless);
+    let outputs = outputs(arguments, &manifest).chain(recorded.map(Path::to_owned));
+    let inputs = report.files.iter().map(PathBuf::as_path);
+    reject_inputs(inputs, outputs, "a file that a scene reads")?;
     let blessed = arguments.bless.then(|| check::bless(&manifest, &report));
     let staged = match &blessed {
         Some(blessed) => blessed.files(),
@@ -87,7 +92,9 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     }
     // Everything runs, whatever fails. A report that cannot be written does not lose findings, and the findings set the
     // exit code in either case. The changes to recorded figures were printed before.
-    let printed = print_findings(arguments, &report, blessed.as_ref());
+    let diff = blessed.as_ref().filter(|_| staged.is_ok());
+    let diff = diff.map(Blessed::diff).unwrap_or_default();
+    let printed = print_findings(arguments, &report, blessed.as_ref(), &diff);
     let shown = match &arguments.diff {
         Some(folder) => write_evidence(folder, &report),
         None => Ok(()),
@@ -106,14 +113,25 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     recorded.and(reported).and(shown).and(printed).and(failure)
 }
 
-/// Rejects outputs that cannot be written or would overwrite an input, before any work.
-fn prove_outputs(arguments: &Arguments, manifest: &Manifest) -> Result<(), Failure> {
-    let (folder, junit) = (&arguments.diff, &arguments.junit);
-    let pictures = folder.iter().flat_map(|folder| {
+/// All files that may be written, but what is recorded.
+fn outputs(arguments: &Arguments, manifest: &Manifest) -> impl Iterator<Item = PathBuf> {
+    let pictures = arguments.diff.iter().flat_map(|folder| {
         let names = manifest.evidence();
         names.map(move |name| picture(folder, name))
     });
-    let outputs = junit.iter().cloned().chain(pictures);
+    arguments.junit.iter().cloned().chain(pictures)
+}
+
+/// Rejects outputs that cannot be written or would overwrite an input, before any work.
+fn prove_outputs(arguments: &Arguments, manifest: &Manifest) -> Result<(), Failure> {
+    let (folder, junit) = (&arguments.diff, &arguments.junit);
+    if arguments.json && junit.as_deref().is_some_and(is_standard) {
+        return Err(Failure::usage(
+            "--json and --junit cannot both go to standard output",
+            "name a file for --junit",
+        ));
+    }
+    let outputs = outputs(arguments, manifest);
     reject_inputs(manifest.inputs(), outputs, "a file that the checks read")?;
     if let Some(folder) = folder {
         std::fs::create_dir_all(folder).map_err(|error| Failure::writing(folder, &error))?;
@@ -124,11 +142,12 @@ fn prove_outputs(arguments: &Arguments, manifest: &Manifest) -> Result<(), Failu
     Ok(())
 }
 
-/// Prints the findings, and the figures that are recorded of them.
+/// Prints the findings, the figures that are recorded of them, and how that changes the manifest.
 fn print_findings(
     arguments: &Arguments,
     report: &Report,
     blessed: Option<&Blessed>,
+    diff: &str,
 ) -> Result<(), Failure> {
     let (passed, failed, recorded) = (report.passed(), report.failed(), report.recorded());
     let not_run = report.not_run();
@@ -147,7 +166,6 @@ fn print_findings(
             None => String::new(),
         };
         let summary = format!("{passed} passed, {recorded}{failed} failed, {not_run} skipped\n");
-        let diff = blessed.map(Blessed::diff).unwrap_or_default();
         let reasons = reasons(report);
         print(format!("{}{reasons}{summary}{diff}", report.table()))
     };
@@ -189,13 +207,14 @@ fn write_evidence(folder: &Path, report: &Report) -> Result<(), Failure> {
         .findings
         .iter()
         .filter_map(|finding| finding.evidence.as_ref());
-    for evidence in evidence {
+    // All that can be written are.
+    let written = evidence.map(|evidence| {
         write_file(&picture(folder, &evidence.name), |out| {
             match &evidence.expected {
                 Some(expected) => evidence.rendered.write_beside(expected, out),
                 None => evidence.rendered.write(out),
             }
-        })?;
-    }
-    Ok(())
+        })
+    });
+    written.fold(Ok(()), Result::and)
 }

@@ -24,7 +24,7 @@ use outputs::{AovFile, HeatMapFile, MOST_PIXELS, OutputOptions, Outputs};
 use serde::Serialize;
 use shutter::scenes;
 use std::ops::Range;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
 /// Render a picture from a blob or a scene file, or an animation
@@ -120,6 +120,14 @@ enum Target<'a> {
 }
 
 impl<'a> Target<'a> {
+    /// All files that are written; `output` is the requested one.
+    fn files(&self, output: &Path) -> Vec<PathBuf> {
+        match self {
+            Self::Picture(outputs) => outputs.files().map(Path::to_owned).collect(),
+            Self::Frames(frames, range) => frames.files(output, range),
+        }
+    }
+
     /// Returns the requested output, or an error for names that cannot be written to.
     fn of(arguments: &'a Arguments) -> Result<Self, Failure> {
         let Some(frames) = &arguments.time.frames else {
@@ -168,6 +176,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         &arguments.with,
         Structure::Wide,
     )?;
+    source.reject_lost(target.files(&arguments.files.output))?;
     let scene = source.scene()?;
     let unresolved = source.warn_of_unresolved(&scene, Some(arguments.with.format));
     let job = job(arguments, (&source, &scene), target.most_pixels())?;

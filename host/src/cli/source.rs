@@ -1,6 +1,7 @@
 //! The input of a command: a scene blob, or a scene file that is compiled on the spot.
 //! The first bytes distinguish them.
 
+mod files;
 mod warnings;
 
 use super::arguments::{LightChange, SceneOptions, TraceOptions, check_quality, check_room};
@@ -18,7 +19,7 @@ use gridel_host::resolution::{FACTOR, Unresolved, unresolved};
 use gridel_host::scene::{self, Imported, Posed, Track};
 use gridel_host::state::{self, State, StateError};
 use gridel_host::table::{counted, grouped, printable, significant};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use warnings::leave_out;
 pub use warnings::warn_of_file;
 
@@ -44,6 +45,8 @@ pub struct Source {
     pub copied: usize,
     /// Effects of a scene file that were left out.
     without: Effects,
+    /// The files that a scene file was read from.
+    files: Vec<PathBuf>,
     /// How a scene file was read and compiled.
     made_by: Option<(scene::ImportOptions, compile::Options)>,
 }
@@ -142,6 +145,7 @@ impl Source {
             has_idle_tracks: false,
             copied: 0,
             without: Effects::NONE,
+            files: Vec::new(),
             made_by: None,
         })
     }
@@ -197,6 +201,7 @@ impl Source {
             blob,
             report: Some(report),
             warnings,
+            files: imported.files,
             changes: None,
             for_pictures: None,
             names: Some(names),

@@ -40,7 +40,7 @@ use std::time::Instant;
 ///
 /// A ray is rejected if it has a NaN, if its direction is zero, or if its origin or direction is
 /// infinite. It is rejected, too, if tmin is greater than tmax, or if its origin is more than 2^37
-/// units away (2^21 times the width of the largest scene). A ray whose closest hit has a t beyond
+/// units of the lattice away, 2^21 times the lattice's width (`gridel inspect` shows the unit). A ray whose closest hit has a t beyond
 /// double precision is rejected; with --any, which needs no t, it is answered. t of a rejected ray is
 /// nan in the file. Rejected rays are counted separately from misses. The first one is printed with
 /// its row and the reason.
@@ -180,6 +180,8 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     check_arguments(arguments)?;
     let options = arguments.geometry.clone().into();
     let source = Source::to_trace(&arguments.input, &options, &arguments.with, Structure::Wide)?;
+    let names = arguments.names.iter().flatten();
+    source.reject_lost(names.chain([&arguments.output]))?;
     let scene = source.scene()?;
     let query = Query {
         format: arguments.with.format,

@@ -58,10 +58,10 @@ pub(super) fn bounced_rate(row: &Row) -> Option<f64> {
     row.work?.bounced?.rays_per_second
 }
 
-/// Planes, cells and primitives: everything that a ray is tested against.
+/// Tests per ray, as [`gridel_core::Counters::tests`] counts them.
 fn tests(row: &Row) -> Option<f64> {
     let all = row.work?.all;
-    Some(all.planes + all.cells + all.objects)
+    Some(all.boxes + all.cells + all.objects)
 }
 
 /// Ratio below which figures count as equal: the noise of a shared machine.

@@ -38,10 +38,9 @@ impl Rendered {
         self.picture.counters.unwrap_or_default().rays()
     }
 
-    /// Boxes and primitives that were tested; 0 if they were not counted.
+    /// The [tests](gridel_core::Counters::tests) of all rays; 0 if they were not counted.
     pub fn tests(&self) -> u64 {
-        let counters = self.picture.counters.unwrap_or_default();
-        counters.boxes + counters.objects
+        self.picture.counters.unwrap_or_default().tests()
     }
 
     /// Tests per ray.

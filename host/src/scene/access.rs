@@ -10,7 +10,7 @@ use super::files::{Files, lexical};
 use super::image::Texels;
 use std::io;
 use std::path::{Path, PathBuf};
-use std::sync::Arc;
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 /// The files that a scene may name.
 #[derive(Clone, Debug)]
@@ -21,6 +21,8 @@ pub(super) struct Access {
     files: Option<Arc<Files>>,
     /// Those of the images that were read so far.
     pub(super) texels: Texels,
+    /// The files that were read so far, of all clones.
+    read: Arc<Mutex<Vec<PathBuf>>>,
 }
 
 /// Why a file that a scene names cannot be used: `E` says it in words.
@@ -51,6 +53,7 @@ impl Access {
             folder: (!allow_outside).then(resolved),
             files: None,
             texels: Texels::default(),
+            read: Arc::default(),
         }
     }
 
@@ -60,6 +63,7 @@ impl Access {
             folder: None,
             files: Some(Arc::new(files.clone())),
             texels: Texels::default(),
+            read: Arc::default(),
         }
     }
 
@@ -78,10 +82,16 @@ impl Access {
                     true => std::fs::read(path),
                     false => Err(io::Error::other("it is not a file")),
                 });
+                self.read_files().push(path.to_owned());
                 (bytes, "check that the path names a file you may read")
             }
         };
         bytes.map_err(|error| SceneError::new(path, format!("cannot be read: {error}"), remedy))
+    }
+
+    /// The files of a disk that were read so far.
+    pub(super) fn read_files(&self) -> MutexGuard<'_, Vec<PathBuf>> {
+        self.read.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
     /// The one path of a file that is there.

@@ -143,11 +143,16 @@ pub fn load(path: &Path, molecule: &MoleculeOptions) -> Result<Imported, SceneEr
 pub fn load_with(path: &Path, options: &ImportOptions) -> Result<Imported, SceneError> {
     let access = Access::of(path, options.allow_outside);
     let (importer, input) = Importers(IMPORTERS).open(path, Choices::of(options), &access)?;
-    finish(importer.import(input)?, options)
+    finish(importer.import(input)?, options, &access)
 }
 
 /// Shades and flattens the scene as the options require.
-fn finish(mut imported: Imported, options: &ImportOptions) -> Result<Imported, SceneError> {
+fn finish(
+    mut imported: Imported,
+    options: &ImportOptions,
+    access: &Access,
+) -> Result<Imported, SceneError> {
+    imported.files = access.read_files().clone();
     let scene = &mut imported.scene;
     let in_parts = scene.parts.iter_mut().flat_map(|part| &mut part.objects);
     for object in scene.objects.iter_mut().chain(in_parts) {
@@ -214,7 +219,7 @@ pub fn read(name: &Path, bytes: Vec<u8>, options: &ImportOptions) -> Result<Impo
     let access = Access::of(name, options.allow_outside);
     let (importer, input) =
         Importers(IMPORTERS).input(name, bytes, Choices::of(options), &access)?;
-    finish(importer.import(input)?, options)
+    finish(importer.import(input)?, options, &access)
 }
 
 /// Reads a scene from files in memory; `name` is the scene's file. Files that the scene names are found by their paths.
@@ -240,5 +245,5 @@ pub fn read_among(
 ) -> Result<Imported, SceneError> {
     let access = Access::among(files);
     let (importer, input) = Importers(IMPORTERS).open(name, Choices::of(options), &access)?;
-    finish(importer.import(input)?, options)
+    finish(importer.import(input)?, options, &access)
 }

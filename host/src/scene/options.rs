@@ -3,6 +3,7 @@
 use super::model::Scene;
 use super::normals::NormalsChoice;
 use serde::{Deserialize, Serialize};
+use std::path::PathBuf;
 
 /// Choices that a molecule file leaves to a person.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -48,6 +49,8 @@ pub struct Imported {
     pub posed: Option<Posed>,
     /// Number of instances that were copied, as [`ImportOptions::instances`] requires.
     pub copied: usize,
+    /// The files of a disk that were read: the scene's, and those that it names.
+    pub files: Vec<PathBuf>,
 }
 
 impl Imported {
@@ -61,6 +64,7 @@ impl Imported {
             assemblies: false,
             posed: None,
             copied: 0,
+            files: Vec::new(),
         }
     }
 }

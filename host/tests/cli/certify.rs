@@ -175,3 +175,11 @@ fn manifests_ask_for_a_proved_share_and_a_largest_error() {
         folder.fails(1, &["check", "check.toml"], &[what, "check.toml"]);
     }
 }
+
+#[test]
+fn blobs_with_clusters_alone_are_certified() {
+    let folder = folder();
+    folder.done(&["build", "ball.toml", "--accel", "wide", "-o", "wide.gridel"]);
+    let report = folder.json(&["certify", "wide.gridel", "--size", "13x7", "-o", "out"]);
+    assert_eq!(report["pixels"], 91);
+}

@@ -166,7 +166,7 @@ fn files_that_are_read_stay() {
     let manifest = "[[check]]\nscene = \"quick.toml\"\nreference = \"quick-f32.png\"\n\
                     [[check]]\nname = \"blob\"\nscene = \"quick.gridel\"\n\
                     reference = \"sub/blob-f32.png\"\n\
-                    [[check.board]]\nmachine = \"m\"\nelf = \"program.elf\"\n";
+                    [[check.board]]\nmachine = \"m\"\nelf = \"program.elf\"\nbudget = { loops = 1 }\n";
     folder.write("check.toml", manifest.as_bytes());
     let read = [
         "check.toml",
@@ -366,5 +366,16 @@ budget = { loops = 1 }
         1,
         &["check", "folder.toml"],
         &["folder.toml:2", "is a folder, and no scene"],
+    );
+}
+
+#[test]
+fn reports_for_programs_do_not_share_standard_output() {
+    let folder = folder();
+    let run = folder.run(&["check", "check.toml", "--json", "--junit", "-"]);
+    assert_eq!((run.code, run.stdout.as_str()), (Some(2), ""), "{run:?}");
+    assert!(
+        run.said().contains("cannot both go to standard output"),
+        "{run:?}"
     );
 }

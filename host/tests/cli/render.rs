@@ -288,3 +288,37 @@ fn outputs_are_checked_and_must_differ() {
     render("a.png", "b.png", &["b.png cannot be written"], 1);
     assert!(!folder.path("a.png").exists());
 }
+
+#[test]
+fn files_that_a_scene_reads_are_not_written_over() {
+    let folder = Folder::new();
+    let ball = "[[object]]\nkind = 'import'\nfile = 'leaf.obj'\n";
+    folder.write("leaf.obj", b"v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
+    folder.write("tree.toml", ball.as_bytes());
+    let leaf = folder.read("leaf.obj");
+    std::os::unix::fs::symlink("leaf.obj", folder.path("leaf.png")).unwrap();
+    std::os::unix::fs::symlink("leaf.obj", folder.path("leaf.xml")).unwrap();
+    folder.write("check.toml", b"[[check]]\nscene = 'tree.toml'\nhash = {}\n");
+    let quick = ["--size", "8x8"];
+    for run in [
+        &[&["render", "tree.toml", "-o", "leaf.png"], &quick[..]].concat()[..],
+        &[
+            &[
+                "render",
+                "tree.toml",
+                "-o",
+                "x.png",
+                "--heat-map",
+                "leaf.png",
+            ],
+            &quick[..],
+        ]
+        .concat(),
+        &["check", "check.toml", "--junit", "leaf.xml"],
+    ] {
+        let run = folder.run(run);
+        assert_eq!(run.code, Some(2), "{run:?}");
+        assert!(run.said().contains("reads, which would be lost"), "{run:?}");
+        assert_eq!(folder.read("leaf.obj"), leaf);
+    }
+}

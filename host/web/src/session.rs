@@ -9,7 +9,7 @@ use gridel_core::{Effects, Format, Settings, Structure};
 use gridel_host::blob::Blob;
 use gridel_host::compile::{Compiled, LATTICE_BITS, Options, compile};
 use gridel_host::explain::{Shown, Subject, explain};
-use gridel_host::measure::board::{BOARDS, Board, Fit, MemoryReport, Target};
+use gridel_host::measure::board::{BOARDS, Board, Fit, MemoryReport, Rendering, Target};
 use gridel_host::scene::{
     self, Camera, Files, ImportOptions, Imported, effect_named, shown_without,
 };
@@ -209,7 +209,15 @@ impl Session {
             None => self.loaded(0)?,
         };
         let format = of.format.map_or_else(|| board.format(), |it| it.0);
-        let report = MemoryReport::of(loaded.scene()?, loaded.bytes(), &target, format);
+        let report = {
+            let scene = loaded.scene()?;
+            MemoryReport::of(
+                scene,
+                loaded.bytes(),
+                &target,
+                &Rendering::of(scene, format),
+            )
+        };
         let report = report.map_err(|it| {
             Problem::new(
                 format!("{} was not measured on boards", it.0.name()),

@@ -11,7 +11,7 @@ use crate::scenes::{self, Compiled, repository};
 use gridel_core::{Format, Rgb565, Structure};
 use gridel_host::measure::board::Board;
 use gridel_host::measure::board::programs::{Footprint, Profile, ProgramKey, Programs, everything};
-use gridel_host::measure::board::{MemoryReport, Target};
+use gridel_host::measure::board::{MemoryReport, Rendering, Target};
 use gridel_host::measure::board_memory;
 use std::path::PathBuf;
 use std::sync::Mutex;
@@ -277,8 +277,13 @@ fn reported_and_linked(
         flash: board.flash,
         ram: board.ram,
     };
-    let report =
-        MemoryReport::of(&view, scene.blob.bytes(), &target, format).expect("dual-split nodes");
+    let report = MemoryReport::of(
+        &view,
+        scene.blob.bytes(),
+        &target,
+        &Rendering::of(&view, format),
+    )
+    .expect("dual-split nodes");
     let sizes = [report.fast, report.small].map(|sizes| sizes.call_stack.expect("known"));
     let reported = [
         report.flash.used.expect("known"),

@@ -11,11 +11,6 @@ fn main() -> ExitCode {
     let bindings = cbindgen::Builder::new()
         .with_config(config)
         .with_src(library.join("src/lib.rs"))
-        .with_src(library.join("src/status.rs"))
-        .with_src(library.join("src/types.rs"))
-        .with_src(library.join("src/load.rs"))
-        .with_src(library.join("src/cast.rs"))
-        .with_src(library.join("src/render.rs"))
         .generate()
         .expect("the declarations are valid");
     let mut text = Vec::new();

@@ -6,7 +6,7 @@ use crate::scene::SceneError;
 use crate::scene::toml::value::Value;
 use gridel_core::Format;
 use std::collections::BTreeMap;
-use std::path::Path;
+use std::path::{Component, Path};
 
 /// A program on an emulated board.
 #[derive(Clone, Debug)]
@@ -83,20 +83,47 @@ impl Board {
                 ));
             }
         };
+        let budget: BTreeMap<String, u64> = fields.or("budget", BTreeMap::new(), |table| {
+            let entries = table.entries()?.into_iter();
+            entries
+                .map(|(name, value)| Ok((name.text, value.count()?)))
+                .collect()
+        })?;
+        let picture = fields.or("picture", None, |value| {
+            let name = text(value)?;
+            let mut parts = Path::new(&name).components();
+            match (parts.next(), parts.next()) {
+                (Some(Component::Normal(_)), None) => Ok(Some(name)),
+                _ => Err(value.error(
+                    "the picture is a file in the folder in which the program runs",
+                    "write the name of the file that the program writes, without a folder",
+                )),
+            }
+        })?;
+        if budget.is_empty() && picture.is_none() {
+            return Err(table.error(
+                "this board expects nothing, so nothing could break it",
+                "add a `budget` of figures that the program prints, or the `picture` that it writes",
+            ));
+        }
+        let mut emulator = fields.or("emulator", String::from("qemu-system-arm"), text)?;
+        // A name is looked up as a shell does, a path from the manifest.
+        if Path::new(&emulator).components().count() > 1 {
+            let path = folder.join(&emulator);
+            emulator = std::path::absolute(&path)
+                .unwrap_or(path)
+                .to_string_lossy()
+                .into_owned();
+        }
         Ok(Self {
             machine: text(fields.require("machine")?)?,
-            emulator: fields.or("emulator", String::from("qemu-system-arm"), text)?,
+            emulator,
             program,
-            picture: fields.or("picture", None, |value| text(value).map(Some))?,
+            picture,
             format: fields.or("format", Format::F32, format)?,
             shift: fields.or("shift", 4, |value| value.integer_in(0..=10))?,
             seconds: fields.or("seconds", 300, |value| value.integer_in(1..=86_400))?,
-            budget: fields.or("budget", BTreeMap::new(), |table| {
-                let entries = table.entries()?.into_iter();
-                entries
-                    .map(|(name, value)| Ok((name.text, value.count()?)))
-                    .collect()
-            })?,
+            budget,
         })
     }
 }

@@ -71,6 +71,16 @@ fn failures_are_broken_and_what_is_missing_is_not_run() {
     let text = first(&board(&toy, budget));
     assert!(matches!(&text.outcome, Outcome::Failed(why) if why.contains("is not an ELF file")));
     fs::write(folder.path("program.elf"), "\x7fELF").unwrap();
+    let twice = emulator(&folder, "echo loops 9; echo loops 1 >&2");
+    let twice = first(&board(&twice, budget));
+    assert!(
+        matches!(&twice.outcome, Outcome::Failed(why) if why.contains("\"loops\" twice: 9 and 1"))
+    );
+    // A path is the manifest's, wherever the program is called.
+    emulator(&folder, "echo loops 1");
+    let found = first(&board("./emulator", budget));
+    assert_eq!(found.outcome, Outcome::Passed);
+    let toy = emulator(&folder, "echo no luck >&2; exit 3");
     let failed = first(&board(&toy, budget));
     assert!(matches!(&failed.outcome, Outcome::Failed(why) if why.contains("no luck")));
     let toy = emulator(&folder, "exec sleep 60");

@@ -171,7 +171,7 @@ fn evidence_has_names_of_its_own() {
     let folder = Folder::new();
     let check =
         |name: &str| format!("[[check]]\nscene = \"ball.toml\"\nname = \"{name}\"\nhash = {{}}\n");
-    let board = "[[check.board]]\nmachine = \"c\"\nelf = \"e\"\n";
+    let board = "[[check.board]]\nmachine = \"c\"\nelf = \"e\"\nbudget = { x = 1 }\n";
     let text = ["a/b", "a b", "A:B"].map(check).concat() + board + board;
     let manifest = folder.manifest(&text).unwrap();
     let names: Vec<_> = manifest.evidence().collect();
@@ -216,7 +216,9 @@ fn pictures_that_differ_are_not_recorded_as_one_reference() {
     let folder = Folder::new();
     fs::write(folder.path("dark.toml"), BALL.replace("= 0.5", "= 0.4")).unwrap();
     let check = |scene: &str, tolerance: &str| {
-        format!("[[check]]\nscene = \"{scene}.toml\"\nreference = \"one.png\"\n{tolerance}")
+        // Two paths of one file.
+        let path = if scene == "dark" { "./" } else { "" };
+        format!("[[check]]\nscene = \"{scene}.toml\"\nreference = \"{path}one.png\"\n{tolerance}")
     };
     let both = |tolerance: &str| check("ball", tolerance) + &check("dark", tolerance);
     for _ in 0..2 {
@@ -253,6 +255,7 @@ fn pictures_that_differ_are_not_recorded_as_one_reference() {
 #[test]
 fn gray_references_are_compared() {
     let folder = Folder::new();
+    let pixel = [188, 255];
     for (color, channels) in [
         (png::ColorType::Grayscale, 1),
         (png::ColorType::GrayscaleAlpha, 2),
@@ -262,7 +265,7 @@ fn gray_references_are_compared() {
         encoder.set_color(color);
         let mut writer = encoder.write_header().unwrap();
         writer
-            .write_image_data(&vec![188; 16 * 12 * channels])
+            .write_image_data(&pixel[..channels].repeat(16 * 12))
             .unwrap();
         writer.finish().unwrap();
         let text = "[[check]]\nscene = \"ball.toml\"\nreference = \"gray.png\"\n";
@@ -292,4 +295,52 @@ fn what_the_lattice_leaves_out_is_a_warning() {
         folder.run("[[check]]\nscene = \"ball.toml\"\nhash = {}\nlattice_bits = 16\n");
     assert_eq!(report.warnings.len(), 1, "{:?}", report.warnings);
     assert!(report.warnings[0].contains("too small for the lattice, left out"));
+}
+
+#[test]
+fn a_manifest_that_changed_meanwhile_is_not_written_over() {
+    let folder = Folder::new();
+    let text = "[[check]]\nscene = \"ball.toml\"\nhash = {}\n";
+    let (manifest, report) = folder.run(text);
+    let edited = format!("# edited\n{text}");
+    fs::write(folder.path("check.toml"), &edited).unwrap();
+    let (path, error) = bless(&manifest, &report).files().unwrap_err();
+    assert_eq!(path, folder.path("check.toml"));
+    assert!(error.to_string().contains("has changed"), "{error}");
+    assert_eq!(folder.text(), edited);
+}
+
+#[test]
+fn figures_that_differ_little_are_shown_in_full() {
+    let folder = Folder::new();
+    let with = |most: &str| {
+        format!("[[check]]\nscene = \"ball.toml\"\nbudget = {{ tests_per_ray = {most} }}\n")
+    };
+    let (_, report) = folder.run(&with("0.0"));
+    let Some(Figure::Mean(mean)) = report.findings[0].found else {
+        panic!("{report:?}");
+    };
+    let most = mean - 1e-9;
+    let (_, report) = folder.run(&with(&most.to_string()));
+    let expected = format!("tests_per_ray is {mean}, and at most {most} is allowed");
+    assert_eq!(why(&report.findings[0]), expected);
+}
+
+#[test]
+fn transparent_references_are_rejected() {
+    let folder = Folder::new();
+    let mut bytes = Vec::new();
+    let mut encoder = png::Encoder::new(&mut bytes, 16, 12);
+    encoder.set_color(png::ColorType::Rgba);
+    let mut writer = encoder.write_header().unwrap();
+    writer.write_image_data(&[0; 16 * 12 * 4]).unwrap();
+    writer.finish().unwrap();
+    fs::write(folder.path("r.png"), bytes).unwrap();
+    let (_, report) = folder.run(
+        "[[check]]\nscene = \"ball.toml\"\nreference = \"r.png\"\ntolerance = { channel = 255 }\n",
+    );
+    assert!(
+        why(&report.findings[0]).contains("transparent"),
+        "{report:?}"
+    );
 }

@@ -45,9 +45,9 @@ fn mistakes_name_line_cause_and_remedy() {
         ),
         (
             "[[check]]\nscene = \"a\"\n[[check.board]]\nmachine = \"m\"\nelf = \"e\"",
-            1,
-            "expects nothing",
-            "`board`",
+            3,
+            "this board expects nothing",
+            "add a `budget`",
         ),
         (
             "[[check]]\nscene = \"a\"\nhash = { f32 = \"zz\" }",
@@ -150,6 +150,18 @@ fn mistakes_name_line_cause_and_remedy() {
             5,
             "both",
             "remove one",
+        ),
+        (
+            "[[check]]\nscene = \"a\"\nhash = {}\n[[check.board]]\nmachine = \"m\"\nelf = \"e\"",
+            4,
+            "this board expects nothing",
+            "add a `budget`",
+        ),
+        (
+            "[[check]]\nscene = \"a\"\n[[check.board]]\nmachine = \"m\"\nelf = \"e\"\npicture = \"/tmp/p\"",
+            6,
+            "the folder in which the program runs",
+            "without a folder",
         ),
     ] {
         let error = folder.manifest(text).unwrap_err();

@@ -139,3 +139,32 @@ fn target_takes_the_formats_that_the_board_computes() {
         assert_eq!(found, on);
     }
 }
+
+#[test]
+fn target_is_held_to_the_structure_and_the_size_of_the_check() {
+    let folder = Folder::new();
+    let imported = crate::scene::load_with(&folder.path("ball.toml"), &Default::default()).unwrap();
+    let options = crate::compile::Options {
+        structures: vec![
+            gridel_core::Structure::DualSplit,
+            gridel_core::Structure::Octree,
+        ],
+        ..Default::default()
+    };
+    let compiled = crate::compile::compile(&imported.scene, &options).unwrap();
+    fs::write(folder.path("ball.gridel"), compiled.blob.bytes()).unwrap();
+    let of_blob = |lines: &str| on_discovery(lines).replace("ball.toml", "ball.gridel");
+    let (_, report) = folder.run(&of_blob("accel = \"octree\"\n"));
+    assert!(
+        why(&report.findings[0]).contains("nothing is known of the code"),
+        "{report:?}"
+    );
+    // A list takes more code than the nodes that are best, as in a blob of its own.
+    let flash = |text: &str| found(&folder.run(text).1, "target flash");
+    let code_of = |accel: &str| flash(&of_blob(&format!("accel = \"{accel}\"\n")));
+    assert_ne!(code_of("list"), code_of("dual-split"));
+    let ram = |text: &str| found(&folder.run(text).1, "target ram");
+    let wide = "accel = \"dual-split\"\nsize = [640, 10]\n";
+    let narrow = ram(&of_blob("accel = \"dual-split\"\nsize = [16, 12]\n"));
+    assert_eq!(ram(&of_blob(wide)), narrow + 2 * (640 - 16));
+}

@@ -7,7 +7,7 @@ use clap::Args;
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use glam::DVec3;
 use gridel_core::{Format, Scene, Structure};
-use gridel_host::measure::board::{BOARDS, Board, MemoryReport, NotMeasured, Target};
+use gridel_host::measure::board::{BOARDS, Board, MemoryReport, NotMeasured, Rendering, Target};
 use std::ffi::OsStr;
 
 /// The memory that a scene is to fit into.
@@ -76,7 +76,8 @@ impl TargetOptions {
         let Some(target) = self.target() else {
             return Ok(None);
         };
-        let report = MemoryReport::of(scene, blob, &target, format);
+        let rendering = Rendering::of(scene, format);
+        let report = MemoryReport::of(scene, blob, &target, &rendering);
         report.map(Some).map_err(|NotMeasured(structure)| {
             Failure::usage(
                 format!(

@@ -82,6 +82,14 @@ impl TimeOptions {
 }
 
 impl Output {
+    /// All files that are written; `path` is the requested one.
+    pub fn files(&self, path: &Path, frames: &Range<u32>) -> Vec<PathBuf> {
+        match self {
+            Self::Animation(_) => vec![path.to_owned()],
+            Self::Numbered(name, _) => frames.clone().map(|it| name.of(it).into()).collect(),
+        }
+    }
+
     /// The output of some frames; an error for names that cannot be written to.
     pub fn of(
         options: &TimeOptions,

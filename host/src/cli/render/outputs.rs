@@ -176,6 +176,12 @@ impl<'a> Outputs<'a> {
         Ok(())
     }
 
+    /// All files that are written.
+    pub fn files(&self) -> impl Iterator<Item = &Path> {
+        let aovs = self.own_files().iter().map(|it| &*it.file);
+        [self.picture].into_iter().chain(self.heat_map).chain(aovs)
+    }
+
     /// The AOVs that have files of their own.
     fn own_files(&self) -> &[AovFile] {
         match self.stored {

@@ -14,10 +14,11 @@ use super::Board;
 use super::account::Account;
 use super::estimate::{CODE, PROFILES, ProgramEstimate};
 use super::programs::{Known, Profile, Programs};
+use super::rendering::Rendering;
 use crate::measure::bytes::{MemoryMap, board_memory};
 use crate::measure::deforming::Deforming;
 use crate::table::{counted, grouped};
-use gridel_core::{Format, Motion, Poses, Prevalidated, Rgb565, Scene, Structure, Tracks};
+use gridel_core::{Motion, Poses, Prevalidated, Rgb565, Scene, Structure, Tracks};
 use serde::Serialize;
 
 /// Memory of a board that a scene is to fit into.
@@ -80,8 +81,7 @@ impl MemoryReport {
     /// The structures that were measured: those that firmware can prevalidate.
     pub const STRUCTURES: [Structure; 4] = Prevalidated::STRUCTURES;
 
-    /// Returns the report of a scene in `blob`, in one of the board's number formats, through the best structure of the
-    /// blob.
+    /// Returns the report of a scene in `blob`, as a program renders it.
     ///
     /// # Errors
     /// If the structure is not one of [`Self::STRUCTURES`].
@@ -93,7 +93,7 @@ impl MemoryReport {
     /// # let blob = compile(&imported.scene, &Options::default())?.blob;
     /// # let scene = blob.scene()?;
     /// use gridel_core::Format;
-    /// use gridel_host::measure::board::{Board, Fit, MemoryReport, Target};
+    /// use gridel_host::measure::board::{Board, Fit, MemoryReport, Rendering, Target};
     ///
     /// let board = Board::named("stm32vldiscovery").ok_or("unknown board")?;
     /// let target = Target {
@@ -101,7 +101,8 @@ impl MemoryReport {
     ///     flash: board.flash,
     ///     ram: board.ram,
     /// };
-    /// let report = MemoryReport::of(&scene, blob.bytes(), &target, Format::Fixed);
+    /// let rendering = Rendering::of(&scene, Format::Fixed);
+    /// let report = MemoryReport::of(&scene, blob.bytes(), &target, &rendering);
     /// let report = report.map_err(|_| "not measured")?;
     /// assert!(matches!(report.fit(), Fit::Fits));
     /// # Ok::<(), Box<dyn std::error::Error>>(())
@@ -110,9 +111,9 @@ impl MemoryReport {
         scene: &Scene<'_>,
         blob: &[u8],
         target: &Target,
-        format: Format,
+        rendering: &Rendering,
     ) -> Result<Self, NotMeasured> {
-        Self::by(&Programs::recorded(), scene, blob, target, format)
+        Self::by(&Programs::recorded(), scene, blob, target, rendering)
     }
 
     /// Returns the report with figures of programs of your own.
@@ -121,10 +122,14 @@ impl MemoryReport {
         scene: &Scene<'_>,
         blob: &[u8],
         target: &Target,
-        format: Format,
+        rendering: &Rendering,
     ) -> Result<Self, NotMeasured> {
         let board = target.board;
-        let structure = scene.best_structure();
+        let &Rendering {
+            format,
+            structure,
+            width,
+        } = rendering;
         if !Self::STRUCTURES.contains(&structure) {
             return Err(NotMeasured(structure));
         }
@@ -166,7 +171,6 @@ impl MemoryReport {
             Some(need.stack as u64),
         );
         ram.add(WORK_LIST, Some((need.workspace - need.stack) as u64));
-        let width = scene.view().width;
         let row = u64::from(width) * size_of::<Rgb565>() as u64;
         ram.add(format!("row of {width} pixels, RGB565"), Some(row));
         let stacks = PROFILES.map(|profile| program.call_stack(profile));
@@ -332,6 +336,7 @@ mod tests {
     use crate::measure::board::BOARDS;
     use crate::measure::board::estimate::{CODE, FEW};
     use crate::measure::board::programs::Footprint;
+    use gridel_core::Format;
 
     const STRUCTURE: Structure = Structure::DualSplit;
 
@@ -358,7 +363,7 @@ mod tests {
             &scene,
             compiled.blob.bytes(),
             &target,
-            Format::Fixed,
+            &Rendering::of(&scene, Format::Fixed),
         )
         .unwrap()
     }

@@ -18,11 +18,13 @@ mod instructions;
 mod memory;
 #[doc(hidden)]
 pub mod programs;
+mod rendering;
 mod text;
 
 pub use account::{Account, Item};
 pub use instructions::{PICTURE_COSTS, PictureCost, core_names, instructions, names};
 pub use memory::{Fit, MemoryReport, NotMeasured, Sizes, Target, WORK_LIST};
+pub use rendering::Rendering;
 
 use gridel_core::Format;
 
