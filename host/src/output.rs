@@ -1,18 +1,12 @@
 //! Output files that are written whole or not at all.
 
+pub mod unfinished;
+
 use std::fs::{self, File, OpenOptions};
 use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};
-use std::sync::{Mutex, MutexGuard, PoisonError};
 use tempfile::NamedTempFile;
-
-/// Files that are being written, under the names they have until they are complete.
-static UNFINISHED: Mutex<Vec<PathBuf>> = Mutex::new(Vec::new());
-
-fn unfinished() -> MutexGuard<'static, Vec<PathBuf>> {
-    // A list of paths is complete even if the thread that locked it panicked.
-    UNFINISHED.lock().unwrap_or_else(PoisonError::into_inner)
-}
+use unfinished::unfinished;
 
 /// Writes a file whole or not at all: what was there stays until the new content is complete.
 ///
@@ -105,7 +99,7 @@ impl Files {
         let mut unfinished = unfinished();
         let mut files = std::mem::take(&mut self.complete).into_iter();
         let kept = files.try_for_each(|(file, target)| {
-            unfinished.retain(|path| path != file.path());
+            unfinished.paths.retain(|path| path != file.path());
             match file.persist(&target) {
                 Ok(_) => Ok(()),
                 Err(error) => Err((target, error.error)),
@@ -121,22 +115,11 @@ impl Drop for Files {
     fn drop(&mut self) {
         let mut unfinished = unfinished();
         for (file, _) in self.complete.drain(..) {
-            unfinished.retain(|path| path != file.path());
+            unfinished.paths.retain(|path| path != file.path());
             // It removes itself here, before others can see the list.
             drop(file);
         }
     }
-}
-
-/// Removes what writing has left so far, and ends the program: for whoever handles an interrupt.
-pub fn exit_removing_unfinished(exit_code: i32) -> ! {
-    let unfinished = unfinished();
-    for path in unfinished.iter() {
-        // The program ends, so a failure is not reported.
-        let _ = fs::remove_file(path);
-    }
-    // The list stays locked, so that no other thread starts or completes a file meanwhile.
-    std::process::exit(exit_code)
 }
 
 fn create_beside(target: &Path) -> io::Result<NamedTempFile> {
@@ -148,7 +131,7 @@ fn create_beside(target: &Path) -> io::Result<NamedTempFile> {
         .make_in(folder.unwrap_or(Path::new(".")), |path| {
             OpenOptions::new().write(true).create_new(true).open(path)
         })?;
-    unfinished.push(file.path().to_owned());
+    unfinished.paths.push(file.path().to_owned());
     Ok(file)
 }
 
@@ -192,6 +175,7 @@ mod tests {
         assert_eq!(names(folder.path()), ["out"]);
         assert!(
             unfinished()
+                .paths
                 .iter()
                 .all(|path| !path.starts_with(folder.path()))
         );

@@ -3,11 +3,12 @@
 use super::manifest::{Board, Firmware, Manifest, Named, Program};
 use crate::blob::Blob;
 use crate::explained;
+use crate::output::unfinished::{Running, TemporaryFolder};
 use std::collections::BTreeMap;
 use std::fs::{self, File};
 use std::io::{self, Read};
 use std::path::{Path, PathBuf};
-use std::process::{Child, Command, ExitStatus, Stdio};
+use std::process::{Command, ExitStatus, Stdio};
 use std::time::{Duration, Instant};
 
 /// How a program ran.
@@ -52,7 +53,7 @@ fn try_run(manifest: &Manifest, board: &Board, blob: &Blob) -> Result<Output, Ob
             board.emulator
         )));
     }
-    let folder = tempfile::tempdir().map_err(failed("a temporary folder cannot be made"))?;
+    let folder = TemporaryFolder::new().map_err(failed("a temporary folder cannot be made"))?;
     let program = match &board.program {
         Program::Elf(file) => built_before(manifest, file)?,
         Program::Firmware(firmware) => {
@@ -201,7 +202,8 @@ fn build(
 fn emulate(board: &Board, program: &Path, folder: &Path) -> Result<String, Obstacle> {
     let [printed, complaints] = ["stdout", "stderr"].map(|name| folder.join(name));
     let file = |path: &Path| File::create(path).map_err(failed("a temporary file cannot be made"));
-    let child = Command::new(&board.emulator)
+    let mut command = Command::new(&board.emulator);
+    command
         .args([
             "-M",
             &board.machine,
@@ -218,10 +220,10 @@ fn emulate(board: &Board, program: &Path, folder: &Path) -> Result<String, Obsta
         .current_dir(folder)
         .stdin(Stdio::null())
         .stdout(file(&printed)?)
-        .stderr(file(&complaints)?)
-        .spawn()
+        .stderr(file(&complaints)?);
+    let running = Running::start(&mut command)
         .map_err(failed(format!("{} cannot be run", board.emulator)))?;
-    let ended = wait(child, Duration::from_secs(board.seconds.into()))
+    let ended = wait(&running, Duration::from_secs(board.seconds.into()))
         .map_err(failed(format!("{} cannot be run", board.emulator)))?;
     let text = |path: &Path| fs::read(path).unwrap_or_default();
     let Some(status) = ended else {
@@ -242,16 +244,14 @@ fn emulate(board: &Board, program: &Path, folder: &Path) -> Result<String, Obsta
     Ok(String::from_utf8_lossy(&lines).into_owned())
 }
 
-/// Waits for a process; ends it after a time, and returns `None` then.
-fn wait(mut child: Child, time: Duration) -> io::Result<Option<ExitStatus>> {
+/// Waits for a program; returns `None` if it runs for too long.
+fn wait(running: &Running, time: Duration) -> io::Result<Option<ExitStatus>> {
     let begun = Instant::now();
     loop {
-        if let Some(status) = child.try_wait()? {
+        if let Some(status) = running.ended()? {
             return Ok(Some(status));
         }
         if begun.elapsed() > time {
-            child.kill()?;
-            child.wait()?;
             return Ok(None);
         }
         std::thread::sleep(Duration::from_millis(20));

@@ -95,7 +95,7 @@ pub fn run(memory: &PeakAlloc) -> ExitCode {
         Err(answer) => return answered(&answer),
     };
     // Without a handler an interrupt would only leave a temporary file behind.
-    let _ = ctrlc::set_handler(|| gridel_host::output::exit_removing_unfinished(130));
+    let _ = ctrlc::set_handler(|| gridel_host::output::unfinished::exit_removing_unfinished(130));
     if let Err(cause) = gridel_host::simd::from_environment() {
         return failure::Failure::usage(cause, "unset the variable for the fastest").report();
     }

@@ -112,3 +112,44 @@ fn an_interrupt_leaves_the_old_file_and_nothing_else() {
     assert_eq!(folder.read("a.png"), b"old");
     assert_eq!(folder.names(), names);
 }
+
+#[cfg(unix)]
+#[test]
+fn an_interrupt_ends_the_emulator() {
+    use std::os::unix::fs::PermissionsExt;
+    let folder = Folder::with_quick();
+    let script = "#!/bin/sh\nif [ \"$1\" = --version ]; then exit 0; fi\n\
+                  echo $$ >\"$STARTED.new\"; mv \"$STARTED.new\" \"$STARTED\"; exec sleep 600\n";
+    folder.write("emulator", script.as_bytes());
+    let executable = PermissionsExt::from_mode(0o755);
+    std::fs::set_permissions(folder.path("emulator"), executable).unwrap();
+    folder.write("program.elf", b"\x7fELF");
+    let manifest = "[[check]]\nscene = \"quick.gridel\"\n[[check.board]]\nmachine = \"m\"\n\
+                    emulator = \"./emulator\"\nelf = \"program.elf\"\nbudget = { loops = 1 }\n";
+    folder.write("check.toml", manifest.as_bytes());
+    std::fs::create_dir(folder.path("temporary")).unwrap();
+    let mut child = folder
+        .command(&["check", "check.toml"])
+        .env("STARTED", folder.path("started"))
+        .env("TMPDIR", folder.path("temporary"))
+        .stdout(Stdio::null())
+        .stderr(Stdio::null())
+        .spawn()
+        .unwrap();
+    while !folder.path("started").exists() {
+        assert_eq!(child.try_wait().unwrap(), None);
+        std::thread::sleep(std::time::Duration::from_millis(20));
+    }
+    let emulator = String::from_utf8(folder.read("started")).unwrap();
+    let sh = |line: &str| {
+        let mut sh = std::process::Command::new("sh");
+        sh.args(["-c", line]).stderr(Stdio::null());
+        sh.status().unwrap().success()
+    };
+    assert!(sh(&format!("kill -0 {emulator}")));
+    assert!(sh(&format!("kill -INT {}", child.id())));
+    assert_eq!(child.wait().unwrap().code(), Some(130));
+    assert!(!sh(&format!("kill -0 {emulator}")));
+    let left = std::fs::read_dir(folder.path("temporary")).unwrap();
+    assert_eq!(left.count(), 0);
+}

@@ -1,0 +1,117 @@
+//! What an interrupt must not leave behind: files that are being written, temporary folders, and programs that run for
+//! this one.
+
+use std::fs;
+use std::io;
+use std::path::{Path, PathBuf};
+use std::process::{Child, Command, ExitStatus};
+use std::sync::{Mutex, MutexGuard, PoisonError};
+use tempfile::TempDir;
+
+/// All of it, at one time.
+pub(super) struct Unfinished {
+    /// Files under the names they have until they are complete, and folders.
+    pub(super) paths: Vec<PathBuf>,
+    running: Vec<Child>,
+}
+
+static UNFINISHED: Mutex<Unfinished> = Mutex::new(Unfinished {
+    paths: Vec::new(),
+    running: Vec::new(),
+});
+
+pub(super) fn unfinished() -> MutexGuard<'static, Unfinished> {
+    // The lists are complete even if the thread that locked them panicked.
+    UNFINISHED.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+/// Ends what runs, removes what writing has left so far, and ends the program: for whoever handles an interrupt.
+pub fn exit_removing_unfinished(exit_code: i32) -> ! {
+    let mut unfinished = unfinished();
+    // The program ends, so failures are not reported.
+    for child in &mut unfinished.running {
+        let _ = child.kill();
+        let _ = child.wait();
+    }
+    for path in &unfinished.paths {
+        let _ = match path.is_dir() {
+            true => fs::remove_dir_all(path),
+            false => fs::remove_file(path),
+        };
+    }
+    // The lists stay locked, so that no other thread starts or completes anything meanwhile.
+    std::process::exit(exit_code)
+}
+
+/// A temporary folder.
+#[derive(Debug)]
+pub struct TemporaryFolder(Option<TempDir>);
+
+impl TemporaryFolder {
+    /// Makes one.
+    ///
+    /// # Errors
+    /// If it cannot be made.
+    pub fn new() -> io::Result<Self> {
+        let mut unfinished = unfinished();
+        let folder = tempfile::tempdir()?;
+        unfinished.paths.push(folder.path().to_owned());
+        Ok(Self(Some(folder)))
+    }
+
+    /// Its path.
+    pub fn path(&self) -> &Path {
+        self.0.as_ref().map_or(Path::new(""), TempDir::path)
+    }
+}
+
+impl Drop for TemporaryFolder {
+    fn drop(&mut self) {
+        let mut unfinished = unfinished();
+        unfinished.paths.retain(|path| path != self.path());
+        // It is removed here, before others can see the list.
+        self.0 = None;
+    }
+}
+
+/// A program that runs for this one, and is ended with it.
+#[derive(Debug)]
+pub struct Running(u32);
+
+impl Running {
+    /// Starts a program.
+    ///
+    /// # Errors
+    /// If it cannot be started.
+    pub fn start(command: &mut Command) -> io::Result<Self> {
+        let mut unfinished = unfinished();
+        let child = command.spawn()?;
+        let id = child.id();
+        unfinished.running.push(child);
+        Ok(Self(id))
+    }
+
+    /// How it ended, if it has.
+    ///
+    /// # Errors
+    /// If the system cannot tell.
+    pub fn ended(&self) -> io::Result<Option<ExitStatus>> {
+        let mut unfinished = unfinished();
+        let mut running = unfinished.running.iter_mut();
+        running
+            .find(|child| child.id() == self.0)
+            .map_or(Ok(None), Child::try_wait)
+    }
+}
+
+impl Drop for Running {
+    fn drop(&mut self) {
+        let mut unfinished = unfinished();
+        if let Some(place) = unfinished.running.iter().position(|it| it.id() == self.0) {
+            let mut child = unfinished.running.swap_remove(place);
+            // One that has ended needs neither.
+            let _ = child.kill();
+            let _ = child.wait();
+        }
+    }
+}
