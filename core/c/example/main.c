@@ -33,6 +33,8 @@ static gridel_scene scene;
 static uint64_t stack[GRIDEL_STACK_BYTES_MAX / sizeof(uint64_t)];
 static uint64_t workspace[GRIDEL_WORKSPACE_BYTES_MAX / sizeof(uint64_t)];
 static unsigned char row[3 * WIDEST];
+/* A stack for one depth is whole words too, on boards of 32 bits as well. */
+typedef char stack_is_whole_words[GRIDEL_STACK_BYTES(5) % sizeof(uint64_t) == 0 ? 1 : -1];
 
 static int failed(const char *what, gridel_status status) {
   fprintf(stderr, "%s: %s\n", what, gridel_text(status));

@@ -82,7 +82,9 @@ impl Access {
                     true => std::fs::read(path),
                     false => Err(io::Error::other("it is not a file")),
                 });
-                self.read_files().push(path.to_owned());
+                if bytes.is_ok() {
+                    self.read_files().push(path.to_owned());
+                }
                 (bytes, "check that the path names a file you may read")
             }
         };

@@ -289,6 +289,7 @@ fn outputs_are_checked_and_must_differ() {
     assert!(!folder.path("a.png").exists());
 }
 
+#[cfg(unix)]
 #[test]
 fn files_that_a_scene_reads_are_not_written_over() {
     let folder = Folder::new();
