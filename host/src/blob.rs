@@ -1,7 +1,7 @@
 //! Blobs in memory and on disk.
 
 use crate::simd;
-use gridel_core::format::record::{ALIGNMENT, Header, MAGIC};
+use gridel_core::format::record::{Header, MAGIC, SECTION_ALIGNMENT};
 use gridel_core::{BlobError, Scene};
 use std::fmt;
 use std::fs::{self, File};
@@ -42,13 +42,14 @@ self_cell::self_cell!(
     }
 );
 
-const _: () = assert!(align_of::<u128>() == ALIGNMENT && size_of::<u128>() == ALIGNMENT);
+const _: () =
+    assert!(align_of::<u128>() == SECTION_ALIGNMENT && size_of::<u128>() == SECTION_ALIGNMENT);
 
 impl Buffer {
     /// So many zeros.
     pub(crate) fn zeros(length: usize) -> Self {
         Self {
-            words: vec![0; length.div_ceil(ALIGNMENT)],
+            words: vec![0; length.div_ceil(SECTION_ALIGNMENT)],
             length,
         }
     }

@@ -133,7 +133,7 @@ fn a_mirrored_scene_is_the_mirror_image() {
     let soup = lattice_soup(42, 60);
     let plain = scenes::blob(&soup, 24);
     let scene = plain.scene().expect("a scene");
-    assert_eq!(scene.header().origin, [0.0; 3]);
+    assert_eq!({ scene.header().origin }, [0.0; 3]);
     let rays: Vec<_> = rays::rays(&scene, 43)
         .take(part_of(4000, 1_000_000))
         .collect();

@@ -18,7 +18,7 @@
 
 /* The blob goes into flash, aligned as it must be. */
 __asm__(".section .rodata.blob, \"a\"\n"
-        ".balign 16\n"
+        ".balign 4\n"
         ".global blob_start, blob_end\n"
         "blob_start: .incbin \"" BLOB "\"\n"
         "blob_end: .byte 0\n"

@@ -50,7 +50,7 @@ enum gridel_status
   GRIDEL_STATUS_BUFFER_TOO_SMALL = 3,
   // The scene was not loaded, or loading it failed.
   GRIDEL_STATUS_NOT_LOADED = 4,
-  // The blob does not start at a multiple of 16 bytes.
+  // The blob does not start at a multiple of 4 bytes.
   GRIDEL_STATUS_BLOB_MISALIGNED = 10,
   // The blob is shorter or longer than its header states.
   GRIDEL_STATUS_BLOB_TRUNCATED = 11,
@@ -418,7 +418,7 @@ gridel_status gridel_any_f64(const struct gridel_scene *loaded,
                              struct gridel_buffer stack,
                              uint32_t *any);
 
-// Checks a blob and fills in a scene. The blob starts at a multiple of 16 bytes and stays where it is, unchanged, for as
+// Checks a blob and fills in a scene. The blob starts at a multiple of 4 bytes and stays where it is, unchanged, for as
 // long as the scene is used. Takes time linear in its length, and about 2 KiB of stack. A scene with parts is loaded by
 // `gridel_load_with_parts`. If it fails, the scene stays as it was.
 //

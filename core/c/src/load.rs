@@ -7,7 +7,7 @@ use core::fmt::{self, Write};
 use gridel_core::scene::part_blobs;
 use gridel_core::{BlobError, Scene};
 
-/// Checks a blob and fills in a scene. The blob starts at a multiple of 16 bytes and stays where it is, unchanged, for as
+/// Checks a blob and fills in a scene. The blob starts at a multiple of 4 bytes and stays where it is, unchanged, for as
 /// long as the scene is used. Takes time linear in its length, and about 2 KiB of stack. A scene with parts is loaded by
 /// `gridel_load_with_parts`. If it fails, the scene stays as it was.
 ///

@@ -20,7 +20,7 @@ pub enum gridel_status {
     BufferTooSmall = 3,
     /// The scene was not loaded, or loading it failed.
     NotLoaded = 4,
-    /// The blob does not start at a multiple of 16 bytes.
+    /// The blob does not start at a multiple of 4 bytes.
     BlobMisaligned = 10,
     /// The blob is shorter or longer than its header states.
     BlobTruncated = 11,
@@ -147,7 +147,7 @@ fn text(status: u32) -> &'static CStr {
         2 => c"a pointer is not aligned: memory for stacks and workspaces starts at a multiple of 8 bytes",
         3 => c"a buffer is too small: ask gridel_stack_bytes, gridel_workspace_bytes_* or gridel_parts_bytes",
         4 => c"the scene was not loaded: call gridel_load, and look at what it returns",
-        10 => c"the blob does not start at a multiple of 16 bytes: align it, or copy it into aligned memory",
+        10 => c"the blob does not start at a multiple of 4 bytes: align it, or copy it into aligned memory",
         11 => c"the blob is shorter or longer than it says: was it cut off, or was something added to it?",
         12 => c"these bytes are not a Gridel blob: compile the scene with `gridel build`",
         13 => c"the blob is little-endian, and this machine must be too",

@@ -23,7 +23,7 @@ use gridel_core::{
 };
 use static_cell::StaticCell;
 
-/// Flash starts it at a multiple of 16 bytes.
+/// Flash starts it at a multiple of 4 bytes.
 static BLOB: &[u8] = include_blob!(concat!(
     env!("CARGO_MANIFEST_DIR"),
     "/../../fixtures/blobs/dual-split.gridel"

@@ -43,7 +43,7 @@ pub const fn checksum(blob: &[u8]) -> u32 {
 
 /// Bytes with the alignment of a blob. [`include_blob!`](crate::include_blob) returns them.
 #[derive(Clone, Copy, Debug)]
-#[repr(C, align(16))]
+#[repr(C, align(4))]
 pub struct Aligned<T: ?Sized>(pub T);
 
 /// Embeds a blob file with the alignment that [`Scene::from_bytes`](crate::Scene::from_bytes) requires.
@@ -52,7 +52,7 @@ pub struct Aligned<T: ?Sized>(pub T);
 /// # macro_rules! scene { () => { concat!(env!("CARGO_MANIFEST_DIR"), "/../fixtures/blobs/dual-split.gridel") } }
 /// static BLOB: &[u8] = gridel_core::include_blob!(scene!());
 ///
-/// assert!(BLOB.as_ptr().addr().is_multiple_of(16));
+/// assert!(BLOB.as_ptr().addr().is_multiple_of(4));
 /// ```
 #[macro_export]
 macro_rules! include_blob {

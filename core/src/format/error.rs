@@ -12,7 +12,7 @@ use core::fmt;
 // their code.
 #[repr(u32)]
 pub enum BlobError {
-    /// The slice does not start at a multiple of 16 bytes.
+    /// The slice does not start at a multiple of 4 bytes.
     Misaligned,
     /// The blob is shorter or longer than its header states.
     Truncated {
@@ -169,7 +169,7 @@ impl fmt::Display for BlobError {
         match *self {
             BlobError::Misaligned => write!(
                 f,
-                "the blob does not start at a multiple of 16 bytes: embed it with include_blob!, or \
+                "the blob does not start at a multiple of 4 bytes: embed it with include_blob!, or \
                  copy it into aligned memory"
             ),
             BlobError::Truncated { needed, found } => write!(

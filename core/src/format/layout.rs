@@ -91,14 +91,14 @@ macro_rules! records {
     ($(
         $(#[doc = $doc:literal])*
         #[derive($($derive:ident),*)]
-        #[repr($repr:ident)]
+        #[repr($($repr:tt)*)]
         #[bytes($bytes:literal)]
         $visibility:vis struct $name:ident $fields:tt $(;)?
     )*) => {$(
         $crate::format::layout::structure! {
             $(#[doc = $doc])*
             #[derive($($derive),*)]
-            #[repr($repr)]
+            #[repr($($repr)*)]
             $visibility struct $name $fields
         }
 
@@ -110,7 +110,7 @@ macro_rules! structure {
     (
         $(#[doc = $doc:literal])*
         #[derive($($derive:ident),*)]
-        #[repr($repr:ident)]
+        #[repr($($repr:tt)*)]
         $visibility:vis struct $name:ident {$(
             $(#[doc = $field_doc:literal])*
             $(#[valid($field:ident: $range:expr)])?
@@ -119,7 +119,7 @@ macro_rules! structure {
     ) => {
         $(#[doc = $doc])*
         #[derive($($derive),*)]
-        #[repr($repr)]
+        #[repr($($repr)*)]
         $visibility struct $name {
             $($(#[doc = $field_doc])* $field_visibility $field_name: $type,)*
         }
@@ -157,7 +157,7 @@ macro_rules! structure {
                         high: *RANGE.end(),
                     };
                     $crate::format::range::Numbers::test(
-                        &self.$field_name, &mut result, &location, &FIELD,
+                        &{ self.$field_name }, &mut result, &location, &FIELD,
                     );
                 })?)*
                 let _ = location;
@@ -168,7 +168,7 @@ macro_rules! structure {
     (
         $(#[doc = $doc:literal])*
         #[derive($($derive:ident),*)]
-        #[repr($repr:ident)]
+        #[repr($($repr:tt)*)]
         $visibility:vis struct $name:ident (
             $(#[doc = $field_doc:literal])*
             $field_visibility:vis $type:ty
@@ -176,7 +176,7 @@ macro_rules! structure {
     ) => {
         $(#[doc = $doc])*
         #[derive($($derive),*)]
-        #[repr($repr)]
+        #[repr($($repr)*)]
         $visibility struct $name($(#[doc = $field_doc])* $field_visibility $type);
 
         impl $crate::format::layout::Stored for $name {

@@ -7,7 +7,7 @@ use bytemuck::{Pod, Zeroable};
 records! {
     /// A thin lens around the eye, parallel to the picture.
     #[derive(Clone, Copy, Debug, PartialEq, Eq, Pod, Zeroable)]
-    #[repr(C)]
+    #[repr(C, packed(4))]
     #[bytes(16)]
     pub struct Lens {
         /// Its radius, in units with 13 fraction bits. The eye is no farther from the lattice's middle than 2^37 units less

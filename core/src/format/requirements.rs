@@ -3,7 +3,7 @@
 use crate::format::effects::enable;
 use crate::format::instance::Part;
 use crate::format::kind::shapes;
-use crate::format::record::{ALIGNMENT, Header, SectionEntry, View};
+use crate::format::record::{Header, SECTION_ALIGNMENT, SectionEntry, View};
 use crate::format::word::{half, proved, word};
 use crate::format::{BlobError, Effects, SectionKind, Structure};
 use core::mem::offset_of;
@@ -65,7 +65,7 @@ impl Requirements {
         while part < demand.parts {
             let entry = directory.saturating_add(part * size_of::<Part>());
             let start = proved!(word(blob, entry.saturating_add(offset_of!(Part, start))));
-            let start = blobs.saturating_add((start as usize).saturating_mul(ALIGNMENT));
+            let start = blobs.saturating_add((start as usize).saturating_mul(SECTION_ALIGNMENT));
             let Some((_, blob_of_part)) = blob.split_at_checked(start) else {
                 return Err(BlobError::Truncated {
                     needed: start,

@@ -207,7 +207,7 @@ macro_rules! sections {
             Normals = 68, "normals", [[i16; 2]], "normal" of "";
             /// [`Part`](crate::format::instance::Part)s.
             Parts = 69, "parts", [instance::Part], "part" of "";
-            /// The blobs of all parts, one behind the other, in words of [`ALIGNMENT`](crate::format::record::ALIGNMENT)
+            /// The blobs of all parts, one behind the other, in words of [`SECTION_ALIGNMENT`](crate::format::record::SECTION_ALIGNMENT)
             /// bytes.
             PartBlobs = 70, "part-blobs", [[u32; 4]], "word" of "parts";
             /// [`Instance`](crate::format::instance::Instance)s.

@@ -4,7 +4,7 @@ use crate::format::error::{BlobError, Location};
 use crate::format::layout::Stored;
 use crate::format::limits::INSTANCES;
 use crate::format::reason::{Field, Reason};
-use crate::format::record::{ALIGNMENT, Header, SectionEntry};
+use crate::format::record::{Header, SECTION_ALIGNMENT, SectionEntry};
 use crate::format::section::SectionKind;
 use core::mem::size_of;
 
@@ -59,7 +59,9 @@ impl<'a> Sections<'a> {
                 return Err(line.invalid(Reason::SpareNotZero));
             }
             let start = entry.offset as usize;
-            let expected = end.checked_next_multiple_of(ALIGNMENT).unwrap_or(end);
+            let expected = end
+                .checked_next_multiple_of(SECTION_ALIGNMENT)
+                .unwrap_or(end);
             if start != expected {
                 let range = [expected as i64; 2];
                 return Err(line.out_of_range(Field::Offset, entry.offset.into(), range));

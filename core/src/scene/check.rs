@@ -75,8 +75,9 @@ pub(super) fn check_light(index: usize, light: &Light, scene: &Scene<'_>) -> Res
     } else {
         FARTHEST
     };
-    at.all_within(Field::PositionOrDirection, &light.vector, -most, most)?;
-    let zero = light.directional == 1 && light.vector == [0; 3];
+    let vector = light.vector;
+    at.all_within(Field::PositionOrDirection, &vector, -most, most)?;
+    let zero = light.directional == 1 && vector == [0; 3];
     at.ensure(!zero, Reason::ZeroDirection)
 }
 

@@ -2,7 +2,7 @@
 
 use crate::format::instance::{Instance, Part};
 use crate::format::range::{At, at_most, exactly};
-use crate::format::record::{ALIGNMENT, Header, UnitBox};
+use crate::format::record::{Header, SECTION_ALIGNMENT, UnitBox};
 use crate::format::{BlobError, Field, Location, Reason, SectionKind, Sections};
 use crate::instances::check::{check_instance, check_top};
 use crate::instances::placed::Placed;
@@ -82,19 +82,19 @@ pub fn part_blobs(blob: &[u8]) -> Result<impl Iterator<Item = &[u8]>, BlobError>
     let sections = Sections::read(blob, header.section_count)?;
     let directory: &[Part] = sections.records(SectionKind::Parts)?;
     let bytes = sections.get(SectionKind::PartBlobs).bytes;
-    check_directory(directory, bytes.len() / ALIGNMENT)?;
+    check_directory(directory, bytes.len() / SECTION_ALIGNMENT)?;
     Ok(directory.iter().map(|part| blob_of(part, bytes)))
 }
 
 /// The bytes of a part; empty where it does not lie in the section.
 fn blob_of<'a>(part: &Part, bytes: &'a [u8]) -> &'a [u8] {
-    let start = (part.start as usize).saturating_mul(ALIGNMENT);
-    let end = start.saturating_add((part.length as usize).saturating_mul(ALIGNMENT));
+    let start = (part.start as usize).saturating_mul(SECTION_ALIGNMENT);
+    let end = start.saturating_add((part.length as usize).saturating_mul(SECTION_ALIGNMENT));
     let padded = bytes.get(start..end).unwrap_or_default();
     // A blob's own length is not a multiple of the alignment. The checks of a blob rely on the length that it states.
     let length =
         read::header_of_part(padded).map_or(padded.len(), |header| header.blob_bytes as usize);
-    let needed = length.checked_next_multiple_of(ALIGNMENT);
+    let needed = length.checked_next_multiple_of(SECTION_ALIGNMENT);
     if needed == Some(padded.len()) {
         padded.get(..length).unwrap_or(padded)
     } else {
@@ -129,7 +129,7 @@ pub(in crate::scene) fn check_placed<'a>(
     sections: &Sections<'a>,
 ) -> Result<(), BlobError> {
     let bytes = sections.get(SectionKind::PartBlobs).bytes;
-    check_directory(placed.directory, bytes.len() / ALIGNMENT)?;
+    check_directory(placed.directory, bytes.len() / SECTION_ALIGNMENT)?;
     let section = SectionKind::Parts;
     let mut next = i64::from(placed.own_primitives(header.primitives));
     for (index, (part, scene)) in placed.directory.iter().zip(placed.parts).enumerate() {

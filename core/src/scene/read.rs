@@ -194,7 +194,8 @@ fn check_limits(header: &Header) -> Result<(), BlobError> {
     exactly(Field::StackBytes, header.stack_bytes, stack_bytes)?;
     let storage_bits = if header.lattice_bits <= 16 { 16 } else { 24 };
     exactly(Field::StorageBits, header.storage_bits.into(), storage_bits)?;
-    let finite = header.origin.iter().all(|origin| origin.is_finite());
+    let origin = header.origin;
+    let finite = origin.iter().all(|origin| origin.is_finite());
     header_has(finite, Reason::OriginNotFinite)?;
     let mut sides = header.bounds.0.iter();
     header_has(sides.all(|[low, high]| low <= high), Reason::InvertedBounds)?;
@@ -245,7 +246,7 @@ pub(super) fn check_lens(lens: Option<&Lens>, view: &View) -> Result<(), BlobErr
     let at = At { section, index: 0 };
     lens.check_ranges(at.location())?;
     let most = FARTHEST.wrapping_sub(lens.radius);
-    at.all_within(Field::Eye, &view.eye, -most, most)
+    at.all_within(Field::Eye, &{ view.eye }, -most, most)
 }
 
 /// The number of diffuse reflections of light.

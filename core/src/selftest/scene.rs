@@ -1,7 +1,7 @@
 //! One shape of each kind with known answers, as a blob that is assembled here.
 
 use crate::format::record::{
-    ALIGNMENT, ENDIANNESS, Header, Light, MAGIC, Material, SectionEntry, Sphere16, UnitBox,
+    ENDIANNESS, Header, Light, MAGIC, Material, SECTION_ALIGNMENT, SectionEntry, Sphere16, UnitBox,
     VERSION, Vertex16, View,
 };
 use crate::format::{Aligned, SectionKind, checksum};
@@ -133,7 +133,7 @@ impl TinyBlob {
             kind: kind as u16,
             stride: size_of::<T>() as u16,
             count: records.len() as u32,
-            offset: self.length.next_multiple_of(ALIGNMENT) as u32,
+            offset: self.length.next_multiple_of(SECTION_ALIGNMENT) as u32,
             spare: 0,
         };
         let line = size_of::<Header>() + self.sections * size_of::<SectionEntry>();

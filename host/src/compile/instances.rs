@@ -14,7 +14,7 @@ use glam::DVec3;
 use gridel_core::Effects;
 use gridel_core::format::instance::{LARGEST_CENTER, MATRIX_BITS};
 use gridel_core::format::limits::{INSTANCE_EXPONENT, MAX_INSTANCES};
-use gridel_core::format::record::{ALIGNMENT, UnitBox};
+use gridel_core::format::record::{SECTION_ALIGNMENT, UnitBox};
 use gridel_core::format::track::Joint;
 use gridel_core::format::{SectionKind, instance};
 use std::sync::Arc;
@@ -255,8 +255,8 @@ impl Parts {
         let mut directory = Vec::with_capacity(self.blobs.len());
         for (blob, first) in self.blobs.iter().zip(&self.first_primitive) {
             words.extend_from_slice(blob.bytes());
-            words.resize(words.len().next_multiple_of(ALIGNMENT), 0);
-            let end = (words.len() / ALIGNMENT) as u32;
+            words.resize(words.len().next_multiple_of(SECTION_ALIGNMENT), 0);
+            let end = (words.len() / SECTION_ALIGNMENT) as u32;
             directory.push(instance::Part {
                 start,
                 length: end - start,
@@ -267,7 +267,7 @@ impl Parts {
         }
         let blobs = Section {
             kind: SectionKind::PartBlobs,
-            stride: ALIGNMENT,
+            stride: SECTION_ALIGNMENT,
             bytes: words,
         };
         vec![section(SectionKind::Parts, &directory), blobs]

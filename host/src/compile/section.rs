@@ -2,7 +2,7 @@
 
 use gridel_core::format::SectionKind;
 use gridel_core::format::layout::Stored;
-use gridel_core::format::record::{ALIGNMENT, SectionEntry};
+use gridel_core::format::record::{SECTION_ALIGNMENT, SectionEntry};
 
 /// A section before it has a place.
 #[derive(Clone, Debug)]
@@ -51,6 +51,6 @@ pub fn three_bytes(value: u32) -> [u8; 3] {
 pub fn taken(bytes: usize) -> usize {
     match bytes {
         0 => 0,
-        _ => size_of::<SectionEntry>() + bytes.next_multiple_of(ALIGNMENT),
+        _ => size_of::<SectionEntry>() + bytes.next_multiple_of(SECTION_ALIGNMENT),
     }
 }

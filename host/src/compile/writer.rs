@@ -14,7 +14,7 @@ use crate::blob::{Blob, Buffer};
 use crate::shape::Lattice;
 use gridel_core::accel::Entry;
 use gridel_core::format::record::{
-    ALIGNMENT, ENDIANNESS, Header, MAGIC, SectionEntry, VERSION, Vertex16, Vertex24,
+    ENDIANNESS, Header, MAGIC, SECTION_ALIGNMENT, SectionEntry, VERSION, Vertex16, Vertex24,
 };
 use gridel_core::format::{SectionKind, checksum};
 use gridel_core::{Kind, Structure};
@@ -69,7 +69,7 @@ impl Parts {
         let table = size_of::<Header>() + self.sections.len() * size_of::<SectionEntry>();
         let sections = self.sections.iter();
         sections.fold(table, |end, section| {
-            end.next_multiple_of(ALIGNMENT) + section.bytes.len()
+            end.next_multiple_of(SECTION_ALIGNMENT) + section.bytes.len()
         })
     }
 }
@@ -276,7 +276,7 @@ pub fn write(parts: Parts) -> Result<Blob, CompileError> {
     let mut offset = size_of::<Header>() + sections.len() * size_of::<SectionEntry>();
     let mut entries = Vec::with_capacity(sections.len());
     for section in &sections {
-        offset = offset.next_multiple_of(ALIGNMENT);
+        offset = offset.next_multiple_of(SECTION_ALIGNMENT);
         let mut forms = section.kind.layout().records.iter();
         debug_assert!(
             forms.any(|form| form.bytes == section.stride),

@@ -8,7 +8,7 @@ use bytemuck::{Pod, Zeroable};
 records! {
     /// The blob's first record: version, requirements and sizes.
     #[derive(Clone, Copy, Debug, PartialEq, Pod, Zeroable)]
-    #[repr(C)]
+    #[repr(C, packed(4))]
     #[bytes(96)]
     pub struct Header {
         /// [`MAGIC`](crate::format::record::MAGIC): the bytes `47 52 49 44 45 4c 1a 0a`, which are "GRIDEL", end of
@@ -79,7 +79,7 @@ records! {
         /// Number of records.
         pub count: u32,
         /// Where the first record lies, in bytes from the blob's start: exactly where the layout puts it, a
-        /// multiple of [`ALIGNMENT`](crate::format::record::ALIGNMENT).
+        /// multiple of [`SECTION_ALIGNMENT`](crate::format::record::SECTION_ALIGNMENT).
         pub offset: u32,
         /// Zero.
         pub spare: u32,

@@ -26,5 +26,7 @@ pub const MAGIC: [u8; 8] = *b"GRIDEL\x1a\n";
 pub const ENDIANNESS: u32 = 0x0102_0304;
 /// The version of the format.
 pub const VERSION: u16 = 1;
-/// Alignment of the blob and of every section, in bytes.
-pub const ALIGNMENT: usize = 16;
+/// Alignment of a blob in memory, in bytes: no record needs more.
+pub const ALIGNMENT: usize = 4;
+/// Alignment of every section in the blob, in bytes.
+pub const SECTION_ALIGNMENT: usize = 16;

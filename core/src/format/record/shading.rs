@@ -25,7 +25,7 @@ records! {
     /// `forward` + *a* `right` + *b* `up`. The three vectors have one scale, which has no other meaning. A renderer may
     /// override width, height, samples and depth.
     #[derive(Clone, Copy, Debug, PartialEq, Eq, Pod, Zeroable)]
-    #[repr(C)]
+    #[repr(C, packed(4))]
     #[bytes(96)]
     pub struct View {
         /// The eye, in units with 13 fraction bits.
@@ -84,7 +84,7 @@ records! {
 
     /// A light.
     #[derive(Clone, Copy, Debug, PartialEq, Eq, Pod, Zeroable)]
-    #[repr(C)]
+    #[repr(C, packed(4))]
     #[bytes(40)]
     pub struct Light {
         /// A point light's position in units with 13 fraction bits (at most 2^50 in magnitude), or the
