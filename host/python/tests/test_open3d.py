@@ -40,6 +40,9 @@ def test_keys_shapes_and_types():
         "primitive_normals": ("float32", (5, 5, 3)),
     }
     assert type(hits["t_hit"].numpy()) is np.ndarray
+    one = hits["t_hit"][2, 2]
+    assert one.numpy() == one.item() == hits["t_hit"].tolist()[2][2]
+    assert hits["primitive_uvs"][2, 2].shape == (2,) and one.isfinite() == (one.item() < np.inf)
     listed = scene.list_intersections(grid(5))
     assert listed["ray_splits"].shape == (26,) and listed["ray_splits"][-1] == len(listed["t_hit"])
     assert scene.count_intersections(grid(5)).dtype == np.int32

@@ -305,8 +305,12 @@ def test_unreferenced_vertices_widen_no_lattice():
     corners = vertices[FACES[hits.primitive[0]] + 1]
     u, v = hits.uv[0]
     assert np.allclose((1 - u - v) * corners[0] + u * corners[1] + v * corners[2], [0.1, 0.2, 0])
+    around = np.vstack([[[np.nan] * 3], CUBE, [[0, 0, np.inf]]])
+    given = around.copy()
+    hits = gridel.Scene.from_arrays(around, FACES + 1).cast([[0.1, 0.2, -2, 0, 0, 1]])
+    assert np.isfinite(hits.t).all() and np.array_equal(around, given, equal_nan=True)
     with pytest.raises(ValueError, match="vertex 0 is not finite"):
-        gridel.Scene.from_arrays(np.vstack([[[np.nan] * 3], CUBE]), FACES + 1)
+        gridel.Scene.from_arrays(around, FACES)
     empty = gridel.Scene._from_meshes([(CUBE + 1e9, np.zeros((0, 3), int)), (CUBE, FACES)])
     assert empty.displacement < 1e-6 and empty.contains([[0.5] * 3]).all()
 

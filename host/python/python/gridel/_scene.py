@@ -111,7 +111,13 @@ def _mesh(
         )
     is_valid = np.isfinite(vertices).all(axis=1)
     if not is_valid.all():
-        raise ValueError(f"{names[0]}: vertex {int(np.argmin(is_valid))} is not finite")
+        is_broken = np.zeros(len(vertices), bool)
+        is_broken[faces] = True
+        is_broken &= ~is_valid
+        if is_broken.any():
+            raise ValueError(f"{names[0]}: vertex {int(np.argmax(is_broken))} is not finite")
+        # Those that no face names mean nothing.
+        vertices = np.where(is_valid[:, None], vertices, 0.0)
     return vertices, np.require(faces, np.int64, "CA")
 
 
@@ -176,8 +182,8 @@ class Scene:
         Vertices are centered in float64 before they are rounded to the lattice, whose step is about 1e-7 of the mesh's
         size at 24 bits, wherever the mesh lies within 5e8 times its size of the origin; :attr:`displacement` says how far
         they moved. Its size is 1e-250 to 1e250. Vertices of no face do not count. A closed mesh thinner than a step becomes flat: rays hit it, and it contains nothing. Warns (UserWarning)
-        of triangles that are too small for the lattice. Raises ValueError for vertices that are not finite and faces
-        that name no vertex.
+        of triangles that are too small for the lattice. Raises ValueError for faces that name no
+        vertex, or one that is not finite.
         """
         return cls._from_meshes([(vertices, faces)], accel, lattice_bits)
 

@@ -73,8 +73,16 @@ class Array(np.ndarray):
         return np.require(self, requirements="C")
 
     def to(self, dtype: Any, copy: bool = False) -> "Array":
-        """Converts to a type of NumPy's or Open3D's."""
-        return self.astype(str(dtype).lower() if _is_tensor(dtype) else dtype, copy=copy)
+        """Converts to a type of NumPy's or Open3D's. A device of Open3D's in its place changes nothing."""
+        if not _is_tensor(dtype):
+            return self.astype(dtype, copy=copy)
+        if type(dtype).__name__ == "Device":
+            return self.copy() if copy else self
+        return self.astype(str(dtype).lower(), copy=copy)
+
+    def __getitem__(self, key: Any) -> "Array":
+        # One number is a tensor too.
+        return np.asarray(super().__getitem__(key)).view(Array)
 
 
 def _is_tensor(value: Any) -> bool:
@@ -118,7 +126,7 @@ class RaycastingScene:
         """Adds a mesh and returns the number of its geometry.
 
         Give vertices (n, 3) and triangles (m, 3), or an ``open3d.t.geometry.TriangleMesh`` alone. Raises ValueError for
-        vertices that are not finite and triangles that name no vertex, and TypeError for indices that are no integers.
+        triangles that name no vertex, or one that is not finite, and TypeError for indices that are no integers.
         """
         if mesh is None and triangle_indices is None:
             mesh, vertex_positions = vertex_positions, None
