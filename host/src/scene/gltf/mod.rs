@@ -333,8 +333,7 @@ impl Importer<'_> {
 
     fn node(&mut self, node: &Node<'_>, world: &DMat4) -> Result<(), SceneError> {
         if let Some(camera) = node.camera() {
-            self.view
-                .camera(&camera, node, world, &mut self.scene.render);
+            self.view.camera(&camera, node, world);
         }
         if let Some(light) = node.light() {
             self.view.light(&light, node, world);

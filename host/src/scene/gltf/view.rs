@@ -7,7 +7,7 @@
 use super::animation::Motion;
 use super::middle::middle;
 use crate::scene::{
-    Camera, Color, Light, LightForm, RenderSettings, Scene, SourceSpan, Spot, Track,
+    Camera, Color, Light, LightForm, Scene, SourceSpan, Spot, Track,
 };
 use crate::table::printable;
 use glam::{DMat4, DVec3};
@@ -21,9 +21,15 @@ pub(super) struct View {
     /// The name of the requested camera.
     wanted: Option<String>,
     camera: Option<Camera>,
+    /// Width over height of its picture.
+    aspect: Option<f64>,
     /// The node of the camera.
     camera_node: usize,
+    /// How well the camera has the requested name: see [`View::fit`].
+    camera_fit: u8,
     cameras: usize,
+    /// A camera was left out that is requested, or comes before what is used.
+    has_blind: bool,
     /// The names of those with a perspective.
     names: Vec<String>,
     lights: Vec<Lamp>,
@@ -58,7 +64,6 @@ impl View {
         camera: &gltf::Camera<'_>,
         node: &Node<'_>,
         world: &DMat4,
-        render: &mut RenderSettings,
     ) {
         self.cameras += 1;
         let Projection::Perspective(perspective) = camera.projection() else {
@@ -66,29 +71,23 @@ impl View {
         };
         let name = node.name().or(camera.name()).unwrap_or_default();
         self.names.push(name.to_owned());
-        let is_wanted = |wanted: &String| {
-            let names = [node.name(), camera.name()];
-            names.contains(&Some(wanted.as_str()))
-        };
-        if !self.wanted.as_ref().is_none_or(is_wanted) {
+        let fit = self.fit(node.name(), camera.name());
+        if fit <= self.camera_fit {
             return;
         }
         let eye = world.transform_point3(DVec3::ZERO);
         let ahead = world.transform_vector3(-DVec3::Z).try_normalize();
         let up = world.transform_vector3(DVec3::Y);
         let fov_degrees = f64::from(perspective.yfov()).to_degrees();
-        let Some(ahead) = ahead.filter(|ahead| ahead.cross(up).length() > 1e-6 * up.length())
-        else {
+        let ahead = ahead.filter(|ahead| ahead.cross(up).length() > 1e-6 * up.length());
+        let target = ahead.map(|ahead| eye + ahead * eye.abs().max_element().max(1.0));
+        let target = target.filter(|target| *target != eye);
+        let Some(target) = target.filter(|_| fov_degrees > 0.0 && fov_degrees < 180.0) else {
+            self.has_blind = true;
             return;
         };
-        let target = eye + ahead * eye.abs().max_element().max(1.0);
-        if self.camera.is_some() || !(fov_degrees > 0.0 && fov_degrees < 180.0) || eye == target {
-            return;
-        }
-        if let Some(aspect) = perspective.aspect_ratio().filter(|a| *a > 0.0) {
-            let width = f64::from(render.height) * f64::from(aspect);
-            render.width = width.round().clamp(1.0, 65_535.0) as u32;
-        }
+        self.aspect = perspective.aspect_ratio().map(f64::from);
+        self.camera_fit = fit;
         self.camera_node = node.index();
         self.camera = Some(Camera {
             eye,
@@ -96,6 +95,17 @@ impl View {
             up,
             fov_degrees,
         });
+    }
+
+    /// 2 for a camera whose node has the requested name, and for all if none is requested; 1 if the camera itself has
+    /// the name; else 0.
+    fn fit(&self, node: Option<&str>, camera: Option<&str>) -> u8 {
+        match self.wanted.as_deref() {
+            None => 2,
+            wanted if wanted == node => 2,
+            wanted if wanted == camera => 1,
+            _ => 0,
+        }
     }
 
     /// Takes the light of a node, which is named as the node is, or else as the light.
@@ -173,7 +183,12 @@ impl View {
             true => String::from("leave `--camera` out"),
             false => format!("choose one of {}", names.join(", ")),
         };
-        let cause = format!("there is no camera {wanted:?} with a perspective");
+        let cause = match self.has_blind {
+            true => format!(
+                "the camera {wanted:?} has no direction, or its yfov is not between 0 and 180 degrees"
+            ),
+            false => format!("there is no camera {wanted:?} with a perspective"),
+        };
         Err([cause, remedy])
     }
 
@@ -206,7 +221,11 @@ impl View {
     pub(super) fn finish(self, scene: &mut Scene, warn: &mut dyn FnMut(&str)) {
         for (there, sentence) in [
             (
-                self.cameras > 0 && self.camera.is_none(),
+                self.has_blind,
+                "cameras without a direction, or with a yfov that is not between 0 and 180 degrees, are left out",
+            ),
+            (
+                self.cameras > 0 && self.camera.is_none() && !self.has_blind,
                 "no camera of the file has a perspective; one is made to see all",
             ),
             (
@@ -231,6 +250,10 @@ impl View {
             }
         }
         scene.camera = self.camera;
+        if let Some(aspect) = self.aspect.filter(|aspect| *aspect > 0.0) {
+            let width = f64::from(scene.render.height) * aspect;
+            scene.render.width = width.round().clamp(1.0, 65_535.0) as u32;
+        }
         let needs_middle =
             |lamp: &Lamp| matches!(lamp.light, Light::Point { .. }) && lamp.intensity > 0.0;
         let (middle, size) = match self.lights.iter().any(needs_middle) {

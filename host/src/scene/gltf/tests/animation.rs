@@ -1,7 +1,7 @@
 //! Tracks of animated cameras and lights.
 
 use super::*;
-use crate::scene::{Choice, ImportOptions, Interpolation, TrackTarget};
+use crate::scene::{Interpolation, TrackTarget};
 use glam::DQuat;
 
 /// The document with keys at 0, 1 and 2 seconds in a buffer of their own. Accessor 2 has the times, and 3 three
@@ -69,18 +69,6 @@ fn sampler(output: usize, interpolation: &str) -> Value {
 fn tracks(document: &Value) -> (Vec<crate::scene::Track>, Vec<String>) {
     let imported = read(document.to_string().as_bytes()).unwrap();
     (imported.scene.tracks, imported.warnings)
-}
-
-fn chosen(document: &Value, choice: Choice) -> Result<Imported, SceneError> {
-    let options = ImportOptions {
-        choice,
-        ..ImportOptions::default()
-    };
-    crate::scene::read(
-        "a.gltf".as_ref(),
-        document.to_string().into_bytes(),
-        &options,
-    )
 }
 
 #[test]

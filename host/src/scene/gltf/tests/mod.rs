@@ -8,7 +8,7 @@ mod joints;
 
 use super::*;
 use crate::scene::test_scenes::{self, load, load_allowing_outside, mesh};
-use crate::scene::{Alpha, Camera, Diffuse, Light, LightForm, Material, Wrap};
+use crate::scene::{Alpha, Camera, Choice, Diffuse, ImportOptions, Light, LightForm, Material, Wrap};
 use base64::Engine as _;
 use base64::engine::general_purpose::STANDARD;
 use serde_json::{Value, json};
@@ -98,4 +98,16 @@ fn warnings(document: &Value) -> Vec<String> {
     let warnings = read(document.to_string().as_bytes()).unwrap().warnings;
     let sentence = |warning: &String| warning.split_once(": ").unwrap().1.to_owned();
     warnings.iter().map(sentence).collect()
+}
+
+fn chosen(document: &Value, choice: Choice) -> Result<Imported, SceneError> {
+    let options = ImportOptions {
+        choice,
+        ..ImportOptions::default()
+    };
+    crate::scene::read(
+        "a.gltf".as_ref(),
+        document.to_string().into_bytes(),
+        &options,
+    )
 }
