@@ -12,10 +12,13 @@ mod browser;
 #[path = "web/page.rs"]
 mod page;
 
+#[path = "web/opening.rs"]
+mod opening;
+
 use flate2::Compression;
 use flate2::write::GzEncoder;
 use libtest_mimic::{Arguments, Failed, Trial};
-use page::{Page, assert_no_message, choose, choose_format, content, settle, shown};
+use page::{Page, assert_no_message, choose, choose_format, content, explain, open, settle, shown};
 use serde_json::json;
 use std::io::{Cursor, Write};
 use std::path::PathBuf;
@@ -39,12 +42,17 @@ fn main() {
         _ => "",
     };
     let is_required = page.is_some() && browser::is_required();
-    let tests: [Test; 6] = [
+    let tests: [Test; 8] = [
         ("web_page_is_small", page_is_small),
         ("web_page_draws_the_pixels_of_the_program", pixels_equal),
         ("web_page_follows_mouse_and_keys", camera_follows),
         ("web_page_measures_explains_and_saves", answers),
-        ("web_page_opens_files_and_shows_errors", files_open),
+        ("web_page_opens_files_and_shows_errors", opening::files_open),
+        (
+            "web_page_keeps_the_scene_before_a_broken_one",
+            opening::scene_stays,
+        ),
+        ("web_page_answers_while_it_draws", answers_soon),
         (
             "web_page_fits_phones_and_names_everything",
             page_is_accessible,
@@ -148,6 +156,10 @@ fn pixels_equal(page: &Page) {
     let mut map = vec![0; reader.output_buffer_size().unwrap()];
     reader.next_frame(&mut map).unwrap();
     assert!(shown(&browser) == map);
+    // Counting measures no errors and no time.
+    for id in ["rmse", "largest", "different", "time"] {
+        assert_eq!(content(&browser, id), "-", "{id}");
+    }
     assert_no_message(&browser);
 }
 
@@ -198,9 +210,11 @@ fn camera_follows(page: &Page) {
     browser.post("/actions", &json!({"actions": [pan]}));
     compare();
     assert_ne!(target(&content(&browser, "camera")), target(&before));
-    // The first camera again, by its key.
+    // The first camera again, by its key, whatever moves are under way.
     browser.script(begin);
-    browser.keys(&["r"]);
+    browser.keys(&[UP, RIGHT, RIGHT, UP, "+", RIGHT, "r"]);
+    settle(&browser);
+    std::thread::sleep(Duration::from_millis(300));
     settle(&browser);
     assert!(shown(&browser) == first);
     assert_no_message(&browser);
@@ -223,7 +237,7 @@ fn answers(page: &Page) {
 
     // All number formats, one after the other.
     browser.click("//*[@id='measure']");
-    browser.wait("!document.getElementById('measure').disabled");
+    browser.wait("document.getElementById('measure').ariaDisabled !== 'true'");
     settle(&browser);
     let rows = content(&browser, "rows");
     for format in ["fixed", "f32", "f64"] {
@@ -276,112 +290,71 @@ fn answers(page: &Page) {
         page.saved("quick-stm32vldiscovery.txt"),
         report.into_bytes()
     );
+
+    // A blob that is saved right after a change has it.
+    std::fs::remove_file(page.files.path("quick.gridel")).unwrap();
+    browser.script(
+        "const bits = document.getElementById('bits');
+         bits.value = 12;
+         bits.dispatchEvent(new Event('change', { bubbles: true }));
+         document.getElementById('save-blob').click()",
+    );
+    let build = ["build", "quick.toml", "--lattice-bits", "12", "-o"];
+    page.files.done(&[&build[..], &[&expected]].concat());
+    assert!(page.saved("quick.gridel") == page.files.read("expected.gridel"));
+    settle(&browser);
+
+    // Instances have their names.
+    page.files.write(
+        "two.toml",
+        b"[[part]]\nname = 'ball'\n[[part.object]]\nkind = 'sphere'\ncenter = [0, 0, 0]\nradius = 1\n\
+          [[instance]]\npart = 'ball'\nname = 'left one'\n\
+          [[instance]]\npart = 'ball'\nname = 'right one'\ntranslate = [3, 0, 0]\n",
+    );
+    open(page, &browser, "two.toml");
+    settle(&browser);
+    explain(&browser, [100, 120]);
+    let explained = page
+        .files
+        .done(&["explain", "two.toml", "--pixel", "100,120"]);
+    assert!(explained.contains("left one"), "{explained}");
+    let text = content(&browser, "explanation");
+    assert!(text.contains("left one"), "{text}");
     assert_no_message(&browser);
 }
 
-fn files_open(page: &Page) {
+fn answers_soon(page: &Page) {
     let browser = page.open();
-    let input = "//*[@id='files']";
-    let begin = "document.documentElement.dataset.state = 'wait'";
-    let path = |name: &str| page.files.path(name).display().to_string();
-
-    // A scene with the files that it names.
-    page.files.write(
-        "leaf.obj",
-        b"mtllib leaf.mtl\nusemtl red\nv 0 0 0\nv 2 0 0\nv 0 2 0\nf 1 2 3\n",
+    choose(&browser, "sample", "quick.toml");
+    let first = shown(&browser);
+    // What is drawn fast before must not make the page draw much of what follows at once.
+    choose_format(&browser, "f64");
+    choose_format(&browser, "f32");
+    browser.script(
+        "const progress = document.getElementById('progress');
+         window.shares = new Set();
+         setInterval(() => window.shares.add(progress.value), 20)",
     );
-    page.files.write("leaf.mtl", b"newmtl red\nKd 1 0 0\n");
-    page.files.write(
-        "tree.toml",
-        b"[[object]]\nkind = 'import'\nfile = 'leaf.obj'\n",
-    );
-    browser.script(begin);
-    browser.fill(
-        input,
-        &[path("leaf.mtl"), path("tree.toml"), path("leaf.obj")].join("\n"),
-    );
-    settle(&browser);
-    let of_program = |arguments: &[&str]| {
-        page.rendered(&[arguments, &["--format", "f32", "--accel", "dual-split"]].concat())
+    let samples = |number: u32| {
+        browser.script(&format!(
+            "document.documentElement.dataset.state = 'wait';
+             const samples = document.getElementById('samples');
+             samples.value = {number};
+             samples.dispatchEvent(new Event('change', {{ bubbles: true }}))"
+        ));
     };
-    assert!(shown(&browser) == of_program(&["tree.toml"]));
-    // The other file that is a scene of its own.
-    choose(&browser, "main", "leaf.obj");
-    assert!(shown(&browser) == of_program(&["leaf.obj"]));
-
-    // A blob, dropped as a mouse drops it.
-    page.files
-        .done(&["build", "quick.toml", "-o", "drop.gridel", "--accel", "bvh"]);
-    browser.script(begin);
-    let data = json!({"items": [], "files": [path("drop.gridel")], "dragOperationsMask": 1});
-    for kind in ["dragEnter", "dragOver", "drop"] {
-        let event = json!({"type": kind, "x": 200, "y": 200, "data": data});
-        browser.command("Input.dispatchDragEvent", event);
-    }
+    samples(256);
+    // Many steps come before the end.
+    browser.wait("[...window.shares].filter((it) => it > 0 && it < 0.9).length > 8");
+    let state = browser.text("return document.documentElement.dataset.state");
+    assert_eq!(state, "drawing");
+    // The first ones are small.
+    let first_share = "return Math.min(...[...window.shares].filter((it) => it > 0))";
+    let first_share: f64 = browser.text(first_share).parse().unwrap();
+    assert!(first_share < 0.02, "{first_share}");
+    samples(1);
     settle(&browser);
-    assert!(content(&browser, "status").contains("drop.gridel"));
-    assert!(
-        shown(&browser) == page.rendered(&["drop.gridel", "--format", "f32", "--accel", "bvh"])
-    );
-    assert_eq!(
-        browser.text("return document.getElementById('bits').disabled"),
-        "true"
-    );
-
-    // Errors are the program's: file, place, cause and remedy.
-    page.files.write(
-        "broken.toml",
-        b"[[object]]\nkind = 'sphere'\ncenter = [0, 0, 0]\nradius = -1\n",
-    );
-    page.files.write(
-        "lost.toml",
-        b"[[object]]\nkind = 'import'\nfile = 'none.obj'\n",
-    );
-    let mut blob = page.files.read("drop.gridel");
-    blob.truncate(200);
-    page.files.write("short.gridel", &blob);
-    page.files.write("notes.docx", b"no scene");
-    for name in ["broken.toml", "short.gridel", "notes.docx"] {
-        browser.script(begin);
-        browser.fill(input, &path(name));
-        browser.wait("document.documentElement.dataset.state === 'error'");
-        let plain = |text: &str| {
-            let words = text
-                .split_whitespace()
-                .filter(|word| !"│╰─▶×╭╯├".contains(*word));
-            // Lines break at other places.
-            words.collect::<String>()
-        };
-        let run = page.files.run(&["render", name, "-o", "none.png"]);
-        assert_ne!(run.code, Some(0));
-        // The cause and its remedy; frames and lines are drawn in another width.
-        let (page_says, program_says) =
-            (plain(&content(&browser, "error-text")), plain(&run.stderr));
-        let sentences = page_says.split("help:");
-        for sentence in sentences
-            .map(|it| it.split('[').next().unwrap().trim())
-            .filter(|it| !it.is_empty())
-        {
-            assert!(
-                program_says.contains(sentence),
-                "{sentence:?}\n{program_says}"
-            );
-        }
-        assert!(page_says.contains("help:"), "{page_says}");
-    }
-    browser.script(begin);
-    browser.fill(input, &path("lost.toml"));
-    browser.wait("document.documentElement.dataset.state === 'error'");
-    let error = content(&browser, "error-text");
-    assert!(
-        error.contains("lost.toml:3") && error.contains("none.obj"),
-        "{error}"
-    );
-    // The scene that was shown still is.
-    browser.click("//*[@id='error-close']");
-    assert!(
-        shown(&browser) == page.rendered(&["drop.gridel", "--format", "f32", "--accel", "bvh"])
-    );
+    assert!(shown(&browser) == first);
     assert_no_message(&browser);
 }
 

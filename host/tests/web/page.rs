@@ -129,6 +129,24 @@ pub fn choose_format(browser: &Browser, format: &str) {
     settle(browser);
 }
 
+/// Opens a file of the test.
+pub fn open(page: &Page, browser: &Browser, name: &str) {
+    browser.script("document.documentElement.dataset.state = 'wait'");
+    let path = page.files.path(name).display().to_string();
+    browser.fill("//*[@id='files']", &path);
+}
+
+/// Explains a pixel, by its column and row.
+pub fn explain(browser: &Browser, [column, row]: [u16; 2]) {
+    browser.script(&format!(
+        "document.getElementById('explanation').textContent = '';
+         document.getElementById('pixel-x').value = {column};
+         document.getElementById('pixel-y').value = {row};
+         document.getElementById('explain').click()"
+    ));
+    browser.wait("document.getElementById('explanation').textContent");
+}
+
 pub fn assert_no_message(browser: &Browser) {
     let messages = browser.post("/se/log", &json!({"type": "browser"}));
     assert_eq!(messages, json!([]));

@@ -14,7 +14,7 @@ export function settings() {
     bits: Number(at("bits").value),
     structure: at("structure").value,
     samples: Number(at("samples").value),
-    depth: Number(at("depth").value),
+    depth: whole(at("depth")),
     without: Array.from(document.querySelectorAll("#effects input:not(:checked)"), (it) => it.value),
   };
 }
@@ -30,6 +30,19 @@ export function choose({ format, bits, structure, samples, depth, without }) {
   for (const box of document.querySelectorAll("#effects input")) box.checked = !without.includes(box.value);
 }
 
+/** The whole number of a field that is nearest to what was given; without one its default. */
+function whole({ value, defaultValue, min, max }) {
+  const number = Math.round(value === "" ? NaN : Number(value));
+  return Math.min(Math.max(Number.isNaN(number) ? Number(defaultValue) : number, Number(min)), max === "" ? Infinity : Number(max));
+}
+
+/** Shows and returns the number of a field that counts. */
+export function correct(field) {
+  const number = whole(field);
+  field.value = number;
+  return number;
+}
+
 /** What the canvas shows: picture, work or error. */
 export const view = () => document.querySelector("[name=view]:checked").value;
 
@@ -42,6 +55,7 @@ export function offerAll(about) {
   }));
   at("board").replaceChildren(...about.boards.map(({ name, core }) => new Option(`${name} (${core})`, name)));
   offerFormats(about);
+  at("depth").max = about.maxDepth;
   at("files").accept = [...about.extensions, "gridel", "gz", "mtl", "bin"].map((it) => `.${it}`).join(",");
 }
 
@@ -62,10 +76,15 @@ export function offer(scene, about) {
   at("effects").replaceChildren(at("effects").querySelector("legend"), ...(boxes.length ? boxes : [none]));
   const samples = [...new Set([...SAMPLES, first.samples])].sort((a, b) => a - b);
   at("samples").replaceChildren(...samples.map((number) => new Option(number, number)));
+  at("depth").defaultValue = first.depth;
   choose({ format: settings().format, bits: first.latticeBits, structure: first.structures.includes(USUAL) ? USUAL : first.structures[0],
     samples: first.samples, depth: first.depth, without: [] });
-  at("warnings-details").hidden = scene.warnings.length === 0;
-  at("warnings").replaceChildren(...scene.warnings.map((text) => Object.assign(document.createElement("li"), { textContent: text })));
+}
+
+/** Lists the warnings of the importer and the compiler. */
+export function showWarnings(warnings) {
+  at("warnings-details").hidden = warnings.length === 0;
+  at("warnings").replaceChildren(...warnings.map((text) => Object.assign(document.createElement("li"), { textContent: text })));
 }
 
 /** Offers the number formats of a board. */
@@ -76,7 +95,7 @@ export function offerFormats(about) {
 
 /** Goes on to the next value, and around. */
 export function cycle(select) {
-  select.selectedIndex = (select.selectedIndex + 1) % select.options.length;
+  if (select.options.length) select.selectedIndex = (select.selectedIndex + 1) % select.options.length;
 }
 
 /** Goes up or down by a value; false at the end. */

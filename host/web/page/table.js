@@ -25,6 +25,7 @@ export class Table {
 
   show() {
     const rows = [...this.rows.values()];
+    const focused = this.body.contains(document.activeElement) ? document.activeElement.dataset.row : null;
     const most = (value) => Math.max(...rows.map(value), 1e-12);
     const [error, seconds, bytes] = [(it) => it.rmse, (it) => it.seconds, (it) => it.bytes];
     this.body.replaceChildren(...rows.map((row) => {
@@ -33,6 +34,7 @@ export class Table {
       const head = Object.assign(document.createElement("th"), { scope: "row", textContent: row.name });
       const button = Object.assign(document.createElement("button"), { type: "button", textContent: "Use" });
       button.setAttribute("aria-label", `Use ${row.name}`);
+      button.dataset.row = row.name;
       button.onclick = () => this.use(row.chosen);
       const last = document.createElement("td");
       last.append(button);
@@ -43,6 +45,9 @@ export class Table {
         cell(row.bytes.toLocaleString("en"), row.bytes / most(bytes), "bar cost"), last);
       return line;
     }));
+    // The button that had the focus is another one now.
+    const again = Array.from(this.body.querySelectorAll("button")).find(({ dataset }) => dataset.row === focused);
+    again?.focus({ preventScroll: true });
   }
 }
 

@@ -7,10 +7,13 @@ const decoder = new TextDecoder();
 /** How long it draws before it looks for messages, in milliseconds. */
 const TURN = 12;
 
-let gridel;
+/** The module, and the instance that answers; none after a fault. */
+let compiled;
+let gridel = null;
 /** The picture that is being drawn. */
 let drawing = null;
-let blocks = 16;
+/** How many blocks of pixels it draws in a turn. */
+let blocks = 1;
 
 /** Messages come between the turns of drawing. */
 const turns = new MessageChannel();
@@ -24,27 +27,43 @@ function turn() {
   isTurning = true;
 }
 
-onmessage = async ({ data }) => {
+/** A new instance, which holds nothing. */
+function instance() {
+  // Libraries for charts import functions of browsers, which nothing calls here.
+  const imports = {};
+  for (const { module, name } of WebAssembly.Module.imports(compiled)) {
+    (imports[module] ??= {})[name] = () => { throw new Error(`${name} was called`); };
+  }
+  return new WebAssembly.Instance(compiled, imports).exports;
+}
+
+/** Gives up an instance that is broken, with all that it held, and says so. */
+function lost(error) {
+  gridel = drawing = null;
+  const message = `the scene takes more memory than the browser gives, or this is a fault of the page (${error})`;
+  const help = "use the program for a scene that is large; report one that is not, with its files";
+  return { message, help, report: `  × ${message}\n  help: ${help}\n`, isLost: true };
+}
+
+onmessage = ({ data }) => {
   try {
-    await receive(data);
+    receive(data);
   } catch (error) {
-    const fault = { message: String(error), help: "reload the page", report: String(error) };
-    postMessage({ id: data.id, answer: { error: fault }, bytes: new Uint8Array() });
+    const answer = { error: lost(error) };
+    if (data.draw) postMessage({ generation: data.generation, error: answer.error });
+    else postMessage({ id: data.id, answer, bytes: new Uint8Array() });
   }
 };
 
-async function receive(data) {
+function receive(data) {
   if (data.module) {
-    // Libraries for charts import functions of browsers, which nothing calls here.
-    const imports = {};
-    for (const { module, name } of WebAssembly.Module.imports(data.module)) {
-      (imports[module] ??= {})[name] = () => { throw new Error(`${name} was called`); };
-    }
-    gridel = (await WebAssembly.instantiate(data.module, imports)).exports;
+    compiled = data.module;
+    gridel = instance();
     postMessage({ id: data.id, answer: {}, bytes: new Uint8Array() });
   } else if (data.draw) {
     const begun = call(data.draw);
     drawing = begun.answer.error ? null : { generation: data.generation };
+    blocks = 1;
     if (begun.answer.error) postMessage({ generation: data.generation, error: begun.answer.error });
     else turn();
   } else if (data.stop) {
@@ -63,21 +82,21 @@ function draw() {
   try {
     const { answer, bytes } = call({ do: "step", blocks });
     const time = performance.now() - begun;
-    if (time < TURN / 2) blocks = Math.min(2 * blocks, 1 << 16);
-    else if (time > 2 * TURN) blocks = Math.max(1, blocks >> 1);
+    // Blocks take longer in another part of the picture, and much longer with more samples.
+    const fitting = Math.floor(blocks * TURN / Math.max(time, 0.01));
+    blocks = Math.max(1, Math.min(fitting, 2 * blocks, 1 << 16));
     const { error, done, seen } = answer;
     postMessage({ generation, error, done, seen, words: bytes.buffer }, [bytes.buffer]);
     if (error || done) drawing = null;
     else turn();
   } catch (fault) {
-    drawing = null;
-    const text = String(fault);
-    postMessage({ generation, error: { message: text, help: "reload the page", report: text } });
+    postMessage({ generation, error: lost(fault) });
   }
 }
 
 /** One request: JSON, and bytes that belong to it. */
 function call(request, bytes = new Uint8Array()) {
+  gridel ??= instance();
   const json = encoder.encode(JSON.stringify(request));
   const address = gridel.input(4 + json.length + bytes.length);
   // The memory's buffer is another one when it has grown.

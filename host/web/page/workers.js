@@ -10,6 +10,11 @@ export class Problem extends Error {
     this.help = help;
     this.report = report;
   }
+
+  /** An error of the page, in the form of the program's. */
+  static of(message, help) {
+    return new Problem({ message, help, report: `  × ${message}\n  help: ${help}\n` });
+  }
 }
 
 /** Pixels so far. A finer block is never drawn over by a coarser one that comes late. */
@@ -93,10 +98,14 @@ export class Workers {
     if (data.id !== undefined) {
       const [resolve, reject] = this.answers.get(data.id) ?? [];
       this.answers.delete(data.id);
-      if (data.answer.error) reject?.(new Problem(data.answer.error));
+      const { error } = data.answer;
+      // What the worker held is gone.
+      if (error?.isLost) this.onlost?.();
+      if (error) reject?.(new Problem(error));
       else resolve?.({ answer: data.answer, bytes: data.bytes });
       return;
     }
+    if (data.error?.isLost) this.onlost?.();
     const { current } = this;
     if (!current || data.generation !== current.generation) return;
     if (data.error) {

@@ -29,17 +29,19 @@ pub struct Loaded {
 }
 
 impl Loaded {
-    /// Checks a blob.
-    pub fn new(blob: Blob) -> Result<Self, Problem> {
+    /// Checks a blob, of a file with this name.
+    pub fn new(blob: Blob, name: Option<&str>) -> Result<Self, Problem> {
         let cell = Cell::new(blob, Blob::scene);
-        let scene = cell.borrow_dependent().as_ref().map_err(invalid)?;
+        let scene = cell.borrow_dependent().as_ref();
+        let scene = scene.map_err(|error| invalid(error, name))?;
         let names = Names::of_blob(scene, cell.borrow_owner().bytes());
-        let names = names.map_err(|error| invalid(&error))?;
+        let names = names.map_err(|error| invalid(&error, name))?;
         Ok(Self { cell, names })
     }
 
     pub fn scene(&self) -> Result<&Scene<'_>, Problem> {
-        self.cell.borrow_dependent().as_ref().map_err(invalid)
+        let scene = self.cell.borrow_dependent().as_ref();
+        scene.map_err(|error| invalid(error, None))
     }
 
     pub fn bytes(&self) -> &[u8] {
@@ -95,7 +97,7 @@ impl Loaded {
     }
 }
 
-fn invalid(error: &BlobError) -> Problem {
+fn invalid(error: &BlobError, name: Option<&str>) -> Problem {
     let help = match error {
         BlobError::Magic => {
             "blobs are made by `gridel build`; a scene file must have the extension of its format"
@@ -105,5 +107,8 @@ fn invalid(error: &BlobError) -> Problem {
         }
         _ => "build it again with `gridel build`",
     };
-    Problem::new(error, help)
+    match name {
+        Some(name) => Problem::new(format!("{name}: {error}"), help),
+        None => Problem::new(error, help),
+    }
 }

@@ -17,8 +17,8 @@ pub enum Request {
     AddFile { path: String },
     /// Compiles a scene of the files. The answer is the blob.
     Compile(Compile),
-    /// Loads the blob `bytes` into a place.
-    Load { slot: usize },
+    /// Loads the blob `bytes` into a place; `name` is that of a file, which errors name.
+    Load { slot: usize, name: Option<String> },
     /// Moves the camera.
     Move(Move),
     /// Begins a picture.
@@ -32,8 +32,12 @@ pub enum Request {
     Difference,
     /// The colors of a heat map, for the work of all pixels.
     HeatMap,
-    /// Explains a pixel.
-    Explain { shot: ShotOf, pixel: [u16; 2] },
+    /// Explains a pixel. Names come from the scene file, if one was compiled.
+    Explain {
+        shot: ShotOf,
+        pixel: [u16; 2],
+        compile: Option<Compile>,
+    },
     /// The memory report of a board.
     Memory(Memory),
     /// The picture of linear pixels as a PNG file.
@@ -57,6 +61,8 @@ pub struct Compile {
 pub struct Memory {
     pub board: String,
     pub format: Option<FormatName>,
+    /// What is chosen; another takes its place if it was not measured on boards.
+    pub structure: StructureName,
     /// How the scene is compiled for it; without this it is the blob of the picture.
     pub compile: Option<Compile>,
 }

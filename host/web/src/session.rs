@@ -5,13 +5,14 @@ use crate::loaded::Loaded;
 use crate::problem::Problem;
 use crate::request::{Compile, Memory, Move, Request, ShotOf};
 use crate::{Answer, pictures};
-use gridel_core::{Effects, Format, Settings, Structure};
+use gridel_core::format::limits::MAX_RAY_DEPTH;
+use gridel_core::{Effects, Format, Scene as Checked, Settings, Structure};
 use gridel_host::blob::Blob;
-use gridel_host::compile::{Compiled, LATTICE_BITS, Options, compile};
+use gridel_host::compile::{Compiled, LATTICE_BITS, Names, Options, compile};
 use gridel_host::explain::{Shown, Subject, explain};
 use gridel_host::measure::board::{BOARDS, Board, Fit, MemoryReport, Rendering, Target};
 use gridel_host::scene::{
-    self, Camera, Files, ImportOptions, Imported, effect_named, shown_without,
+    self, Camera, Files, ImportOptions, Imported, Scene, effect_named, shown_without,
 };
 use gridel_host::view::{State, saved, summary};
 use serde_json::{Value, json};
@@ -43,7 +44,7 @@ impl Session {
                 Ok((json!({}), Vec::new()))
             }
             Request::Compile(how) => self.compile(&how),
-            Request::Load { slot } => self.load(slot, bytes),
+            Request::Load { slot, name } => self.load(slot, name.as_deref(), bytes),
             Request::Move(how) => self.moved(how),
             Request::Begin(begin) => {
                 let shot = self.loaded(begin.shot.slot)?.shot(&begin.shot)?;
@@ -54,7 +55,11 @@ impl Session {
             Request::Errors => pictures::errors(bytes),
             Request::Difference => pictures::difference(bytes),
             Request::HeatMap => pictures::heat_map(bytes),
-            Request::Explain { shot, pixel } => self.explain(&shot, pixel),
+            Request::Explain {
+                shot,
+                pixel,
+                compile,
+            } => self.explain(&shot, pixel, compile.as_ref()),
             Request::Memory(of) => self.memory(&of),
             Request::Png { width, height } => {
                 pictures::png(self.loaded(0)?, [width, height], bytes)
@@ -67,37 +72,49 @@ impl Session {
         loaded.ok_or_else(|| Problem::fault("no scene is loaded"))
     }
 
-    /// Reads the scene, unless it was read before, and compiles it.
-    fn compile(&mut self, how: &Compile) -> Answer {
-        if self
-            .imported
-            .as_ref()
-            .is_none_or(|(name, _)| *name != how.name)
-        {
-            let options = ImportOptions::default();
-            let imported = scene::read_among(how.name.as_ref(), &self.files, &options);
-            self.imported = Some((how.name.clone(), imported.map_err(Problem::of)?));
-        }
-        let Compiled { blob, report } = self.compiled(how, true)?;
-        let warnings = match &self.imported {
-            Some((_, imported)) => imported.warnings.clone(),
-            None => Vec::new(),
+    /// Returns the scene of a file, which is read unless it was read before.
+    fn imported(&mut self, name: &str) -> Result<&Imported, Problem> {
+        let (_, imported) = match self.imported.take() {
+            Some(read) if read.0 == name => self.imported.insert(read),
+            _ => {
+                let options = ImportOptions::default();
+                let read = scene::read_among(name.as_ref(), &self.files, &options);
+                let imported = read.map_err(Problem::of)?;
+                self.imported.insert((name.to_owned(), imported))
+            }
         };
-        let answer = json!({
-            "warnings": warnings,
-            "displacement": report.largest_displacement,
-            "collapsed": report.collapsed.count() + report.without_area.count(),
-        });
+        Ok(imported)
+    }
+
+    /// The scene of a file, without the effects that are left out.
+    fn scene(&mut self, how: &Compile) -> Result<Scene, Problem> {
+        let mut scene = self.imported(&how.name)?.scene.clone();
+        let without = how.without.iter().filter_map(|name| effect_named(name));
+        without.for_each(|effect| scene.remove_effects(effect));
+        Ok(scene)
+    }
+
+    /// Compiles a scene file.
+    fn compile(&mut self, how: &Compile) -> Answer {
+        let Compiled { blob, report } = self.compiled(how, true)?;
+        let imported = self.imported(&how.name)?;
+        let mut warnings = imported.warnings.clone();
+        let mut sentences = report.warnings(how.lattice_bits);
+        if imported.scene.objects.is_empty() && imported.scene.instances.is_empty() {
+            sentences.push(String::from(
+                "the scene has no object: pictures show the background",
+            ));
+        }
+        warnings.extend(sentences.iter().map(|it| format!("{}: {it}", how.name)));
+        // It depends on the camera, and the program places it by the camera that it is given.
+        let mut supplied = report.supplied.iter();
+        let has_own_light = !supplied.any(|it| it.starts_with("a directional light"));
+        let answer = json!({"warnings": warnings, "hasOwnLight": has_own_light});
         Ok((answer, blob.bytes().to_vec()))
     }
 
-    fn compiled(&self, how: &Compile, names: bool) -> Result<Compiled, Problem> {
-        let Some((_, imported)) = &self.imported else {
-            return Err(Problem::fault("no scene was read"));
-        };
-        let mut scene = imported.scene.clone();
-        let without = how.without.iter().filter_map(|name| effect_named(name));
-        without.for_each(|effect| scene.remove_effects(effect));
+    fn compiled(&mut self, how: &Compile, names: bool) -> Result<Compiled, Problem> {
+        let scene = self.scene(how)?;
         let options = Options {
             structures: vec![how.structure.0],
             lattice_bits: how.lattice_bits,
@@ -108,7 +125,7 @@ impl Session {
         compile(&scene, &options).map_err(|error| Problem::about(cannot, error))
     }
 
-    fn load(&mut self, slot: usize, bytes: &[u8]) -> Answer {
+    fn load(&mut self, slot: usize, name: Option<&str>, bytes: &[u8]) -> Answer {
         let place = self.loaded.get_mut(slot);
         let place = place.ok_or_else(|| Problem::fault("no such place"))?;
         if self.drawing.as_ref().is_some_and(|it| it.slot == slot) {
@@ -116,7 +133,7 @@ impl Session {
         }
         // The blob before goes first: there may be no room for both.
         *place = None;
-        let loaded = place.insert(Loaded::new(Blob::new(bytes))?);
+        let loaded = place.insert(Loaded::new(Blob::new(bytes), name)?);
         Ok((loaded.json()?, Vec::new()))
     }
 
@@ -169,7 +186,12 @@ impl Session {
         Ok((json!({"done": is_done, "seen": drawing.is_seen}), words))
     }
 
-    fn explain(&self, of: &ShotOf, pixel: [u16; 2]) -> Answer {
+    fn explain(&mut self, of: &ShotOf, pixel: [u16; 2], file: Option<&Compile>) -> Answer {
+        // A blob has no names of instances.
+        let own = match file {
+            Some(how) => Some(Names::of_scene(&self.scene(how)?)),
+            None => None,
+        };
         let loaded = self.loaded(of.slot)?;
         let shot = loaded.shot(of)?;
         let scene = loaded
@@ -179,19 +201,20 @@ impl Session {
         let subject = Subject::Pixel(pixel);
         let explained = explain(&scene, shot.format, shot.structure, shot.settings, subject);
         let explanation = explained.map_err(Problem::of)?;
+        let names = own.as_ref().unwrap_or(&loaded.names);
         let shown = Shown {
             explanation: &explanation,
-            names: &loaded.names,
+            names,
             all_walks: false,
         };
-        let summary = summary(&explanation, &loaded.names);
+        let summary = summary(&explanation, names);
         Ok((
             json!({"summary": summary, "text": shown.to_string()}),
             Vec::new(),
         ))
     }
 
-    fn memory(&self, of: &Memory) -> Answer {
+    fn memory(&mut self, of: &Memory) -> Answer {
         let unknown = || Problem::fault(format!("there is no board `{}`", of.board));
         let board = Board::named(&of.board).ok_or_else(unknown)?;
         let target = Target {
@@ -201,7 +224,7 @@ impl Session {
         };
         // Blobs for boards have no names.
         let own = match &of.compile {
-            Some(how) => Some(Loaded::new(self.compiled(how, false)?.blob)?),
+            Some(how) => Some(Loaded::new(self.compiled(how, false)?.blob, None)?),
             None => None,
         };
         let loaded = match &own {
@@ -209,15 +232,13 @@ impl Session {
             None => self.loaded(0)?,
         };
         let format = of.format.map_or_else(|| board.format(), |it| it.0);
-        let report = {
-            let scene = loaded.scene()?;
-            MemoryReport::of(
-                scene,
-                loaded.bytes(),
-                &target,
-                &Rendering::of(scene, format),
-            )
+        let scene = loaded.scene()?;
+        let rendering = Rendering {
+            format,
+            structure: on_boards(scene, of.structure.0),
+            width: scene.view().width,
         };
+        let report = MemoryReport::of(scene, loaded.bytes(), &target, &rendering);
         let report = report.map_err(|it| {
             Problem::new(
                 format!("{} was not measured on boards", it.0.name()),
@@ -237,6 +258,19 @@ impl Session {
             Vec::new(),
         ))
     }
+}
+
+/// The structure of a scene on boards: the chosen one if it was measured there, else dual-split, else the best one.
+fn on_boards(scene: &Checked<'_>, chosen: Structure) -> Structure {
+    let is_measured = |it: &Structure| {
+        MemoryReport::STRUCTURES.contains(it) && scene.structures().any(|held| held == *it)
+    };
+    let mut likely = [chosen, Structure::DualSplit]
+        .into_iter()
+        .chain(scene.structures());
+    likely
+        .find(is_measured)
+        .unwrap_or_else(|| scene.best_structure())
 }
 
 /// Returns the choices.
@@ -264,6 +298,7 @@ fn about() -> Value {
         "boards": boards,
         "boardStructures": MemoryReport::STRUCTURES.map(Structure::name),
         "extensions": extensions,
+        "maxDepth": MAX_RAY_DEPTH,
         "latticeBits": [LATTICE_BITS.start(), LATTICE_BITS.end()],
     })
 }

@@ -1,13 +1,23 @@
 //! A server of the files in a folder, for browsers on this machine.
 
 use std::io::{self, BufRead, BufReader, Read, Write};
-use std::net::{Ipv4Addr, SocketAddr, TcpListener, TcpStream};
+use std::net::{Ipv4Addr, Shutdown, SocketAddr, TcpListener, TcpStream};
 use std::path::{Component, Path, PathBuf};
+use std::sync::atomic::{AtomicUsize, Ordering};
 use std::thread;
 use std::time::Duration;
 
-/// Bytes of a request that are read at the most.
-const MOST_REQUEST: u64 = 8 << 10;
+/// Bytes of a request's lines at the most. Browsers send the cookies of all servers on this machine.
+const MOST_REQUEST: usize = 64 << 10;
+
+/// Bytes that are read at the most, so that an answer to too many of them arrives.
+const MOST_READ: u64 = 1 << 20;
+
+/// How long the rest of a refused request may take.
+const REST_PATIENCE: Duration = Duration::from_secs(1);
+
+/// How long to wait after a connection could not be accepted: there may be too many of them.
+const PAUSE: Duration = Duration::from_millis(50);
 
 /// How long a browser may take over a request, or over reading the answer.
 const PATIENCE: Duration = Duration::from_secs(20);
@@ -26,6 +36,31 @@ const TYPES: [(&str, &str); 9] = [
     ("png", "image/png"),
     ("svg", "image/svg+xml"),
 ];
+
+/// Connections at once; more are closed. Each takes a thread.
+const MOST_CONNECTIONS: usize = 128;
+
+/// A connection that is counted as long as it lasts.
+struct Counted<'n>(&'n AtomicUsize);
+
+impl<'n> Counted<'n> {
+    fn new(number: &'n AtomicUsize) -> Self {
+        number.fetch_add(1, Ordering::Relaxed);
+        Self(number)
+    }
+}
+
+impl Drop for Counted<'_> {
+    fn drop(&mut self) {
+        self.0.fetch_sub(1, Ordering::Relaxed);
+    }
+}
+
+/// The code and the words of a refusal.
+type Refusal = (u16, &'static str);
+
+const BAD_REQUEST: Refusal = (400, "Bad Request");
+const NOT_FOUND: Refusal = (404, "Not Found");
 
 /// Serves files until the program ends.
 pub struct Server {
@@ -57,10 +92,23 @@ impl Server {
 
     /// Answers requests, each on a thread of its own.
     pub fn run(&self) {
+        let answering = AtomicUsize::new(0);
         thread::scope(|scope| {
-            for stream in self.listener.incoming().flatten() {
-                // A browser that goes away is no fault.
-                scope.spawn(move || drop(self.answer(&stream)));
+            for stream in self.listener.incoming() {
+                let Ok(stream) = stream else {
+                    thread::sleep(PAUSE);
+                    continue;
+                };
+                if answering.load(Ordering::Relaxed) >= MOST_CONNECTIONS {
+                    continue;
+                }
+                let counted = Counted::new(&answering);
+                // A browser that goes away is no fault. Without a thread the connection is closed.
+                let answer = move || {
+                    let _counted = counted;
+                    drop(self.answer(&stream));
+                };
+                drop(thread::Builder::new().spawn_scoped(scope, answer));
             }
         });
     }
@@ -69,54 +117,81 @@ impl Server {
         stream.set_read_timeout(Some(PATIENCE))?;
         stream.set_write_timeout(Some(PATIENCE))?;
         let request = read_request(stream)?;
-        let answer = self.find(&request);
-        respond(stream, answer, request.starts_with("HEAD "))
+        let is_head = request.as_ref().is_ok_and(|it| it.starts_with("HEAD "));
+        let answer = request.and_then(|it| self.find(&it));
+        let is_refused = answer.is_err();
+        respond(stream, answer, is_head)?;
+        if is_refused {
+            // A connection that is closed with something unread loses the answer.
+            stream.shutdown(Shutdown::Write)?;
+            stream.set_read_timeout(Some(REST_PATIENCE))?;
+            io::copy(&mut stream.take(MOST_READ), &mut io::sink())?;
+        }
+        Ok(())
     }
 
-    /// Returns the file of a request, or the code and the words of a refusal.
-    fn find(&self, request: &str) -> Result<PathBuf, (u16, &'static str)> {
+    /// Returns the file of a request.
+    fn find(&self, request: &str) -> Result<PathBuf, Refusal> {
         let mut words = request.split(' ');
         let (method, target) = (words.next(), words.next().unwrap_or_default());
         if !matches!(method, Some("GET" | "HEAD")) {
             return Err((405, "Method Not Allowed"));
         }
-        let path = target.split(['?', '#']).next().unwrap_or_default();
-        let path = path.strip_prefix('/').ok_or((400, "Bad Request"))?;
+        let path = path_of(target).split(['?', '#']).next().unwrap_or_default();
+        let path = path.strip_prefix('/').ok_or(BAD_REQUEST)?;
         let path = percent_encoding::percent_decode_str(path).decode_utf8();
-        let path = path.map_err(|_| (400, "Bad Request"))?;
+        let path = path.map_err(|_| BAD_REQUEST)?;
         let relative = Path::new(&*path);
         let is_below = |part: Component<'_>| matches!(part, Component::Normal(_));
         if !relative.components().all(is_below) || path.contains(['\\', '\0', ':']) {
-            return Err((404, "Not Found"));
+            return Err(NOT_FOUND);
         }
         let mut file = self.folder.join(relative);
         if file.is_dir() {
             file.push("index.html");
         }
         // A link may lead anywhere.
-        let file = file.canonicalize().map_err(|_| (404, "Not Found"))?;
+        let file = file.canonicalize().map_err(|_| NOT_FOUND)?;
         if !file.starts_with(&self.folder) || !file.is_file() {
-            return Err((404, "Not Found"));
+            return Err(NOT_FOUND);
         }
         Ok(file)
     }
 }
 
-/// Reads the first line of a request; the others do not matter here.
-fn read_request(stream: &TcpStream) -> io::Result<String> {
-    let mut reader = BufReader::new(stream.take(MOST_REQUEST));
-    let (mut first, mut line) = (String::new(), String::new());
-    reader.read_line(&mut first)?;
-    // Read to its end: a connection that is closed with something unread loses the answer.
-    while reader.read_line(&mut line)? > 2 {
-        line.clear();
+/// The path of a target, which may name its server, too: `http://host/path`.
+fn path_of(target: &str) -> &str {
+    match target.split_once("://") {
+        Some((scheme, rest)) if scheme.eq_ignore_ascii_case("http") => {
+            rest.find('/').map_or("/", |start| &rest[start..])
+        }
+        _ => target,
     }
-    Ok(first)
+}
+
+/// Reads the first line of a request; the others do not matter here.
+fn read_request(stream: &TcpStream) -> io::Result<Result<String, Refusal>> {
+    let mut reader = BufReader::new(stream.take(MOST_READ));
+    let (mut first, mut line) = (Vec::new(), Vec::new());
+    let mut length = reader.read_until(b'\n', &mut first)?;
+    loop {
+        line.clear();
+        let read = reader.read_until(b'\n', &mut line)?;
+        length += read;
+        if read <= 2 {
+            break;
+        }
+    }
+    Ok(match String::from_utf8(first) {
+        _ if length > MOST_REQUEST => Err((431, "Request Header Fields Too Large")),
+        Ok(first) => Ok(first),
+        Err(_) => Err(BAD_REQUEST),
+    })
 }
 
 fn respond(
     mut stream: &TcpStream,
-    answer: Result<PathBuf, (u16, &'static str)>,
+    answer: Result<PathBuf, Refusal>,
     is_head: bool,
 ) -> io::Result<()> {
     let (status, kind, content) = match answer {
@@ -167,14 +242,14 @@ mod tests {
         outer
     }
 
-    fn ask(server: &Server, request: &str) -> String {
+    fn ask(server: &Server, request: impl AsRef<[u8]>) -> String {
         thread::scope(|scope| {
             scope.spawn(|| {
                 let (stream, _) = server.listener.accept().unwrap();
                 let _ = server.answer(&stream);
             });
             let mut stream = TcpStream::connect(server.address()).unwrap();
-            stream.write_all(request.as_bytes()).unwrap();
+            stream.write_all(request.as_ref()).unwrap();
             let mut answer = String::new();
             stream.read_to_string(&mut answer).unwrap();
             answer
@@ -184,7 +259,7 @@ mod tests {
     fn get(server: &Server, path: &str) -> String {
         ask(
             server,
-            &format!("GET {path} HTTP/1.1\r\nHost: localhost\r\n\r\n"),
+            format!("GET {path} HTTP/1.1\r\nHost: localhost\r\n\r\n"),
         )
     }
 
@@ -240,6 +315,51 @@ mod tests {
                 answer.starts_with(&format!("HTTP/1.1 {code} ")),
                 "{request:?}: {answer}"
             );
+        }
+    }
+
+    #[test]
+    fn long_headers_are_read_and_longer_ones_are_refused_with_words() {
+        let outer = folder();
+        let server = Server::new(&outer.path().join("page"), 0).unwrap();
+        for (bytes, code) in [
+            (60_000, 200),
+            (70_000, 431),
+            (500_000, 431),
+            (1_500_000, 431),
+        ] {
+            let cookie = "a".repeat(bytes);
+            let request = format!("GET / HTTP/1.1\r\nCookie: {cookie}\r\n\r\n");
+            let answer = ask(&server, request);
+            let status = format!("HTTP/1.1 {code} ");
+            assert!(answer.starts_with(&status), "{bytes}: {answer}");
+            assert!(code == 200 || answer.ends_with("\r\n\r\nRequest Header Fields Too Large\n"));
+        }
+        let body = "x".repeat(200_000);
+        let post = format!("POST / HTTP/1.1\r\nContent-Length: 200000\r\n\r\n{body}");
+        assert!(ask(&server, post).starts_with("HTTP/1.1 405 "));
+    }
+
+    #[test]
+    fn headers_of_other_bytes_and_targets_with_their_server_are_served() {
+        let outer = folder();
+        let server = Server::new(&outer.path().join("page"), 0).unwrap();
+        let index = "\r\n\r\n<p>";
+        assert!(ask(&server, b"GET / HTTP/1.1\r\nX: \xff\xfe\r\n\r\n").ends_with(index));
+        for target in [
+            "http://localhost/index.html",
+            "HTTP://127.0.0.1:8000/?a",
+            "http://h",
+        ] {
+            assert!(get(&server, target).ends_with(index), "{target}");
+        }
+        for (request, code) in [
+            (&b"GET /\xff HTTP/1.1\r\n\r\n"[..], 400),
+            (b"GET http://h/../secret HTTP/1.1\r\n\r\n", 404),
+            (b"GET ftp://h/index.html HTTP/1.1\r\n\r\n", 400),
+        ] {
+            let answer = ask(&server, request);
+            assert!(answer.starts_with(&format!("HTTP/1.1 {code} ")), "{answer}");
         }
     }
 

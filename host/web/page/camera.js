@@ -1,0 +1,61 @@
+// The camera.
+
+import { at } from "./controls.js";
+import { setState, showError, state } from "./state.js";
+import { askLoaded } from "./loading.js";
+import { update } from "./picture.js";
+
+let isMoving = false;
+let waiting = null;
+/** Counts returns to a first camera: moves from before them do not count. */
+let returns = 0;
+
+/** Moves the camera; what comes while it moves is added up. */
+export async function move({ orbit = [0, 0], pan = [0, 0], zoom = 0 }) {
+  if (!state.scene || state.opening) return;
+  setState("drawing");
+  waiting ??= { orbit: [0, 0], pan: [0, 0], zoom: 0 };
+  for (const axis of [0, 1]) {
+    waiting.orbit[axis] += orbit[axis];
+    waiting.pan[axis] += pan[axis];
+  }
+  waiting.zoom += zoom;
+  if (isMoving) return;
+  isMoving = true;
+  try {
+    while (waiting) {
+      const by = waiting;
+      waiting = null;
+      await turn(by);
+    }
+  } catch (error) {
+    waiting = null;
+    showError(error);
+  } finally {
+    isMoving = false;
+  }
+}
+
+/** Returns to the scene's own camera. */
+export async function home({ keepsError = false } = {}) {
+  if (!state.scene || state.opening) return;
+  returns += 1;
+  waiting = null;
+  state.camera = null;
+  update({ moved: true, keepsError });
+  try {
+    await turn({}, { isHome: true });
+  } catch (error) {
+    showError(error);
+  }
+}
+
+async function turn(by, { isHome = false } = {}) {
+  const mine = returns;
+  const { answer } = await askLoaded(() => ({ do: "move", slot: 0, camera: state.camera, ...by }));
+  if (mine !== returns) return;
+  at("camera").textContent = answer.toml;
+  if (isHome) return;
+  state.camera = answer.camera;
+  update({ moved: true });
+}

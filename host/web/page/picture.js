@@ -1,0 +1,180 @@
+// The picture: drawn, compared, painted.
+
+import { USUAL, at, choose, count, nameOf, settings, view } from "./controls.js";
+import { Table, bytesText, errorText, secondsText } from "./table.js";
+import { bytesOf, packed } from "./workers.js";
+import { compile, referenceSlot } from "./loading.js";
+import { describe, frameOf, inTurn, mark, setDone, setState, shot, showError, state, status, workers } from "./state.js";
+import { memory } from "./reports.js";
+
+const context = at("canvas").getContext("2d", { alpha: false, willReadFrequently: true });
+const table = new Table(at("rows"), (chosen) => {
+  choose(chosen);
+  update();
+});
+
+/** Between paintings of work that is not finished, in milliseconds. */
+const WORK_PAUSE = 400;
+
+let isPainting = false;
+
+/** Shows what the controls say. Errors of another scene can be left on the page. */
+export async function update({ moved = false, keepsError = false } = {}) {
+  // A scene that is opened will be shown with what the controls say then.
+  if (!state.scene || state.opening) return;
+  const { scene } = state;
+  const mine = state.change += 1;
+  const isStale = () => mine !== state.change;
+  state.finished = null;
+  if (!keepsError) at("error").hidden = true;
+  setState("drawing");
+  clearFigures();
+  try {
+    const chosen = settings();
+    await inTurn(() => isStale() || compile(scene, chosen));
+    if (isStale()) return;
+    const wanted = { ...shot(chosen), heatMap: view() === "work" };
+    if (state.frame.width !== wanted.width || state.frame.height !== wanted.height) resize(wanted);
+    if (moved || table.key !== tableKey()) table.clear(tableKey());
+    describe(chosen, "drawing");
+    const seconds = await workers.draw(wanted, state.frame, { onchange: paint });
+    if (isStale() || seconds === undefined) return;
+    mark("picture");
+    state.finished = { chosen, wanted, seconds, linear: state.frame.linear };
+    // Counting takes time.
+    if (!wanted.heatMap) at("time").textContent = secondsText(seconds);
+    at("bytes").textContent = bytesText(scene.info.bytes);
+    await paintLast();
+    memory();
+    if (!wanted.heatMap) await compare(chosen, isStale);
+    if (isStale()) return;
+    describe(chosen, "done");
+  } catch (error) {
+    if (isStale()) return;
+    // The error that came first says more.
+    if (keepsError && !at("error").hidden) setDone();
+    else showError(error);
+  }
+}
+
+/** A picture of another size. */
+function resize({ width, height }) {
+  const { canvas } = context;
+  state.frame = frameOf([width, height], at("size").value !== "0.5");
+  canvas.width = width;
+  canvas.height = height;
+  // All of it fits a window.
+  canvas.style.maxWidth = `calc(85vh * ${width / height})`;
+}
+
+/** Forgets what was measured for another picture. */
+function clearFigures() {
+  for (const id of ["rmse", "largest", "different", "time", "bytes"]) at(id).textContent = "-";
+  at("reference-text").textContent = "";
+}
+
+/** Draws the reference, unless it is there, and compares. */
+async function compare(chosen, isStale) {
+  const { scene, finished: picture } = state;
+  const samples = at("reference").value === "same" ? chosen.samples : Number(at("reference").value);
+  const depth = Math.max(chosen.depth, scene.first.depth);
+  const slot = await inTurn(() => isStale() || referenceSlot(scene));
+  if (isStale()) return;
+  const wanted = { ...shot(chosen), slot, format: "f64", structure: scene.blob ? chosen.structure : USUAL, samples, depth };
+  const key = JSON.stringify([scene.number, wanted]);
+  if (state.reference?.key !== key) {
+    status("Drawing the reference");
+    state.reference = null;
+    const drawn = frameOf([wanted.width, wanted.height], at("size").value !== "0.5");
+    const onchange = () => { at("progress").value = drawn.drawn / (drawn.width * drawn.height); };
+    const seconds = await workers.draw(wanted, drawn, { onchange, isBackground: true });
+    if (isStale() || seconds === undefined) return;
+    state.reference = { key, linear: drawn.linear, seconds };
+  }
+  const { reference } = state;
+  const both = bytesOf(reference.linear, picture.linear);
+  const { answer } = await workers.ask({ do: "errors" }, both);
+  if (isStale()) return;
+  const bits = scene.blob ? scene.info.latticeBits : 24;
+  at("reference-text").textContent = `Reference: f64, ${bits} lattice bits, all effects, ${count(samples, "sample")} per pixel, ` +
+    `depth ${depth}; it took ${secondsText(reference.seconds)}.`;
+  at("rmse").textContent = errorText(answer.rmse);
+  at("largest").textContent = errorText(answer.largest);
+  at("different").textContent = `${(100 * answer.share).toFixed(2)} %`;
+  table.add({ chosen, name: nameOf(chosen, scene), ...answer, seconds: picture.seconds, bytes: scene.info.bytes });
+  picture.errors = answer;
+  await paintLast();
+}
+
+function tableKey() {
+  return JSON.stringify([state.scene.number, state.camera, at("size").value, at("reference").value]);
+}
+
+/** Paints soon what was drawn so far. */
+function paint() {
+  const { frame } = state;
+  at("progress").value = frame.drawn / (frame.width * frame.height);
+  if (isPainting) return;
+  isPainting = true;
+  if (view() === "work") {
+    paintWork().catch(showError);
+    return;
+  }
+  requestAnimationFrame(() => {
+    isPainting = false;
+    // The last of an earlier picture.
+    if (state.finished && view() !== "picture") return;
+    show(state.frame.colors);
+    mark("seen");
+  });
+}
+
+function show(colors) {
+  const { canvas } = context;
+  if (colors.length !== canvas.width * canvas.height) return;
+  const pixels = new Uint8ClampedArray(colors.buffer, colors.byteOffset, 4 * colors.length);
+  context.putImageData(new ImageData(pixels, canvas.width), 0, 0);
+}
+
+/** Paints the work so far. */
+async function paintWork() {
+  const mine = state.change;
+  try {
+    const { bytes } = await workers.ask({ do: "heat-map" }, bytesOf(state.frame.work));
+    if (mine !== state.change || state.finished) return;
+    show(packed(bytes));
+  } finally {
+    // The first worker draws, too.
+    setTimeout(() => { isPainting = false; }, WORK_PAUSE);
+  }
+}
+
+/** Paints a finished picture as it is looked at. */
+async function paintLast() {
+  const { finished: mine, frame, reference } = state;
+  if (!mine) return;
+  const isWork = mine.wanted.heatMap;
+  if (!isWork && view() === "picture") {
+    show(frame.colors);
+    return;
+  }
+  if (!isWork && (!mine.errors || !reference)) return;
+  const made = isWork
+    ? await workers.ask({ do: "heat-map" }, bytesOf(frame.work))
+    : await workers.ask({ do: "difference" }, bytesOf(reference.linear, mine.linear));
+  if (state.finished !== mine) return;
+  mine.maximum = made.answer.maximum;
+  show(packed(made.bytes));
+  describe(mine.chosen, "done");
+}
+
+/** Shows the picture in another view. */
+export async function look() {
+  const { finished } = state;
+  if (!finished || finished.wanted.heatMap !== (view() === "work")) {
+    await update();
+    return;
+  }
+  await paintLast();
+  if (state.finished === finished) describe(finished.chosen, "done");
+}

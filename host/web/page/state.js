@@ -1,0 +1,130 @@
+// What the page shows, which its parts share, and how they say it.
+
+import { at, nameOf, settings, view } from "./controls.js";
+import { Frame, Problem, Workers } from "./workers.js";
+import { errorText, secondsText } from "./table.js";
+
+export const state = {
+  /** What there is to choose from. */
+  about: null,
+  /** The scene that is shown: files, the name of the main one, what its blob says of itself. */
+  scene: null,
+  /** The camera that was moved; the scene's own without one. */
+  camera: null,
+  frame: new Frame(400, 300),
+  /** The reference that was drawn last, and what it was drawn with. */
+  reference: null,
+  /** The picture that was finished last, with what was measured. */
+  finished: null,
+  /** Counts changes: work for an earlier one is given up. */
+  change: 0,
+  /** Settles when the files that are being opened are shown, or cannot be; null if none are. */
+  opening: null,
+};
+
+const module = WebAssembly.compileStreaming(fetch("gridel.wasm")).catch(async () =>
+  // A server may not know the type of such files.
+  WebAssembly.compile(await (await fetch("gridel.wasm")).arrayBuffer()));
+export const workers = new Workers(module, Math.max(1, Math.min(8, navigator.hardwareConcurrency || 2)));
+
+/** What loads blobs goes one after the other. */
+let queue = Promise.resolve();
+export function inTurn(work) {
+  const done = queue.then(work);
+  queue = done.catch(() => {});
+  return done;
+}
+
+export function setState(name) {
+  document.documentElement.dataset.state = name;
+}
+
+/** All is done; an error that is still shown is one. */
+export function setDone() {
+  setState(at("error").hidden ? "done" : "error");
+}
+
+/** Notes when something was first seen, in milliseconds since the page was asked for. */
+export function mark(what) {
+  document.documentElement.dataset[what] ??= Math.round(performance.now());
+}
+
+export function status(text) {
+  at("status").textContent = text;
+}
+
+/** Says what is drawn, or was. */
+export function describe(chosen, name) {
+  const { scene, finished } = state;
+  const done = name === "done";
+  const what = { picture: "", work: ", work of each pixel", error: ", error eight times enlarged" }[view()];
+  const white = finished?.maximum && view() === "work" ? `: white is ${finished.maximum} tests` : "";
+  const errors = done && finished?.errors ? `, RMS error ${errorText(finished.errors.rmse)}` : "";
+  const time = done && finished && !finished.wanted.heatMap ? `, ${secondsText(finished.seconds)}` : "";
+  const text = `${scene.name}: ${nameOf(chosen, scene)}${what}${white}${time}${errors}`;
+  if (done) {
+    status(text);
+    at("progress").value = 1;
+    setDone();
+  } else {
+    setState(name);
+  }
+  at("canvas").setAttribute("aria-label", `Picture of ${text}`);
+}
+
+/** Shows an error of the program, or a fault of the page. */
+export function showError(error) {
+  let problem = error;
+  if (error instanceof RangeError) {
+    problem = Problem.of(`the browser has not enough memory for this: ${error.message}`, "choose a smaller picture, or use the program");
+  } else if (!(error instanceof Problem)) {
+    problem = new Problem({ message: String(error), report: String(error.stack ?? error) });
+  }
+  at("error-text").textContent = problem.report;
+  at("error").hidden = false;
+  status(problem.message);
+  setState("error");
+  at("error").scrollIntoView({ block: "nearest" });
+}
+
+workers.onfault = showError;
+
+// Sizes.
+
+/** Pixels of a picture that browsers have the memory for. */
+const MOST_PIXELS = 2 ** 26;
+/** A side that a request can state. */
+const MOST_SIDE = 2 ** 16 - 1;
+
+export function sizeOf({ width, height }, scale) {
+  return [width, height].map((side) => Math.max(1, Math.round(side * scale)));
+}
+
+export function size() {
+  return sizeOf(state.scene.info, Number(at("size").value));
+}
+
+/** Throws if a picture is larger than browsers can show. */
+export function checkSize([width, height], canBeHalf) {
+  if (width * height <= MOST_PIXELS && Math.max(width, height) <= MOST_SIDE) return;
+  const otherwise = "render it with the program: `gridel render`";
+  throw Problem.of(`a picture of ${width} x ${height} pixels is too large for browsers: ` +
+    "2^26 pixels are the most", canBeHalf ? `choose half as its size, or ${otherwise}` : otherwise);
+}
+
+/** A frame of a size. */
+export function frameOf([width, height], canBeHalf) {
+  checkSize([width, height], canBeHalf);
+  try {
+    return new Frame(width, height);
+  } catch {
+    throw Problem.of(`this browser has no memory for a picture of ${width} x ${height} pixels`,
+      "choose half as its size, or render it with the program: `gridel render`");
+  }
+}
+
+/** A picture as requests state it. */
+export function shot({ format, structure, samples, depth } = settings()) {
+  const [width, height] = size();
+  return { slot: 0, camera: state.camera, format, structure, width, height, samples, depth, heatMap: false };
+}
