@@ -422,3 +422,59 @@ fn a_turntable_needs_no_camera_and_follows_an_import() {
         7
     );
 }
+
+/// A scene may be many times wider than what moves in it.
+#[test]
+fn what_moves_has_room_at_every_time_in_scenes_of_every_width() {
+    let tracks = [
+        "target = 'joint.j.shift'\nvalues = [[0, 0, 0], [0, 1, 0]]",
+        "target = 'joint.j.scale'\nvalues = [1, 2]",
+        "target = 'joint.j.rotation'\naxis = [0, 0, 1]\nvalues = [0, 90]",
+    ];
+    for (half, track) in [1, 10, 37, 1000, 30_000]
+        .into_iter()
+        .flat_map(|half| tracks.map(|track| (half, track)))
+    {
+        let file = format!(
+            "[[object]]\nkind = 'box'\nmin = [-{half}, -9, -{half}]\nmax = [{half}, -8, {half}]\n\
+             [[part]]\nname = 'p'\nobject = [{{ kind = 'box', min = [-0.5, -0.5, -0.5], max = [0.5, 0.5, 0.5] }}]\n\
+             [[joint]]\nname = 'j'\n[[instance]]\npart = 'p'\njoint = 'j'\ntranslate = [0, {half}, 0]\n\
+             [[track]]\ntimes = [0, 1]\n{track}\n"
+        );
+        let imported = read("lift.toml".as_ref(), file.into(), &ImportOptions::default());
+        let blob = built(&imported.expect("reads").scene);
+        let scene = blob.scene().expect("a scene");
+        let tracks = Tracks::from_bytes(blob.bytes()).expect("tracks");
+        for time in [0.0, 0.5, 0.999, 1.0, 2.0] {
+            let state = State::at(&scene, &tracks, ticks(&tracks, time));
+            let applied = state.as_ref().map(|state| state.apply(&scene).map(drop));
+            assert!(
+                matches!(applied, Ok(Ok(()))),
+                "{half}, {track}, {time}: {state:?}"
+            );
+        }
+    }
+}
+
+/// A matrix that is turned, scaled and doubled is still a rotation.
+#[test]
+fn turned_and_scaled_instances_have_a_place_at_every_tick() {
+    let file = "room = [[-9, -9, -9], [9, 9, 9]]\n[[part]]\nname = 'p'\n\
+        object = [{ kind = 'box', min = [-0.5, -0.5, -0.5], max = [0.5, 0.5, 0.5] }]\n\
+        [[joint]]\nname = 'j'\n[[instance]]\npart = 'p'\njoint = 'j'\nscale = 0.484\n\
+        rotate = [-66.9, -67.3, 27.6]\n[[track]]\ntarget = 'joint.j.rotation'\ntimes = [0, 1, 2]\n\
+        values = [[10, 20, 30], [100, -40, 170], [-60, 80, 20]]\n\
+        [[track]]\ntarget = 'joint.j.scale'\ntimes = [0, 2]\nvalues = [1.01, 1.3]\n";
+    let imported = read(
+        "drift.toml".as_ref(),
+        file.into(),
+        &ImportOptions::default(),
+    );
+    let blob = built(&imported.expect("reads").scene);
+    let scene = blob.scene().expect("a scene");
+    let tracks = Tracks::from_bytes(blob.bytes()).expect("tracks");
+    for time in (0..96_000).step_by(7).chain([28_133]) {
+        let state = State::at(&scene, &tracks, time);
+        assert!(state.is_ok(), "tick {time}: {state:?}");
+    }
+}

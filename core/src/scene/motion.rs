@@ -221,11 +221,11 @@ impl Motion {
 
     /// Returns the matrix from the scene to a part, after the inverse of this rotation and scale, and its power of two.
     fn matrix(&self, rest: &[[i32; 3]; 3]) -> ([[i32; 3]; 3], i16) {
-        // 53 fraction bits, rounded to 30.
-        let entry = |row: [i32; 3], turned: [i32; 3]| product(row, turned);
-        let turned = rest.map(|row| self.rotation.map(|turned| entry(row, turned)));
+        // 53 fraction bits, rounded once: an error would be doubled with the matrix.
+        let turned = rest.map(|row| self.rotation.map(|turned| dot(row, turned)));
+        let rounded = |entry: i64| (entry.wrapping_add(1 << 29) >> 30) as i32;
         if self.scale == Self::REST.scale {
-            return (turned, 0);
+            return (turned.map(|row| row.map(rounded)), 0);
         }
         // 1/scale is 2^(up - 6) over a number from 1 to 2.
         let up = self.scale.leading_zeros().wrapping_sub(1);
@@ -235,11 +235,12 @@ impl Motion {
         let [first, _, _] = turned;
         // 46 fraction bits. Below 1/4 the matrix is doubled.
         let over = |square: i64| (square >> 17).wrapping_mul(inverse) >> 12;
+        let first = first.map(rounded);
         let doubled = u32::from(over(over(dot(first, first))) < 1 << (2 * MATRIX_BITS - 2));
-        let down = 29_u32.wrapping_sub(doubled);
-        let scaled = |entry: i32| {
-            let product = i64::from(entry).wrapping_mul(inverse);
-            (product.wrapping_add(1 << 27) >> down) as i32
+        let down = 39_u32.wrapping_sub(doubled);
+        let scaled = |entry: i64| {
+            let product = (entry >> 20).wrapping_mul(inverse);
+            (product.wrapping_add(1 << 38 >> doubled) >> down) as i32
         };
         let exponent = (up as i16).wrapping_sub(6).wrapping_sub(doubled as i16);
         (turned.map(|row| row.map(scaled)), exponent)

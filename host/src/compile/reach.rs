@@ -18,14 +18,17 @@ const SAME_AXIS: f64 = 1e-6;
 /// Bound of how far rounding takes the matrix and the scale of a joint off, in radians.
 const ROUNDING: f64 = 1.0 / (1 << 23) as f64;
 
-/// By what part of its size room is widened: some units for the rounding of boxes.
+/// By what part of its size room is widened: a quarter for small rotations, the rest for the rounding of boxes.
 const MARGIN: f64 = 1.0 / 4096.0;
+
+/// By how many units room is widened at least: boxes of instances are up to five units larger than what they hold.
+const MARGIN_UNITS: f64 = 8.0;
 
 /// How far the instances of a scene move.
 #[derive(Debug, Default)]
 pub struct Reach {
-    /// The box around all that moves, and the room that the scene states.
-    pub bounds: Option<[DVec3; 2]>,
+    /// The box around all that moves, and the room that the scene states; without a margin.
+    bounds: Option<[DVec3; 2]>,
     /// For each instance, its least and its greatest scale relative to that at rest.
     pub scales: Vec<[f64; 2]>,
 }
@@ -60,22 +63,33 @@ impl Reach {
             let limit = |scale: f64| scale.clamp(LEAST_SCALE, LARGEST_SCALE);
             reach.scales.push(scales.map(limit));
         }
-        reach.bounds = reach.bounds.map(|[low, high]| {
-            let margin = DVec3::splat((high - low).max_element() * MARGIN);
-            [low - margin, high + margin]
-        });
         reach
     }
 
-    /// The box around a scene's extent and this.
-    pub fn around(&self, (lowest, highest): (DVec3, DVec3)) -> (DVec3, DVec3) {
-        let [low, high] = self.bounds.unwrap_or([lowest, highest]);
-        (low.min(lowest), high.max(highest))
+    /// The box around a scene's extent and this, for a lattice of so many bits.
+    pub fn around(&self, extent: (DVec3, DVec3), bits: u8) -> (DVec3, DVec3) {
+        let Some([low, high]) = self.bounds else {
+            return extent;
+        };
+        let whole = [low.min(extent.0), high.max(extent.1)];
+        // An extent without a lattice is reported later.
+        let unit = Lattice::around(whole, bits, 0).map_or(0.0, |it| it.unit());
+        let [low, high] = self.with_margin(unit).unwrap_or(whole);
+        (low.min(extent.0), high.max(extent.1))
+    }
+
+    /// The box on a lattice with such units.
+    fn with_margin(&self, unit: f64) -> Option<[DVec3; 2]> {
+        self.bounds.map(|[low, high]| {
+            let part = (high - low).max_element() * MARGIN;
+            let margin = DVec3::splat(part.max(MARGIN_UNITS * unit));
+            [low - margin, high + margin]
+        })
     }
 
     /// The box around a scene's box and this, on its lattice.
     pub fn box_around(&self, own: UnitBox, lattice: &Lattice) -> UnitBox {
-        let Some([low, high]) = self.bounds else {
+        let Some([low, high]) = self.with_margin(lattice.unit()) else {
             return own;
         };
         let units = |place: DVec3| (place - lattice.origin) / lattice.unit();

@@ -182,6 +182,23 @@ proptest! {
         }
     }
 
+    /// An instance at rest is rounded, too.
+    #[test]
+    fn turned_and_scaled_instances_stay_rotations(
+        rest in rotations(), factor in 1_i64 << 22..=1 << 23, rotation in rotations(), scale in SCALES[0]..=SCALES[1],
+    ) {
+        let origin = Position([0; 3]);
+        let rest = Motion::rotation(origin, rest).expect("a length").rotation;
+        let rounded = |entry: i32| (i64::from(entry) * factor + (1 << 29) >> 30) as i32;
+        let matrix = rest.map(|row| row.map(rounded));
+        crate::instances::bounds::check_rotation(&matrix).expect("a rotation");
+        let motion = Motion::rotation(origin, rotation).expect("a length");
+        let motion = motion.then(&Motion::scale(origin, scale));
+        let rest = Instance { matrix, ..Instance::zeroed() };
+        let placed = motion.place_rounded(&Header::zeroed(), &rest);
+        prop_assert!(crate::instances::bounds::check_rotation(&placed.matrix).is_ok(), "{:?}", placed.matrix);
+    }
+
     #[test]
     fn scaled_matrices_keep_their_range(rotation in rotations(), scale in SCALES[0]..=SCALES[1], factor in 1_i32 << 22..=1 << 23) {
         let rest = [[factor, 0, 0], [0, factor, 0], [0, 0, factor]];

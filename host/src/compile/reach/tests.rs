@@ -10,7 +10,7 @@ fn reach_holds_random_chains_at_all_times() {
         let scene = chain(&mut random, true);
         let part = [DVec3::new(-1.0, -2.0, 0.5), DVec3::new(3.0, 0.0, 1.0)];
         let reach = Reach::of(&scene, &[part]);
-        let [low, high] = reach.bounds.unwrap();
+        let [low, high] = reach.with_margin(0.0).unwrap();
         let rest = scene.instances[0].placement;
         let mut taken = [DVec3::INFINITY, DVec3::NEG_INFINITY];
         for step in -1..=100 {
@@ -145,6 +145,6 @@ fn room_widens_a_scene_without_joints() {
         room: Some([DVec3::ZERO, DVec3::splat(8.0)]),
         ..Scene::default()
     };
-    let (low, high) = Reach::of(&scene, &[]).around((DVec3::splat(-1.0), DVec3::ONE));
+    let (low, high) = Reach::of(&scene, &[]).around((DVec3::splat(-1.0), DVec3::ONE), 24);
     assert!(low == DVec3::splat(-1.0) && high.min_element() >= 8.0 && high.max_element() < 8.01);
 }
