@@ -123,7 +123,7 @@ impl Motion {
                 Property::Rotation => &mut moves.rotation,
                 Property::Scale => &mut moves.scale,
             };
-            let found = Curve::read(&channel, buffers)?;
+            let mut found = Curve::read(&channel, buffers)?;
             let error = |cause: &str| {
                 SceneError::new(
                     path,
@@ -136,6 +136,10 @@ impl Motion {
                 )
             };
             found.check(target.property()).map_err(error)?;
+            // A sample at the tick of a key, which has been rounded, must not see what was before it.
+            for key in &mut found.keys {
+                key.seconds = seconds(tick(key.seconds));
+            }
             *curve = Some(found);
         }
         Ok(motion)
@@ -215,8 +219,6 @@ impl Motion {
     fn sample_times(&mut self, node: usize) -> Result<Vec<f64>, Fault> {
         let moves = self.chain(node).filter_map(|it| self.nodes.get(&it));
         let curves = moves.flat_map(|it| [&it.translation, &it.rotation, &it.scale]);
-        // In ticks, as the blob has times.
-        let tick = |seconds: f64| (seconds * f64::from(TICKS_PER_SECOND)).round() as i64;
         let mut ticks = BTreeSet::new();
         for curve in curves.flatten() {
             ticks.extend(curve.keys.iter().map(|key| tick(key.seconds)));
@@ -250,7 +252,6 @@ impl Motion {
                 ),
             ]);
         }
-        let seconds = |tick: i64| tick as f64 / f64::from(TICKS_PER_SECOND);
         Ok(ticks.into_iter().map(seconds).collect())
     }
 
@@ -399,6 +400,16 @@ impl Motion {
             place: place.clone(),
         }))
     }
+}
+
+/// The nearest tick, as the blob has times.
+fn tick(seconds: f64) -> i64 {
+    (seconds * f64::from(TICKS_PER_SECOND)).round() as i64
+}
+
+/// The time of a tick.
+fn seconds(tick: i64) -> f64 {
+    tick as f64 / f64::from(TICKS_PER_SECOND)
 }
 
 /// The time of a node's first key.

@@ -181,16 +181,13 @@ impl Own {
     fn add(&mut self, target: TrackTarget, curve: Curve, rest: DVec4) {
         let is_rest = |value: [f64; 4]| {
             let value = DVec4::from_array(value);
-            // For no rotation, either of the two quaternions will do.
-            let other = match target {
-                TrackTarget::JointRotation => -rest * value.length(),
-                _ => rest,
+            let [own, other] = match target {
+                // For no rotation, either of the two quaternions will do, whatever its length.
+                TrackTarget::JointRotation => [rest, -rest].map(|it| it * value.length()),
+                _ => [rest; 2],
             };
-            let own = match target {
-                TrackTarget::JointRotation => rest * value.length(),
-                _ => rest,
-            };
-            value.abs_diff_eq(own, 1e-9) || value.abs_diff_eq(other, 1e-9)
+            let rounding = 1e-9 * value.length().max(own.length());
+            value.abs_diff_eq(own, rounding) || value.abs_diff_eq(other, rounding)
         };
         let mut keys = curve.keys.iter();
         let stays = keys

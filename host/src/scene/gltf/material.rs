@@ -23,7 +23,7 @@
 use crate::scene::{Alpha, Color, Diffuse, Material};
 use gltf::material::AlphaMode;
 
-fn name(material: &gltf::Material<'_>) -> String {
+pub(super) fn name(material: &gltf::Material<'_>) -> String {
     material.name().map_or_else(
         || match material.index() {
             Some(index) => format!("material {index}"),
@@ -33,18 +33,20 @@ fn name(material: &gltf::Material<'_>) -> String {
     )
 }
 
+/// Returns whether all that has this material is cut out.
+pub(super) fn is_cut_out(material: &gltf::Material<'_>) -> bool {
+    material.alpha_mode() == AlphaMode::Mask && !is_there(material)
+}
+
 /// Sentences on what of a material is ignored or taken otherwise.
 pub(super) fn ignored(material: &gltf::Material<'_>) -> impl Iterator<Item = String> {
     let name = name(material);
-    let has_texture = material
-        .pbr_metallic_roughness()
-        .base_color_texture()
-        .is_some();
-    let is_masked = material.alpha_mode() == AlphaMode::Mask && !is_there(material) && !has_texture;
     let glows = material.emissive_factor() != [0.0; 3];
     let index = material.ior().filter(|ior| !(1.0..=4.0).contains(ior));
     [
-        is_masked.then(|| format!("the alpha of material {name:?} is below its cutoff; it is opaque")),
+        emission(material).iter().any(|&it| it > BRIGHTEST).then(|| {
+            format!("the emission of material {name:?} is limited to {BRIGHTEST}; lower its emissive strength")
+        }),
         (material.double_sided() && glows).then(|| {
             format!("material {name:?} has two sides, and glows on the front alone")
         }),
@@ -74,8 +76,6 @@ pub(super) fn alpha(material: &gltf::Material<'_>) -> Option<Alpha> {
     match material.alpha_mode() {
         AlphaMode::Opaque => None,
         AlphaMode::Blend => Some(Alpha::Blend(factor)),
-        // All of it is cut out.
-        AlphaMode::Mask if !is_there(material) => Some(Alpha::Blend(0.0)),
         AlphaMode::Mask => {
             let cutoff = f64::from(material.alpha_cutoff().unwrap_or(0.5));
             (cutoff > 0.0).then(|| Alpha::CutOut((cutoff / factor).min(1.0)))
@@ -133,10 +133,7 @@ pub(super) fn read(material: &gltf::Material<'_>, alpha_is_used: bool) -> Materi
         absorption: volume.map_or([0.0; 3], |volume| {
             absorption(volume.attenuation_color(), volume.attenuation_distance())
         }),
-        emission: material.emissive_factor().map(|factor| {
-            let strength = material.emissive_strength().unwrap_or(1.0);
-            f64::from(factor * strength).clamp(0.0, 2047.0) * there
-        }),
+        emission: emission(material).map(|channel| channel.clamp(0.0, BRIGHTEST) * there),
         lights: true,
         is_sampled: false,
         name,
@@ -144,6 +141,17 @@ pub(super) fn read(material: &gltf::Material<'_>, alpha_is_used: bool) -> Materi
         alpha: None,
         normal_map: None,
     }
+}
+
+/// The largest radiance of a surface.
+const BRIGHTEST: f64 = 2047.0;
+
+/// The radiance of a material's surface.
+fn emission(material: &gltf::Material<'_>) -> Color {
+    let strength = material.emissive_strength().unwrap_or(1.0);
+    material
+        .emissive_factor()
+        .map(|factor| f64::from(factor * strength))
 }
 
 /// The coefficient of Beer's law by which white light turns into a color over a distance.

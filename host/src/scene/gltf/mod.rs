@@ -361,6 +361,13 @@ impl Importer<'_> {
         let parts = mesh.primitives().len();
         let mut objects = Vec::with_capacity(parts);
         for part in mesh.primitives() {
+            if material::is_cut_out(&part.material()) {
+                let name = material::name(&part.material());
+                self.warn(format!(
+                    "the alpha of material {name:?} is below its cutoff; what has it is left out"
+                ));
+                continue;
+            }
             let place = place(mesh, &part);
             let Some((shape, normals, attributes)) = self.mesh(&place, &part, world)? else {
                 continue;

@@ -324,3 +324,29 @@ fn broken_channels_are_rejected() {
     let error = read(document.to_string().as_bytes()).unwrap_err();
     assert!(error.cause.contains("do not ascend"), "{error}");
 }
+
+/// The seconds of a file have 24 bits, and can lie just behind the tick to which they are rounded.
+#[test]
+fn a_rig_takes_each_step_at_its_tick() {
+    let mut document = animated(json!([{"channels": [channel(0, 2, "translation")],
+        "samplers": [sampler(3, "STEP")]}]));
+    // Keys at 0, 0.1 and 0.2 seconds in place of 0, 1 and 2.
+    let uri = document["buffers"][1]["uri"].as_str().unwrap().to_owned();
+    let (head, data) = uri.split_once(',').unwrap();
+    let mut bytes = STANDARD.decode(data).unwrap();
+    for (place, seconds) in [0.0_f32, 0.1, 0.2].into_iter().enumerate() {
+        bytes[4 * place..][..4].copy_from_slice(&seconds.to_le_bytes());
+    }
+    document["buffers"][1]["uri"] = json!(format!("{head},{}", STANDARD.encode(bytes)));
+    let nodes = document["nodes"].as_array_mut().unwrap();
+    nodes.push(json!({"children": [1]}));
+    document["scenes"] = json!([{"nodes": [0, 2]}]);
+    let (tracks, _) = tracks(&document);
+    let eye = &tracks[0].keys;
+    let at = |seconds: f64| eye.iter().find(|key| key.seconds == seconds).unwrap();
+    let first = eye[0].vector();
+    for (seconds, moved) in [(0.1, [1.0, 0.0, 0.0]), (0.2, [1.0, 2.0, 0.0])] {
+        assert_eq!(at(seconds).vector() - first, DVec3::from_array(moved));
+    }
+    assert_eq!(at(4_799.0 / 48_000.0).vector(), first);
+}

@@ -117,61 +117,6 @@ fn a_camera_and_lights() {
     assert!(matches!(scene.camera, Some(Camera { .. })));
 }
 
-/// Two cameras whose names are those of each other's nodes; the first has this field of view.
-fn crossed(yfov: f64) -> Value {
-    let camera = |name: &str, yfov: f64, aspect: f64| {
-        let perspective = json!({"yfov": yfov, "znear": 1, "aspectRatio": aspect});
-        json!({"name": name, "type": "perspective", "perspective": perspective})
-    };
-    let mut document = document();
-    document["cameras"] = json!([camera("b", yfov, 2.0), camera("a", 1.0, 1.0)]);
-    document["nodes"] = json!([
-        {"mesh": 0},
-        {"camera": 0, "name": "a", "translation": [0, 0, 5]},
-        {"camera": 1, "name": "b", "translation": [0, 0, 7]},
-    ]);
-    document["scenes"][0]["nodes"] = json!([0, 2, 1]);
-    document
-}
-
-#[test]
-fn a_camera_is_known_by_its_node_first() {
-    for (name, place, width) in [("a", 5.0, 480), ("b", 7.0, 240)] {
-        let choice = Choice {
-            camera: Some(name.to_owned()),
-            ..Choice::default()
-        };
-        let found = chosen(&crossed(1.0), choice).unwrap();
-        assert_eq!(found.scene.camera.unwrap().eye.z, place, "{name}");
-        assert_eq!(found.scene.render.width, width, "{name}");
-    }
-}
-
-#[test]
-fn a_camera_that_sees_nothing_is_named() {
-    for yfov in [0.0, -1.0, 3.2] {
-        let choice = Choice {
-            camera: Some("a".to_owned()),
-            ..Choice::default()
-        };
-        // By the name of the other node's camera.
-        let found = chosen(&crossed(yfov), choice).unwrap();
-        assert_eq!(found.scene.camera.unwrap().eye.z, 7.0);
-        let warned = |it: &String| it.contains("yfov");
-        assert!(found.warnings.iter().any(warned), "{:?}", found.warnings);
-        let mut document = crossed(yfov);
-        document["scenes"][0]["nodes"] = json!([0, 1]);
-        let choice = Choice {
-            camera: Some("a".to_owned()),
-            ..Choice::default()
-        };
-        let error = chosen(&document, choice).unwrap_err();
-        assert!(error.cause.contains("yfov"), "{error}");
-        let found = chosen(&document, Choice::default()).unwrap();
-        assert!(found.scene.camera.is_none() && found.warnings.iter().any(warned));
-    }
-}
-
 /// A scene of a mesh and a light.
 fn lit(light: &Value) -> Imported {
     let mut document = document();
@@ -213,15 +158,10 @@ fn ignored_attributes_are_counted_in_one_warning_each() {
     assert_eq!(warnings(&document), [] as [&str; 0]);
     let part = json!({"attributes": {"POSITION": 0, "NORMAL": 0, "COLOR_1": 0}, "indices": 1});
     document["meshes"][0]["primitives"] = json!([part, part, part]);
-    let thin = json!({"baseColorFactor": [1, 1, 1, 0.2]});
-    document["materials"] = json!([{"alphaMode": "MASK", "name": "leaf", "pbrMetallicRoughness": thin},
-        {"emissiveFactor": [1, 0, 0], "name": "lamp"}]);
+    document["materials"] = json!([{"emissiveFactor": [1, 0, 0], "name": "lamp"}]);
     assert_eq!(
         warnings(&document),
-        [
-            "COLOR_1 of a primitive is ignored; COLOR_0 is read (and 2 times more)",
-            "the alpha of material \"leaf\" is below its cutoff; it is opaque",
-        ]
+        ["COLOR_1 of a primitive is ignored; COLOR_0 is read (and 2 times more)"]
     );
 }
 
@@ -470,7 +410,6 @@ fn alpha_modes_of_textures() {
         ("OPAQUE", 0.5, 0.5, None),
         ("MASK", 1.0, 0.5, Some(Alpha::CutOut(0.5))),
         ("MASK", 0.5, 0.25, Some(Alpha::CutOut(0.5))),
-        ("MASK", 0.5, 0.75, Some(Alpha::Blend(0.0))),
         ("MASK", 0.5, 0.0, None),
     ] {
         set(&mut document, mode, factor, cutoff);
@@ -480,4 +419,35 @@ fn alpha_modes_of_textures() {
             Diffuse::Plain([1.0; 3])
         );
     }
+    // No texel has as much alpha as the cutoff.
+    set(&mut document, "MASK", 0.5, 0.75);
+    assert!(scene(&document).objects.is_empty());
+}
+
+#[test]
+fn strong_emission_is_limited_with_a_warning() {
+    let mut document = document();
+    document["extensionsUsed"] = json!(["KHR_materials_emissive_strength"]);
+    let strong = json!({"KHR_materials_emissive_strength": {"emissiveStrength": 1e6}});
+    document["materials"] =
+        json!([{"name": "lamp", "emissiveFactor": [1, 0, 0], "extensions": strong}]);
+    assert_eq!(scene(&document).materials[0].emission, [2047.0, 0.0, 0.0]);
+    let found = warnings(&document);
+    assert!(
+        found[0].contains("lamp") && found[0].contains("limited to 2047"),
+        "{found:?}"
+    );
+}
+
+#[test]
+fn what_a_mask_cuts_out_wholly_is_left_out() {
+    let mut document = document();
+    let thin = json!({"baseColorFactor": [1, 1, 1, 0.3]});
+    document["materials"] =
+        json!([{"alphaMode": "MASK", "name": "leaf", "pbrMetallicRoughness": thin}]);
+    document["meshes"][0]["primitives"][0]["material"] = json!(0);
+    assert!(scene(&document).objects.is_empty());
+    let found = warnings(&document);
+    let sentence = "the alpha of material \"leaf\" is below its cutoff; what has it is left out";
+    assert!(found.iter().any(|it| it == sentence), "{found:?}");
 }

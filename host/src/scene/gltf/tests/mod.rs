@@ -1,5 +1,6 @@
 mod animation;
 mod appearance;
+mod cameras;
 mod files;
 mod geometry;
 mod instances;
@@ -8,7 +9,9 @@ mod joints;
 
 use super::*;
 use crate::scene::test_scenes::{self, load, load_allowing_outside, mesh};
-use crate::scene::{Alpha, Camera, Choice, Diffuse, ImportOptions, Light, LightForm, Material, Wrap};
+use crate::scene::{
+    Alpha, Camera, Choice, Diffuse, ImportOptions, Light, LightForm, Material, Wrap,
+};
 use base64::Engine as _;
 use base64::engine::general_purpose::STANDARD;
 use serde_json::{Value, json};

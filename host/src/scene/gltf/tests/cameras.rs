@@ -1,0 +1,58 @@
+//! Which camera is chosen.
+
+use super::*;
+
+/// Two cameras whose names are those of each other's nodes; the first has this field of view.
+fn crossed(yfov: f64) -> Value {
+    let camera = |name: &str, yfov: f64, aspect: f64| {
+        let perspective = json!({"yfov": yfov, "znear": 1, "aspectRatio": aspect});
+        json!({"name": name, "type": "perspective", "perspective": perspective})
+    };
+    let mut document = document();
+    document["cameras"] = json!([camera("b", yfov, 2.0), camera("a", 1.0, 1.0)]);
+    document["nodes"] = json!([
+        {"mesh": 0},
+        {"camera": 0, "name": "a", "translation": [0, 0, 5]},
+        {"camera": 1, "name": "b", "translation": [0, 0, 7]},
+    ]);
+    document["scenes"][0]["nodes"] = json!([0, 2, 1]);
+    document
+}
+
+#[test]
+fn a_camera_is_known_by_its_node_first() {
+    for (name, place, width) in [("a", 5.0, 480), ("b", 7.0, 240)] {
+        let choice = Choice {
+            camera: Some(name.to_owned()),
+            ..Choice::default()
+        };
+        let found = chosen(&crossed(1.0), choice).unwrap();
+        assert_eq!(found.scene.camera.unwrap().eye.z, place, "{name}");
+        assert_eq!(found.scene.render.width, width, "{name}");
+    }
+}
+
+#[test]
+fn a_camera_that_sees_nothing_is_named() {
+    for yfov in [0.0, -1.0, 3.2] {
+        let choice = Choice {
+            camera: Some("a".to_owned()),
+            ..Choice::default()
+        };
+        // By the name of the other node's camera.
+        let found = chosen(&crossed(yfov), choice).unwrap();
+        assert_eq!(found.scene.camera.unwrap().eye.z, 7.0);
+        let warned = |it: &String| it.contains("yfov");
+        assert!(found.warnings.iter().any(warned), "{:?}", found.warnings);
+        let mut document = crossed(yfov);
+        document["scenes"][0]["nodes"] = json!([0, 1]);
+        let choice = Choice {
+            camera: Some("a".to_owned()),
+            ..Choice::default()
+        };
+        let error = chosen(&document, choice).unwrap_err();
+        assert!(error.cause.contains("yfov"), "{error}");
+        let found = chosen(&document, Choice::default()).unwrap();
+        assert!(found.scene.camera.is_none() && found.warnings.iter().any(warned));
+    }
+}
