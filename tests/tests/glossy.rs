@@ -1,9 +1,12 @@
 //! Rough mirrors and rough glass: pictures have the values that formulas in double precision give.
 
+use glam::DVec3;
 use gridel_core::{Effects, Format};
 use gridel_host::blob::Blob;
 use gridel_host::compile::{Options, compile};
+use gridel_host::scene::{Normals, Shape};
 use gridel_tests::measured::measured;
+use gridel_tests::scenes;
 use std::f64::consts::PI;
 
 type Vector = [f64; 3];
@@ -351,4 +354,71 @@ fn lossless_rough_glass_shows_no_more_than_is_there() {
 fn smooth_mirrors_have_the_blobs_of_those_that_say_nothing() {
     let blob = |material: &str| floor(0.5, material, "", 1).bytes().to_vec();
     assert_eq!(blob("mirror = 0.5\nroughness = 0"), blob("mirror = 0.5"));
+}
+
+/// There is no surface between equal media, however rough.
+#[test]
+fn rough_glass_that_bends_no_light_is_invisible() {
+    let text = |eye: &str, roughness: f64| {
+        format!(
+            "background = 0.9\n[camera]\neye = {eye}\ntarget = [0, 0, 0]\nfov = 0.02\n\
+             [render]\nwidth = 4\nheight = 4\ndepth = 16\ncutoff = 0\n\
+             [material.air]\ndiffuse = 0\ntransmit = 1\nior = 1\nroughness = {roughness}\n\
+             [[object]]\nkind = 'box'\nmin = [-100, -3, -100]\nmax = [100, 0, 100]\nmaterial = 'air'"
+        )
+    };
+    for eye in ["[1, 50, 2]", "[50, 9, 2]", "[50, 1, 0]"] {
+        for roughness in [0.05, 0.5, 1.0] {
+            let blob = read(text(eye, roughness));
+            for format in Format::ALL {
+                let (mean, error) = measured(&blob, format, 16);
+                assert!(
+                    (mean - 0.9).abs() < 1e-4 && error < 1e-4,
+                    "{eye} {roughness} {format:?}: {mean}"
+                );
+            }
+        }
+    }
+}
+
+/// Where the surface is shaded as if it leant by an angle, mirrored rays go below the triangle: they are turned into its
+/// plane, and see the surroundings.
+#[test]
+fn rough_mirrors_with_their_own_normals_lose_no_rays() {
+    for degrees in [30.0_f64, 50.0, 65.0] {
+        let text = "background = 0.9\nambient = 0.1\n[camera]\neye = [0.1, 50, 0.1]\ntarget = [0.1, 0, 0.1]\nup = [1, 0, 0]\nfov = 0.02\n\
+                    [render]\nwidth = 4\nheight = 4\n[material.rough]\ndiffuse = 0\nmirror = 1\nroughness = 0.05";
+        let mut scene = gridel_tests::measured::read(text);
+        let vertices = [
+            DVec3::new(-9.0, 0.0, -9.0),
+            DVec3::new(0.0, 0.0, 9.0),
+            DVec3::new(9.0, 0.0, -9.0),
+        ];
+        let (sine, cosine) = degrees.to_radians().sin_cos();
+        let normals = Normals {
+            vectors: vec![DVec3::new(sine, cosine, 0.0)],
+            triangles: vec![[0; 3]],
+        };
+        let mut mesh = scenes::of([Shape::Mesh {
+            vertices: vertices.to_vec(),
+            triangles: vec![[0, 1, 2]],
+        }])
+        .objects
+        .remove(0);
+        mesh.normals = normals;
+        mesh.material = scene
+            .materials
+            .iter()
+            .position(|it| it.name == "rough")
+            .expect("it");
+        scene.objects.push(mesh);
+        let blob = compile(&scene, &Options::default()).expect("a blob").blob;
+        for format in Format::ALL {
+            let (mean, _) = measured(&blob, format, 256);
+            assert!(
+                (0.87..=0.9001).contains(&mean),
+                "{degrees} {format:?}: {mean}"
+            );
+        }
+    }
 }

@@ -88,16 +88,15 @@ impl<N: Number> Facets<N> {
     }
 
     /// Returns the part of a ray's weight that leaves by a drawn facet, because no other facet is in its way. It is 0
-    /// for a ray to the wrong side of the surface. `outward` is the side of the geometric normal.
+    /// for a ray to the wrong side of the surface as it is shaded. One to the wrong side of a triangle is turned later.
+    /// `outward` is the side of the geometric normal.
     #[inline(never)]
     pub(crate) fn unmasked(&self, hit: &Hit<N>, direction: [N; 3], outward: bool) -> N {
         let (out, _) = N::normalize(direction);
         let is_reflected = outward == hit.front;
         let rise = N::from_wide(N::dot(out, self.normal));
         let cos_out = if is_reflected { rise } else { -rise }.min(N::ONE);
-        let above = N::from_wide(N::dot(out, hit.normal));
-        let above = if outward { above } else { -above };
-        if cos_out <= N::ZERO || above <= N::ZERO {
+        if cos_out <= N::ZERO {
             N::ZERO
         } else if is_reflected {
             self.unmasked_reflection(cos_out)

@@ -60,15 +60,11 @@ impl Effect for Glass {
         if !surface.required.contains(Self::EFFECT) {
             return;
         }
+        let interface = surface.interface();
         let Split {
             reflected,
             refracted,
-        } = split(
-            surface.interface(),
-            surface.direction,
-            bounce.normal,
-            bounce.cos_in,
-        );
+        } = split(interface, surface.direction, bounce.normal, bounce.cos_in);
         if X::Observer::ENABLED {
             tracer.count().event(Event::Split {
                 reflected: reflected.ratio_to_f64(),
@@ -82,7 +78,14 @@ impl Effect for Glass {
             outward: !hit.front,
             weight: surface.weight.times(transmit.scaled(N::ONE - reflected)),
         };
-        tracer.send(hit, bounce.leaving(hit, secondary));
+        // Facets do not hide what they do not bend.
+        let is_bent = interface.k != N::ONE;
+        let secondary = if is_bent {
+            bounce.leaving(hit, secondary)
+        } else {
+            secondary
+        };
+        tracer.send(hit, secondary);
     }
 }
 

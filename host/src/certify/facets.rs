@@ -32,7 +32,7 @@ pub struct Facets<N> {
 /// How much of a ray leaves by a facet.
 pub struct Unmasked<N> {
     pub part: N,
-    /// True if it cannot be decided whether the ray leads to the right side of the surface.
+    /// True if it cannot be decided whether the ray leads to the right side of the surface as it is shaded.
     pub is_open: bool,
 }
 
@@ -89,10 +89,8 @@ impl<N: Enclosure> Facets<N> {
         let is_reflected = outward == hit.front;
         let rise = dot(out, self.normal);
         let cos_out = if is_reflected { rise } else { -rise };
-        let above = dot(out, hit.normal);
-        let above = if outward { above } else { -above };
-        let sides = [positive(cos_out), positive(above)];
-        if sides.contains(&Some(false)) {
+        let is_up = positive(cos_out);
+        if is_up == Some(false) {
             return Some(Unmasked {
                 part: N::zero(),
                 is_open: false,
@@ -106,7 +104,7 @@ impl<N: Enclosure> Facets<N> {
             (cos_out + cos_out).over(cos_out + self.slant(cos_out))?
         };
         let part = limited(part);
-        let is_open = sides.contains(&None);
+        let is_open = is_up.is_none();
         Some(Unmasked {
             part: if is_open { part.hull(N::zero()) } else { part },
             is_open,

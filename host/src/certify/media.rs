@@ -4,6 +4,7 @@ use super::number::*;
 use gridel_core::Scene;
 use gridel_core::format::limits::MAX_MEDIA;
 use gridel_core::format::record::Material;
+use std::cmp::Ordering;
 
 /// Two media that meet at a surface.
 #[derive(Clone, Copy, Debug)]
@@ -15,6 +16,11 @@ pub struct Interface<N> {
 }
 
 impl<N: Enclosure> Interface<N> {
+    /// Returns whether the media differ.
+    pub fn is_bending(&self) -> bool {
+        (self.k - N::one()).sign() != Some(Ordering::Equal)
+    }
+
     /// Between the surroundings and glass, whose front a ray meets or not.
     pub fn of(front: bool, material: &Material) -> Self {
         Self {

@@ -98,12 +98,13 @@ fn sine_squared<N: Enclosure>(cos: N) -> N {
 
 /// Splits a ray of length 1 at a surface by Snell's law.
 pub fn split<N: Enclosure>(
-    &Interface { k, to_denser }: &Interface<N>,
+    interface: &Interface<N>,
     direction: Three<N>,
     normal: Three<N>,
     cos_in: N,
 ) -> Option<Split<N>> {
-    if (k - N::one()).sign() == Some(Ordering::Equal) {
+    let &Interface { k, to_denser } = interface;
+    if !interface.is_bending() {
         return Some(Split {
             reflected: N::zero(),
             refracted: Some(direction),

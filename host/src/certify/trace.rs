@@ -192,7 +192,9 @@ impl Tracer<'_, '_> {
                     outward: !hit.front,
                     weight: times(weight, scale(transmit, rest)),
                 };
-                let sent = self.send(seen, self.unmasked(seen, facets.as_ref(), through)?)?;
+                // Facets do not hide what they do not bend.
+                let facets = facets.as_ref().filter(|_| seen.interface.is_bending());
+                let sent = self.send(seen, self.unmasked(seen, facets, through)?)?;
                 brought = if split.is_open {
                     self.branch()?;
                     plus(brought, hull([N::zero(); 3], sent))

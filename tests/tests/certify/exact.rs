@@ -168,12 +168,16 @@ impl<'s> Exact<'s> {
             mirrored = sum(&mirrored, &more).map(|x| x.min(one()));
             if let Some(slope) = refracted {
                 let part = scaled(&transmit, &(one() - &reflected));
-                let refracted = leaving(Leaving {
+                let straight = Leaving {
                     kind: RayKind::Refracted,
                     slope,
                     outward: !met.front,
                     weight: product(weight, &part),
-                });
+                };
+                let refracted = match interface.is_bending() {
+                    true => leaving(straight),
+                    false => straight,
+                };
                 result = sum(&result, &self.sent(surface, refracted));
             }
         }

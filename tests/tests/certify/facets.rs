@@ -70,8 +70,7 @@ impl Facets {
         let is_reflected = ray.outward == met.front;
         let signed = |cos: Real, is_up: bool| if is_up { cos } else { -cos };
         let cos_out = signed(dot(&out, &self.normal), is_reflected).min(one());
-        let above = signed(dot(&out, &met.normal), ray.outward);
-        if !cos_out.is_positive() || !above.is_positive() {
+        if !cos_out.is_positive() {
             return Leaving {
                 weight: black(),
                 ..ray

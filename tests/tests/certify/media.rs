@@ -56,6 +56,11 @@ impl Interface {
         }
     }
 
+    /// Returns whether the media differ.
+    pub fn is_bending(&self) -> bool {
+        self.k != one()
+    }
+
     /// The part of a ray that is reflected, and the direction of the rest, at a normal that has this cosine with the way
     /// back.
     pub fn split(&self, direction: &Vector, normal: &Vector, cos: &Real) -> (Real, Option<Vector>) {
