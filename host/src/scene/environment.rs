@@ -80,9 +80,16 @@ impl Sun {
         2.0 * libm::sin(self.angle.to_radians() / 4.0)
     }
 
-    /// Returns the factor from a radiance to the [color](Self::color): the solid angle over π.
+    /// Returns its solid angle over π.
     pub fn solid_angle_over_pi(&self) -> f64 {
         self.radius() * self.radius()
+    }
+
+    /// Returns the factor from a radiance to the [color](Self::color): the light that falls on a surface which faces the
+    /// disc, over π. At the disc's edge it falls aslant.
+    pub fn color_over_radiance(&self) -> f64 {
+        let part = self.solid_angle_over_pi();
+        part * (1.0 - part / 4.0)
     }
 }
 

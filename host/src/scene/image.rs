@@ -175,10 +175,10 @@ fn png(bytes: &[u8], texels: &Texels) -> Result<Decoded, Fault> {
         fault(format!("is broken: {error}"), "save the image again as PNG")
     };
     let limits = png::Limits {
-        bytes: 4 * MOST_TEXELS,
+        bytes: 8 * MOST_TEXELS,
     };
     let mut decoder = png::Decoder::new_with_limits(Cursor::new(bytes), limits);
-    decoder.set_transformations(png::Transformations::normalize_to_color8());
+    decoder.set_transformations(png::Transformations::EXPAND);
     let mut reader = decoder.read_info().map_err(broken)?;
     let (width, height) = (reader.info().width as usize, reader.info().height as usize);
     texels.add(width, height)?;
@@ -187,8 +187,14 @@ fn png(bytes: &[u8], texels: &Texels) -> Result<Decoded, Fault> {
         .ok_or_else(|| fault("is too large", "make the image smaller"))?;
     let mut buffer = vec![0; size];
     let info = reader.next_frame(&mut buffer).map_err(broken)?;
-    let channels = info.color_type.samples();
-    let pixels = buffer[..info.buffer_size()].chunks_exact(channels);
+    buffer.truncate(info.buffer_size());
+    if info.bit_depth == png::BitDepth::Sixteen {
+        let channels = buffer.as_chunks().0.iter();
+        let channels =
+            channels.map(|&it| (f64::from(u16::from_be_bytes(it)) / 257.0).round() as u8);
+        buffer = channels.collect();
+    }
+    let pixels = buffer.chunks_exact(info.color_type.samples());
     Ok((width, height, pixels.map(pixel).collect()))
 }
 

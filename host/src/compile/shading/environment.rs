@@ -177,17 +177,19 @@ fn sun_of(
         return Ok((plain, None));
     };
     let color = exposure.of_color(sun.color, || String::from("sun"))?;
+    let of_disc = color.map(|channel| channel / sun.color_over_radiance());
     let towards = -unit(sun.direction) * f64::from(1 << 30);
     let record = Record {
         sun_direction: towards.round().to_array().map(|x| x as i32),
         sun_radius: (sun.radius() * f64::from(1 << 30)).round() as i32,
         // A brighter sun is limited to what a record holds.
-        sun_radiance: radiance(color.map(|channel| channel / sun.solid_angle_over_pi())),
+        sun_radiance: radiance(of_disc),
         ..plain
     };
     let light = Light {
         vector: [0; 3],
-        color: radiance(color),
+        // Samples are multiplied by the cosine at each.
+        color: radiance(of_disc.map(|channel| channel * sun.solid_angle_over_pi())),
         directional: Light::SUN,
     };
     Ok((record, (color != [0.0; 3]).then_some(light)))

@@ -58,3 +58,20 @@ fn crc32(bytes: &[u8]) -> u32 {
         })
     })
 }
+
+#[test]
+fn sixteen_bits_are_rounded_to_eight() {
+    let mut file = Vec::new();
+    let mut encoder = png::Encoder::new(&mut file, 4, 1);
+    encoder.set_color(png::ColorType::Grayscale);
+    encoder.set_depth(png::BitDepth::Sixteen);
+    let mut writer = encoder.write_header().unwrap();
+    let values = [128_u16, 129, 33_023, 65_535];
+    writer
+        .write_image_data(values.map(u16::to_be_bytes).as_flattened())
+        .unwrap();
+    writer.finish().unwrap();
+    let image = Image::decode("deep.png", &file, &Texels::default()).unwrap();
+    let found: Vec<u8> = image.pixels().iter().map(|it| it[0]).collect();
+    assert_eq!(found, [0, 1, 128, 255]);
+}

@@ -98,7 +98,7 @@ fn sun(table: Value<'_>) -> Result<Sun, SceneError> {
         (Some(color), None) => color.radiance()?,
         (None, None) => sun.color,
         (None, Some(radiance)) => {
-            let part = sun.solid_angle_over_pi();
+            let part = sun.color_over_radiance();
             let color = radiance.color()?.map(|channel| channel * part);
             if let Some(brightest) = color.into_iter().find(|&it| it > 2047.0) {
                 return Err(radiance.error(

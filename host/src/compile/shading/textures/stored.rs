@@ -65,33 +65,17 @@ pub(super) struct Stored {
 }
 
 impl Raster {
-    /// With half the width and height, rounded up: the mean of linear light, or of normals.
+    /// With half the width and height, rounded up. Colors are means of linear light by area and alpha, and normals by
+    /// area.
     fn halved(&self, has_normals: bool) -> Self {
         let [width, height] = record::Texture::next_level([self.width, self.height]);
         let mut pixels = Vec::with_capacity((width * height) as usize);
         for y in 0..height {
             for x in 0..width {
-                let (mut sum, mut alpha) = ([0_u32; 3], 0);
-                for (dx, dy) in [(0, 0), (1, 0), (0, 1), (1, 1)] {
-                    let x = (2 * x + dx).min(self.width - 1);
-                    let y = (2 * y + dy).min(self.height - 1);
-                    let pixel = self.pixels[(y * self.width + x) as usize];
-                    for (sum, channel) in sum.iter_mut().zip(pixel) {
-                        let channel = u32::from(channel);
-                        *sum += if has_normals {
-                            channel
-                        } else {
-                            channel * channel
-                        };
-                    }
-                    alpha += u32::from(pixel[3]);
-                }
-                let [r, g, b] = sum.map(|it| {
-                    let mean = f64::from(it) / 4.0;
-                    let channel = if has_normals { mean } else { libm::sqrt(mean) };
-                    channel.round() as u8
-                });
-                pixels.push([r, g, b, ((alpha + 2) / 4) as u8]);
+                // What is invisible counts where all is.
+                let mean = self.mean(has_normals, [x, y], [width, height], |alpha| alpha);
+                let mean = mean.or_else(|| self.mean(has_normals, [x, y], [width, height], |_| 1));
+                pixels.push(mean.unwrap_or_default());
             }
         }
         Self {
@@ -100,6 +84,54 @@ impl Raster {
             pixels,
         }
     }
+
+    /// The mean of the pixels below one of a smaller copy; `None` if all their weights are 0.
+    fn mean(
+        &self,
+        has_normals: bool,
+        [x, y]: [u32; 2],
+        [width, height]: [u32; 2],
+        weight: impl Fn(u64) -> u64,
+    ) -> Option<Roots> {
+        let (mut sum, mut all) = ([0_u64; 3], 0);
+        let (mut alphas, mut area) = (0, 0);
+        for (row, tall) in below(y, height, self.height) {
+            for (column, wide) in below(x, width, self.width) {
+                let pixel = self.pixels[(row * self.width + column) as usize].map(u64::from);
+                let part = wide * tall;
+                alphas += part * pixel[3];
+                area += part;
+                let part = part * weight(pixel[3]);
+                all += part;
+                for (sum, channel) in sum.iter_mut().zip(pixel) {
+                    *sum += part
+                        * if has_normals {
+                            channel
+                        } else {
+                            channel * channel
+                        };
+                }
+            }
+        }
+        let [r, g, b] = sum.map(|it| {
+            let mean = it as f64 / all as f64;
+            let channel = if has_normals { mean } else { libm::sqrt(mean) };
+            channel.round() as u8
+        });
+        let alpha = (alphas + area / 2) / area;
+        (all > 0).then_some([r, g, b, alpha as u8])
+    }
+}
+
+/// The texels of a side that lie below one of a smaller copy, each with how much of it does: all add up to the side's
+/// texels.
+fn below(place: u32, copies: u32, texels: u32) -> impl Iterator<Item = (u32, u64)> {
+    let [place, copies, texels] = [place, copies, texels].map(u64::from);
+    let [start, end] = [place * texels, (place + 1) * texels];
+    (start / copies..end.div_ceil(copies)).map(move |texel| {
+        let covered = end.min((texel + 1) * copies) - start.max(texel * copies);
+        (texel as u32, covered)
+    })
 }
 
 impl Stored {
@@ -325,5 +357,55 @@ mod tests {
         let found = palette(few, &[few, &others].concat());
         assert!(few.iter().all(|it| found.contains(it)) && found.contains(&[1, 0, 0, 255]));
         assert_eq!(found.len(), COLORS);
+    }
+
+    /// The pixel to which an image shrinks.
+    fn shrunk(width: u32, height: u32, pixel: impl Fn(u32, u32) -> Roots) -> Roots {
+        let places = (0..height).flat_map(|y| (0..width).map(move |x| (x, y)));
+        let mut raster = Raster {
+            width,
+            height,
+            pixels: places.map(|(x, y)| pixel(x, y)).collect(),
+        };
+        while raster.pixels.len() > 1 {
+            raster = raster.halved(false);
+        }
+        raster.pixels[0]
+    }
+
+    #[test]
+    fn smaller_copies_have_the_mean_of_images_of_every_size() {
+        for (width, height) in [
+            (64, 64),
+            (65, 65),
+            (100, 100),
+            (513, 3),
+            (1, 129),
+            (7, 1000),
+        ] {
+            // White in the last row and column.
+            let is_white = |x, y| x + 1 == width || y + 1 == height;
+            let [root, .., alpha] = shrunk(width, height, |x, y| match is_white(x, y) {
+                true => [255; 4],
+                false => [40, 40, 40, 255],
+            });
+            let white = f64::from(width + height - 1) / f64::from(width * height);
+            let mean = white + (1.0 - white) * (40.0_f64 / 255.0).powi(2);
+            let found = (f64::from(root) / 255.0).powi(2);
+            assert!(
+                (found - mean).abs() < 0.02 && alpha == 255,
+                "{width}x{height}: {found} {mean}"
+            );
+        }
+    }
+
+    #[test]
+    fn hidden_colors_do_not_show_in_smaller_copies() {
+        let half = shrunk(8, 8, |x, _| match x < 4 {
+            true => [255, 0, 0, 255],
+            false => [0, 255, 0, 0],
+        });
+        assert_eq!(half, [255, 0, 0, 128]);
+        assert_eq!(shrunk(3, 3, |_, _| [9, 8, 7, 0]), [9, 8, 7, 0]);
     }
 }
