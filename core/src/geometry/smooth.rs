@@ -241,10 +241,11 @@ pub(crate) fn barycentric<N: Arithmetic>(
     if sum == N::ZERO {
         return [N::ONE, N::ZERO, N::ZERO];
     }
-    // Only rounding makes it negative.
+    // Only rounding takes one out of its range, and in narrow triangles by much.
     let weight = |weight: N| weight.div(sum).max(N::ZERO).min(N::ONE);
     let [_, second, third] = weights.map(weight);
-    [(N::ONE - second - third).max(N::ZERO), second, third]
+    let third = third.min(N::ONE - second);
+    [N::ONE - second - third, second, third]
 }
 
 #[cfg(test)]

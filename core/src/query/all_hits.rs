@@ -89,7 +89,8 @@ impl<N: Number, const SIZE: usize> HitList<N, SIZE> {
 /// Lists the hits of a ray in its interval: the first ones, and at each later call with the list, those behind them.
 /// Returns true if more hits are possible, because the list is full.
 ///
-/// Hits are ordered by t. At the same t those of the scene's own objects come first, then those of instances in
+/// Hits are ordered by t, counted from where the ray enters the scene's box: from far away that is finer than the t which
+/// is returned. At the same t those of the scene's own objects come first, then those of instances in
 /// scene-file order. Then the primitive that comes first in the scene file counts, and the entry into a solid before
 /// the exit. All structures return this order and the same bits.
 ///

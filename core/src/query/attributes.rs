@@ -66,7 +66,8 @@ fn along_u(corners: [[i32; 3]; 3], coordinates: [[i32; 2]; 3]) -> Option<([i64; 
 
 impl<N: Number> Hit<N> {
     /// Returns the texture coordinates at the hit, u to the right and v down: a multiple of 2^-20 each, from -1024 to
-    /// 1024. `scene` is that of the query. `None` unless the hit is of a mesh in a scene with texture coordinates.
+    /// 1024. `scene` is that of the query. `None` unless the hit is of a mesh whose material has a texture: the compiler
+    /// leaves other coordinates out. Those of a mesh within -2 to 2 are rounded to multiples of 2^-14 at its vertices.
     ///
     /// ```
     /// # static BLOB: &[u8] =

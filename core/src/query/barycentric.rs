@@ -11,7 +11,8 @@ impl<N: Number> Hit<N> {
     /// order of corners is the blob's, which can begin with another corner than the scene file. Each weight is at least
     /// 0, and their sum is 1, except for rounding. `scene` is that of the query.
     ///
-    /// The weights come from the point, so they are off by the hit's [error](Hit::error) over the triangle's heights.
+    /// The weights come from the point. They are off by some six roundings of its coordinates over the triangle's least
+    /// height. A rounding is 2^-24 of the coordinate in `f32`, 2^-53 in `f64`, and 2^-13 unit in `fixed`.
     ///
     /// ```
     /// # static BLOB: &[u8] =

@@ -19,7 +19,8 @@ impl Scene<'_> {
     /// endless.
     ///
     /// Both limits are exact to two sub-steps of 2^-13 unit and to one part in 2^28 of themselves in `fixed`. In `f32`
-    /// the relative error is one part in 2^21, and in `f64` one in 2^50.
+    /// the relative error is one part in 2^21, and in `f64` one in 2^50. `f32` also rounds the place, by one part in 2^24
+    /// of each coordinate, counted from the lattice's origin: from far away it can find a surface beyond a near limit.
     ///
     /// ```
     /// # static BLOB: &[u8] =
@@ -76,9 +77,9 @@ impl Scene<'_> {
     /// [`coordinate_exponent`](Self::coordinate_exponent), rounded to nearest.
     ///
     /// Before rounding, it is exact to two sub-steps of 2^-13 unit and to one part in 2^28 of itself in `fixed`. In
-    /// `f32` the relative error is one part in 2^21, and in `f64` one in 2^50. That holds for the ray with its slopes as
-    /// the format rounds them, in `fixed` to 2^-30: a plane that it meets at a small angle can be that much nearer or
-    /// farther.
+    /// `f32` the relative error is one part in 2^21, and in `f64` one in 2^50. That holds for the ray as the format rounds
+    /// it. Slopes are rounded, in `fixed` to 2^-30: a plane that it meets at a small angle can be that much nearer or
+    /// farther. In `f32` the origin is rounded by one part in 2^24 of each coordinate, counted from the lattice's origin.
     ///
     /// ```
     /// # static BLOB: &[u8] =

@@ -39,8 +39,9 @@ use start::{
 /// - **Direction:** any finite length but 0, down to the smallest denormal number and up to the largest
 ///   finite one.
 /// - **`tmin`, `tmax`:** anything but NaN; infinite ones are endless.
-/// - **`t` of a hit** is rounded to the format. It is off by up to 2^-24 of itself in `f32`, by 2^-53 in `f64`, and by
-///   a sub-step, 2^-13 of a unit, in `fixed`. [`Hit::point`](crate::Hit::point) is not computed from it, and is as
+/// - **`t` of a hit** is rounded to the format, twice. It is off by up to 2^-23 of itself in `f32`, by 2^-52 in `f64`,
+///   and by a sub-step, 2^-13 of a unit, in `fixed`. With a `tmin` below 0 these are parts of the larger of `t` and the
+///   way from the origin back to where the ray enters the box. [`Hit::point`](crate::Hit::point) is not computed from it, and is as
 ///   precise as that of a ray from near by.
 #[derive(Clone, Copy, Debug)]
 pub struct Ray<N: Arithmetic> {

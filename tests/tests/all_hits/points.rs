@@ -92,6 +92,48 @@ fn points_are_contained_where_geometry_says_so() {
     assert!(containment_ray::<f64>(&scene, [f64::NAN, 0.0, 0.0]).is_err());
 }
 
+fn assert_weights(weights: &[f64; 3]) {
+    let sum: f64 = weights.iter().sum();
+    let are_parts = weights.iter().all(|it| (0.0..=1.0).contains(it));
+    assert!(are_parts && (sum - 1.0).abs() < 1e-6, "{weights:?}");
+}
+
+/// In a narrow triangle rounding of the point takes weights far off, but their sum stays 1.
+#[test]
+fn weights_of_narrow_triangles_add_up_to_one() {
+    fn weights<N: Number>(scene: &Scene<'_>) {
+        let mut stack = Stack::<MAX_STACK_DEPTH>::new();
+        let [mut met, bounds] = [0, 32_000];
+        let mut random = Random(5);
+        for _ in 0..4000 {
+            // At a point of the edge that two of the corners share.
+            let x = bounds as f64 * random.signed();
+            let origin = [
+                x + 900.0 * random.signed(),
+                x + 900.0 * random.signed(),
+                4000.0,
+            ];
+            let direction = [x - origin[0], x - origin[1], -4000.0];
+            let ray = gridel_core::Ray::<N>::from_f64(scene.bounds(), origin, direction, 0.0, 1e9);
+            let hit = scene.closest_hit(&ray.expect("a ray"), stack.as_view());
+            let Some(weights) = hit.and_then(|hit| hit.barycentric(scene)) else {
+                continue;
+            };
+            met += 1;
+            assert_weights(&weights.map(N::ratio_to_f64));
+        }
+        assert!(met > 100, "{met}");
+    }
+    let corners = [[-1.0, -1.0, 0.0], [1.0, 1.0, 0.0], [-1.0, -0.9999, 0.0]];
+    let narrow = Shape::Mesh {
+        vertices: corners.map(DVec3::from_array).to_vec(),
+        triangles: vec![[0, 1, 2]],
+    };
+    let blob = scenes::blob(&scenes::of([narrow]), 24);
+    let scene = blob.scene().expect("a scene");
+    every_format!(weights(&scene));
+}
+
 /// The weights of the corners make the point.
 #[test]
 fn barycentric_coordinates_lead_back_to_the_point() {
@@ -118,10 +160,7 @@ fn barycentric_coordinates_lead_back_to_the_point() {
             }
             let weights = weights.map(N::ratio_to_f64);
             let corners = scene.triangle(slot).expect("a triangle");
-            assert!(
-                weights.iter().all(|it| (0.0..=1.0).contains(it)),
-                "{weights:?}"
-            );
+            assert_weights(&weights);
             for (k, point) in hit.point.into_iter().enumerate() {
                 let place: f64 = (0..3)
                     .map(|it| weights[it] * f64::from(corners[it][k]) / 256.0)
