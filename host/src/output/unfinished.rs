@@ -1,5 +1,5 @@
-//! What an interrupt must not leave behind: files that are being written, temporary folders, and programs that run for
-//! this one.
+//! What an interrupt must not leave behind: files that are being written, temporary folders, programs that run for this
+//! one, and a terminal that shows a scene.
 
 use std::fs;
 use std::io;
@@ -13,11 +13,14 @@ pub(super) struct Unfinished {
     /// Files under the names they have until they are complete, and folders.
     pub(super) paths: Vec<PathBuf>,
     running: Vec<Child>,
+    /// Gives the terminal back.
+    screen: Option<Box<dyn FnOnce() + Send>>,
 }
 
 static UNFINISHED: Mutex<Unfinished> = Mutex::new(Unfinished {
     paths: Vec::new(),
     running: Vec::new(),
+    screen: None,
 });
 
 pub(super) fn unfinished() -> MutexGuard<'static, Unfinished> {
@@ -25,9 +28,17 @@ pub(super) fn unfinished() -> MutexGuard<'static, Unfinished> {
     UNFINISHED.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-/// Ends what runs, removes what writing has left so far, and ends the program: for whoever handles an interrupt.
+/// Says how the terminal is given back if the program is interrupted; `None` when that is done.
+pub(crate) fn gives_back(screen: Option<Box<dyn FnOnce() + Send>>) {
+    unfinished().screen = screen;
+}
+
+/// Ends what runs, removes what writing has left so far, gives the terminal back, and ends the program: for whoever handles an interrupt.
 pub fn exit_removing_unfinished(exit_code: i32) -> ! {
     let mut unfinished = unfinished();
+    if let Some(give_back) = unfinished.screen.take() {
+        give_back();
+    }
     // The program ends, so failures are not reported.
     for child in &mut unfinished.running {
         let _ = child.kill();

@@ -6,6 +6,7 @@ use super::refine::Refiner;
 use super::save::save;
 use super::shot::ViewError;
 use super::state::{Effect, State};
+use crate::output::unfinished::gives_back;
 use console::Term;
 use std::fmt::Write as _;
 use std::io::{self, Write};
@@ -92,12 +93,13 @@ pub fn one_frame(refiner: &Refiner<'_>, state: &State<'_>) -> Result<String, Vie
 pub fn live(refiner: &Refiner<'_>, state: State<'_>, is_fixed: bool) -> io::Result<()> {
     let (sender, receiver) = channel();
     let wake = sender.clone();
+    // Before a key is read, which changes the terminal's settings for that time.
+    let _screen = Screen::open()?;
     thread::scope(|scope| {
         scope.spawn(move || read_keys(&sender));
         // At the end the receiver is gone.
         let wake = || drop(wake.send(Event::Drawn));
         refiner.run(&wake, || {
-            let _screen = Screen::open()?;
             Live {
                 refiner,
                 shape: [state.settings().width, state.settings().height],
@@ -147,8 +149,18 @@ fn read_keys(sender: &Sender<Event>) {
 /// The terminal's second screen, without a cursor; the first one returns in the end.
 struct Screen;
 
+/// Shows the first screen and the cursor.
+const CLOSED: &str = "\x1b[0m\x1b[?25h\x1b[?1049l";
+
 impl Screen {
     fn open() -> io::Result<Self> {
+        let restore = settings();
+        gives_back(Some(Box::new(move || {
+            // Nothing is drawn any more.
+            let mut out = std::mem::ManuallyDrop::new(io::stdout().lock());
+            let _ = out.write_all(CLOSED.as_bytes()).and_then(|()| out.flush());
+            restore();
+        })));
         write("\x1b[?1049h\x1b[?25l\x1b[2J")?;
         Ok(Self)
     }
@@ -156,9 +168,27 @@ impl Screen {
 
 impl Drop for Screen {
     fn drop(&mut self) {
+        gives_back(None);
         // The program ends, so a failure is not reported.
-        let _ = write("\x1b[0m\x1b[?25h\x1b[?1049l");
+        let _ = write(CLOSED);
     }
+}
+
+/// Returns what gives the terminal the settings that it has now. Reading a key changes them for that time.
+#[cfg(unix)]
+fn settings() -> impl FnOnce() + Send {
+    use nix::sys::termios::{SetArg, tcgetattr, tcsetattr};
+    let before = tcgetattr(io::stdin());
+    move || {
+        if let Ok(before) = before {
+            let _ = tcsetattr(io::stdin(), SetArg::TCSANOW, &before);
+        }
+    }
+}
+
+#[cfg(not(unix))]
+fn settings() -> impl FnOnce() + Send {
+    || ()
 }
 
 fn write(text: &str) -> io::Result<()> {
