@@ -12,7 +12,8 @@
 //!   two corners coincide, the neighbors share the other edge, and the mesh stays closed. The corner in the middle of a
 //!   needle is rounded laterally on its own, so a ray could slip between the needle's neighbors.
 //!
-//! No other data of a blob depend on vertices: normals, hit bounds and offsets come from the corners when a ray hits.
+//! No other data of a blob depend on vertices but the lights of a mesh that glows, which stay where they are: normals,
+//! hit bounds and offsets come from the corners when a ray hits.
 //! Other structures would not fit the moved mesh, so blobs that hold any are rejected. Instances keep their boxes,
 //! because those hold the whole room of a part.
 

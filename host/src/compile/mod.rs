@@ -62,7 +62,7 @@ pub use wide::Quality;
 pub use crate::scene::TICKS_PER_SECOND;
 
 use crate::blob::Blob;
-use crate::scene::{Object, Scene};
+use crate::scene::{Object, Scene, Shape};
 use crate::shape::Lattice;
 use crate::table::printable;
 use advice::advice;
@@ -185,7 +185,7 @@ fn compile_as(
     let shapes = Shapes::of(scene);
     let mut extent = room::widened(shapes.extent(), options.room);
     if let Role::Whole(parts) = role {
-        extent = parts.reach.around(extent);
+        extent = parts.reach.around(extent, options.lattice_bits);
     }
     let (lattice, snapped, placed) = snap(role, scene, extent, options)?;
     let structures = held(&options.structures);
@@ -283,9 +283,19 @@ fn compile_as(
         supplied: shading.supplied.clone(),
         setup,
         tables,
+        still_lights: still_lights(scene, options.room),
         names,
     };
     Ok((Compiled { blob, report }, sizes))
+}
+
+/// The first mesh with room for its vertices whose surface is a light as well.
+fn still_lights(scene: &Scene, room: f64) -> Option<String> {
+    let mut objects = scene.objects.iter().filter(|_| room > 0.0);
+    let found = objects.find(|it| {
+        matches!(it.shape, Shape::Mesh { .. }) && scene.materials[it.material].is_sampled
+    });
+    found.map(|it| it.name.clone())
 }
 
 /// Returns an error with advice if a scene's blob is larger than the options allow.

@@ -45,6 +45,8 @@ pub struct Report {
     pub setup: Duration,
     /// Structures with tables of candidate lists.
     pub tables: Vec<TableStats>,
+    /// A mesh whose vertices can move, and which glows: its lights stay.
+    pub still_lights: Option<String>,
     /// The names in the blob; `None` if they are not requested, or there are none.
     pub names: Option<KeptNames>,
 }

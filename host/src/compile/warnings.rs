@@ -2,7 +2,7 @@
 
 use super::LATTICE_BITS;
 use super::report::Report;
-use crate::table::{counted, grouped};
+use crate::table::{counted, grouped, printable};
 
 /// Primitives that a warning names; the rest are counted.
 const NAMED: usize = 3;
@@ -50,6 +50,13 @@ impl Report {
                     "the lattice moves the surfaces of some solids by several steps, {}; {}",
                     self.far_moved.names(NAMED).join(", "),
                     remedy("make them thicker or larger")
+                )
+            }),
+            self.still_lights.as_ref().map(|name| {
+                format!(
+                    "{} glows, and its light stays where it is when its vertices move; write `lights = false` in \
+                     its material, or keep it still",
+                    printable(name)
                 )
             }),
             self.names_changed(),
