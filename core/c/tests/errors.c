@@ -105,9 +105,9 @@ int main(int count_of_arguments, char **arguments) {
   EXPECT(GRIDEL_STATUS_BLOB_TRUNCATED, gridel_load(&scene, blob, blob_bytes - 16));
   damaged = aligned(blob_bytes + 8);
   memcpy(damaged + 8, blob, blob_bytes);
-  EXPECT(GRIDEL_STATUS_OK, gridel_load(&scene, damaged + 8, blob_bytes));
+  EXPECT(GRIDEL_STATUS_OK, gridel_load(&copy, damaged + 8, blob_bytes));
   memcpy(damaged + 4, blob, blob_bytes);
-  EXPECT(GRIDEL_STATUS_OK, gridel_load(&scene, damaged + 4, blob_bytes));
+  EXPECT(GRIDEL_STATUS_OK, gridel_load(&copy, damaged + 4, blob_bytes));
   memcpy(damaged + 2, blob, blob_bytes);
   EXPECT(GRIDEL_STATUS_BLOB_MISALIGNED, gridel_load(&scene, damaged + 2, blob_bytes));
   memcpy(damaged, blob, blob_bytes);

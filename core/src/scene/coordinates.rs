@@ -51,8 +51,9 @@ impl Scene<'_> {
     /// use gridel_core::Position;
     ///
     /// let scene = gridel_core::Scene::from_bytes(BLOB)?;
-    /// let eye = scene.position(scene.view().eye);
-    /// assert_eq!(scene.on_lattice(eye), scene.view().eye);
+    /// // A copy: the record lies in the blob, where no reference to its field may lead.
+    /// let eye = scene.view().eye;
+    /// assert_eq!(scene.on_lattice(scene.position(eye)), eye);
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
     pub fn position(&self, q13: [i64; 3]) -> Position {

@@ -1,7 +1,7 @@
 //! The records of a blob, as the host writes them and the core reads them in place. The records of
 //! [shapes](crate::geometry) and [clusters](crate::format::cluster) are elsewhere.
 //!
-//! Little-endian, naturally aligned, without padding. `FORMAT.md` shows every field: its tables come from the
+//! Little-endian, aligned to at most 4 bytes, without padding. `FORMAT.md` shows every field: its tables come from the
 //! declarations here, see [`layout`](crate::format::layout).
 
 mod candidates;

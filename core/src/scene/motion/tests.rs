@@ -189,7 +189,7 @@ proptest! {
     ) {
         let origin = Position([0; 3]);
         let rest = Motion::rotation(origin, rest).expect("a length").rotation;
-        let rounded = |entry: i32| (i64::from(entry) * factor + (1 << 29) >> 30) as i32;
+        let rounded = |entry: i32| ((i64::from(entry) * factor + (1 << 29)) >> 30) as i32;
         let matrix = rest.map(|row| row.map(rounded));
         crate::instances::bounds::check_rotation(&matrix).expect("a rotation");
         let motion = Motion::rotation(origin, rotation).expect("a length");
