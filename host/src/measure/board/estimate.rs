@@ -17,6 +17,9 @@ pub const PROFILES: [Profile; 2] = [Profile::Fast, Profile::Small];
 /// to code that was measured with others, so the estimate adds this part.
 const OWN_SIZES: u64 = 100;
 
+/// By how much the scene's own sizes can change the call stack: the bytes to which frames are aligned.
+const FRAME_ALIGNMENT: u64 = 8;
+
 /// The program of a scene on a board, estimated from measured programs.
 pub struct ProgramEstimate<'p> {
     pub programs: &'p Programs,
@@ -42,11 +45,15 @@ impl ProgramEstimate<'_> {
     }
 
     pub fn call_stack(&self, profile: Profile) -> Option<Known> {
-        self.figure(
+        let call_stack = self.figure(
             profile,
             |it| it.call_stack,
             |bytes, [other, dual_split]| (bytes * other).div_ceil(dual_split.max(1)),
-        )
+        );
+        call_stack.map(|known| Known {
+            bytes: known.bytes + FRAME_ALIGNMENT,
+            ..known
+        })
     }
 
     /// Returns a figure of the program. `through` converts it to another structure, by the figures of all parts through
