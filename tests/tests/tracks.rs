@@ -377,6 +377,14 @@ fn tracks_that_no_blob_can_hold_are_rejected_with_the_reason() {
     let both = [TrackTarget::CameraRotation, TrackTarget::CameraOrbit];
     let both = both.map(|target| track(target, 0, Linear, &[(0.0, [0.0, 0.0, 0.0, 1.0])]));
     assert!(rejected(both.to_vec()).contains("rotation"));
+    // What is supplied for the camera is not to blame.
+    let late = track(
+        TrackTarget::CameraFieldOfView,
+        0,
+        Linear,
+        &[(1e9, [40.0; 4])],
+    );
+    assert!(rejected(vec![late]).contains("track of camera.fov"));
     let twice = [orbit(1.0), orbit(2.0)].concat();
     assert!(rejected(twice).contains("two tracks"));
 }

@@ -22,6 +22,10 @@ pub fn sections(
 ) -> Result<Vec<Section>, CompileError> {
     let mut all = tracks;
     check_camera(&all)?;
+    // What is supplied has the times of others, and is not to blame for them.
+    for track in &all {
+        times(track)?;
+    }
     complete(&mut all, camera);
     let mut numbered: Vec<(TrackTarget, u32, &Track)> = Vec::new();
     for track in &all {
@@ -158,22 +162,25 @@ pub fn places(tracks: &[Track], camera: &Camera) -> Vec<DVec3> {
         .collect()
 }
 
-/// The keys of a track: each one's time and words.
-fn keys(track: &Track, header: &Header) -> Result<Vec<(i32, Vec<i32>)>, CompileError> {
-    let kind = track.target.kind();
-    let error = |cause: String, remedy| CompileError::Track {
+/// An error of a track.
+fn fault(track: &Track, cause: String, remedy: &'static str) -> CompileError {
+    CompileError::Track {
         place: track.place.clone(),
         target: track.target.name(),
         cause,
         remedy,
-    };
+    }
+}
+
+/// The times of a track's keys in ticks.
+fn times(track: &Track) -> Result<Vec<i32>, CompileError> {
     let mut times = Vec::with_capacity(track.keys.len());
     for key in &track.keys {
         let ticks = (key.seconds * f64::from(TICKS_PER_SECOND)).round();
         if ticks.abs() > f64::from(i32::MAX) {
             let most = i32::MAX as u32 / TICKS_PER_SECOND;
             let cause = format!("the time {} is beyond {most} seconds", key.seconds);
-            return Err(error(cause, "use earlier times"));
+            return Err(fault(track, cause, "use earlier times"));
         }
         times.push(ticks as i32);
     }
@@ -182,8 +189,16 @@ fn keys(track: &Track, header: &Header) -> Result<Vec<(i32, Vec<i32>)>, CompileE
         let cause = format!(
             "the times {one} and {other} are less than a tick apart, 1/{TICKS_PER_SECOND} of a second"
         );
-        return Err(error(cause, "move them apart, or use only one of them"));
+        let remedy = "move them apart, or use only one of them";
+        return Err(fault(track, cause, remedy));
     }
+    Ok(times)
+}
+
+/// The keys of a track: each one's time and words.
+fn keys(track: &Track, header: &Header) -> Result<Vec<(i32, Vec<i32>)>, CompileError> {
+    let kind = track.target.kind();
+    let times = times(track)?;
     let seconds =
         |from: i32, to: i32| (f64::from(to) - f64::from(from)) / f64::from(TICKS_PER_SECOND);
     let scale = Scale::of(kind, track, header);
@@ -211,7 +226,8 @@ fn keys(track: &Track, header: &Header) -> Result<Vec<(i32, Vec<i32>)>, CompileE
                 let rounded = word.round();
                 if rounded.is_nan() || rounded.abs() > f64::from(i32::MAX) {
                     let (cause, remedy) = too_large(kind, is_value);
-                    return Err(error(format!("at {} s {cause}", key.seconds), remedy));
+                    let cause = format!("at {} s {cause}", key.seconds);
+                    return Err(fault(track, cause, remedy));
                 }
                 words.push(rounded as i32);
             }

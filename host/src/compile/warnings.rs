@@ -102,4 +102,31 @@ mod tests {
         let lines = report.warnings(24);
         assert!(lines[0].contains("of its light is lost"), "{lines:?}");
     }
+
+    #[test]
+    fn a_mesh_that_glows_and_has_room_to_move_is_named() {
+        let file = |lights: bool| {
+            format!(
+                "[material.glow]\nemission = 1\nlights = {lights}\n\
+                 [[object]]\nkind = 'triangle'\nvertices = [[0, 0, 0], [1, 0, 0], [0, 1, 0]]\n\
+                 name = 'flag'\nmaterial = 'glow'\n"
+            )
+        };
+        for (room, lights, expected) in [(0.25, true, 1), (0.0, true, 0), (0.25, false, 0)] {
+            let imported = scene::read("s.toml".as_ref(), file(lights).into(), &Default::default());
+            let options = Options {
+                structures: vec![gridel_core::Structure::Bvh],
+                room,
+                ..Options::default()
+            };
+            let report = compile(&imported.unwrap().scene, &options).unwrap().report;
+            let lines = report.warnings(24);
+            assert_eq!(lines.len(), expected, "{lines:?}");
+            assert!(
+                lines
+                    .iter()
+                    .all(|it| it.contains("flag") && it.contains("glows"))
+            );
+        }
+    }
 }

@@ -33,7 +33,8 @@ pub(crate) fn gives_back(screen: Option<Box<dyn FnOnce() + Send>>) {
     unfinished().screen = screen;
 }
 
-/// Ends what runs, removes what writing has left so far, gives the terminal back, and ends the program: for whoever handles an interrupt.
+/// Ends what runs, removes what writing has left so far, gives the terminal back, and ends the program: for whoever
+/// handles an interrupt.
 pub fn exit_removing_unfinished(exit_code: i32) -> ! {
     let mut unfinished = unfinished();
     if let Some(give_back) = unfinished.screen.take() {

@@ -80,6 +80,13 @@ impl Sun {
         2.0 * libm::sin(self.angle.to_radians() / 4.0)
     }
 
+    /// Returns its radiance times its solid angle over π: what a random point of it adds to a white surface, times the
+    /// cosine there.
+    pub fn light(&self) -> Color {
+        let part = self.solid_angle_over_pi() / self.color_over_radiance();
+        self.color.map(|channel| channel * part)
+    }
+
     /// Returns its solid angle over π.
     pub fn solid_angle_over_pi(&self) -> f64 {
         self.radius() * self.radius()

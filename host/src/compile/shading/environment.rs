@@ -176,20 +176,18 @@ fn sun_of(
     let Some(sun) = environment.sun else {
         return Ok((plain, None));
     };
-    let color = exposure.of_color(sun.color, || String::from("sun"))?;
-    let of_disc = color.map(|channel| channel / sun.color_over_radiance());
+    let color = exposure.of_color(sun.light(), || String::from("sun"))?;
     let towards = -unit(sun.direction) * f64::from(1 << 30);
     let record = Record {
         sun_direction: towards.round().to_array().map(|x| x as i32),
         sun_radius: (sun.radius() * f64::from(1 << 30)).round() as i32,
         // A brighter sun is limited to what a record holds.
-        sun_radiance: radiance(of_disc),
+        sun_radiance: radiance(color.map(|channel| channel / sun.solid_angle_over_pi())),
         ..plain
     };
     let light = Light {
         vector: [0; 3],
-        // Samples are multiplied by the cosine at each.
-        color: radiance(of_disc.map(|channel| channel * sun.solid_angle_over_pi())),
+        color: radiance(color),
         directional: Light::SUN,
     };
     Ok((record, (color != [0.0; 3]).then_some(light)))

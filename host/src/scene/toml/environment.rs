@@ -90,24 +90,26 @@ fn sun(table: Value<'_>) -> Result<Sun, SceneError> {
         color: [1.0; 3],
         angle,
     };
-    let color = match (fields.get("color"), fields.get("radiance")) {
+    let (value, color) = match (fields.get("color"), fields.get("radiance")) {
         (Some(_), Some(radiance)) => {
             let cause = "a sun has a `color` or a `radiance`, not both";
             return Err(radiance.error(cause, "remove one of them"));
         }
-        (Some(color), None) => color.radiance()?,
-        (None, None) => sun.color,
+        (Some(color), None) => (color, color.radiance()?),
+        (None, None) => return Ok(sun),
         (None, Some(radiance)) => {
             let part = sun.color_over_radiance();
-            let color = radiance.color()?.map(|channel| channel * part);
-            if let Some(brightest) = color.into_iter().find(|&it| it > 2047.0) {
-                return Err(radiance.error(
-                    format!("a sun of this radiance is as bright as a directional light of {brightest}; it must be at most 2047"),
-                    "lower the `radiance` or the `angle`",
-                ));
-            }
-            color
+            (radiance, radiance.color()?.map(|channel| channel * part))
         }
     };
-    Ok(Sun { color, ..sun })
+    let sun = Sun { color, ..sun };
+    if let Some(brightest) = sun.light().into_iter().find(|&it| it > 2047.0) {
+        return Err(value.error(
+            format!(
+                "a sun as bright and as large needs a light of {brightest}; it must be at most 2047"
+            ),
+            "lower its brightness or its `angle`",
+        ));
+    }
+    Ok(sun)
 }

@@ -395,6 +395,22 @@ fn nodes_that_stay_at_rest_make_no_joint() {
     );
 }
 
+/// Quaternions have any length, and scenes any size.
+#[test]
+fn short_quaternions_and_small_shifts_move() {
+    let turn = two_keys(
+        0,
+        "rotation",
+        [&[1e-9, 0.0, 0.0, 1e-9], &[0.0, 0.0, 0.0, 1e-9]],
+    );
+    let shift = two_keys(1, "translation", [&[0.0; 3], &[1e-12, 0.0, 0.0]]);
+    let imported = below(json!({}), &[turn, shift]);
+    let targets: Vec<_> = imported.scene.tracks.iter().map(|it| it.target).collect();
+    for target in [TrackTarget::JointRotation, TrackTarget::JointShift] {
+        assert!(targets.contains(&target), "{targets:?}");
+    }
+}
+
 #[test]
 fn a_mesh_of_several_moving_nodes_is_one_part() {
     let mut document = document();
