@@ -254,3 +254,49 @@ mod live {
         assert!(end.ends_with("\x1b[?25h\x1b[?1049l"), "{end:?}");
     }
 }
+
+/// An interrupt gives the terminal back as it was: its first screen, its cursor, and its settings.
+#[cfg(unix)]
+#[test]
+fn an_interrupted_view_gives_the_terminal_back() {
+    use nix::pty::openpty;
+    use nix::sys::termios::{LocalFlags, tcgetattr};
+    use std::io::Read;
+    use std::process::{Command, Stdio};
+
+    let folder = Folder::with_quick();
+    for signal in ["-TERM", "-INT", "-HUP"] {
+        let terminal = openpty(None, None).unwrap();
+        let before = tcgetattr(&terminal.slave).unwrap();
+        let side = || Stdio::from(terminal.slave.try_clone().unwrap());
+        let mut view = Command::new(env!("CARGO_BIN_EXE_gridel"))
+            .args(["view", "--terminal", "--size", "16x12"])
+            .arg(folder.path("quick.gridel"))
+            .stdin(side())
+            .stdout(side())
+            .stderr(side())
+            .spawn()
+            .unwrap();
+        let mut master = std::fs::File::from(terminal.master.try_clone().unwrap());
+        let mut shown = Vec::new();
+        let mut bytes = [0; 4096];
+        while !shown.windows(3).any(|it| it == "▀".as_bytes()) {
+            let count = master.read(&mut bytes).unwrap();
+            shown.extend(&bytes[..count]);
+        }
+        // Keys are read one by one.
+        let flags = || tcgetattr(&terminal.slave).unwrap().local_flags;
+        while flags().contains(LocalFlags::ICANON) {
+            std::thread::yield_now();
+        }
+        let kill = [signal, &view.id().to_string()];
+        assert!(Command::new("kill").args(kill).status().unwrap().success());
+        const CLOSED: &[u8] = b"\x1b[?25h\x1b[?1049l";
+        while !shown.ends_with(CLOSED) {
+            let count = master.read(&mut bytes).unwrap();
+            shown.extend(&bytes[..count]);
+        }
+        assert_eq!(view.wait().unwrap().code(), Some(130), "{signal}");
+        assert_eq!(tcgetattr(&terminal.slave).unwrap(), before, "{signal}");
+    }
+}
