@@ -207,8 +207,8 @@ macro_rules! sections {
             Normals = 68, "normals", [[i16; 2]], "normal" of "";
             /// [`Part`](crate::format::instance::Part)s.
             Parts = 69, "parts", [instance::Part], "part" of "";
-            /// The blobs of all parts, one behind the other, in words of [`SECTION_ALIGNMENT`](crate::format::record::SECTION_ALIGNMENT)
-            /// bytes.
+            /// The blobs of all parts, one behind the other, in words of
+            /// [`SECTION_ALIGNMENT`](crate::format::record::SECTION_ALIGNMENT) bytes.
             PartBlobs = 70, "part-blobs", [[u32; 4]], "word" of "parts";
             /// [`Instance`](crate::format::instance::Instance)s.
             Instances = 71, "instances", [instance::Instance], "instance" of "";

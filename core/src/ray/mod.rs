@@ -41,8 +41,8 @@ use start::{
 /// - **`tmin`, `tmax`:** anything but NaN; infinite ones are endless.
 /// - **`t` of a hit** is rounded to the format, twice. It is off by up to 2^-23 of itself in `f32`, by 2^-52 in `f64`,
 ///   and by a sub-step, 2^-13 of a unit, in `fixed`. With a `tmin` below 0 these are parts of the larger of `t` and the
-///   way from the origin back to where the ray enters the box. [`Hit::point`](crate::Hit::point) is not computed from it, and is as
-///   precise as that of a ray from near by.
+///   way from the origin back to where the ray enters the box. [`Hit::point`](crate::Hit::point) is not computed from
+///   it, and is as precise as that of a ray from near by.
 #[derive(Clone, Copy, Debug)]
 pub struct Ray<N: Arithmetic> {
     pub(crate) origin: [N; 3],

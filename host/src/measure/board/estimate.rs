@@ -17,7 +17,7 @@ pub const PROFILES: [Profile; 2] = [Profile::Fast, Profile::Small];
 /// to code that was measured with others, so the estimate adds this part.
 const OWN_SIZES: u64 = 100;
 
-/// By how much the scene's own sizes can change the call stack: the bytes to which frames are aligned.
+/// By how much they change the call stack: the bytes to which frames are aligned.
 const FRAME_ALIGNMENT: u64 = 8;
 
 /// The program of a scene on a board, estimated from measured programs.
