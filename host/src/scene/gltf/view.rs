@@ -6,9 +6,7 @@
 
 use super::animation::Motion;
 use super::middle::middle;
-use crate::scene::{
-    Camera, Color, Light, LightForm, Scene, SourceSpan, Spot, Track,
-};
+use crate::scene::{Camera, Color, Light, LightForm, Scene, SourceSpan, Spot, Track};
 use crate::table::printable;
 use glam::{DMat4, DVec3};
 use gltf::Node;
@@ -59,12 +57,7 @@ impl View {
     }
 
     /// Takes a camera, if it is the requested one, or the first that has a perspective.
-    pub(super) fn camera(
-        &mut self,
-        camera: &gltf::Camera<'_>,
-        node: &Node<'_>,
-        world: &DMat4,
-    ) {
+    pub(super) fn camera(&mut self, camera: &gltf::Camera<'_>, node: &Node<'_>, world: &DMat4) {
         self.cameras += 1;
         let Projection::Perspective(perspective) = camera.projection() else {
             return;
