@@ -164,37 +164,25 @@ type NewTracer<'s> = Result<Box<Tracer<'s>>, RenderError>;
 
 /// Sets of effects that the ray loop is compiled for; a scene gets the first that has all of its.
 const SHADOWED: u32 = Effects::SHADOW.0;
-/// Without what filters light a shadow ray stops at any hit, which is less work.
-pub(crate) const OPAQUE: u32 = Effects::ALL.without(Effects::FILTERING).0;
 pub(crate) const ALL: u32 = Effects::ALL.0;
 
 /// WebAssembly is downloaded by pages, so it has no second code for the same work: the code that counts draws all
 /// pictures.
-pub(crate) const PAGE: bool = cfg!(target_family = "wasm");
+const PAGE: bool = cfg!(target_family = "wasm");
 
 /// True if no structure has code of its own. The library's own tests compile all of it again.
 const COMPACT: bool = PAGE || cfg!(test);
 
 fn with_format<'s, N: Number>(moments: &'s [Scene<'_>], job: &Job) -> NewTracer<'s> {
-    // Pictures are made through these; the others are there to be compared.
-    if !COMPACT && !job.count {
-        match job.structure {
-            Structure::DualSplit => return fast::<N, DualSplit>(moments, job),
-            Structure::Wide => return fast::<N, Wide>(moments, job),
-            _ => {}
-        }
+    if PAGE || job.count {
+        return counted_rows::<N>(moments, job);
     }
-    let opaque = all_within(moments, OPAQUE);
-    if !PAGE && !job.count {
-        return match opaque {
-            true => rows::<N, DynAccel, OPAQUE>(moments, job),
-            false => rows::<N, DynAccel, ALL>(moments, job),
-        };
+    match job.structure {
+        // Pictures are made through these; the others are there to be compared.
+        Structure::DualSplit if !COMPACT => fast::<N, DualSplit>(moments, job),
+        Structure::Wide if !COMPACT => fast::<N, Wide>(moments, job),
+        _ => rows::<N, DynAccel, ALL>(moments, job),
     }
-    if !PAGE && opaque {
-        return counted_rows::<N, OPAQUE>(moments, job);
-    }
-    counted_rows::<N, ALL>(moments, job)
 }
 
 /// Renderers of the moments, which a shutter accepts.
@@ -208,13 +196,6 @@ fn renderers<'s, N: Number, A: Accel, const EFFECTS: u32>(
     let renderers = renderers.collect::<Result<Vec<_>, _>>()?;
     Shutter::new(&renderers)?;
     Ok(renderers)
-}
-
-/// Returns whether a set of effects has all that the moments require.
-fn all_within(moments: &[Scene<'_>], set: u32) -> bool {
-    moments
-        .iter()
-        .all(|scene| Effects(set).contains(scene.effects()))
 }
 
 /// The moments with a structure chosen: see [`chosen`].
@@ -239,21 +220,18 @@ pub(crate) fn chosen<'a>(
 
 /// Through a structure of its own, with no code for effects that the plainer scenes do without.
 fn fast<'s, N: Number, A: Accel + 's>(moments: &'s [Scene<'_>], job: &Job) -> NewTracer<'s> {
-    let fits = |set| all_within(moments, set);
-    if fits(SHADOWED) {
+    let plain = moments
+        .iter()
+        .all(|scene| Effects(SHADOWED).contains(scene.effects()));
+    if plain {
         rows::<N, A, SHADOWED>(moments, job)
-    } else if fits(OPAQUE) {
-        rows::<N, A, OPAQUE>(moments, job)
     } else {
         rows::<N, A, ALL>(moments, job)
     }
 }
 
-fn counted_rows<'s, N: Number, const EFFECTS: u32>(
-    moments: &'s [Scene<'_>],
-    job: &Job,
-) -> NewTracer<'s> {
-    let renderers = renderers::<N, DynAccel, EFFECTS>(moments, job)?;
+fn counted_rows<'s, N: Number>(moments: &'s [Scene<'_>], job: &Job) -> NewTracer<'s> {
+    let renderers = renderers::<N, DynAccel, ALL>(moments, job)?;
     let count = job.count;
     Ok(Box::new(move |first, pixels| {
         let cost = counted_row(&renderers, first, pixels);

@@ -28,7 +28,7 @@ use crate::shade::surface::{
     Aim, Arrival, Bounce, Filter, Lighting, Secondary, Surface, depart, secondary_ray,
 };
 use crate::shade::{All, Color};
-use crate::target::inline_on_boards;
+use crate::target::{WIDE, inline_on_boards};
 use core::marker::PhantomData;
 
 /// The parts of the scene and the renderer that the ray loop uses.
@@ -351,9 +351,14 @@ impl<'s, N: Number, A: Accel, C: Observer, const EFFECTS: u32> Tracer<'s, N>
 {
     type Observer = C;
 
-    const FILTERS: bool = EFFECTS & All::FILTERING != 0;
-
     const SENDS: bool = EFFECTS & All::CASTING != 0;
+
+    // Builds for boards hold one kind of query for shadows, those with `wide` the faster one for opaque scenes too.
+    #[inline(always)]
+    fn filters(&self) -> bool {
+        let filtering = EFFECTS & All::FILTERING;
+        filtering != 0 && (!WIDE || self.scene.effects().0 & filtering != 0)
+    }
 
     #[inline(always)]
     fn scene(&self) -> &'s Scene<'s> {

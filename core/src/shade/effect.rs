@@ -21,11 +21,11 @@ pub(crate) trait Tracer<'s, N: Number> {
     /// Receives counts and events.
     type Observer: Observer;
 
-    /// True if light can pass a surface on its way to another one.
-    const FILTERS: bool;
-
     /// True if surfaces can send secondary rays.
     const SENDS: bool;
+
+    /// Returns true if light can pass a surface on its way to another one.
+    fn filters(&self) -> bool;
 
     fn scene(&self) -> &'s Scene<'s>;
 

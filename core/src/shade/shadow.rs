@@ -68,7 +68,7 @@ fn through<'s, N: Number, X: Tracer<'s, N>>(
             return left;
         };
         tracer.count().ray(RayKind::Shadow, &ray);
-        if !X::FILTERS {
+        if !tracer.filters() {
             let dark = tracer.any_hit(&ray);
             return if dark { Color::BLACK } else { left };
         }

@@ -28,7 +28,6 @@ use crate::compile::{self, Builder, CompileError, Compiled, compile};
 use crate::measure::rays::{self, Amount, Question, Questions};
 use crate::measure::{InstanceCount, board_memory, primitives};
 use crate::picture_rays::PictureRays;
-use crate::render::OPAQUE;
 use crate::scene;
 use gridel_core::{Effects, Fixed, Format, Number, Scene, Settings, Structure};
 use options::Contender;
@@ -115,7 +114,7 @@ fn compare_in<N: Number>(
     let list_scene = list.compiled.blob.scene()?;
     let [stored, placed] = primitives(&list_scene);
     let instances = InstanceCount::of(&list_scene, options.copied);
-    let is_opaque = Effects(OPAQUE).contains(list_scene.effects());
+    let is_opaque = list_scene.effects().without(Effects::FILTERING) == list_scene.effects();
     let questions = Questions {
         rays: &picture_rays,
         // Through glass a shadow ray searches for the first hit.

@@ -14,7 +14,7 @@ pub use explanation::{Explanation, Hit, LightOutcome, Lighting, Ray, Sample, Wei
 pub use text::Shown;
 pub use walk::{Candidate, Culled, Plane, Side, Step, Tested, Verdict, Walk};
 
-use crate::render::{ALL, OPAQUE, PAGE, chosen};
+use crate::render::{ALL, chosen};
 use crate::trace::{Frame, Rejection, SceneRay};
 use gridel_core::accel::DynAccel;
 use gridel_core::format::limits::MAX_STACK_DEPTH;
@@ -81,9 +81,9 @@ pub fn explain(
 ) -> Result<Explanation, ExplainError> {
     let scene = &chosen(scene, structure)?;
     let (linear, recorder) = match format {
-        Format::Fixed => with_format::<Fixed>(scene, settings, subject),
-        Format::F32 => with_format::<f32>(scene, settings, subject),
-        Format::F64 => with_format::<f64>(scene, settings, subject),
+        Format::Fixed => watch::<Fixed>(scene, settings, subject),
+        Format::F32 => watch::<f32>(scene, settings, subject),
+        Format::F64 => watch::<f64>(scene, settings, subject),
     }?;
     let mut explanation = Explanation::of(scene, format, &subject, &recorder.events);
     if let Subject::Pixel(pixel) = subject {
@@ -99,20 +99,8 @@ pub fn explain(
 
 type Recording = Result<([u16; 3], Recorder), ExplainError>;
 
-fn with_format<N: Number>(scene: &Scene<'_>, settings: Settings, subject: Subject) -> Recording {
-    if !PAGE && Effects(OPAQUE).contains(scene.effects()) {
-        watch::<N, OPAQUE>(scene, settings, subject)
-    } else {
-        watch::<N, ALL>(scene, settings, subject)
-    }
-}
-
-fn watch<N: Number, const EFFECTS: u32>(
-    scene: &Scene<'_>,
-    settings: Settings,
-    subject: Subject,
-) -> Recording {
-    let renderer = Renderer::<N, DynAccel, EFFECTS>::with_settings(scene, settings)?;
+fn watch<N: Number>(scene: &Scene<'_>, settings: Settings, subject: Subject) -> Recording {
+    let renderer = Renderer::<N, DynAccel, ALL>::with_settings(scene, settings)?;
     let mut space = Box::new(Workspace::<N, MAX_STACK_DEPTH, { Effects::MAX_WORK_DEPTH }>::new());
     let mut space = space.as_view();
     let mut recorder = Recorder::default();
