@@ -184,6 +184,7 @@ mod tests {
             dither,
             moment: None,
             exposure: None,
+            is_part: false,
         };
         format.write(&mut bytes, picture, &metadata).unwrap();
         bytes

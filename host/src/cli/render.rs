@@ -209,15 +209,16 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let rendered = pool.install(|| outputs.render(&moments, &job, &|| progress.step()));
     let taken = begun.elapsed();
     drop(progress);
-    let rendering = rendered.map_err(|error| rejected(&error))?;
+    let image = rendered.map_err(|error| rejected(&error))?;
 
-    let shown = rendering.shown();
+    let shown = image.shown();
     let stats = shown.and_then(|picture| stats(arguments, picture, taken));
     let time = blurred.as_ref().map(|it| it.time).or(source.time());
     let metadata = RenderMetadata::of(&scene, &job)
         .at(time.map(Moment::Time))
-        .exposed(blurred.as_ref().map(|it| it.exposure));
-    let written = pool.install(|| outputs.write((&scene, &job), &rendering, &metadata));
+        .exposed(blurred.as_ref().map(|it| it.exposure))
+        .as_part(arguments.rows.is_some());
+    let written = pool.install(|| outputs.write((&scene, &job), &image, &metadata));
     let (heat_map, aovs) = written?;
     let rendered = Rendered {
         picture: arguments.files.output.display().to_string(),

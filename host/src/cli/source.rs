@@ -398,8 +398,11 @@ impl Source {
         for it in found.iter().take(NAMED) {
             let name = names.object(it.object);
             let name = name.map_or(String::new(), |name| format!(" `{}`", printable(name)));
-            let instance = it.instance.map(|number| format!(" in instance {number}"));
-            let instance = instance.unwrap_or_default();
+            let instance = it.instance.map_or(String::new(), |number| {
+                let name = names.instance(number);
+                let name = name.map_or(String::new(), |name| format!(" `{}`", printable(name)));
+                format!(" in instance {number}{name}")
+            });
             let bounds = it.formats.iter().map(|coarse| {
                 let bound = significant(coarse.bound);
                 format!("{} there ({bound} scene units)", coarse.format)

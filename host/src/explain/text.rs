@@ -265,41 +265,14 @@ impl Shown<'_> {
             bound(hit.error),
             vector(hit.normal, significant)
         )?;
-        if let Some(normal) = ray.smooth {
-            writeln!(
-                f,
-                "{indent}  shaded with the smooth normal {}",
-                vector(normal, significant)
-            )?;
-        }
-        if let Some(map) = &ray.normal_map {
-            let [x, y] = map.texel;
-            writeln!(
-                f,
-                "{indent}  shaded with the normal {} of the normal map, texel {x},{y}",
-                vector(map.normal, significant)
-            )?;
-        }
-        if let Some(weight) = ray.vertex_color {
-            writeln!(
-                f,
-                "{indent}  its vertices weight the diffuse color by {}",
-                color(weight)
-            )?;
-        }
-        if let Some(texture) = &ray.texture {
-            let [u, v] = texture.coordinates.map(significant);
-            let [x, y] = texture.texel;
-            let level = match texture.level {
-                0.0 => String::new(),
-                level => format!(" of level {}", significant(level)),
-            };
-            writeln!(
-                f,
-                "{indent}  the texture at {u} {v}, texel {x},{y}{level}, weights the diffuse color by {}",
-                color(texture.color)
-            )?;
-        }
+        surface(f, indent, ray)?;
+        self.passage(f, indent, ray)?;
+        self.radiance(f, indent, ray)?;
+        bounces(f, indent, ray)
+    }
+
+    /// What the ray passes and loses on its way.
+    fn passage(&self, f: &mut Formatter<'_>, indent: &str, ray: &Ray) -> fmt::Result {
         if let Some([from, to]) = ray.media {
             let near = self.medium(from);
             match from == to {
@@ -321,6 +294,11 @@ impl Shown<'_> {
                 color(weight)
             )?;
         }
+        Ok(())
+    }
+
+    /// The light that comes from the surface itself, and by rays to lights.
+    fn radiance(&self, f: &mut Formatter<'_>, indent: &str, ray: &Ray) -> fmt::Result {
         if ray.is_emitted_by_light {
             writeln!(
                 f,
@@ -335,34 +313,6 @@ impl Shown<'_> {
         }
         for lighting in &ray.lights {
             writeln!(f, "{indent}  {}", self.outcome(lighting))?;
-        }
-        if let Some(normal) = ray.facet {
-            writeln!(
-                f,
-                "{indent}  rough: rays leave by the facet with the normal {}",
-                vector(normal, significant)
-            )?;
-        }
-        if let Some(reflected) = ray.reflected {
-            writeln!(
-                f,
-                "{indent}  the glass reflects {} and transmits the rest",
-                significant(reflected)
-            )?;
-        }
-        for dropped in ray.dropped.iter().filter(|d| peak(d.weight) > 0.0) {
-            writeln!(
-                f,
-                "{indent}  a {} ray of weight {} is not traced",
-                dropped.kind,
-                color(dropped.weight)
-            )?;
-        }
-        if ray.too_deep {
-            writeln!(
-                f,
-                "{indent}  the reflected and refracted rays exceed the ray depth"
-            )?;
         }
         Ok(())
     }
@@ -422,4 +372,77 @@ impl Shown<'_> {
             }
         }
     }
+}
+
+/// What the surface's maps and vertices say of the place that is hit.
+fn surface(f: &mut Formatter<'_>, indent: &str, ray: &Ray) -> fmt::Result {
+    if let Some(normal) = ray.smooth {
+        writeln!(
+            f,
+            "{indent}  shaded with the smooth normal {}",
+            vector(normal, significant)
+        )?;
+    }
+    if let Some(map) = &ray.normal_map {
+        let [x, y] = map.texel;
+        writeln!(
+            f,
+            "{indent}  shaded with the normal {} of the normal map, texel {x},{y}",
+            vector(map.normal, significant)
+        )?;
+    }
+    if let Some(weight) = ray.vertex_color {
+        writeln!(
+            f,
+            "{indent}  its vertices weight the diffuse color by {}",
+            color(weight)
+        )?;
+    }
+    if let Some(texture) = &ray.texture {
+        let [u, v] = texture.coordinates.map(significant);
+        let [x, y] = texture.texel;
+        let level = match texture.level {
+            0.0 => String::new(),
+            level => format!(" of level {}", significant(level)),
+        };
+        writeln!(
+            f,
+            "{indent}  the texture at {u} {v}, texel {x},{y}{level}, weights the diffuse color by {}",
+            color(texture.color)
+        )?;
+    }
+    Ok(())
+}
+
+/// The rays that go on from a surface, and those that are not traced.
+fn bounces(f: &mut Formatter<'_>, indent: &str, ray: &Ray) -> fmt::Result {
+    if let Some(normal) = ray.facet {
+        writeln!(
+            f,
+            "{indent}  rough: rays leave by the facet with the normal {}",
+            vector(normal, significant)
+        )?;
+    }
+    if let Some(reflected) = ray.reflected {
+        writeln!(
+            f,
+            "{indent}  the glass reflects {} and transmits the rest",
+            significant(reflected)
+        )?;
+    }
+    for dropped in ray.dropped.iter().filter(|d| peak(d.weight) > 0.0) {
+        writeln!(
+            f,
+            "{indent}  a {} ray of weight {} is not traced",
+            dropped.kind,
+            color(dropped.weight)
+        )?;
+    }
+    if ray.too_deep {
+        writeln!(
+            f,
+            "{indent}  the reflected and refracted rays exceed the ray depth"
+        )?;
+    }
+    Ok(())
 }

@@ -21,6 +21,8 @@ pub struct RenderMetadata {
     pub moment: Option<Moment>,
     /// For a picture in which motion is blurred.
     pub exposure: Option<Exposure>,
+    /// True for a part of a picture that has all of its rows: its file states them as those of any other part.
+    pub is_part: bool,
 }
 
 /// How long a shutter is open, in ticks of the blob's tracks, and at how many moments of that time samples are taken.
@@ -116,6 +118,7 @@ impl RenderMetadata {
             dither: job.settings.dither,
             moment: None,
             exposure: None,
+            is_part: false,
         }
     }
 
@@ -127,6 +130,11 @@ impl RenderMetadata {
     /// Returns the metadata with motion blurred.
     pub fn exposed(self, exposure: Option<Exposure>) -> Self {
         Self { exposure, ..self }
+    }
+
+    /// Returns the metadata of a part, even if it has all rows.
+    pub fn as_part(self, is_part: bool) -> Self {
+        Self { is_part, ..self }
     }
 }
 
@@ -156,6 +164,7 @@ impl RenderMetadata {
             dither,
             moment,
             exposure,
+            is_part: _,
         } = self;
         let mut pairs: Vec<(&str, String)> = Vec::new();
         if let Some(Moment::Time(ticks)) = moment {
@@ -203,7 +212,7 @@ impl Rows {
     /// The rows of a part; `None` for a whole picture.
     pub(super) fn of(picture: &Picture, metadata: &RenderMetadata) -> Option<Self> {
         let (part, height) = (picture.rows.clone(), picture.height);
-        (part != (0..height)).then(|| Self {
+        (metadata.is_part || part != (0..height)).then(|| Self {
             part,
             height,
             made: metadata.pairs(),

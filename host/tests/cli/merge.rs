@@ -23,6 +23,10 @@ fn parts_become_the_bytes_of_the_whole() {
         folder.done(&["merge", &c, &a, &b, "-o", &out]);
         assert!(folder.read(&out) == folder.read(&name("whole")), "{kind}");
     }
+    // A picture that is split into one part is a part.
+    render(&folder, "all.png", Some("0..36"));
+    folder.done(&["merge", "all.png", "-o", "one.png"]);
+    assert!(folder.read("one.png") == folder.read("whole.png"));
     let report = folder.json(&["merge", "a.png", "b.png", "c.png", "-o", "new.png"]);
     assert_eq!(report["parts"], 3);
     assert_eq!([&report["width"], &report["height"]], [48, 36]);

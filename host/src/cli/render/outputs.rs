@@ -97,12 +97,12 @@ pub struct Outputs<'a> {
 }
 
 /// The rendered pixels.
-pub enum Rendering {
+pub enum Image {
     Shown(Picture),
     Linear(LinearPicture),
 }
 
-impl Rendering {
+impl Image {
     /// The picture with what was counted, if it is one for displays.
     pub fn shown(&self) -> Option<&Picture> {
         match self {
@@ -205,12 +205,10 @@ impl<'a> Outputs<'a> {
         moments: &[Scene<'_>],
         job: &Job,
         progress: &(dyn Fn() + Sync),
-    ) -> Result<Rendering, RenderError> {
+    ) -> Result<Image, RenderError> {
         match self.stored {
-            Stored::Shown(_) => render_moments(moments, job, progress).map(Rendering::Shown),
-            Stored::Linear(_) => {
-                render_linear_moments(moments, job, progress).map(Rendering::Linear)
-            }
+            Stored::Shown(_) => render_moments(moments, job, progress).map(Image::Shown),
+            Stored::Linear(_) => render_linear_moments(moments, job, progress).map(Image::Linear),
         }
     }
 
@@ -218,12 +216,12 @@ impl<'a> Outputs<'a> {
     pub fn write(
         &self,
         (scene, job): (&Scene<'_>, &Job),
-        rendering: &Rendering,
+        image: &Image,
         metadata: &RenderMetadata,
     ) -> Result<(Option<HeatMapFile>, Vec<AovFile>), Failure> {
         let asked: Vec<Aov> = self.aovs.iter().map(|it| it.aov).collect();
         let mut layers = layers(scene, job, &asked)?;
-        let map = self.heat_map.zip(rendering.shown());
+        let map = self.heat_map.zip(image.shown());
         let map = map.map(|(path, picture)| (path, HeatMap::of(picture)));
         let heat_map = map.as_ref().map(|(path, map)| HeatMapFile {
             file: path.display().to_string(),
@@ -234,17 +232,15 @@ impl<'a> Outputs<'a> {
             height: job.settings.height,
             rows: job.rows.clone(),
         };
-        if let Rendering::Linear(picture) = rendering {
+        if let Image::Linear(picture) = image {
             let picture = Layer {
                 name: None,
                 values: Values::Vectors(picture.pixels.clone()),
             };
             layers.insert(0, picture);
         }
-        let write_picture: Content<'_> = &|out| match (self.stored, rendering) {
-            (Stored::Shown(format), Rendering::Shown(picture)) => {
-                format.write(out, picture, metadata)
-            }
+        let write_picture: Content<'_> = &|out| match (self.stored, image) {
+            (Stored::Shown(format), Image::Shown(picture)) => format.write(out, picture, metadata),
             (Stored::Linear(LinearFormat::Exr), _) => {
                 openexr::write(out, &window, &layers, &metadata.to_string())
             }

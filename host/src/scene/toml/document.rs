@@ -16,7 +16,7 @@ use super::{environment, light, view};
 use crate::scene::importer::Input;
 use crate::scene::light_form::scale_of;
 use crate::scene::texture::Images;
-use crate::scene::{Camera, Color, Light, Scene, SceneError};
+use crate::scene::{Camera, Color, Light, RenderSettings, Scene, SceneError, Track};
 use crate::table::printable;
 use glam::DVec3;
 use std::collections::{BTreeMap, HashSet};
@@ -55,15 +55,10 @@ pub(super) fn read(input: Input<'_>, imports: &mut Imports) -> Result<Scene, Sce
     let (camera, lens) = camera.map_or((None, None), |(camera, lens)| (Some(camera), lens));
     let render = root.or("render", None, |table| view::render(table).map(Some))?;
     let lights = root.or("light", Vec::new(), light::lights)?;
-    let mut names = Vec::with_capacity(lights.len());
-    let mut forms = Vec::with_capacity(lights.len());
-    let mut plain = Vec::with_capacity(lights.len());
-    for (light, name, form) in lights {
-        plain.push(light);
-        names.push(name);
-        forms.push(form);
-    }
-    let (lights, light_names, light_forms) = (plain, names, forms);
+    let lights = lights.into_iter();
+    let (lights, (light_names, light_forms)): (Vec<_>, (Vec<_>, Vec<_>)) = lights
+        .map(|(light, name, form)| (light, (name, form)))
+        .unzip();
     let background = root.or("background", None, |value| value.radiance().map(Some))?;
     let ambient = root.or("ambient", None, |value| value.radiance().map(Some))?;
     let environment = root.or("environment", None, |table| {
@@ -120,55 +115,14 @@ pub(super) fn read(input: Input<'_>, imports: &mut Imports) -> Result<Scene, Sce
         render: render.unwrap_or_default(),
         ..Scene::default()
     };
-    let lit = !scene.lights.is_empty();
+    let given = Given {
+        render,
+        lights: !scene.lights.is_empty(),
+        ambient: ambient.is_some(),
+    };
     let mut imported_tracks = Vec::new();
     for item in &items {
-        let Content::Import {
-            scene: import,
-            materials,
-        } = &item.content
-        else {
-            continue;
-        };
-        let takes_camera = scene.camera.is_none() && import.camera.is_some();
-        let place = ImportPlace {
-            camera: takes_camera,
-            lights: (!lit).then_some(scene.lights.len()),
-            materials,
-        };
-        imported_tracks.extend(place.tracks(&source, item, import)?);
-        if let (None, Some(camera)) = (scene.camera, import.camera) {
-            scene.camera = Some(moved_camera(&source, item, &camera)?);
-            scene.lens = import
-                .lens
-                .map(|lens| lens.scaled(scale_of(&item.transform)));
-            scene.render = render.unwrap_or(import.render);
-        }
-        if !lit {
-            scene.display_values |= import.display_values && !import.lights.is_empty();
-            for (number, light) in import.lights.iter().enumerate() {
-                let form = import.light_forms.get(number).copied().flatten();
-                let brightness = form.map_or(1.0, |form| form.moved_brightness(&item.transform));
-                let light = moved_light(&source, item, light, brightness)?;
-                scene.lights.push(light);
-                let name = import.light_names.get(number).cloned();
-                scene.light_names.push(name.unwrap_or_default());
-                scene
-                    .light_forms
-                    .push(form.map(|form| form.moved(&item.transform)));
-            }
-        }
-        scene.background = scene.background.or(import.background);
-        if scene.environment.is_none() {
-            scene.environment.clone_from(&import.environment);
-        }
-        if let Some(room) = import.room {
-            let room = joint::moved_room(room, &item.transform);
-            scene.room = Some(scene.room.map_or(room, |own| joint::around(own, room)));
-        }
-        if ambient.is_none() && scene.ambient == BLACK {
-            scene.ambient = import.ambient;
-        }
+        imported_tracks.extend(given.complete(&mut scene, &source, item)?);
     }
     let targets = Targets {
         source: &source,
@@ -181,19 +135,101 @@ pub(super) fn read(input: Input<'_>, imports: &mut Imports) -> Result<Scene, Sce
     imported_tracks.extend(placed.tracks);
     scene.tracks = with_imported(targets.resolve(tracks)?, imported_tracks);
     scene.materials = palette.into_materials();
+    imports.warnings.extend(moving_nothing(&scene));
+    Ok(scene)
+}
+
+/// What the document itself states, which no import replaces.
+struct Given {
+    render: Option<RenderSettings>,
+    lights: bool,
+    ambient: bool,
+}
+
+impl Given {
+    /// Completes a scene by what an imported file has and the document lacks. Returns the file's tracks.
+    fn complete(
+        &self,
+        scene: &mut Scene,
+        source: &Source,
+        item: &Item,
+    ) -> Result<Vec<Track>, SceneError> {
+        let Content::Import {
+            scene: import,
+            materials,
+        } = &item.content
+        else {
+            return Ok(Vec::new());
+        };
+        let takes_camera = scene.camera.is_none() && import.camera.is_some();
+        let place = ImportPlace {
+            camera: takes_camera,
+            lights: (!self.lights).then_some(scene.lights.len()),
+            materials,
+        };
+        let tracks = place.tracks(source, item, import)?;
+        if let (None, Some(camera)) = (scene.camera, import.camera) {
+            scene.camera = Some(moved_camera(source, item, &camera)?);
+            let scale = scale_of(&item.transform);
+            scene.lens = import.lens.map(|lens| lens.scaled(scale));
+            scene.render = self.render.unwrap_or(import.render);
+        }
+        if !self.lights {
+            add_lights(scene, source, item, import)?;
+        }
+        scene.background = scene.background.or(import.background);
+        if scene.environment.is_none() {
+            scene.environment.clone_from(&import.environment);
+        }
+        if let Some(room) = import.room {
+            let room = joint::moved_room(room, &item.transform);
+            scene.room = Some(scene.room.map_or(room, |own| joint::around(own, room)));
+        }
+        if !self.ambient && scene.ambient == BLACK {
+            scene.ambient = import.ambient;
+        }
+        Ok(tracks)
+    }
+}
+
+/// Adds the lights of an imported file.
+fn add_lights(
+    scene: &mut Scene,
+    source: &Source,
+    item: &Item,
+    import: &Scene,
+) -> Result<(), SceneError> {
+    scene.display_values |= import.display_values && !import.lights.is_empty();
+    for (number, light) in import.lights.iter().enumerate() {
+        let form = import.light_forms.get(number).copied().flatten();
+        let brightness = form.map_or(1.0, |form| form.moved_brightness(&item.transform));
+        let light = moved_light(source, item, light, brightness)?;
+        scene.lights.push(light);
+        let name = import.light_names.get(number).cloned();
+        scene.light_names.push(name.unwrap_or_default());
+        scene
+            .light_forms
+            .push(form.map(|form| form.moved(&item.transform)));
+    }
+    Ok(())
+}
+
+/// A warning for each track of a material that no object has.
+fn moving_nothing(scene: &Scene) -> Vec<String> {
     let of_parts = scene.parts.iter().flat_map(|part| &part.objects);
     let objects = scene.objects.iter().chain(of_parts);
     let used: HashSet<usize> = objects.map(|it| it.material).collect();
-    for track in &scene.tracks {
-        if track.target.is_of_material() && !used.contains(&track.index) {
+    let tracks = scene.tracks.iter();
+    tracks
+        .filter(|track| track.target.is_of_material() && !used.contains(&track.index))
+        .map(|track| {
             let name = printable(&scene.materials[track.index].name);
-            imports.warnings.push(format!(
+            format!(
                 "{}: no object has the material {name}, so its track moves nothing",
                 track.place
-            ));
-        }
-    }
-    Ok(scene)
+            )
+        })
+        .collect()
 }
 
 fn moved_camera(source: &Source, item: &Item, camera: &Camera) -> Result<Camera, SceneError> {
