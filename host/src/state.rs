@@ -3,6 +3,7 @@
 use bytemuck::Zeroable;
 use gridel_core::format::instance::Instance;
 use gridel_core::format::record::{Light, Material, Pair, View};
+use gridel_core::format::track::TrackTarget;
 use gridel_core::render::CameraError;
 use gridel_core::{BlobError, Motion, PosesView, Scene, Tracks};
 
@@ -150,6 +151,45 @@ impl State {
             None => Ok(scene),
         }
     }
+}
+
+/// The materials of a scene with a trace of all that the tracks of its blob raise from 0. [`Scene::with_materials`] of
+/// them makes a scene that requires the effects of all times.
+///
+/// ```
+/// # use gridel_host::compile::{Options, compile};
+/// use gridel_core::Effects;
+/// use gridel_host::state::raised_materials;
+///
+/// let file = "[material.pane]\ndiffuse = 1\n\
+///     [[object]]\nkind = 'sphere'\ncenter = [0, 0, 0]\nradius = 1\nmaterial = 'pane'\n\
+///     [[track]]\ntarget = 'material.pane.mirror'\ntimes = [0, 4]\nvalues = [0, 0.5]";
+/// let imported = gridel_host::scene::read("ball.toml".as_ref(), file.into(), &Default::default())?;
+/// let blob = compile(&imported.scene, &Options::default())?.blob;
+/// let scene = blob.scene()?;
+/// assert!(!scene.effects().contains(Effects::MIRROR));
+/// let raised = raised_materials(&scene, blob.bytes());
+/// assert!(scene.with_materials(&raised)?.effects().contains(Effects::MIRROR));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+pub fn raised_materials(scene: &Scene<'_>, blob: &[u8]) -> Vec<Material> {
+    let mut materials = scene.materials().to_vec();
+    let tracks = Tracks::from_bytes(blob).map_or(&[][..], |tracks| tracks.tracks());
+    for track in tracks {
+        let Some(material) = materials.get_mut(track.index as usize) else {
+            continue;
+        };
+        let color = match track.target() {
+            Some(TrackTarget::MaterialHighlight) => &mut material.highlight,
+            Some(TrackTarget::MaterialMirror) => &mut material.mirror,
+            Some(TrackTarget::MaterialTransmit) => &mut material.transmit,
+            _ => continue,
+        };
+        if color.iter().all(|&channel| channel == 0) {
+            *color = [1; 3];
+        }
+    }
+    materials
 }
 
 /// The nearest tick to a time in seconds; one out of range is the first or the last.

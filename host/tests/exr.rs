@@ -110,3 +110,41 @@ fn rows_keep_their_place() {
         assert!(whole[7 * 160..12 * 160] == part[..]);
     }
 }
+
+#[test]
+fn environments_are_read() {
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = |name: &str| folder.path().join(name);
+    render("quick.toml", &path("sky.exr"), &[]);
+    render("quick.toml", &path("part.exr"), &["--rows", "7..12"]);
+    let load = |image: &str| {
+        let text = format!(
+            "[environment]\nimage = '{image}'\n[[object]]\nkind = 'sphere'\ncenter = [0, 0, 0]\nradius = 1\n"
+        );
+        std::fs::write(path("a.toml"), text).expect("a file");
+        gridel_host::scene::load(&path("a.toml"), &Default::default())
+    };
+    let scene = load("sky.exr").expect("a scene").scene;
+    let Some(gridel_host::scene::Sky::Picture(picture)) = scene.environment.map(|it| it.sky) else {
+        panic!("no picture");
+    };
+    assert_eq!(picture.size(), [40, 30]);
+    let file = read_first_flat_layer_from_file(path("sky.exr")).expect("a picture");
+    let channels = samples(&file.layer_data.channel_data, &["R", "G", "B"]);
+    for (axis, channel) in channels.iter().enumerate() {
+        let pixels = picture.rows().flatten();
+        let found: Vec<u8> = pixels.flat_map(|it| it[axis].to_le_bytes()).collect();
+        assert!(found == *channel, "{axis}");
+    }
+    let error = load("part.exr").expect_err("rows").to_string();
+    assert!(
+        error.contains("40x5 pixels of a picture of 40x30"),
+        "{error}"
+    );
+    let whole = std::fs::read(path("sky.exr")).expect("a file");
+    for length in [5, 100, whole.len() - 9] {
+        std::fs::write(path("cut.exr"), &whole[..length]).expect("a file");
+        let error = load("cut.exr").expect_err("a cut file").to_string();
+        assert!(error.contains("cannot be read as OpenEXR"), "{error}");
+    }
+}

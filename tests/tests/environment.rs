@@ -234,6 +234,7 @@ fn pictures_are_read_from_files_and_their_faults_are_named() {
     std::fs::write(folder.path().join("sky.hdr"), &flat).expect("a file");
     std::fs::write(folder.path().join("cut.hdr"), &flat[..flat.len() - 1]).expect("a file");
     std::fs::write(folder.path().join("text.png"), "text").expect("a file");
+    std::fs::write(folder.path().join("cut.exr"), b"\x76\x2f\x31\x01\x02").expect("a file");
     let scene = load("[environment]\nimage = 'sky.hdr'\nintensity = 2\nrotation = 30\nsize = 32")
         .expect("a scene")
         .scene;
@@ -253,6 +254,7 @@ fn pictures_are_read_from_files_and_their_faults_are_named() {
     for (text, words) in [
         ("image = 'cut.hdr'", "ends in row 0"),
         ("image = 'text.png'", "is neither Radiance"),
+        ("image = 'cut.exr'", "OpenEXR"),
         ("image = 'none.hdr'", "none.hdr"),
         ("image = '../sky.hdr'", "sky.hdr"),
         ("image = 'sky.hdr'\nzenith = 1", "not both"),

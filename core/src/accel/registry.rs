@@ -8,7 +8,8 @@ use crate::format::record::Pair;
 use crate::format::structure::structures;
 use crate::format::{BlobError, Sections, Structure};
 
-/// A structure of this build, as a type. Structures that a program does not name are not in its code.
+/// A structure of this build, as a type. Structures that a program does not name are not in its code. Queries through one
+/// need a blob that [holds](crate::Scene::holds) it.
 #[diagnostic::on_unimplemented(
     message = "the code of the structure `{Self}` is not in this build",
     note = "enable the Cargo feature of gridel-core with the structure's name"

@@ -15,9 +15,9 @@ pub struct Entry {
 /// The traversal stack, owned by the caller: 12 bytes per entry and one word.
 ///
 /// `DEPTH` must be at least the blob's [`stack_depth`](crate::Scene::stack_depth), which
-/// [`Scene::from_bytes`](crate::Scene::from_bytes) proves. A smaller stack is never overrun:
-/// queries on it have no hit, and
-/// [`Renderer::check_workspace`](crate::Renderer::check_workspace) rejects it.
+/// [`Scene::from_bytes`](crate::Scene::from_bytes) proves. A smaller stack is never overrun,
+/// but queries on it miss what they find no room for: compare [`capacity`](StackView) with the depth, or let
+/// [`Renderer::check_workspace`](crate::Renderer::check_workspace) reject it.
 #[derive(Debug, Default)]
 pub struct Stack<const DEPTH: usize>(Vec<Entry, DEPTH>);
 

@@ -208,6 +208,9 @@ pub type Ready<N> = Result<(Ray<N>, DirectionScale), Rejection>;
 /// How far from where a ray comes to a scene's box it can meet what has a box, in units, and how near.
 const REACH: [f64; 2] = [1.0 / (1_u64 << 32) as f64, (1_u64 << 17) as f64];
 
+/// A difference of t in units that is none: a small part of a step of the lattice, to which the scene was rounded.
+const EXACT: f64 = 1.0 / (1_u64 << 20) as f64;
+
 /// Makes a ray ready for the core, from however far away. Its t are numbers of double precision, or it is none.
 #[inline(always)]
 pub fn prepare<N: Number>(scene: &Scene<'_>, frame: &Frame, ray: &SceneRay) -> Ready<N> {
@@ -241,9 +244,8 @@ fn complete<N: Number>(
 #[inline(always)]
 fn check_multiples<N: Number>((ray, scale): &(Ray<N>, DirectionScale)) -> Result<(), Rejection> {
     let [least, most] = REACH;
-    let exactly = || 0.0;
-    scale.multiple(N::far_to_f64(ray.start_t()) + most, exactly)?;
-    scale.multiple(least, exactly)?;
+    scale.multiple(N::far_to_f64(ray.start_t()) + most, || EXACT)?;
+    scale.multiple(least, || EXACT)?;
     Ok(())
 }
 

@@ -29,7 +29,7 @@ pub use instances::instance_notes;
 pub use page::{MOST_PICTURE_BYTES, PagePicture, page};
 #[cfg(not(target_family = "wasm"))]
 pub use plot::plot;
-pub use setting::{Parameter, Setting, least_reference_samples, sweep};
+pub use setting::{MOST_MEASURED_SAMPLES, Parameter, Setting, least_reference_samples, sweep};
 pub use truth::Truth;
 
 use crate::measure::InstanceCount;

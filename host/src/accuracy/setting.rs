@@ -1,10 +1,11 @@
 //! The settings of a sweep: six parameters, each alone and together.
 
+use gridel_core::format::limits::MAX_SAMPLES;
 use gridel_core::{Effects, Format};
 use serde::{Deserialize, Serialize};
 
-/// The most samples per pixel of a reference, unless a setting has more.
-const REFERENCE_SAMPLES: u16 = 256;
+/// The most samples per pixel that can be measured: a reference has twice as many.
+pub const MOST_MEASURED_SAMPLES: u16 = MAX_SAMPLES / 2;
 
 /// A way to build and render a scene.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -250,12 +251,12 @@ pub fn sweep(base: Setting, effects: Effects) -> Vec<Setting> {
     settings
 }
 
-/// Returns the fewest samples per pixel of a reference that is better than every setting of a sweep. That is twice
-/// their maximum, up to the limit of a picture.
+/// Returns the fewest samples per pixel of a reference that is better than every setting of a sweep: twice the most of
+/// a setting, which is at most [`MOST_MEASURED_SAMPLES`].
 pub fn least_reference_samples(settings: &[Setting]) -> u16 {
     let most = settings.iter().map(|setting| setting.samples).max();
     let most = most.unwrap_or(1);
-    (2 * most).min(REFERENCE_SAMPLES.max(most))
+    2 * most.min(MOST_MEASURED_SAMPLES)
 }
 
 #[cfg(test)]

@@ -115,7 +115,7 @@ impl Run<'_> {
         };
         let path = self.check.scene.path.display();
         let tracks = Tracks::from_bytes(blob).map_err(|error| format!("{path}: {error}"))?;
-        if tracks.is_empty() && self.posed == Some(Posed::AtTime) {
+        if tracks.is_empty() && matches!(self.posed, Some(Posed::AtTime | Posed::Always)) {
             return Ok(None);
         }
         if tracks.is_empty() {

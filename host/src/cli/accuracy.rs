@@ -15,8 +15,8 @@ use super::source::{import, warn_of_file};
 use choice::{Choice, choice};
 use folder::{CSV, PAGE, PLOT, kept, pictures};
 use gridel_host::accuracy::{
-    Bench, MeasureError, Point, Truth, Worth, answers, frontier, least_reference_samples, page,
-    plot, sentences, sweep,
+    Bench, MOST_MEASURED_SAMPLES, MeasureError, Point, Truth, Worth, answers, frontier,
+    least_reference_samples, page, plot, sentences, sweep,
 };
 use gridel_host::measure::InstanceCount;
 use gridel_host::table::{counted, grouped, significant};
@@ -24,6 +24,9 @@ use measure::measure;
 use report::{csv, text};
 use serde::Serialize;
 use std::path::PathBuf;
+
+/// Samples per pixel of a reference, where no more are needed.
+const REFERENCE_SAMPLES: u16 = 256;
 
 /// Most pixels that are measured.
 const MOST_PIXELS: usize = 1 << 22;
@@ -64,7 +67,17 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         },
         ..SceneOptions::default()
     };
-    let imported = import(path, &options)?;
+    let mut imported = import(path, &options)?;
+    let mut warnings = std::mem::take(&mut imported.warnings);
+    let samples = &mut imported.scene.render.samples;
+    if *samples > MOST_MEASURED_SAMPLES {
+        let note = format!(
+            "its {} samples per pixel are measured as {MOST_MEASURED_SAMPLES}, because the reference has twice as many",
+            grouped(usize::from(*samples))
+        );
+        warn_of_file(path, vec![note], &mut warnings);
+        *samples = MOST_MEASURED_SAMPLES;
+    }
     let stem = path.file_stem().unwrap_or_default().display().to_string();
     let folder = match &arguments.output {
         Some(folder) => folder.clone(),
@@ -92,16 +105,18 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     bench.truth = arguments.reference;
     let settings = sweep(bench.base(), bench.effects().map_err(failed)?);
     let least = least_reference_samples(&settings);
-    if arguments.reference_samples < least {
+    let reference_samples = arguments
+        .reference_samples
+        .unwrap_or(least.max(REFERENCE_SAMPLES));
+    if reference_samples < least {
         return Err(Failure::usage(
             format!(
                 "a reference of {} per pixel is no better than the measured settings",
-                counted(arguments.reference_samples.into(), "sample")
+                counted(reference_samples.into(), "sample")
             ),
             format!("ask for at least {least} with `--reference-samples`, or leave it out"),
         ));
     }
-    let mut warnings = imported.warnings;
     warn_of_file(path, bench.warnings().map_err(failed)?, &mut warnings);
     let key = format!(
         "gridel {} scene {:08x} size {size:?} structure {} reference {}{}",
@@ -112,7 +127,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
             Truth::F64 => "",
             Truth::Exact => "exact ",
         },
-        arguments.reference_samples
+        reference_samples
     );
     let kept = kept(&folder, &key)?;
     std::fs::create_dir_all(folder.join("pictures"))
@@ -120,7 +135,13 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     for name in [PAGE, CSV, PLOT] {
         check_writable(&folder.join(name))?;
     }
-    let results = measure(arguments, &mut bench, &folder, (key, kept), &settings)?;
+    let results = measure(
+        arguments,
+        &mut bench,
+        &folder,
+        (key, kept),
+        (&settings, reference_samples),
+    )?;
     let pictures = pictures(&folder, size, &results)?;
     let fault = |error: std::io::Error| {
         Failure::failed(error.to_string(), "report this as a fault of gridel")

@@ -23,6 +23,7 @@ use gridel_host::measure::InstanceCount;
 use gridel_host::measure::board::Board;
 use gridel_host::measure::board::{Account, MemoryReport};
 use gridel_host::resolution::Unresolved;
+use gridel_host::state::raised_materials;
 use gridel_host::table::{Align, Table, counted, grouped, power_of_two};
 use serde::Serialize;
 use std::path::{Path, PathBuf};
@@ -219,8 +220,11 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         let room = remains
             .zip(target)
             .map(|(remains, target)| (remains + blob.len() as u64, target.board));
+        // Firmware plays the blob's tracks as well.
+        let raised = raised_materials(&scene, blob);
+        let moving = scene.with_materials(&raised);
         let emitted = Emitted {
-            scene: &scene,
+            scene: moving.as_ref().unwrap_or(&scene),
             structure: source.structure(&scene, None)?,
             format,
             joints: source.joints(),

@@ -199,6 +199,10 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         }
     };
     let blurred = blurred(arguments, (&source, &scene), &job)?;
+    let warnings = match &blurred {
+        Some(_) => source.warn_of_unblurred(),
+        None => source.warnings.clone(),
+    };
     let moments = match &blurred {
         Some(blurred) => scenes(&blurred.changes, &scene)?,
         None => vec![scene],
@@ -240,7 +244,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let report = match arguments.json {
         true => json(&Warned {
             value: &rendered,
-            warnings: &source.warnings,
+            warnings: &warnings,
         })?,
         false => rendered.text(),
     };

@@ -248,7 +248,7 @@ impl Source {
     fn moves_otherwise(&self) -> bool {
         match self.tracks() {
             Ok(tracks) => !tracks.is_empty(),
-            Err(_) => self.posed != Some(Posed::AtTime),
+            Err(_) => !matches!(self.posed, Some(Posed::AtTime | Posed::Always)),
         }
     }
 
@@ -260,7 +260,7 @@ impl Source {
         }
         let file = self.input.path().display();
         Err(match self.posed {
-            None => Failure::usage(
+            None | Some(Posed::Always) => Failure::usage(
                 format!(
                     "nothing in {file} moves: it has no tracks, or none that Gridel can follow"
                 ),
@@ -276,6 +276,18 @@ impl Source {
                 "leave out `--instances flatten`, or ask for one picture after the other with `--time`",
             ),
         })
+    }
+
+    /// Warns of instances that move and are not blurred, because they were copied where they are at one time. Returns
+    /// all warnings.
+    pub fn warn_of_unblurred(&self) -> Vec<String> {
+        let mut warnings = self.warnings.clone();
+        if self.posed == Some(Posed::AtTime) {
+            let sentence =
+                "instances are copied where they are as the shutter opens, and are not blurred";
+            warn_of_file(self.input.path(), vec![sentence.into()], &mut warnings);
+        }
+        warnings
     }
 
     /// The error of a blob that is not valid.

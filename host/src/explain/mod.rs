@@ -85,7 +85,8 @@ pub fn explain(
         Format::F32 => watch::<f32>(scene, settings, subject),
         Format::F64 => watch::<f64>(scene, settings, subject),
     }?;
-    let mut explanation = Explanation::of(scene, format, &subject, &recorder.events);
+    let mut explanation =
+        Explanation::of(scene, format, &subject, (&recorder.events, recorder.begin));
     if let Subject::Pixel(pixel) = subject {
         explanation.pixel = Some(pixel);
         explanation.picture = Some([settings.width, settings.height]);
@@ -107,7 +108,8 @@ fn watch<N: Number>(scene: &Scene<'_>, settings: Settings, subject: Subject) -> 
     let linear = match subject {
         Subject::Pixel([x, y]) => renderer.linear(x, y, &mut space, &mut recorder),
         Subject::Ray(ray) => {
-            let (ray, _) = Frame::of(scene).ray::<N>(scene, &ray)?;
+            let (ray, direction_scale) = Frame::of(scene).ray::<N>(scene, &ray)?;
+            recorder.begin = direction_scale.begin();
             renderer.linear_along(&ray, &mut space, &mut recorder)
         }
     };
@@ -118,6 +120,8 @@ fn watch<N: Number>(scene: &Scene<'_>, settings: Settings, subject: Subject) -> 
 #[derive(Default)]
 struct Recorder {
     events: Vec<Event>,
+    /// Where the kernels count 0 on a ray of one's own, in units along its major axis.
+    begin: f64,
     /// Recorded steps of the current query.
     steps: usize,
 }

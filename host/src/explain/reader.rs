@@ -7,15 +7,15 @@ use crate::trace::Frame;
 use gridel_core::{Event, Format, RayKind, Scene};
 
 impl Explanation {
-    /// Puts events in order.
+    /// Puts events in order. `begin` is where the kernels count 0 on a ray of one's own: see [`Given::begin`].
     pub(super) fn of(
         scene: &Scene<'_>,
         format: Format,
         subject: &Subject,
-        events: &[Event],
+        (events, begin): (&[Event], f64),
     ) -> Self {
         let mut explanation = Explanation::default();
-        let mut reader = Reader::new(scene, format, subject);
+        let mut reader = Reader::new(scene, format, subject, begin);
         for event in events {
             if let Event::SampleFinished { place, radiance } = *event {
                 explanation.samples.push(reader.finish(place, radiance));
@@ -42,18 +42,18 @@ struct Reader<'t> {
 }
 
 impl<'t> Reader<'t> {
-    fn new(scene: &'t Scene<'t>, format: Format, subject: &Subject) -> Self {
+    fn new(scene: &'t Scene<'t>, format: Format, subject: &Subject, begin: f64) -> Self {
         let frame = Frame::of(scene);
         Self {
             scene,
             frame,
             format,
             first: match subject {
-                Subject::Ray(ray) => Given::from(ray),
-                Subject::Pixel(_) => Given {
-                    origin: frame.place(scene.view().eye.map(|x| x as f64 / 8192.0)),
-                    direction: None,
-                },
+                Subject::Ray(ray) => Given::new(ray, begin),
+                Subject::Pixel(_) => {
+                    let eye = scene.view().eye.map(|x| x as f64 / 8192.0);
+                    Given::from_origin(frame.place(eye))
+                }
             },
             sample: Sample::default(),
             waiting: Vec::new(),
@@ -93,10 +93,7 @@ impl<'t> Reader<'t> {
                 let first = (current == 0 && !*light).then_some(self.first);
                 if let Some(ray) = self.sample.rays.last_mut() {
                     // Through a lens it starts from there.
-                    let from = ray.from_lens.map(|point| Given {
-                        origin: point.into(),
-                        direction: None,
-                    });
+                    let from = ray.from_lens.map(|point| Given::from_origin(point.into()));
                     let given = first.map(|first| from.unwrap_or(first));
                     let begin = |event: &Event| Walk::begin(frame, *format, given, event);
                     ray.take(scene, frame, begin, event, light);

@@ -59,13 +59,26 @@ pub(super) struct Given {
     pub origin: DVec3,
     /// The given direction, of any length; `None` if the kernels' own is equal.
     pub direction: Option<DVec3>,
+    /// The distance from the origin at which the kernels count 0, in units along the major axis: a ray from far away
+    /// starts nearer for them.
+    pub begin: f64,
 }
 
-impl From<&SceneRay> for Given {
-    fn from(ray: &SceneRay) -> Self {
+impl Given {
+    pub fn new(ray: &SceneRay, begin: f64) -> Self {
         Self {
             origin: ray.origin,
             direction: Some(ray.direction),
+            begin,
+        }
+    }
+
+    /// A ray along the kernels' own direction.
+    pub fn from_origin(origin: DVec3) -> Self {
+        Self {
+            origin,
+            direction: None,
+            begin: 0.0,
         }
     }
 }
@@ -87,6 +100,8 @@ struct InUnits {
     moved: f64,
     /// Scene units of a unit of t.
     scale: f64,
+    /// Where the kernels count 0: see [`Given::begin`].
+    begin: f64,
     /// How far the start is from the line of the ray as it was given, in scene units.
     aside: f64,
     /// How much further it is for every scene unit of distance.
@@ -236,14 +251,14 @@ impl Walk {
             return None;
         };
         let rounded = DVec3::from_array(slope);
-        let given = given.unwrap_or_else(|| Given {
-            origin: frame.place((DVec3::from_array(start) - moved * rounded).to_array()),
-            direction: None,
+        let given = given.unwrap_or_else(|| {
+            let origin = DVec3::from_array(start) - moved * rounded;
+            Given::from_origin(frame.place(origin.to_array()))
         });
         let (exact, norm) = along_major(given.direction.unwrap_or(rounded));
         let direction = exact / norm;
         let scale = norm * frame.length(1.0);
-        let moved = moved * scale;
+        let moved = (given.begin + moved) * scale;
         // A ray that passes the scene's box has an empty interval, and a start that is not one of its points.
         let place = if interval[1] < 0.0 {
             given.origin + moved * direction
@@ -268,6 +283,7 @@ impl Walk {
                 slope,
                 moved,
                 scale,
+                begin: given.begin,
                 aside: (given.origin + moved * direction).distance(place),
                 turned: direction.distance(rounded.normalize()),
                 interval,
@@ -280,7 +296,7 @@ impl Walk {
 
     /// The distance of a parameter as the caller counts it, in units along the major axis.
     pub(super) fn distance(&self, t: f64) -> f64 {
-        t * self.ray.scale
+        (self.ray.begin + t) * self.ray.scale
     }
 
     /// Returns how far `origin + distance * direction` may be from the point that the kernels compute there. The

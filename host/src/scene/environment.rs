@@ -1,7 +1,7 @@
 //! The light around a scene, as scene files state it.
 
 use super::image::{Fault, Image, Texels, fault};
-use super::radiance;
+use super::{exr_image, radiance};
 use crate::srgb::linear_of_srgb;
 use glam::DVec3;
 use std::fmt;
@@ -147,15 +147,18 @@ impl Panorama {
         self.pixels.chunks_exact(self.width)
     }
 
-    /// Reads a Radiance, PNG or JPEG file, told apart by their content.
+    /// Reads a Radiance, OpenEXR, PNG or JPEG file, told apart by their content.
     pub(super) fn decode(name: &str, bytes: &[u8], texels: &Texels) -> Result<Self, Fault> {
+        let check = |width, height| texels.add(width, height);
         let (width, height, pixels) = if bytes.starts_with(b"#?") {
-            radiance::decode(bytes, |width, height| texels.add(width, height))?
+            radiance::decode(bytes, check)?
+        } else if bytes.starts_with(&exr_image::MAGIC) {
+            exr_image::decode(bytes, check)?
         } else {
             let is_known = bytes.starts_with(b"\x89PNG") || bytes.starts_with(b"\xff\xd8");
             if !is_known {
                 return Err(fault(
-                    "is neither Radiance (.hdr) nor PNG nor JPEG",
+                    "is neither Radiance (.hdr) nor OpenEXR nor PNG nor JPEG",
                     "convert it to Radiance HDR or PNG",
                 ));
             }

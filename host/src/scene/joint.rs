@@ -63,7 +63,7 @@ impl<'s> JointTracks<'s> {
 impl Scene {
     /// Returns the motion of each joint at a time. It moves what hangs on the joint away from its place at rest.
     ///
-    /// This is computed in the precision of `f64`. A blob's tracks give the same in integers.
+    /// This is computed in the precision of `f64`, at the nearest tick. A blob's tracks give the same in integers.
     ///
     /// ```
     /// use glam::DVec3;

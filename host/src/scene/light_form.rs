@@ -62,6 +62,9 @@ impl Spot {
     pub const LEAST_OUTER: f64 = 0.3;
 }
 
+/// The part of themselves by which lengths may differ that count as equal: more than a product of rotations rounds.
+const EVEN: f64 = 1e-6;
+
 /// By how much a transform lengthens, on the mean of all directions.
 pub(super) fn scale_of(by: &DAffine3) -> f64 {
     by.matrix3.determinant().abs().cbrt()
@@ -74,6 +77,12 @@ fn moved_normal(normal: DVec3, by: &DAffine3) -> DVec3 {
     cofactors * normal * by.matrix3.determinant().signum()
 }
 
+/// Perpendicular vectors of length 1 in the plane of a disc, after a transform.
+fn moved_plane(normal: DVec3, by: &DAffine3) -> [DVec3; 2] {
+    let (a, b) = normal.normalize().any_orthonormal_pair();
+    [a, b].map(|vector| by.transform_vector3(vector))
+}
+
 impl LightForm {
     /// The factor of a light's color after a transform of its scene, so that the scene looks as before: that of a point
     /// whose light falls off is what arrives at a distance of 1.
@@ -84,7 +93,28 @@ impl LightForm {
         }
     }
 
-    /// The form, moved. Radii and the range grow with the cube root of the volume. Surfaces keep the side to which they
+    /// The name of a round light that a transform makes oval.
+    pub(super) fn distorted(&self, by: &DAffine3) -> Option<&'static str> {
+        let [x, y, z] = [by.matrix3.x_axis, by.matrix3.y_axis, by.matrix3.z_axis];
+        let evenly = |a: DVec3, b: DVec3| {
+            let (most, least) = (a.length().max(b.length()), a.length().min(b.length()));
+            most - least <= EVEN * most && a.dot(b).abs() <= EVEN * most * most
+        };
+        match self.shape {
+            LightShape::Sphere { .. } => {
+                let is_round = evenly(x, y) && evenly(y, z) && evenly(z, x);
+                (!is_round).then_some("sphere")
+            }
+            LightShape::Disc { normal, .. } => {
+                let [a, b] = moved_plane(normal, by);
+                (!evenly(a, b)).then_some("disc")
+            }
+            _ => None,
+        }
+    }
+
+    /// The form, moved by a transform that does not [distort](Self::distorted) it. Ranges grow with the cube root of the
+    /// volume. Surfaces keep the side to which they
     /// shine, in mirror images too.
     pub fn moved(&self, by: &DAffine3) -> Self {
         let scale = scale_of(by);
@@ -107,7 +137,7 @@ impl LightForm {
                 },
                 LightShape::Disc { normal, radius } => LightShape::Disc {
                     normal: moved_normal(normal, by),
-                    radius: radius * scale,
+                    radius: radius * moved_plane(normal, by)[0].length(),
                 },
             },
             range: self.range.map(|range| range * scale),

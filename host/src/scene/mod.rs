@@ -14,6 +14,7 @@ mod damaged;
 mod emitters;
 mod environment;
 mod error;
+mod exr_image;
 mod files;
 mod flatten;
 mod gzip;
@@ -163,8 +164,7 @@ fn finish(
         let moving = scene.instances.iter().find(|it| it.joint.is_some());
         let has_joints = scene.tracks.iter().any(|track| track.target.is_of_joint());
         match (moving, options.at) {
-            // Copies are where they are at any time.
-            (None, Some(_)) if has_joints => imported.posed = Some(Posed::AtTime),
+            (None, Some(_)) if has_joints => imported.posed = Some(Posed::Always),
             (None, _) => {}
             (Some(_), Some(seconds)) => {
                 scene.instances = scene.instances_at(seconds);
@@ -181,7 +181,10 @@ fn finish(
         imported.copied = scene.instances.len();
         imported.scene = imported.scene.into_flattened()?;
     }
-    let dark: Vec<_> = imported.scene.emitters_without_light().collect();
+    // Where light is reflected between surfaces, they light others by that.
+    let bounces = imported.scene.render.bounces > 0;
+    let dark = imported.scene.emitters_without_light();
+    let dark: Vec<_> = dark.filter(|_| !bounces).collect();
     if let [first, rest @ ..] = &dark[..] {
         let more = match rest.len() {
             0 => String::new(),

@@ -76,6 +76,8 @@ pub enum Posed {
     AtRest,
     /// Where they are at [a time](ImportOptions::at).
     AtTime,
+    /// Where they are at any time: no instance hangs on the joints that tracks move.
+    Always,
 }
 
 /// Which of a glTF file's cameras and animations is read.

@@ -43,9 +43,11 @@ pub(super) const IMPORTER: Importer = Importer {
 fn read(input: Input<'_>) -> Result<Imported, SceneError> {
     let Input { path, bytes, .. } = input;
     check_encoding(path, &bytes)?;
+    // The mark that some editors put before text.
+    let bytes = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(&bytes);
     let mut warnings = Warnings::default();
-    let mut reader = Reader::new(&bytes[..]);
-    let header = header::read(path, &bytes, &mut reader, &mut warnings)?;
+    let mut reader = Reader::new(bytes);
+    let header = header::read(path, bytes, &mut reader, &mut warnings)?;
     let mut payload = Payload::new(path, header.encoding, reader);
     let (mut vertices, mut faces, mut strips) = (Vec::new(), Vec::new(), Vec::new());
     for element in header.elements.values() {
@@ -62,6 +64,11 @@ fn read(input: Input<'_>) -> Result<Imported, SceneError> {
         }
     }
     payload.warn(&mut warnings);
+    let components = |vertex: &Vertex| vertex.normal.iter().filter(|it| it.is_finite()).count();
+    if vertices.iter().map(components).any(|it| it == 1 || it == 2) {
+        let sentence = "normals of vertices without nx, ny or nz are ignored";
+        warnings.add_times(SourceSpan::of(path), 1, sentence);
+    }
     let attributes = attributes(path, &vertices, &mut warnings);
     let (shape, normals) = mesh(path, &vertices, &faces, &strips, &mut warnings)?;
     let scene = Scene {

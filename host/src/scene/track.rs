@@ -60,7 +60,7 @@ impl Track {
         control_points(self.interpolation, &self.keys)
     }
 
-    /// The value at a time, in the precision of `f64`. Rotations are of any length but 0.
+    /// The value at the tick that is nearest to a time, in the precision of `f64`. Rotations are of any length but 0.
     pub(crate) fn at(&self, seconds: f64) -> [f64; 4] {
         let turns = self.target.kind() == ValueKind::Rotation;
         interpolate(self.interpolation, &self.keys, turns, seconds)
@@ -86,6 +86,12 @@ pub(crate) fn control_points(
     values.chain(between)
 }
 
+/// The time of the nearest tick.
+fn on_tick(seconds: f64) -> f64 {
+    let ticks = f64::from(TICKS_PER_SECOND);
+    (seconds * ticks).round() / ticks
+}
+
 /// The value between keys at a time; `turns` says that they are rotations.
 pub(super) fn interpolate(
     interpolation: Interpolation,
@@ -93,13 +99,16 @@ pub(super) fn interpolate(
     turns: bool,
     seconds: f64,
 ) -> [f64; 4] {
-    let after = keys.partition_point(|key| key.seconds <= seconds);
+    // Times are those of ticks, as in a blob.
+    let seconds = on_tick(seconds);
+    let after = keys.partition_point(|key| on_tick(key.seconds) <= seconds);
     let one = &keys[after.saturating_sub(1)];
     let Some(other) = keys.get(after).filter(|_| after > 0) else {
         return one.value;
     };
-    let duration = other.seconds - one.seconds;
-    let part = (seconds - one.seconds) / duration;
+    let begin = on_tick(one.seconds);
+    let duration = on_tick(other.seconds) - begin;
+    let part = (seconds - begin) / duration;
     if turns && interpolation == Interpolation::Linear {
         let [one, other] = [one, other].map(|key| DQuat::from_array(key.value).normalize());
         return one.slerp(other, part).to_array();

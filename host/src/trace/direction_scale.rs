@@ -55,6 +55,11 @@ impl DirectionScale {
         (direction_scale, DVec3::from_array(scaled))
     }
 
+    /// The length at which the core's ray counts 0.
+    pub(crate) fn begin(&self) -> f64 {
+        self.begin
+    }
+
     /// From now on lengths of hits count from so far along the ray.
     pub(super) fn begin_at(&mut self, begin: f64) {
         self.begin = begin;

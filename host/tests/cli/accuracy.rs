@@ -52,6 +52,43 @@ fn the_reference_is_better_than_what_it_measures() {
     folder.done(&[&SMALL[..], &["--reference-samples", "128"]].concat());
 }
 
+/// Many samples are measured against twice as many; a reference has at most 4,096.
+#[test]
+fn references_of_many_samples_have_twice_as_many() {
+    let folder = Folder::new();
+    let scene = |samples: u16| {
+        format!(
+            "[render]\nwidth = 8\nheight = 8\nsamples = {samples}\n\
+             [[object]]\nkind = 'sphere'\ncenter = [0, 0, 0]\nradius = 1\n"
+        )
+    };
+    folder.write("a.toml", scene(300).as_bytes());
+    let command = [
+        "accuracy", "a.toml", "-o", "out", "--size", "2x2", "--repeat", "1",
+    ];
+    let few = [&command[..], &["--reference-samples", "512"]].concat();
+    folder.fails(2, &few, &["512 samples", "at least 600"]);
+    folder.done(&command);
+    folder.write("a.toml", scene(4000).as_bytes());
+    let command = [
+        "accuracy", "a.toml", "-o", "most", "--size", "1x1", "--repeat", "1",
+    ];
+    let report = folder.json(&command);
+    let warnings = report["warnings"].to_string();
+    assert!(
+        warnings.contains("4,000 samples per pixel are measured as 2048"),
+        "{warnings}"
+    );
+}
+
+#[test]
+fn damaged_results_are_said_to_be_so() {
+    let folder = folder();
+    std::fs::create_dir(folder.path("out")).unwrap();
+    folder.write("out/results.json", b"{\"key\": 1");
+    folder.fails(2, &SMALL, &["holds no results"]);
+}
+
 /// A bound that nothing keeps is an error, behind the table that shows it.
 #[test]
 fn a_bound_that_is_too_tight_still_shows_the_table() {

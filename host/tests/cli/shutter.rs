@@ -96,6 +96,11 @@ fn copies_stand_where_they_are_as_the_shutter_opens() {
     let sharp = rendered(&folder, &at);
     let moment = ["--shutter", "0.0001", "--moments", "1"];
     assert!(rendered(&folder, &[&at[..], &moment].concat()) == sharp);
+    // Which is said.
+    let command = [&["render", "a.toml", "-o", "a.ppm"], &at[..], &moment].concat();
+    let report = folder.json(&command);
+    let warnings = report["warnings"].to_string();
+    assert!(warnings.contains("are not blurred"), "{warnings}");
     // Where nothing else moves, nothing is left to blur.
     let still = SCENE.split("[[track]]").next().expect("a scene");
     folder.write("b.toml", format!("{still}{part}{shift}").as_bytes());

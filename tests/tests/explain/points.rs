@@ -1,6 +1,7 @@
 //! Hits lie on their rays within the printed bound.
 
 use super::{explanation, rays, way};
+use glam::DVec3;
 use gridel_core::{Format, Settings, Structure};
 use gridel_host::explain::{Explanation, Names, Shown, Subject, explain};
 use gridel_host::trace::{Frame, SceneRay};
@@ -148,5 +149,36 @@ fn explain_gives_points_that_lie_on_the_rays_of_pixels() {
             }
         }
         assert!(hits > 10, "{name}: {hits} hits");
+    }
+}
+
+/// The core takes such rays from nearer places.
+#[test]
+fn explain_gives_the_distances_of_rays_from_afar() {
+    let file = "[[object]]\nkind = 'sphere'\ncenter = [0.1, 0, 0]\nradius = 1\n\
+                [[object]]\nkind = 'sphere'\ncenter = [7, 0, 0]\nradius = 1\n";
+    let scene = gridel_host::scene::read("a.toml".as_ref(), file.into(), &Default::default());
+    let scene = scene.expect("a scene").scene;
+    let blob = gridel_host::compile::compile(&scene, &Default::default());
+    let blob = blob.expect("a blob").blob;
+    let scene = blob.scene().expect("a scene");
+    for z in [5.0, 100.3, 1000.0, 1e5, 3e6] {
+        let ray = SceneRay {
+            origin: DVec3::new(0.3, 0.0, z),
+            direction: DVec3::NEG_Z * 0.25,
+            tmin: 0.0,
+            tmax: f64::INFINITY,
+        };
+        for format in Format::ALL {
+            let explained = explanation(&scene, format, Structure::DualSplit, ray);
+            let hit = explained.samples[0].rays[0].hit.as_ref().expect("a hit");
+            let expected = z - 0.96_f64.sqrt();
+            let error = (hit.distance - expected).abs();
+            let bound = 1e-5 + 1e-6 * z;
+            assert!(
+                error <= bound && hit.distance_error <= bound,
+                "{z} {format:?} {hit:?}"
+            );
+        }
     }
 }

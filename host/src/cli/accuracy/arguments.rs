@@ -4,6 +4,7 @@ use crate::cli::arguments::{self, ImportOptions, scene_help, scene_long_help};
 use clap::Args;
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 use gridel_core::Structure;
+use gridel_core::format::limits::MAX_SAMPLES;
 use gridel_host::accuracy::Truth;
 use gridel_host::compile::Quality;
 use gridel_host::measure::board as boards;
@@ -12,7 +13,7 @@ use std::path::PathBuf;
 /// Show what accuracy costs in time
 ///
 /// Changes six settings, each alone and in combinations: number format, lattice bits (10, 12, 16, 20,
-/// 24), samples per pixel (1 to 64), ray depth, the cutoff below which a secondary ray is not traced, and the
+/// 24), samples per pixel (1 to 64, and those of the scene up to 2048), ray depth, the cutoff below which a secondary ray is not traced, and the
 /// effects that the scene calls for, each of which is left out. Builds and renders the scene with every setting, and compares the picture with a reference:
 /// f64, or the exact picture with --reference exact; 24 bits, ray depth 16, and the samples of
 /// --reference-samples.
@@ -91,10 +92,11 @@ pub struct Arguments {
     #[arg(long, value_name = "NAME", value_parser = truth(), default_value = Truth::F64.name())]
     pub reference: Truth,
 
-    /// Samples per pixel of the reference, at least twice the most that are measured
-    #[arg(long, value_name = "N", default_value_t = 256,
-        value_parser = clap::value_parser!(u16).range(1..=256))]
-    pub reference_samples: u16,
+    /// Samples per pixel of the reference, at least twice the most that are measured and at most 4096
+    /// [default: 256, or what is needed]
+    #[arg(long, value_name = "N",
+        value_parser = clap::value_parser!(u16).range(1..=i64::from(MAX_SAMPLES)))]
+    pub reference_samples: Option<u16>,
 
     /// Acceleration structure; the figures of boards are those of dual-split
     #[arg(long, value_name = "NAME", value_parser = arguments::structure(),

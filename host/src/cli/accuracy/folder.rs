@@ -53,7 +53,14 @@ pub fn kept(folder: &Path, key: &str) -> Result<Option<Results>, Failure> {
             });
             Ok(Some(results))
         }
-        _ => foreign(&file),
+        Ok(_) => foreign(&file),
+        Err(error) => Err(Failure::usage(
+            format!(
+                "{} holds no results of `gridel accuracy`, or not all of them ({error}): it would be overwritten",
+                file.display()
+            ),
+            "give another folder with `-o`, or remove that one",
+        )),
     }
 }
 

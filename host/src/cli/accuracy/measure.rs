@@ -24,7 +24,7 @@ pub fn measure(
     bench: &mut Bench<'_>,
     folder: &Path,
     (key, kept): (String, Option<Results>),
-    settings: &[Setting],
+    (settings, reference_samples): (&[Setting], u16),
 ) -> Result<Results, Failure> {
     let mut run = Run {
         arguments,
@@ -39,7 +39,7 @@ pub fn measure(
         },
         None => {
             let progress = Progress::unknown("rendering the reference");
-            let reference = run.bench.reference(arguments.reference_samples);
+            let reference = run.bench.reference(reference_samples);
             drop(progress);
             Results {
                 key,

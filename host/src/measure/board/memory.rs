@@ -17,6 +17,7 @@ use super::programs::{Known, Profile, Programs};
 use super::rendering::Rendering;
 use crate::measure::bytes::{MemoryMap, board_memory};
 use crate::measure::deforming::Deforming;
+use crate::state::raised_materials;
 use crate::table::{counted, grouped};
 use gridel_core::{Motion, Poses, Prevalidated, Rgb565, Scene, Structure, Tracks};
 use serde::Serialize;
@@ -113,7 +114,11 @@ impl MemoryReport {
         target: &Target,
         rendering: &Rendering,
     ) -> Result<Self, NotMeasured> {
-        Self::by(&Programs::recorded(), scene, blob, target, rendering)
+        // Firmware plays the blob's tracks as well.
+        let raised = raised_materials(scene, blob);
+        let moving = scene.with_materials(&raised);
+        let moving = moving.as_ref().unwrap_or(scene);
+        Self::by(&Programs::recorded(), moving, blob, target, rendering)
     }
 
     /// Returns the report with figures of programs of your own.

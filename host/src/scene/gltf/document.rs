@@ -25,8 +25,13 @@ pub(super) fn read(
     let container = container::split(path, bytes, warnings)?;
     let mut root = parse(path, &container, warnings)?;
     check_version(path, &root.asset.version)?;
-    if let Some(least) = &root.asset.min_version {
-        check_version(path, least)?;
+    let least = root.asset.min_version.as_ref();
+    if let Some(least) = least.filter(|least| *least != "2.0") {
+        return Err(SceneError::new(
+            path,
+            format!("the file needs at least glTF of version {least}; version 2.0 is understood"),
+            AGAIN,
+        ));
     }
     leave_out_shapeless(path, &mut root, warnings);
     check_indices(path, &root)?;

@@ -172,3 +172,13 @@ fn files_that_a_named_stream_refers_to_lie_in_the_current_folder() {
         "{error}"
     );
 }
+
+/// The page chooses the scene among several files by itself.
+#[test]
+fn the_page_lists_all_extensions() {
+    let page = Path::new(env!("CARGO_MANIFEST_DIR")).join("web/page/files.js");
+    let page = std::fs::read_to_string(page).unwrap();
+    for extension in IMPORTERS.iter().flat_map(|it| it.extensions) {
+        assert!(page.contains(&format!("{extension:?}")), "{extension}");
+    }
+}

@@ -145,6 +145,10 @@ impl<'a> Importer<'a> {
             let [x, y, z] = if numbers == 6 && given.numbers_from(0) >= 6 {
                 let [x, y, z, nx, ny, nz] =
                     given.numbers::<6>(self.source, &mut self.warnings, 0, "x y z nx ny nz")?;
+                if [nx, ny, nz] == [0.0; 3] {
+                    let sentence = "a normal is 0 0 0; its polygon is shaded flat";
+                    self.warnings.add(self.source, given.number, sentence);
+                }
                 normals.push(DVec3::new(nx, ny, nz));
                 [x, y, z]
             } else {

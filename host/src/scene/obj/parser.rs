@@ -87,7 +87,7 @@ pub(super) fn parse<'a>(
         match words.first() {
             Some(&"v") => parser.vertex(number, line, &words[1..end], warnings)?,
             Some(&"vt") => parser.texture_vertex(line, &words[1..end])?,
-            Some(&"vn") => parser.normal(line, &words[1..end])?,
+            Some(&"vn") => parser.normal(number, line, &words[1..end], warnings)?,
             Some(&"f") => parser.face(number, &words[1..end], warnings)?,
             _ => parser.statement(number, line.trim(), warnings),
         }
@@ -158,6 +158,13 @@ impl<'a> Parser<'a> {
                 let sentence = "vertices before the first with a color are white";
                 warnings.add(self.source, number, sentence);
             }
+            if [red, green, blue]
+                .iter()
+                .any(|it| !(0.0..=1.0).contains(it))
+            {
+                let sentence = "a color of a vertex is limited to 0 to 1, its range";
+                warnings.add(self.source, number, sentence);
+            }
             let linear = |channel: f64| linear_of_srgb(channel.clamp(0.0, 1.0));
             self.parsed.colors.resize(count, [1.0; 3]);
             self.parsed.colors.push([red, green, blue].map(linear));
@@ -187,7 +194,13 @@ impl<'a> Parser<'a> {
         Ok(())
     }
 
-    fn normal(&mut self, line: &'a str, words: &[&'a str]) -> Result<(), SceneError> {
+    fn normal(
+        &mut self,
+        number: usize,
+        line: &'a str,
+        words: &[&'a str],
+        warnings: &mut Warnings,
+    ) -> Result<(), SceneError> {
         let &[x, y, z, ..] = words else {
             return Err(self.source.error_at(
                 line.trim(),
@@ -198,6 +211,10 @@ impl<'a> Parser<'a> {
         let mut normal = [0.0; 3];
         for (value, word) in normal.iter_mut().zip([x, y, z]) {
             *value = self.source.number(word, "a component of a normal")?;
+        }
+        if normal == [0.0; 3] {
+            let sentence = "a normal is 0 0 0; faces that have it are shaded flat";
+            warnings.add(self.source, number, sentence);
         }
         self.parsed.normals.push(DVec3::from_array(normal));
         Ok(())

@@ -344,7 +344,21 @@ fn colors_of_vertices_are_taken_from_srgb() {
         *colors,
         [[1.0, 0.0, half], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]]
     );
-    assert_eq!(imported.warnings, [] as [&str; 0]);
+    let limited = "t.obj:2: a color of a vertex is limited to 0 to 1, its range";
+    assert_eq!(imported.warnings, [limited]);
 }
 
 mod materials;
+
+#[test]
+fn zero_normals_and_colors_out_of_range_are_warned_of() {
+    let text = "v 0 0 0 255 0 0\nv 1 0 0 0 1 0\nv 0 1 0 0 0 1\n\
+                vn 0 0 0\nvn 0.5 0 1\nf 1//1 2//2 3//2\n";
+    assert_eq!(
+        read(text).unwrap().warnings,
+        [
+            "t.obj:1: a color of a vertex is limited to 0 to 1, its range",
+            "t.obj:4: a normal is 0 0 0; faces that have it are shaded flat",
+        ]
+    );
+}

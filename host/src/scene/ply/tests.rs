@@ -391,3 +391,14 @@ fn colors_of_vertices_are_taken_from_srgb() {
     let error = read((list + "0 0 0 1 2\n1 0 0 1 2\n0 1 0 1 2\n3 0 1 2\n").as_bytes());
     assert!(error.is_err());
 }
+
+#[test]
+fn incomplete_normals_are_warned_of_and_a_mark_before_text_is_passed_over() {
+    let text = with_properties("property float nx\nproperty float ny\n", "")
+        + "0 0 0 0 1\n1 0 0 0 1\n0 1 0 0 1\n3 0 1 2\n";
+    let warnings = read(format!("\u{feff}{text}").as_bytes()).unwrap().warnings;
+    let found = warnings
+        .iter()
+        .filter(|it| it.contains("without nx, ny or nz"));
+    assert_eq!(found.count(), 1, "{warnings:?}");
+}

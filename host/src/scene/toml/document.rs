@@ -202,6 +202,13 @@ fn add_lights(
     scene.display_values |= import.display_values && !import.lights.is_empty();
     for (number, light) in import.lights.iter().enumerate() {
         let form = import.light_forms.get(number).copied().flatten();
+        if let Some(shape) = form.and_then(|form| form.distorted(&item.transform)) {
+            return Err(source.error(
+                &item.span,
+                format!("a {shape} light of this import becomes an ellipse, which no light is"),
+                "scale the import evenly, or give this scene lights of its own",
+            ));
+        }
         let brightness = form.map_or(1.0, |form| form.moved_brightness(&item.transform));
         let light = moved_light(source, item, light, brightness)?;
         scene.lights.push(light);

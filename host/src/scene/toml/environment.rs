@@ -38,7 +38,8 @@ pub(super) fn read(table: Value<'_>, access: &Access) -> Result<Environment, Sce
     let default = Environment::of(sky);
     Ok(Environment {
         intensity: fields.or("intensity", default.intensity, |it| it.number_in(0.0..=1e9))?,
-        rotation: fields.or("rotation", default.rotation, Value::number)?,
+        // What remains of whole turns is exact.
+        rotation: fields.or("rotation", default.rotation, |it| Ok(it.number()? % 360.0))?,
         size: fields.or("size", default.size, size)?,
         sun: fields.or("sun", None, |it| sun(it).map(Some))?,
         ..default

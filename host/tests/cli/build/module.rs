@@ -99,3 +99,26 @@ fn a_module_asserts_the_number_of_parts() {
         assert!(module.contains(line), "{line}: {module}");
     }
 }
+
+/// Firmware plays the tracks of a blob, so it needs the effects of all times.
+#[test]
+fn a_module_has_the_effects_that_tracks_call_for() {
+    let folder = Folder::new();
+    let scene = "[material.x]\ndiffuse = 1\n\
+                 [[object]]\nkind = 'sphere'\ncenter = [0, 0, 0]\nradius = 1\nmaterial = 'x'\n";
+    let build = ["build", "a.toml", "-o", "a.gridel", "--emit-rust", "src"];
+    let module = |track: &str| {
+        folder.write("a.toml", format!("{scene}{track}").as_bytes());
+        folder.done(&build);
+        String::from_utf8(folder.read("src/scene.rs")).unwrap()
+    };
+    let still = module("");
+    assert!(still.contains("WORK_DEPTH: usize = 0;") && !still.contains("\"mirror\""));
+    let track = "[[track]]\ntarget = 'material.x.mirror'\ntimes = [0, 2]\nvalues = [0, 0.5]\n";
+    let moving = module(track);
+    assert!(moving.contains("\"mirror\""), "{moving}");
+    assert!(!moving.contains("WORK_DEPTH: usize = 0;"), "{moving}");
+    let report = folder.json(&["inspect", "a.gridel", "--target", "mps2-an386"]);
+    let account = report["memory_report"].to_string();
+    assert!(account.contains("mirror"), "{account}");
+}

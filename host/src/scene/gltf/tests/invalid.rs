@@ -54,7 +54,7 @@ fn broken_documents() {
         ),
         (
             |d| d["nodes"][0]["scale"] = json!([1e38, 1e39, 1]),
-            "finite",
+            "out of range",
         ),
         (|d| d["nodes"][0]["mesh"] = json!(7), "nodes[0].mesh"),
         (
@@ -103,6 +103,8 @@ fn other_versions_are_rejected() {
         document["asset"]["version"] = version;
         assert!(cause(&document).contains(message), "{}", cause(&document));
     }
+    document["asset"] = json!({"version": "2.1", "minVersion": "2.1"});
+    assert!(cause(&document).contains("at least glTF of version 2.1"));
     document["asset"] = json!({"version": "2.0", "minVersion": "3.0"});
     assert!(cause(&document).contains("version 3.0"));
     document["asset"] = json!({"version": "2.9", "minVersion": "2.0"});

@@ -404,3 +404,28 @@ fn keys_for_molecules_reach_the_imports_of_an_import() {
         "{error}"
     );
 }
+
+/// An ellipse is no light; a disc may be scaled across its plane.
+#[test]
+fn round_lights_that_become_oval_are_rejected() {
+    let scaled = |light: &str, scale: &str| {
+        let floor = "[[object]]\nkind = 'box'\nmin = [-1, -1, -1]\nmax = [1, 0, 1]\n";
+        let inner = format!("[[light]]\n{light}\nradius = 1\nradiance = 1\n{floor}");
+        let folder = folder(&[("inner.toml", &inner)]);
+        let import =
+            format!("[[object]]\nkind = \"import\"\nfile = \"inner.toml\"\nscale = {scale}\n");
+        load_in(folder.path(), &import)
+    };
+    let disc = "kind = 'disc'\ncenter = [0, 3, 0]\nnormal = [0, -1, 0]";
+    let sphere = "kind = 'sphere'\ncenter = [0, 3, 0]";
+    for light in [disc, sphere] {
+        let scene = scaled(light, "[2, 2, 2]").unwrap().scene;
+        let form = scene.light_forms[0].unwrap();
+        assert!(
+            matches!(form.shape, LightShape::Disc { radius, .. } | LightShape::Sphere { radius } if (radius - 2.0).abs() < 1e-12),
+            "{form:?}"
+        );
+        let error = scaled(light, "[4, 1, 1]").unwrap_err();
+        assert!(error.cause.contains("becomes an ellipse"), "{error}");
+    }
+}

@@ -56,6 +56,19 @@ fn chain_moves_what_hangs_on_it() {
     );
 }
 
+/// As a blob has times.
+#[test]
+fn times_are_those_of_ticks() {
+    let scene = scene(&format!(
+        "{PART}[[joint]]\nname = 'hinge'\n[[instance]]\npart = 'link'\njoint = 'hinge'\n\
+         [[track]]\ntarget = 'joint.hinge.shift'\ninterpolation = 'step'\n\
+         times = [0, 0.3333333333]\nvalues = [[0, 0, 0], [3, 0, 0]]\n"
+    ));
+    for (seconds, x) in [(0.33333333, 3.0), (0.33332, 0.0), (0.33334, 3.0)] {
+        assert_eq!(at(&scene, seconds).x, x, "{seconds}");
+    }
+}
+
 #[test]
 fn hinge_turns_as_often_as_its_angles_say() {
     let door = door("axis = [0, 0, 1]\ntimes = [0, 3]\nvalues = [-30, 1050]\n");
