@@ -113,6 +113,9 @@ struct Built<'r> {
     primitives: u32,
     #[serde(skip_serializing_if = "Option::is_none")]
     instances: Option<InstanceCount>,
+    /// Bytes with the other treatment of instances, where that was compiled as well.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    bytes_otherwise: Option<usize>,
     structures: Vec<&'static str>,
     stack_depth: usize,
     longest_leaf: u16,
@@ -254,10 +257,12 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     };
     let name = arguments.output.display().to_string();
     let unresolved = source.warn_of_unresolved(&scene, None);
+    let instances = InstanceCount::of(&scene, source.copied);
     let mut built = Built {
         memory: memory.as_ref(),
         unresolved: &unresolved,
-        instances: InstanceCount::of(&scene, source.copied),
+        bytes_otherwise: instances.and_then(|it| source.bytes_otherwise(&it)),
+        instances,
         ..Built::new(&name, &scene, report, &source.warnings)
     };
     if let Some(memory) = &memory {
@@ -308,6 +313,7 @@ impl<'r> Built<'r> {
             objects: header.objects,
             primitives: header.primitives,
             instances: None,
+            bytes_otherwise: None,
             structures: Structure::ALL
                 .into_iter()
                 .filter(|&structure| scene.holds(structure))
@@ -355,7 +361,13 @@ impl<'r> Built<'r> {
             ),
         );
         if let Some(instances) = &self.instances {
-            line("instances", instances.text());
+            let otherwise = self
+                .bytes_otherwise
+                .map(|bytes| format!(", in {} bytes", grouped(bytes)));
+            line(
+                "instances",
+                instances.text() + &otherwise.unwrap_or_default(),
+            );
         }
         line("structures", self.structures.join(", "));
         line(

@@ -298,6 +298,10 @@ fn still_lights(scene: &Scene, room: f64) -> Option<String> {
     found.map(|it| it.name.clone())
 }
 
+/// The most primitives, with those of instances, for which a scene is compiled with copies in place of instances only to
+/// say how many bytes they take.
+pub const MOST_COPIED: u64 = 200_000;
+
 /// Returns an error with advice if a scene's blob is larger than the options allow.
 fn check_bytes(
     blob: &Blob,
@@ -316,10 +320,30 @@ fn check_bytes(
         };
         Some(compile(scene, &unnamed).ok()?.report.bytes)
     };
+    let bytes_as_copies = || {
+        let moves = scene.instances.iter().any(|it| it.joint.is_some());
+        if moves || scene.placed_primitives() > MOST_COPIED {
+            return None;
+        }
+        let unlimited = Options {
+            names: false,
+            max_bytes: None,
+            ..options.clone()
+        };
+        Some(
+            compile(&*scene.flattened().ok()?, &unlimited)
+                .ok()?
+                .report
+                .bytes,
+        )
+    };
+    let as_copies = (!scene.instances.is_empty())
+        .then(bytes_as_copies)
+        .flatten();
     Err(CompileError::TooLarge {
         bytes,
         over: bytes - most,
-        advice: advice(options, blob, sizes, &bytes_with),
+        advice: advice(options, blob, sizes, &bytes_with, as_copies),
     })
 }
 

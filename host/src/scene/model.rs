@@ -403,6 +403,17 @@ impl Scene {
         !self.lights.is_empty() || from_around || lights_itself
     }
 
+    /// Number of primitives, those of a part once per instance.
+    pub fn placed_primitives(&self) -> u64 {
+        let count = |objects: &[Object]| -> u64 {
+            let primitives = objects.iter().map(|it| it.shape.primitives() as u64);
+            primitives.sum()
+        };
+        let parts: Vec<u64> = self.parts.iter().map(|it| count(&it.objects)).collect();
+        let placed = self.instances.iter().filter_map(|it| parts.get(it.part));
+        placed.fold(count(&self.objects), |sum, part| sum.saturating_add(*part))
+    }
+
     /// Returns whether there is anything of an instance: whether its part has primitives.
     pub(crate) fn is_placed(&self, instance: &Instance) -> bool {
         let mut objects = self.parts[instance.part].objects.iter();

@@ -1,6 +1,7 @@
 //! `gridel compare` and `gridel accuracy` of scenes with instances, kept and copied.
 
 use crate::program::{Folder, fixture};
+use gridel_host::table::grouped;
 use serde_json::{Value, json};
 
 fn folder() -> Folder {
@@ -245,4 +246,42 @@ fn accuracy_measures_the_picture_that_render_draws() {
     folder.fails(2, &other, &["would be overwritten"]);
     let text = folder.done(&[&ACCURACY[..], &["-o", "kept"]].concat());
     assert!(text.contains("6 instances of 4 parts kept"), "{text}");
+}
+
+/// One sphere in many places: each is stored in fewer bytes than an instance has.
+#[test]
+fn build_states_the_bytes_of_instances_and_of_copies() {
+    let folder = Folder::new();
+    let part =
+        "[[part]]\nname = 'p'\nobject = [{ kind = 'sphere', center = [0, 0, 0], radius = 1 }]\n";
+    let place = |n: u32| {
+        let [x, y] = [n % 16, n / 16].map(|it| 3 * it);
+        format!("[[instance]]\npart = 'p'\ntranslate = [{x}, {y}, 0]\n")
+    };
+    let places: String = (0..256).map(place).collect();
+    folder.write("a.toml", format!("{part}{places}").as_bytes());
+    let build = |choice: &str| {
+        let options = [
+            "build",
+            "a.toml",
+            "-o",
+            "a.gridel",
+            "--strip-names",
+            "--instances",
+            choice,
+        ];
+        let report = folder.json(&options);
+        [&report["bytes"], &report["bytes_otherwise"]].map(|it| it.as_u64().unwrap())
+    };
+    let [kept, as_copies] = build("keep");
+    assert_eq!(build("flatten"), [as_copies, kept]);
+    assert!(as_copies < kept);
+    let text = folder.done(&["build", "a.toml", "-o", "a.gridel"]);
+    assert!(
+        text.contains("`--instances flatten` copies them, in"),
+        "{text}"
+    );
+    let most = ["build", "a.toml", "-o", "b.gridel", "--max-bytes", "1K"];
+    let advice = format!("`--instances flatten` saves {}", grouped(kept - as_copies));
+    folder.fails(3, &most, &[&advice]);
 }
