@@ -28,8 +28,8 @@ pub struct Worth {
     pub time_range: Option<[f64; 2]>,
     /// Bytes of the blob.
     pub blob_bytes: i64,
-    /// The least and the most instructions per pixel on [`BOARD`] in its best number format; `None` where the format
-    /// was not measured there.
+    /// The least and the most instructions per pixel on [`BOARD`] in its best number format, of the rays that it sends;
+    /// `None` where it sends none, or the format was not measured there.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub instructions: Option<[f64; 2]>,
     /// Bytes of flash on that board, of code and blob; `None` where no programs were built with the effect and
@@ -98,7 +98,9 @@ pub fn worths(bench: &mut Bench<'_>, results: &Results) -> Result<Vec<Worth>, Me
             time: 1.0 - point.cost.time() / all.cost.time().max(f64::MIN_POSITIVE),
             time_range: least.zip(most).map(|(least, most)| [least, most]),
             blob_bytes,
-            instructions: format.and_then(|format| instructions(BOARD, format, rays)),
+            instructions: format
+                .filter(|_| rays > 0.0)
+                .and_then(|format| instructions(BOARD, format, rays)),
             flash: code.map(|code| code + blob_bytes),
             ram: all.cost.working_bytes as i64 - point.cost.working_bytes as i64,
         });

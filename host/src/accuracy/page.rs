@@ -99,7 +99,8 @@ pub fn page(
 
 const NOTES: &str = "<p>A bar spans the repeats of a time, or the least and the most instructions that rays of recorded pictures take. \
     A time is higher where all repeats of one take longer than all of the other; where repeats overlap, rays and tests \
-    decide within a number format. t counts units of the last place of single precision. SSIM is structural similarity, \
+    decide within a number format. The instructions of an effect are those of the rays that it sends; what a hit costs \
+    beside them, MEMORY.md states. t counts units of the last place of single precision. SSIM is structural similarity, \
     1 for equal pictures; FLIP is the mean difference that an eye sees.</p>\n";
 
 pub(super) fn escape(text: &str) -> String {
@@ -310,16 +311,18 @@ impl Worth {
         }
     }
 
-    /// The least and the most instructions per pixel.
+    /// The least and the most instructions per pixel of the rays that it sends.
     pub fn instructions_text(&self) -> String {
         let known = self
             .instructions
             .map(|range| range.map(|it| grouped(it.max(0.0).round() as u64)));
-        known.map_or(String::from("unknown"), |[least, most]| {
-            match least == most {
-                true => least,
-                false => format!("{least} to {most}"),
-            }
+        let none = match self.rays > 0.0 {
+            true => "unknown",
+            false => "no rays",
+        };
+        known.map_or(String::from(none), |[least, most]| match least == most {
+            true => least,
+            false => format!("{least} to {most}"),
         })
     }
 

@@ -113,7 +113,7 @@ impl LightForm {
         }
     }
 
-    /// The form, moved by a transform that does not [distort](Self::distorted) it. Ranges grow with the cube root of the
+    /// The form, moved by a transform that keeps it round. Ranges grow with the cube root of the
     /// volume. Surfaces keep the side to which they
     /// shine, in mirror images too.
     pub fn moved(&self, by: &DAffine3) -> Self {

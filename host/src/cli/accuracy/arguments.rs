@@ -46,7 +46,7 @@ use std::path::PathBuf;
 /// Where runs overlap, rays and tests decide within a number format.
 ///
 /// Effects are listed in the order in which to give them up: first those that change the picture least for the
-/// rays and tests that they save.
+/// rays and tests that they save. Their instructions are those of the rays that they send.
 ///
 /// Writes a folder: page.html with answers, chart and pictures, which loads nothing else; rmse.svg, a plot;
 /// results.csv; and results.json, which grows with every step. After an interruption, the same command
