@@ -40,8 +40,7 @@ struct Entry<N: Number> {
 /// A list for some of the hits of a ray, in order. [`all_hits`] fills it and continues from it.
 ///
 /// `SIZE` is at least 1. An entry takes up to 72 bytes in `f32`, 88 in `fixed` and
-/// 104 in `f64`. A list of `k` entries that
-/// is filled once holds the nearest `k` hits.
+/// 104 in `f64`. A list of `k` entries that is filled once holds the nearest `k` hits.
 #[derive(Debug)]
 pub struct HitList<N: Number, const SIZE: usize> {
     entries: Vec<Entry<N>, SIZE>,

@@ -113,9 +113,8 @@ impl LightForm {
         }
     }
 
-    /// The form, moved by a transform that keeps it round. Ranges grow with the cube root of the
-    /// volume. Surfaces keep the side to which they
-    /// shine, in mirror images too.
+    /// The form, moved by a transform that keeps it round. Ranges grow with the cube root of the volume. Surfaces keep the
+    /// side to which they shine, in mirror images too.
     pub fn moved(&self, by: &DAffine3) -> Self {
         let scale = scale_of(by);
         let turned = |vector: DVec3| by.transform_vector3(vector);
