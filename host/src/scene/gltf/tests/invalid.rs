@@ -92,6 +92,25 @@ fn a_million_instances_are_rejected() {
     assert!(error.remedy.contains("--instances keep"), "{error}");
 }
 
+/// glTF allows any JSON there.
+#[test]
+fn extras_of_any_kind_are_passed_over() {
+    for extras in [
+        json!("text"),
+        json!(7),
+        json!(null),
+        json!([1]),
+        json!({"a": {}}),
+    ] {
+        let mut document = document();
+        document["extras"] = extras.clone();
+        for list in ["nodes", "meshes", "cameras"] {
+            document[list][0]["extras"] = extras.clone();
+        }
+        assert_eq!(warnings(&document), [] as [&str; 0], "{extras}");
+    }
+}
+
 #[test]
 fn other_versions_are_rejected() {
     let mut document = document();
