@@ -372,6 +372,17 @@ def test_hits_closer_than_the_lattice_come_in_the_order_of_t(format):
 
 
 @pytest.mark.parametrize("format", ["fixed", "f32", "f64"])
+@pytest.mark.parametrize("length", [1e-290, 1e290, 1e294, 1e300])
+def test_directions_of_extreme_lengths_are_answered(cube, format, length):
+    ray = [[0.3, 0.6, -20, 0, 0, length]]
+    hits = cube.cast(ray, format=format)
+    near = cube.cast([[0.3, 0.6, -20, 0, 0, 1]], format=format)
+    assert np.isclose(hits.t[0] * length, near.t[0], rtol=1e-6)
+    assert cube.any(ray, format=format).tolist() == [True]
+    assert cube.count(ray, format=format).tolist() == [2]
+
+
+@pytest.mark.parametrize("format", ["fixed", "f32", "f64"])
 def test_rays_whose_t_leaves_double_precision_are_invalid_everywhere(cube, format):
     rays = [[0.3, 0.6, -20, 0, 0, 1e-308], [0.3, 0.6, -20, 0, 0, 5e-324], [0.3, 0.6, -2, 0, 0, 1e-300]]
     hits = cube.cast(rays, format=format)

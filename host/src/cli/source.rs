@@ -2,6 +2,7 @@
 //! The first bytes distinguish them.
 
 mod files;
+mod size;
 mod warnings;
 
 use super::arguments::{LightChange, SceneOptions, TraceOptions, check_quality, check_room};
@@ -12,9 +13,8 @@ use super::output::warn;
 use super::progress::Progress;
 use gridel_core::{BlobError, Effects, Format, Scene, Structure, Tracks};
 use gridel_host::blob::Blob;
-use gridel_host::compile::{self, CompileError, Compiled, MOST_COPIED, Names};
-use gridel_host::measure::board::{Fit, MemoryReport};
-use gridel_host::measure::{Deforming, InstanceCount};
+use gridel_host::compile::{self, Compiled, Names};
+use gridel_host::measure::Deforming;
 use gridel_host::resolution::{FACTOR, Unresolved, unresolved};
 use gridel_host::scene::{self, Imported, Posed, Track};
 use gridel_host::state::{self, State, StateError};
@@ -211,60 +211,6 @@ impl Source {
             without: options.geometry.import.left_out(),
             made_by: Some((options.for_import(), compiling)),
         })
-    }
-
-    /// Rejects a scene that does not fit a board's memory, with what would help.
-    pub fn check_fits(&self, scene: &Scene<'_>, report: &MemoryReport) -> Result<(), Failure> {
-        match report.fit() {
-            Fit::Fits => Ok(()),
-            Fit::Short(why) => {
-                let advice = report.advice(scene, || self.smaller());
-                Err(Failure::rejected(why, advice))
-            }
-            Fit::Undecided(why) => Err(Failure::rejected(
-                why,
-                "build the program and measure it, or name another board with `--target`",
-            )),
-        }
-    }
-
-    /// The bytes of the blob if instances were copied in place of kept, or the other way round; `None` for a scene
-    /// without any, and for more copies than are worth the time.
-    pub fn bytes_otherwise(&self, instances: &InstanceCount) -> Option<usize> {
-        let (importing, compiling) = self.made_by.as_ref()?;
-        let importing = scene::ImportOptions {
-            instances: match instances.choice {
-                scene::Instances::Keep => scene::Instances::Flatten,
-                scene::Instances::Flatten => scene::Instances::Keep,
-            },
-            ..importing.clone()
-        };
-        if instances.placed_primitives as u64 > MOST_COPIED {
-            return None;
-        }
-        let mut imported = self.input.scene(&importing).ok()?;
-        imported.scene.remove_effects(self.without);
-        let unlimited = compile::Options {
-            max_bytes: None,
-            ..compiling.clone()
-        };
-        let other = compile::compile(&imported.scene, &unlimited).ok()?;
-        Some(other.report.bytes)
-    }
-
-    /// Returns advice that makes the blob of a scene file smaller, from a build that allows no byte.
-    fn smaller(&self) -> Option<String> {
-        let (importing, compiling) = self.made_by.as_ref()?;
-        let mut imported = self.input.scene(importing).ok()?;
-        imported.scene.remove_effects(self.without);
-        let nothing = compile::Options {
-            max_bytes: Some(0),
-            ..compiling.clone()
-        };
-        match compile::compile(&imported.scene, &nothing) {
-            Err(CompileError::TooLarge { advice, .. }) => Some(advice),
-            _ => None,
-        }
     }
 
     /// Returns whether a time concerns more than instances that were copied at their places at that time, and tracks

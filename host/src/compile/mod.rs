@@ -43,6 +43,7 @@ mod warnings;
 mod wide;
 mod writer;
 
+pub use advice::MOST_COPIED;
 pub use builder::Builder;
 pub(crate) use camera::place;
 pub use candidates::census::{Census, CubeCensus};
@@ -65,7 +66,7 @@ use crate::blob::Blob;
 use crate::scene::{Object, Scene, Shape};
 use crate::shape::Lattice;
 use crate::table::printable;
-use advice::advice;
+use advice::check_bytes;
 use candidates::target::Targets;
 use context::BuildContext;
 use extent::Shapes;
@@ -296,55 +297,6 @@ fn still_lights(scene: &Scene, room: f64) -> Option<String> {
         matches!(it.shape, Shape::Mesh { .. }) && scene.materials[it.material].is_sampled
     });
     found.map(|it| it.name.clone())
-}
-
-/// The most primitives, with those of instances, for which a scene is compiled with copies in place of instances only to
-/// say how many bytes they take.
-pub const MOST_COPIED: u64 = 200_000;
-
-/// Returns an error with advice if a scene's blob is larger than the options allow.
-fn check_bytes(
-    blob: &Blob,
-    scene: &Scene,
-    options: &Options,
-    sizes: &Sizes,
-) -> Result<(), CompileError> {
-    let bytes = blob.bytes().len() as u64;
-    let Some(most) = options.max_bytes.filter(|&most| bytes > most) else {
-        return Ok(());
-    };
-    let bytes_with = |other: &Options| {
-        let unnamed = Options {
-            names: false,
-            ..other.clone()
-        };
-        Some(compile(scene, &unnamed).ok()?.report.bytes)
-    };
-    let bytes_as_copies = || {
-        let moves = scene.instances.iter().any(|it| it.joint.is_some());
-        if moves || scene.placed_primitives() > MOST_COPIED {
-            return None;
-        }
-        let unlimited = Options {
-            names: false,
-            max_bytes: None,
-            ..options.clone()
-        };
-        Some(
-            compile(&*scene.flattened().ok()?, &unlimited)
-                .ok()?
-                .report
-                .bytes,
-        )
-    };
-    let as_copies = (!scene.instances.is_empty())
-        .then(bytes_as_copies)
-        .flatten();
-    Err(CompileError::TooLarge {
-        bytes,
-        over: bytes - most,
-        advice: advice(options, blob, sizes, &bytes_with, as_copies),
-    })
 }
 
 /// Snaps a scene of some extent to the finest lattice that holds it once it is snapped.
