@@ -1,7 +1,5 @@
 //! Advice for blobs that are larger than allowed.
 
-use super::compile;
-use super::error::CompileError;
 use super::options::Options;
 use super::sizes::{Size, Sizes};
 use super::structures::leads_to;
@@ -14,55 +12,16 @@ use gridel_core::{Prevalidated, Structure};
 /// say how many bytes they take.
 pub const MOST_COPIED: u64 = 200_000;
 
-/// Returns an error with advice if a scene's blob is larger than the options allow.
-pub fn check_bytes(
-    blob: &Blob,
-    scene: &Scene,
-    options: &Options,
-    sizes: &Sizes,
-) -> Result<(), CompileError> {
-    let bytes = blob.bytes().len() as u64;
-    let Some(most) = options.max_bytes.filter(|&most| bytes > most) else {
-        return Ok(());
-    };
-    let bytes_with = |other: &Options| {
-        let unnamed = Options {
-            names: false,
-            ..other.clone()
-        };
-        Some(compile(scene, &unnamed).ok()?.report.bytes)
-    };
-    let bytes_as_copies = || {
-        let moves = scene.instances.iter().any(|it| it.joint.is_some());
-        if moves || scene.placed_primitives() > MOST_COPIED {
-            return None;
-        }
-        let unlimited = Options {
-            names: false,
-            max_bytes: None,
-            ..options.clone()
-        };
-        Some(
-            compile(&*scene.flattened().ok()?, &unlimited)
-                .ok()?
-                .report
-                .bytes,
-        )
-    };
-    let as_copies = (!scene.instances.is_empty())
-        .then(bytes_as_copies)
-        .flatten();
-    Err(CompileError::TooLarge {
-        bytes,
-        over: bytes - most,
-        advice: advice(options, blob, sizes, &bytes_with, as_copies),
-    })
+/// Returns whether to say how many bytes copies of a scene's instances take: if they stand still, and are few.
+pub fn may_copy(scene: &Scene) -> bool {
+    let moves = scene.instances.iter().any(|it| it.joint.is_some());
+    !scene.instances.is_empty() && !moves && scene.placed_primitives() <= MOST_COPIED
 }
 
 /// Returns advice that makes a blob smaller, from its figures.
 /// `bytes_with` compiles the scene with other options, and returns the size of the blob; `as_copies` is its size with
 /// instances copied, if there are any that stand still.
-fn advice(
+pub fn advice(
     options: &Options,
     blob: &Blob,
     sizes: &Sizes,
@@ -75,10 +34,6 @@ fn advice(
     asked.retain(|&structure| structure != Structure::List);
     // Leaves and the order of primitives change as well, so all of it is built.
     let saves = |what: String, other: Options| {
-        let other = Options {
-            max_bytes: None,
-            ..other
-        };
         let saved = blob.bytes().len().checked_sub(bytes_with(&other)?);
         let saved = saved.filter(|&saved| saved > 0)?;
         Some(format!("{what} saves {} bytes", grouped(saved)))

@@ -66,7 +66,7 @@ use crate::blob::Blob;
 use crate::scene::{Object, Scene, Shape};
 use crate::shape::Lattice;
 use crate::table::printable;
-use advice::check_bytes;
+use advice::{advice, may_copy};
 use candidates::target::Targets;
 use context::BuildContext;
 use extent::Shapes;
@@ -297,6 +297,35 @@ fn still_lights(scene: &Scene, room: f64) -> Option<String> {
         matches!(it.shape, Shape::Mesh { .. }) && scene.materials[it.material].is_sampled
     });
     found.map(|it| it.name.clone())
+}
+
+/// Returns an error with advice if a scene's blob is larger than the options allow.
+fn check_bytes(
+    blob: &Blob,
+    scene: &Scene,
+    options: &Options,
+    sizes: &Sizes,
+) -> Result<(), CompileError> {
+    let bytes = blob.bytes().len() as u64;
+    let Some(most) = options.max_bytes.filter(|&most| bytes > most) else {
+        return Ok(());
+    };
+    let bytes_of = |scene: &Scene, other: &Options| {
+        let unnamed = Options {
+            names: false,
+            max_bytes: None,
+            ..other.clone()
+        };
+        Some(compile(scene, &unnamed).ok()?.report.bytes)
+    };
+    let copied = may_copy(scene).then(|| scene.flattened().ok()).flatten();
+    let as_copies = copied.and_then(|scene| bytes_of(&scene, options));
+    let bytes_with = |other: &Options| bytes_of(scene, other);
+    Err(CompileError::TooLarge {
+        bytes,
+        over: bytes - most,
+        advice: advice(options, blob, sizes, &bytes_with, as_copies),
+    })
 }
 
 /// Snaps a scene of some extent to the finest lattice that holds it once it is snapped.
