@@ -4,7 +4,7 @@ use crate::format::effects::enable;
 use crate::format::instance::Part;
 use crate::format::kind::shapes;
 use crate::format::record::{Header, SECTION_ALIGNMENT, SectionEntry, View};
-use crate::format::word::{half, proved, word};
+use crate::format::word::{complete, half, proved, word};
 use crate::format::{BlobError, Effects, SectionKind, Structure};
 use core::mem::offset_of;
 
@@ -58,8 +58,10 @@ impl Requirements {
     /// Reads the requirements: a few operations per section and part.
     ///
     /// # Errors
-    /// If the blob is cut off. Nothing else is proved: use [`Prevalidated`](crate::scene::Prevalidated) for that.
+    /// If the bytes are not a blob, or it is cut off. Nothing else is proved: use
+    /// [`Prevalidated`](crate::scene::Prevalidated) for that.
     pub const fn of(blob: &[u8]) -> Result<Self, BlobError> {
+        proved!(complete(blob));
         let (mut demand, [directory, blobs]) = proved!(Self::without_parts(blob));
         let mut part = 0;
         while part < demand.parts {

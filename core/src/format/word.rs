@@ -1,6 +1,8 @@
 //! Words of a blob, read at compile time.
 
 use crate::format::error::BlobError;
+use crate::format::record::{Header, MAGIC};
+use core::mem::offset_of;
 
 /// `?`, which constant functions lack.
 macro_rules! proved {
@@ -13,6 +15,20 @@ macro_rules! proved {
 }
 
 pub(crate) use proved;
+
+/// Returns an error if the bytes are not a blob, or not one of the length that its header states.
+pub(crate) const fn complete(blob: &[u8]) -> Result<(), BlobError> {
+    let [a, b, c, d, ..] = MAGIC;
+    if proved!(word(blob, 0)) != u32::from_le_bytes([a, b, c, d]) {
+        return Err(BlobError::Magic);
+    }
+    let needed = proved!(word(blob, offset_of!(Header, blob_bytes))) as usize;
+    let found = blob.len();
+    if needed != found {
+        return Err(BlobError::Truncated { needed, found });
+    }
+    Ok(())
+}
 
 /// The word at a place of a blob.
 pub(crate) const fn word(blob: &[u8], place: usize) -> Result<u32, BlobError> {

@@ -3,7 +3,7 @@
 use crate::accel::hierarchy::order::Order;
 use crate::format::limits::MAX_STACK_DEPTH;
 use crate::format::record::{Header, SectionEntry};
-use crate::format::word::{half, proved, word};
+use crate::format::word::{complete, half, proved, word};
 use crate::format::{BlobError, Field, Location, Reason, SectionKind, Structure, checksum};
 use core::mem::offset_of;
 
@@ -69,9 +69,11 @@ impl<'a> Prevalidated<'a> {
     /// Proves a blob. Linear in its length; constant time in a program that evaluates it at compile time.
     ///
     /// # Errors
-    /// If the checksum is wrong, or a hierarchy is not in breadth-first order or deeper than the header states. Also if
-    /// the header names structures that cannot be prevalidated, or there are sections of such structures.
+    /// If the bytes are not a blob, it is cut off, or its checksum is wrong. If a hierarchy is not in breadth-first
+    /// order or deeper than the header states. Also if the header names structures that cannot be prevalidated, or there
+    /// are sections of such structures.
     pub const fn of(blob: &'a [u8]) -> Result<Self, BlobError> {
+        proved!(complete(blob));
         let expected = proved!(word(blob, offset_of!(Header, checksum)));
         let found = checksum(blob);
         if found != expected {

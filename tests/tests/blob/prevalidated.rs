@@ -4,7 +4,7 @@ use super::forged::section;
 use super::{render_small, small_scene};
 use gridel_core::accel::DynAccel;
 use gridel_core::format::limits::MAX_STACK_DEPTH;
-use gridel_core::format::record::{DualNode, FlaggedPair, Header, Pair, SectionEntry, View};
+use gridel_core::format::record::{DualNode, FlaggedPair, Header, Pair};
 use gridel_core::format::{Leaf, SectionKind};
 use gridel_core::number::let_numbers_wrap;
 use gridel_core::{
@@ -66,9 +66,9 @@ fn answers_are_those_of_a_blob_that_was_checked() {
 #[test]
 fn blobs_are_prevalidated_while_a_program_is_compiled() {
     const EMPTY: Result<Prevalidated<'static>, BlobError> = Prevalidated::of(&[]);
-    const SHORT: Result<Prevalidated<'static>, BlobError> = Prevalidated::of(&[0x47; 24]);
+    const FOREIGN: Result<Prevalidated<'static>, BlobError> = Prevalidated::of(&[0x47; 24]);
     assert!(matches!(EMPTY, Err(BlobError::Truncated { found: 0, .. })));
-    assert!(matches!(SHORT, Err(BlobError::Checksum { .. })));
+    assert_eq!(FOREIGN.err(), Some(BlobError::Magic));
 }
 
 #[test]
@@ -293,15 +293,16 @@ fn demands_are_those_of_the_scene() {
 #[test]
 fn requirements_of_broken_blobs_are_read_or_rejected() {
     let whole = blob_for_boards(24);
-    let sections = usize::from(whole[offset_of!(Header, section_count)]);
-    let table = size_of::<Header>() + sections * size_of::<SectionEntry>();
     for length in 0..whole.len() {
-        let cut_off = Requirements::of(&whole[..length]).is_err();
-        assert!(
-            cut_off || length >= table + size_of::<View>() / 2,
-            "{length}"
-        );
+        let cut = &whole[..length];
+        for error in [Requirements::of(cut).err(), Prevalidated::of(cut).err()] {
+            let is_cut =
+                matches!(error, Some(BlobError::Truncated { found, .. }) if found == length);
+            assert!(is_cut, "{length} bytes: {error:?}");
+        }
     }
+    let longer = [&whole[..], &[0; 4]].concat();
+    assert!(Requirements::of(&longer).is_err());
     let mut random = Random(9);
     for _ in 0..20_000 {
         let mut broken = whole.clone();
