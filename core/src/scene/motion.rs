@@ -116,9 +116,13 @@ impl Motion {
         Position(self.apply(place.0.map(fine)).map(coordinate))
     }
 
-    /// Returns a direction, turned, with the same length.
+    /// Returns a direction, turned. It keeps its length, or has half of it if a component would leave its range.
     pub fn direction(&self, direction: [i32; 3]) -> [i32; 3] {
-        self.rotation.map(|row| product(direction, row))
+        let turned = self
+            .rotation
+            .map(|row| dot(direction, row).wrapping_add(1 << 29) >> 30);
+        let halve = turned.iter().any(|&it| i64::from(it as i32) != it);
+        turned.map(|it| (it >> u32::from(halve)) as i32)
     }
 
     /// Returns this rotation and scale about a place, which stays where it is.

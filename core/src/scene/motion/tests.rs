@@ -54,6 +54,21 @@ fn rotations() -> impl Strategy<Value = [i32; 4]> {
 /// The error of a turn that [`Motion::turn`] states: 2^-25, with 30 fraction bits.
 const TURN_ERROR: u32 = 32;
 
+/// A turned component can be longer than the range: the square root of 3 times the largest one.
+#[test]
+fn directions_beyond_the_range_are_halved() {
+    let eighth = Angle::of_turn(1, 8);
+    let turn = Motion::turn(Position([0; 3]), [0, 0, 1], eighth).expect("an axis");
+    let [x, y, z] = turn.direction([i32::MAX, i32::MIN, 5]);
+    let half = f64::from(1_u32 << 30) * core::f64::consts::SQRT_2;
+    assert!((f64::from(x) - half).abs() <= 64.0, "{x}");
+    assert!(y.abs() <= 64, "{y}");
+    assert_eq!(z, 2);
+    let length = 1 << 30;
+    let turn = Motion::turn(Position([0; 3]), [0, 0, 1], Angle::QUARTER).expect("an axis");
+    assert_eq!(turn.direction([length, 0, 7]), [0, length, 7]);
+}
+
 proptest! {
     #[test]
     fn turns_are_those_of_real_numbers(
