@@ -5,7 +5,7 @@
 
 use crate::format::instance::{Instance, MATRIX_BITS};
 use crate::format::record::UnitBox;
-use crate::number::{Arithmetic, extent};
+use crate::number::{Arithmetic, extent, far_extent};
 use crate::observe::event::Event;
 use crate::ray::Ray;
 
@@ -66,11 +66,7 @@ impl<N: Arithmetic> Map<N> {
     #[inline(always)]
     pub(crate) fn ray(&self, bounds: &UnitBox, ray: &Ray<N>, tmax: N) -> Option<PlacedRay<N>> {
         let direction = self.rotate(ray.slope);
-        let zero = N::Wide::default();
-        let magnitude = |wide: N::Wide| if wide < zero { -wide } else { wide };
-        let [x, y, z] = direction.map(magnitude);
-        let larger = if x > y { x } else { y };
-        let stretch = if larger > z { larger } else { z };
+        let stretch = far_extent::<N>(direction);
         let exponent = self.exponent;
         let into = |t: N| {
             let scaled = N::wide_scale(t.widen(), N::from_wide(stretch));
@@ -81,7 +77,7 @@ impl<N: Arithmetic> Map<N> {
             let (mapped, beside) = (into(ray.tmin), N::step_beside(N::ZERO).widen());
             if mapped > beside { mapped } else { beside }
         } else {
-            zero
+            N::Wide::default()
         };
         let origin = self.point(ray.origin);
         let ray = Ray::new(bounds, origin, direction, tmin, into(tmax)).ok()?;

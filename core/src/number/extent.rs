@@ -12,3 +12,18 @@ inline_unless_small!(
             .max(coordinates[2].abs())
     }
 );
+
+/// The largest magnitude of far coordinates.
+#[inline(always)]
+pub(crate) fn far_extent<N: Arithmetic>(coordinates: [N::Wide; 3]) -> N::Wide {
+    let magnitude = |wide: N::Wide| {
+        if wide < N::Wide::default() {
+            -wide
+        } else {
+            wide
+        }
+    };
+    let [x, y, z] = coordinates.map(magnitude);
+    let larger = if x > y { x } else { y };
+    if larger > z { larger } else { z }
+}

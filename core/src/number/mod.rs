@@ -37,7 +37,7 @@ pub use angle::Angle;
 pub use arithmetic::Arithmetic;
 pub use convert::Convert;
 pub use error_bounds::ErrorBounds;
-pub(crate) use extent::extent;
+pub(crate) use extent::{extent, far_extent};
 pub use fixed::base::Fixed;
 #[cfg(feature = "strict-ranges")]
 pub use fixed::strict::let_numbers_wrap;

@@ -318,6 +318,7 @@ impl<N: Number, A: Accel, C: Observer, const EFFECTS: u32> Tracing<'_, '_, '_, N
             to_light,
             norm,
             cone,
+            facing: N::ONE,
         };
         let mut reflected = surface.diffuse.scaled(cos);
         let mut is_reached = true;

@@ -10,12 +10,12 @@ use crate::accel::Number;
 use crate::format::Effects;
 use crate::format::light_form::LightForm;
 use crate::format::record::Light;
-use crate::number::{Angle, extent};
+use crate::number::{Angle, extent, far_extent};
 use crate::observe::count::Observer;
 use crate::observe::event::Event;
 use crate::shade::basis::beside;
 use crate::shade::effect::{Effect, Tracer};
-use crate::shade::light::{Reach, largest, length};
+use crate::shade::light::{Reach, length};
 use crate::shade::surface::{Aim, Cone, Lighting, Surface};
 
 pub(crate) struct AreaLight;
@@ -43,7 +43,7 @@ impl Effect for AreaLight {
         if let Some(form) = tracer.scene().light_form(light) {
             // Lights beyond the first 4,096 share points with these.
             let point = tracer.point(number as u16 & 0xfff);
-            *aim = at(form, aim, point);
+            at(form, aim, point);
         }
     }
 
@@ -69,9 +69,9 @@ impl Effect for AreaLight {
     }
 }
 
-/// Returns the way to a random point of a light, given the way to its position.
-#[inline(never)]
-fn at<N: Number>(form: &LightForm, aim: &Aim<N>, [u, v]: [u32; 2]) -> Aim<N> {
+/// Turns the way to a light's position into the way to a random point of it.
+#[inline(always)]
+fn at<N: Number>(form: &LightForm, aim: &mut Aim<N>, [u, v]: [u32; 2]) {
     let ratio = |point: u32| N::ratio((point >> 2) as i32);
     let turn = || Angle(v).sin_cos().map(N::ratio);
     let [along, across] = match form.shape {
@@ -86,35 +86,29 @@ fn at<N: Number>(form: &LightForm, aim: &Aim<N>, [u, v]: [u32; 2]) -> Aim<N> {
             let (radius, [sine, cosine]) = (ratio(u).sqrt(), turn());
             [radius * cosine, radius * sine]
         }
-        _ => return *aim,
+        _ => return,
     };
     let [first, second] = form.edges;
     let axis = |k: usize| {
         let offset = length::<N>(first[k]) * along + length::<N>(second[k]) * across;
         aim.way[k] + offset.widen()
     };
-    let way = [axis(0), axis(1), axis(2)];
-    Aim {
-        way,
-        distance: Some(largest::<N>(way)),
-        cone: None,
-    }
+    aim.way = [axis(0), axis(1), axis(2)];
+    aim.distance = Some(far_extent::<N>(aim.way));
 }
 
-/// Returns the way to where a random direction hits a sphere; no way from inside the sphere.
-fn on_sphere<N: Number>(form: &LightForm, aim: &Aim<N>, u: N, [sine, cosine]: [N; 2]) -> Aim<N> {
-    let hidden = Aim {
-        way: [N::Wide::default(); 3],
-        distance: None,
-        cone: None,
-    };
-    let Some(Reach { unit, distance }) = Reach::<N>::of(aim.way, aim.distance) else {
-        return hidden;
+/// Turns the way to the middle of a sphere into the way to where a random direction hits it; no way from inside the
+/// sphere.
+fn on_sphere<N: Number>(form: &LightForm, aim: &mut Aim<N>, u: N, [sine, cosine]: [N; 2]) {
+    let reach = Reach::<N>::of(aim.way, aim.distance);
+    aim.way = [N::Wide::default(); 3];
+    let Some(Reach { unit, distance }) = reach else {
+        return;
     };
     let radius = distance.half_length(form.edges[0][0]);
     let widest = radius.div(distance.half);
     if widest <= N::ZERO || widest >= N::ONE {
-        return hidden;
+        return;
     }
     let square = widest * widest;
     let one = N::ONE.half();
@@ -132,9 +126,9 @@ fn on_sphere<N: Number>(form: &LightForm, aim: &Aim<N>, u: N, [sine, cosine]: [N
     let part = away.div(widest).min(N::ONE);
     let inward = radius * (N::ONE - part * part).sqrt();
     let end = distance.whole((distance.half * toward - inward) * extent(direction));
-    Aim {
+    *aim = Aim {
         way: direction.map(N::widen),
         distance: Some(end + end),
         cone: Some(Cone { distance, widening }),
-    }
+    };
 }

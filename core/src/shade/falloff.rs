@@ -7,6 +7,7 @@ use crate::accel::Number;
 use crate::format::Effects;
 use crate::format::light_form::LightForm;
 use crate::format::record::Light;
+use crate::number::Format;
 use crate::observe::count::Observer;
 use crate::observe::event::Event;
 use crate::shade::Color;
@@ -33,7 +34,7 @@ impl Effect for Falloff {
         is_reached: &mut bool,
     ) {
         if let Some(form) = tracer.scene().light_form(lighting.light) {
-            let is_shone_on = shines(form, lighting.to_light) && is_in_range(form, lighting);
+            let is_shone_on = shines(form, lighting) && is_in_range(form, lighting);
             if X::Observer::ENABLED && !is_shone_on {
                 tracer.count().event(Event::Outside);
             }
@@ -67,15 +68,16 @@ fn cosine<N: Number>(form: &LightForm, to_light: [N; 3]) -> N {
     cos.max(-N::ONE).min(N::ONE)
 }
 
-/// Returns true if a light shines towards a surface.
-fn shines<N: Number>(form: &LightForm, to_light: [N; 3]) -> bool {
-    match form.shape {
-        LightForm::SPHERE => true,
-        LightForm::RECTANGLE | LightForm::DISC | LightForm::TRIANGLE => {
-            cosine(form, to_light) > N::ZERO
-        }
-        _ => !has_cone(form) || cosine(form, to_light) > N::ratio(form.cone_cosine),
-    }
+/// Returns true if a light shines towards a surface. Keeps the cosine for the light that arrives.
+fn shines<N: Number>(form: &LightForm, lighting: &mut Lighting<'_, N>) -> bool {
+    let least = match form.shape {
+        LightForm::SPHERE => return true,
+        LightForm::RECTANGLE | LightForm::DISC | LightForm::TRIANGLE => N::ZERO,
+        _ if has_cone(form) => N::ratio(form.cone_cosine),
+        _ => return true,
+    };
+    lighting.facing = cosine(form, lighting.to_light);
+    lighting.facing > least
 }
 
 /// Returns true if a light's range reaches a surface.
@@ -92,7 +94,7 @@ fn has_cone(form: &LightForm) -> bool {
 }
 
 /// Returns the arriving part of a light's color.
-#[inline(never)]
+#[inline(always)]
 fn falling<N: Number>(form: &LightForm, lighting: &Lighting<'_, N>, color: Color<N>) -> Color<N> {
     let middle = lighting.cone.map(|cone| cone.distance);
     let Some(distance) = middle.or_else(|| lighting.light_distance()) else {
@@ -119,15 +121,15 @@ fn falling<N: Number>(form: &LightForm, lighting: &Lighting<'_, N>, color: Color
     }
     match form.shape {
         LightForm::RECTANGLE | LightForm::DISC | LightForm::TRIANGLE => {
-            arriving.scaled(cosine(form, lighting.to_light).max(N::ZERO))
+            arriving.scaled(lighting.facing)
         }
         _ if has_cone(form) => {
-            let within = cosine(form, lighting.to_light) - N::ratio(form.cone_cosine);
+            let within = lighting.facing - N::ratio(form.cone_cosine);
             let width = N::ratio(form.cone_width);
             if within >= width {
                 return arriving;
             }
-            let part = within.max(N::ZERO).div(width);
+            let part = within.div(width);
             arriving.scaled(part).scaled(part)
         }
         _ => arriving,
@@ -142,7 +144,12 @@ fn fallen<N: Number>(color: Color<N>, reference: N, distance: N) -> Color<N> {
     if reference <= N::ZERO || distance <= N::ZERO {
         return Color::BLACK;
     }
-    // No ratio is above 1, because not every format can hold such a ratio.
+    if N::FORMAT != Format::Fixed {
+        let most = N::FAR * N::FAR;
+        let ratio = reference.div(distance).min(most);
+        return color.scaled(ratio).scaled(ratio);
+    }
+    // `fixed` holds no ratio above 2.
     let (mut far, mut doublings) = (distance, 0);
     while far < reference && doublings < DOUBLINGS {
         far = far + far;

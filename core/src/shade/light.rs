@@ -2,7 +2,7 @@
 
 use crate::accel::Number;
 use crate::format::record::Light;
-use crate::number::Format;
+use crate::number::{Format, far_extent};
 
 /// The longest distance that `fixed` holds, with 13 fraction bits.
 const LONGEST: i64 = i32::MAX as i64;
@@ -17,26 +17,8 @@ impl Light {
         }
         let axis = |k: usize| N::far(self.vector[k]) - point[k].widen();
         let way = [axis(0), axis(1), axis(2)];
-        (way, Some(largest::<N>(way)))
+        (way, Some(far_extent::<N>(way)))
     }
-}
-
-/// The magnitude of the largest component.
-#[inline(always)]
-pub(crate) fn largest<N: Number>(way: [N::Wide; 3]) -> N::Wide {
-    let zero = N::Wide::default();
-    way.iter().fold(zero, |largest, &component| {
-        let magnitude = if component < zero {
-            -component
-        } else {
-            component
-        };
-        if magnitude > largest {
-            magnitude
-        } else {
-            largest
-        }
-    })
 }
 
 /// A length with 13 fraction bits.

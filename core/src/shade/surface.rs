@@ -89,6 +89,8 @@ pub(crate) struct Lighting<'l, N: Number> {
     pub(crate) norm: N,
     /// The cone of the light, if the light is a sphere.
     pub(crate) cone: Option<Cone<N>>,
+    /// The cosine between the light's own direction and the way from it, if the light has a direction.
+    pub(crate) facing: N,
 }
 
 impl<N: Number> Lighting<'_, N> {
