@@ -136,8 +136,13 @@ impl fmt::Display for RenderError {
             RenderError::Resolution(format) => write!(
                 f,
                 "the pixels are so narrow that `{name}` cannot tell their directions apart: use a wider \
-                 field of view or fewer pixels, move the eye closer, or use `fixed` or `f64`",
-                name = format.name()
+                 field of view or fewer pixels, or move the eye closer{finer}",
+                name = format.name(),
+                finer = match format {
+                    Format::F32 => ", or use `fixed` or `f64`",
+                    Format::Fixed => ", or use `f64`",
+                    Format::F64 => "",
+                }
             ),
             RenderError::Workspace {
                 what,

@@ -61,6 +61,9 @@ fn far_eyes_see_the_scene_or_are_rejected() {
             Ok(far) => Some(different(far)),
             Err(error) => {
                 assert_eq!(error, RenderError::Resolution(N::FORMAT));
+                // No format is offered in place of itself.
+                let offered = format!("`{}`", N::FORMAT.name());
+                assert_eq!(error.to_string().matches(&offered).count(), 1, "{error}");
                 None
             }
         });
