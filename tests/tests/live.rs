@@ -295,7 +295,7 @@ fn values_out_of_range_are_rejected_with_their_place() {
     for count in [0, 1, 3] {
         let materials = vec![scene.materials()[0]; count];
         let error = scene.with_materials(&materials).err();
-        assert!(matches!(error, Some(BlobError::Count { expected: 2, .. })));
+        assert!(matches!(error, Some(BlobError::Memory { needed: 2, .. })));
     }
     assert_eq!(view(&|it| it.eye = [FARTHEST; 3]), None);
     assert_eq!(light(&|it| it.color = [i32::MAX; 3]), None);

@@ -303,18 +303,18 @@ fn slices_of_another_length_are_rejected() {
     let error = tracks.lights_at(&scene, 0, &mut lights).err();
     assert!(matches!(
         error,
-        Some(BlobError::Count {
+        Some(BlobError::Memory {
             found: 3,
-            expected: 2,
+            needed: 2,
             ..
         })
     ));
     let error = tracks.materials_at(&scene, 0, &mut []).err();
     assert!(matches!(
         error,
-        Some(BlobError::Count {
+        Some(BlobError::Memory {
             found: 0,
-            expected: 2,
+            needed: 2,
             ..
         })
     ));

@@ -93,6 +93,7 @@ impl From<BlobError> for gridel_status {
             BlobError::MissingPart { .. } => Self::BlobMissingPart,
             BlobError::MissingStructure { .. } => Self::BlobMissingStructure,
             BlobError::Parts { .. } => Self::BlobParts,
+            BlobError::Memory { .. } => Self::BufferTooSmall,
             _ => Self::BlobInvalid,
         }
     }

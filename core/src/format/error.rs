@@ -65,6 +65,22 @@ pub enum BlobError {
         /// Parts that the blob has.
         expected: usize,
     },
+    /// The program's own memory has room for fewer records than the blob has, or passes more of them.
+    Memory {
+        /// The section whose records the memory is for.
+        section: SectionKind,
+        /// Records for which there is room.
+        found: usize,
+        /// Records of the blob.
+        needed: usize,
+    },
+    /// There is no instance of this number.
+    NoInstance {
+        /// The number.
+        number: usize,
+        /// Instances of the scene, counted from 0.
+        count: usize,
+    },
     /// The records of a section have a size that no record of its kind has.
     Stride {
         /// The section.
@@ -219,6 +235,20 @@ impl fmt::Display for BlobError {
                 f,
                 "the blob was loaded with {found} parts, and needs {expected}: load them by \
                  `Parts::from_bytes`, and the scene by `Scene::with_parts`"
+            ),
+            BlobError::Memory {
+                section,
+                found,
+                needed,
+            } => write!(
+                f,
+                "the program's memory for section {} of the blob is of {found} records: \
+                 change it to {needed}",
+                section.name()
+            ),
+            BlobError::NoInstance { number, count } => write!(
+                f,
+                "there is no instance {number}: the scene has {count}, counted from 0"
             ),
             BlobError::Stride {
                 section,

@@ -159,7 +159,6 @@ texts! {
         Joint => "joint",
         RotationAngle => "angle to the next rotation",
         // Parts and instances.
-        Parts => "number of parts",
         Start => "start",
         Length => "length",
         MatrixEntry => "matrix entry",

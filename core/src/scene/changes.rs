@@ -103,10 +103,10 @@ impl<'a> Scene<'a> {
     /// effect that a material requires.
     pub fn with_materials(&self, materials: &'a [Material]) -> Result<Self, BlobError> {
         if materials.len() != self.materials.len() {
-            return Err(BlobError::Count {
+            return Err(BlobError::Memory {
                 section: SectionKind::Materials,
                 found: materials.len(),
-                expected: self.materials.len(),
+                needed: self.materials.len(),
             });
         }
         let mut effects = self.effects;

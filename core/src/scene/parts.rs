@@ -1,7 +1,7 @@
 //! Parts: blobs in a blob, loaded once and lent to the scene that places them.
 
 use crate::format::instance::{Instance, Part};
-use crate::format::range::{At, at_most, exactly};
+use crate::format::range::{At, exactly};
 use crate::format::record::{Header, SECTION_ALIGNMENT, UnitBox};
 use crate::format::{BlobError, Field, Location, Reason, SectionKind, Sections};
 use crate::instances::check::{check_instance, check_top};
@@ -34,8 +34,11 @@ impl<'a, const MOST: usize> Parts<'a, MOST> {
         let mut parts = Vec::new();
         for part in part_blobs(blob)? {
             if parts.push(Scene::from_bytes(part)?).is_err() {
-                let found = part_blobs(blob)?.count() as u32;
-                at_most(Field::Parts, found, MOST as u32)?;
+                return Err(BlobError::Memory {
+                    section: SectionKind::Parts,
+                    found: MOST,
+                    needed: part_blobs(blob)?.count(),
+                });
             }
         }
         Ok(Self(parts))

@@ -103,16 +103,16 @@ impl<'p> PosesView<'p> {
         order: &'p mut [u32],
     ) -> Result<Self, BlobError> {
         let rest = scene.instances();
-        let expected = rest.len();
+        let needed = rest.len();
         let found = instances.len().min(pairs.len()).min(order.len());
-        let too_few = BlobError::Count {
+        let too_few = BlobError::Memory {
             section: SectionKind::Instances,
             found,
-            expected,
+            needed,
         };
-        let instances = instances.get_mut(..expected).ok_or(too_few)?;
-        let pairs = pairs.get_mut(..expected.saturating_sub(1));
-        let order = order.get_mut(..expected);
+        let instances = instances.get_mut(..needed).ok_or(too_few)?;
+        let pairs = pairs.get_mut(..needed.saturating_sub(1));
+        let order = order.get_mut(..needed);
         for (to, from) in instances.iter_mut().zip(rest) {
             *to = *from;
         }
@@ -151,16 +151,12 @@ impl<'p> PosesView<'p> {
         index: usize,
         motion: &Motion,
     ) -> Result<(), BlobError> {
-        let section = SectionKind::Instances;
         let rest = scene.instances();
         let (Some(rest), Some(pose)) = (rest.get(index), self.instances.get_mut(index)) else {
-            return Err(BlobError::Count {
-                section,
-                found: rest.len(),
-                expected: index.saturating_add(1),
-            });
+            let (number, count) = (index, rest.len());
+            return Err(BlobError::NoInstance { number, count });
         };
-        let location = Location::Record(section, index);
+        let location = Location::Record(SectionKind::Instances, index);
         let header = scene.header();
         let mut placed = motion.place(header, rest);
         if check(&placed, location).is_err() {
@@ -224,12 +220,12 @@ impl<'a> Scene<'a> {
 
     /// The parts and instances, if the number of instances is right.
     fn placed_as_many(&self, found: usize) -> Result<&Placed<'a, Self>, BlobError> {
-        let expected = self.instances().len();
-        let placed = self.placed.get().filter(|_| found == expected);
-        placed.ok_or(BlobError::Count {
+        let needed = self.instances().len();
+        let placed = self.placed.get().filter(|_| found == needed);
+        placed.ok_or(BlobError::Memory {
             section: SectionKind::Instances,
             found,
-            expected,
+            needed,
         })
     }
 

@@ -134,10 +134,10 @@ impl Tracks<'_> {
 /// Copies records into a slice of the same length.
 fn copy<T: Copy>(section: SectionKind, from: &[T], to: &mut [T]) -> Result<(), BlobError> {
     if from.len() != to.len() {
-        return Err(BlobError::Count {
+        return Err(BlobError::Memory {
             section,
             found: to.len(),
-            expected: from.len(),
+            needed: from.len(),
         });
     }
     for (from, to) in from.iter().zip(to) {

@@ -253,12 +253,15 @@ fn poses_that_do_not_fit_are_rejected() {
     let error = Poses::<2>::new().at_rest(&loaded).expect_err("no room");
     assert_eq!(
         error.to_string(),
-        "section instances: it has 2 records; it must have 3"
+        "the program's memory for section instances of the blob is of 2 records: change it to 3"
     );
     let mut memory = Poses::<3>::new();
     let mut poses = memory.at_rest(&loaded).expect("room");
     let error = poses.place(&loaded, 3, &Motion::REST);
-    error.expect_err("no such instance");
+    assert_eq!(
+        error.expect_err("no such instance").to_string(),
+        "there is no instance 3: the scene has 3, counted from 0"
+    );
     let far = Motion::shift([i32::MAX; 3]);
     let error = poses.place(&loaded, 1, &far).expect_err("too far");
     assert!(error.to_string().contains("center"), "{error}");

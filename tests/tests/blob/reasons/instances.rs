@@ -122,7 +122,12 @@ impl Errors {
             Err(BlobError::Parts { found: 0, .. })
         ));
         let error = Parts::<0>::from_bytes(honest.bytes()).unwrap_err();
-        self.take_field(error, "header", Field::Parts);
+        let expected = BlobError::Memory {
+            section: SectionKind::Parts,
+            found: 0,
+            needed: 1,
+        };
+        assert_eq!(error, expected);
         let none = Loaded::from_bytes(honest.bytes()).unwrap_err();
         let expected = BlobError::Parts {
             found: 0,
