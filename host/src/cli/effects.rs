@@ -2,18 +2,18 @@
 
 use gridel_core::format::record::{Light, Material};
 use gridel_core::{Effects, Scene};
-use gridel_host::compile::Report;
+use gridel_host::compile::{Report, RequiringPart};
 use gridel_host::measure::board::{MemoryReport, WORK_LIST};
-use gridel_host::scene::effect_named;
+use gridel_host::scene::{SourceSpan, effect_named};
 use gridel_host::table::grouped;
 use serde::Serialize;
 use std::fmt;
 
-/// An effect, and the names of the parts that require it.
+/// An effect, and the parts that require it.
 #[derive(Serialize)]
 pub struct CalledFor {
     effect: String,
-    by: Vec<String>,
+    by: Vec<RequiringPart>,
     /// Bytes of its code on a board, where programs were built with and without it.
     #[serde(skip_serializing_if = "Option::is_none")]
     code: Option<u64>,
@@ -51,7 +51,7 @@ impl CalledFor {
 
     /// The effects of a blob, whose lights and materials have numbers.
     pub fn in_blob(scene: &Scene<'_>) -> Vec<Self> {
-        let callers = |effect: Effects| -> Vec<String> {
+        let callers = |effect: Effects| -> Vec<RequiringPart> {
             let lights = scene.lights().iter().map(Light::effects);
             let lights = numbers_of("light", effect, lights);
             let materials = scene.materials().iter().map(Material::effects);
@@ -62,6 +62,7 @@ impl CalledFor {
                 .chain(numbers_of("material", effect, materials))
                 .chain(own)
                 .chain(parts)
+                .map(|part| RequiringPart::new(part, &SourceSpan::default()))
                 .collect()
         };
         Effects::NAMED
@@ -98,7 +99,12 @@ fn numbers_of(
 impl fmt::Display for CalledFor {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         const SHOWN: usize = 5;
-        let shown: Vec<_> = self.by.iter().take(SHOWN).map(String::as_str).collect();
+        let shown: Vec<_> = self
+            .by
+            .iter()
+            .take(SHOWN)
+            .map(RequiringPart::to_string)
+            .collect();
         write!(f, "{}, for {}", self.effect, shown.join(", "))?;
         if self.by.len() > SHOWN {
             write!(f, " and {} more", self.by.len() - SHOWN)?;

@@ -16,7 +16,7 @@ use gridel_host::blob::Blob;
 use gridel_host::compile::{self, Compiled, Names};
 use gridel_host::measure::Deforming;
 use gridel_host::resolution::{FACTOR, Unresolved, unresolved};
-use gridel_host::scene::{self, Imported, Posed, Track};
+use gridel_host::scene::{self, Imported, Posed, SourceSpan, Track};
 use gridel_host::state::{self, State, StateError};
 use gridel_host::table::{counted, grouped, printable, significant};
 use std::path::{Path, PathBuf};
@@ -464,6 +464,8 @@ fn import_from(input: &Input, options: &SceneOptions) -> Result<(Imported, bool)
     }
     if let Some(tone_mapping) = options.tone_mapping {
         imported.scene.render.tone_mapping = tone_mapping;
+        // No file states it.
+        imported.scene.places.tone_mapping = SourceSpan::default();
     }
     options.view.apply(&mut imported.scene)?;
     for change in &options.lights {

@@ -140,6 +140,7 @@ fn part(scene: &Scene, primitives: &[Part]) -> Scene {
         materials: scene.materials.clone(),
         light_names: Vec::new(),
         light_forms: scene.light_forms.clone(),
+        places: scene.places.clone(),
         tracks: Vec::new(),
         parts: Vec::new(),
         instances: Vec::new(),

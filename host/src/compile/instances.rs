@@ -104,7 +104,7 @@ impl Parts {
             for effect in [Effects::SMOOTH, Effects::VERTEX_COLORS] {
                 if Effects(header.effects).contains(effect) {
                     let name = format!("part {}", printable(&part.name));
-                    parts.requirements.add(effect, name);
+                    parts.requirements.add(effect, name, &part.place);
                 }
             }
             parts.bounds.push(header.bounds);

@@ -55,6 +55,7 @@ pub use names::{KeptNames, Names};
 pub use options::{LARGEST_LEAF, OnProgress, Options};
 pub use primitives::LeftOut;
 pub use report::{Report, TableStats};
+pub use requirements::RequiringPart;
 pub(crate) use shading::light_record;
 pub use shading::{EnvironmentFigures, TextureFigures, radiance};
 pub use structures::{takes_hierarchy, usual_budget};

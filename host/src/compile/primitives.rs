@@ -258,7 +258,7 @@ impl Primitives {
                 ] {
                     if is_required {
                         let name = format!("mesh {}", printable(&object.name));
-                        self.requirements.add(effect, name);
+                        self.requirements.add(effect, name, &object.place);
                     }
                 }
                 if !self.flat_meshes && flattened::is_flattened((vertices, &snapped), triangles) {

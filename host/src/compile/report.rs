@@ -3,6 +3,7 @@
 use super::candidates::lists::Figures;
 use super::names::KeptNames;
 use super::primitives::LeftOut;
+use super::requirements::RequiringPart;
 use super::shading::{EnvironmentFigures, TextureFigures};
 use std::time::Duration;
 
@@ -32,8 +33,8 @@ pub struct Report {
     pub bytes: usize,
     /// Primitives of the longest list that a ray can be led to.
     pub longest_list: usize,
-    /// Effects and the names of the parts that require each.
-    pub effects: Vec<(String, Vec<String>)>,
+    /// Effects and the parts that require each.
+    pub effects: Vec<(String, Vec<RequiringPart>)>,
     /// How each image of a texture is stored.
     pub textures: Vec<TextureFigures>,
     /// How the environment is stored.

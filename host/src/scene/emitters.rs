@@ -47,7 +47,8 @@ impl Scene {
             if !material.has_lights() {
                 continue;
             }
-            let (color, name) = (material.emission, object.name.clone());
+            let color = material.emission;
+            let named = (object.name.clone(), object.place.clone());
             let faces = faces(&object.shape);
             if !faces.is_empty() {
                 lit.push(number);
@@ -58,7 +59,7 @@ impl Scene {
                     is_surface: true,
                     ..LightForm::default()
                 };
-                self.add_light(Light::Point { position, color }, form, name.clone());
+                self.add_light(Light::Point { position, color }, form, named.clone());
             }
         }
         self.mark_sampled(&lit);
@@ -90,7 +91,10 @@ impl Scene {
         }
     }
 
-    fn add_light(&mut self, light: Light, form: LightForm, name: String) {
+    fn add_light(&mut self, light: Light, form: LightForm, (name, place): (String, SourceSpan)) {
+        let places = &mut self.places.lights;
+        places.resize(self.lights.len(), SourceSpan::default());
+        places.push(place);
         self.light_names.resize(self.lights.len(), String::new());
         self.light_forms.resize(self.lights.len(), None);
         self.lights.push(light);
@@ -122,9 +126,10 @@ impl Scene {
                 shape,
                 normals: Normals::default(),
                 attributes: Attributes::default(),
-                place: SourceSpan::default(),
+                place: self.places.light(number),
             });
             self.materials.push(Material {
+                place: self.places.light(number),
                 name,
                 diffuse: Diffuse::Plain(BLACK),
                 emission: color,

@@ -27,6 +27,7 @@ pub(crate) mod molecule;
 mod normals;
 mod options;
 mod placement;
+mod places;
 mod plain_lights;
 mod polygon;
 mod radiance;
@@ -63,6 +64,7 @@ pub use options::{
     Choice, ImportOptions, Imported, Instances, MoleculeOptions, MoleculeStyle, Posed,
 };
 pub use placement::Placement;
+pub use places::Places;
 pub(crate) use scale_range::ScaleRange;
 pub use size::MOST_INPUT;
 pub use source_span::SourceSpan;

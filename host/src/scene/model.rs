@@ -5,6 +5,7 @@ use super::environment::Environment;
 use super::light_form::LightForm;
 use super::normals::{Normals, NormalsChoice};
 use super::placement::Placement;
+use super::places::Places;
 use super::source_span::SourceSpan;
 use super::texture::{NormalMap, Texture};
 use super::track::Track;
@@ -59,6 +60,8 @@ pub struct Scene {
     pub tracks: Vec<Track>,
     /// Defaults for rendering that the scene file states.
     pub render: RenderSettings,
+    /// Where files state lights and settings.
+    pub places: Places,
     /// True if the format has no names. Then all names are made of kinds and numbers, and blobs leave them out.
     pub unnamed: bool,
 }
@@ -162,6 +165,8 @@ pub struct Material {
     pub alpha: Option<Alpha>,
     /// The normals that meshes with texture coordinates are shaded with. It lies as the texture does, if there is one.
     pub normal_map: Option<NormalMap>,
+    /// Its place in a scene file or a file of materials, for messages.
+    pub place: SourceSpan,
 }
 
 /// How the brightness of pixels is mapped to the range of a display.
@@ -365,6 +370,7 @@ impl Default for Material {
             texture: None,
             alpha: None,
             normal_map: None,
+            place: SourceSpan::default(),
         }
     }
 }
@@ -443,6 +449,7 @@ impl Default for Scene {
             room: None,
             tracks: Vec::new(),
             render: RenderSettings::default(),
+            places: Places::default(),
             unnamed: false,
         }
     }

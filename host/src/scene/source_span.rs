@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-/// A place in a scene file, for messages.
+/// A place in a scene file, for messages. The default one is not known.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct SourceSpan {
     /// Shared by all objects of the file.
@@ -19,6 +19,11 @@ impl SourceSpan {
             file: Arc::new(path.to_owned()),
             line: 0,
         }
+    }
+
+    /// Returns whether this names a file.
+    pub fn is_known(&self) -> bool {
+        !self.file.as_os_str().is_empty()
     }
 }
 

@@ -108,11 +108,16 @@ fn a_scene_file_is_inspected_as_the_blob_it_would_be() {
         let found = effects.into_iter().find(|e| e["effect"] == effect);
         found.unwrap()["by"].clone()
     };
-    assert_eq!(by(&scene, "mirror"), json!(["material mirror"]));
-    assert_eq!(by(&blob, "mirror"), json!(["material 2"]));
-    for inspection in [&scene, &blob] {
-        assert_eq!(by(inspection, "shadow"), json!(["light 0", "light 1"]));
-    }
+    let in_file = |part: &str, line: u32| json!({"part": part, "file": "quick.toml", "line": line});
+    assert_eq!(
+        by(&scene, "mirror"),
+        json!([in_file("material mirror", 38)])
+    );
+    assert_eq!(by(&blob, "mirror"), json!([{"part": "material 2"}]));
+    let lights = json!([in_file("light 0", 16), in_file("light 1", 21)]);
+    assert_eq!(by(&scene, "shadow"), lights);
+    let lights = json!([{"part": "light 0"}, {"part": "light 1"}]);
+    assert_eq!(by(&blob, "shadow"), lights);
     let coarse = folder.json(&["inspect", "quick.toml", "--lattice-bits", "16"]);
     assert_eq!(coarse["limits"]["storage_bits"], 16);
     folder.fails(

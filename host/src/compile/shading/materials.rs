@@ -60,7 +60,7 @@ impl MaterialData {
                     maps: textures.maps(material),
                     ..material_record(material, lattice)
                 };
-                requirements.add(record.effects(), label(material));
+                requirements.add(record.effects(), label(material), &material.place);
                 data.records.push(record);
                 data.records.len() as u32 - 1
             });
@@ -79,13 +79,13 @@ impl MaterialData {
                     lights: material.is_sampled.into(),
                 };
                 put(&mut data.emissions, number, emission);
-                requirements.add(Effects::EMISSION, label(material));
+                requirements.add(Effects::EMISSION, label(material), &material.place);
             }
             if material.is_rough() {
                 let roughness = material.roughness.clamp(Material::LEAST_ROUGHNESS, 1.0);
                 let [alpha, ..] = ratio([roughness * roughness; 3]);
                 put(&mut data.roughnesses, number, alpha);
-                requirements.add(Effects::GLOSSY, label(material));
+                requirements.add(Effects::GLOSSY, label(material), &material.place);
             }
         }
         data.media = media(scene, &data.numbers, requirements)?;

@@ -21,7 +21,8 @@ pub fn media(
         if let (Some(priority), Some(number)) = (priority, number) {
             media.push((Reverse(priority), *number));
             let name = printable(&material.name);
-            requirements.add(Effects::NESTED, format!("the priority of material {name}"));
+            let part = format!("the priority of material {name}");
+            requirements.add(Effects::NESTED, part, &material.place);
         }
     }
     if media.len() > MAX_MEDIA {

@@ -78,12 +78,13 @@ impl ShadingData {
             MaterialData::of(scene, lattice, &exposure, texture_bytes, &mut requirements)?;
         let are_rough = materials.are_rough();
         let mut lights = LightData::of(scene, &setting.lights, space, &exposure, are_rough)?;
+        let places = &scene.places;
         let environment = scene.environment.as_ref();
         let environment = environment.map(|it| EnvironmentData::of(it, scene.up, &exposure));
         let environment = environment.transpose()?;
         if let Some(environment) = &environment {
             lights.records.extend(&environment.lights);
-            requirements.add(Effects::ENVIRONMENT, "the environment");
+            requirements.add(Effects::ENVIRONMENT, "the environment", &places.environment);
         }
         let light = |color, what: &str| exposure.of_color(color, || what.into()).map(radiance);
         let view = View {
@@ -93,23 +94,31 @@ impl ShadingData {
         };
         let lens = lens::record(scene.lens.as_ref(), &camera, lattice)?;
         let bounces = Some(scene.render.bounces).filter(|&bounces| bounces > 0);
-        requirements.add(view.effects(), "the `tone_mapping` of pictures");
-        for (effect, is_required, part) in [
+        for (effect, is_required, part, place) in [
+            (
+                view.effects(),
+                true,
+                "the `tone_mapping` of pictures",
+                &places.tone_mapping,
+            ),
             (
                 Effects::DEPTH_OF_FIELD,
                 lens.is_some(),
                 "the camera's `aperture`",
+                &places.aperture,
             ),
             (
                 Effects::INDIRECT,
                 bounces.is_some(),
                 "the `bounces` of pictures",
+                &places.bounces,
             ),
         ] {
-            requirements.add(effect.only_if(is_required), part);
+            requirements.add(effect.only_if(is_required), part, place);
         }
         if scene.all_objects().next().is_some() {
-            require_lights(&lights.records, scene, &mut requirements);
+            let stated = setting.lights.len();
+            require_lights(&lights.records, stated, scene, &mut requirements);
         }
 
         on_lattice(lattice, space.size(), String::from("camera"), camera.eye)?;
@@ -167,15 +176,25 @@ impl ShadingData {
     }
 }
 
-/// Adds what lights require where there are objects.
-fn require_lights(lights: &[record::Light], scene: &Scene, requirements: &mut Requirements) {
+/// Adds what lights require where there are objects. Those behind the `stated` ones are of the environment.
+fn require_lights(
+    lights: &[record::Light],
+    stated: usize,
+    scene: &Scene,
+    requirements: &mut Requirements,
+) {
     // The environment stands for itself. A scene file may turn shadows off.
     let mut known = Effects::ENVIRONMENT;
     if !scene.render.shadows {
         known = known.with(Effects::SHADOW);
     }
     for (number, light) in lights.iter().enumerate() {
-        requirements.add(light.effects().without(known), format!("light {number}"));
+        let place = match number < stated {
+            true => scene.places.light(number),
+            false => scene.places.environment.clone(),
+        };
+        let effects = light.effects().without(known);
+        requirements.add(effects, format!("light {number}"), &place);
     }
 }
 

@@ -147,6 +147,7 @@ impl Importer<'_> {
             texture,
             alpha,
             normal_map,
+            place: self.place.clone(),
             ..made
         };
         if alpha.is_some() && made.transmit != [0.0; 3] {

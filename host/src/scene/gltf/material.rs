@@ -134,12 +134,8 @@ pub(super) fn read(material: &gltf::Material<'_>, alpha_is_used: bool) -> Materi
             absorption(volume.attenuation_color(), volume.attenuation_distance())
         }),
         emission: emission(material).map(|channel| channel.clamp(0.0, BRIGHTEST) * there),
-        lights: true,
-        is_sampled: false,
         name,
-        texture: None,
-        alpha: None,
-        normal_map: None,
+        ..Material::default()
     }
 }
 

@@ -132,6 +132,7 @@ fn read(input: Input<'_>) -> Result<Imported, SceneError> {
     view.finish(&mut scene, &mut |sentence| {
         warnings.add_times(place.clone(), 1, sentence);
     });
+    scene.places.lights = vec![place; scene.lights.len()];
     Ok(Imported {
         choices: true,
         ..Imported::of(scene, warnings.into_sentences())

@@ -20,7 +20,7 @@ pub(crate) struct BoundingSphere {
 
 /// Makes spheres of atoms, one object each, and then two half cylinders of each bond, in the
 /// colors of the atoms at their ends. Materials are one for each element, in the order of their
-/// first atom, named by its symbol.
+/// first atom, named by its symbol. Their places are those of these atoms.
 pub(crate) fn draw(
     balls: Vec<BoundingSphere>,
     style: MoleculeStyle,
@@ -32,7 +32,10 @@ pub(crate) fn draw(
         .iter()
         .map(|ball| {
             *index.entry(ball.site.element).or_insert_with(|| {
-                materials.push(material(ball.site.element));
+                materials.push(Material {
+                    place: ball.place.clone(),
+                    ..material(ball.site.element)
+                });
                 materials.len() - 1
             })
         })

@@ -12,8 +12,8 @@
 //!   highlight, up to 1 - Ks. T filters the transmitted light by the color. Shine is the exponent
 //!   of Phong's cosine, between the view and the mirrored light. The halfway vector leans half as
 //!   far, so the exponent is four times as large.
-//! * The normals of `pp` are ignored, with a warning. A negative radius (only the inside is
-//!   visible) counts as its absolute value, since both sides are drawn.
+//! * A negative radius (only the inside is visible) counts as its absolute value, since both sides
+//!   are drawn.
 //! * Polygons and patches are one mesh each, every other primitive one object, in file order.
 
 mod reader;
@@ -169,6 +169,8 @@ impl<'a> Importer<'a> {
             position: DVec3::from_array(position),
             color,
         });
+        let place = self.source.place(line.number);
+        self.scene.places.lights.push(place);
         Ok(())
     }
 
@@ -247,6 +249,7 @@ impl<'a> Importer<'a> {
             mirror: [ks; 3],
             transmit: [r, g, b].map(|c| c * transmit),
             ior: ior.clamp(1.0, 4.0),
+            place: self.source.place(line.number),
             ..Material::default()
         });
         self.materials.insert(key, index);

@@ -183,6 +183,7 @@ impl Statements {
             roughness: self.roughness,
             normal_map: self.normal_map(source, warnings),
             texture: self.texture.clone(),
+            place: source.place(self.line),
             ..default
         }
     }

@@ -11,12 +11,12 @@ use super::part;
 use super::place::Placer;
 use super::source::Source;
 use super::track::{self, Targets};
-use super::value::Fields;
+use super::value::{Fields, Value};
 use super::{environment, light, view};
 use crate::scene::importer::Input;
 use crate::scene::light_form::scale_of;
 use crate::scene::texture::Images;
-use crate::scene::{Camera, Color, Light, RenderSettings, Scene, SceneError, Track};
+use crate::scene::{Camera, Color, Light, Places, RenderSettings, Scene, SceneError, Track};
 use crate::table::printable;
 use glam::DVec3;
 use std::collections::{BTreeMap, HashSet};
@@ -55,10 +55,8 @@ pub(super) fn read(input: Input<'_>, imports: &mut Imports) -> Result<Scene, Sce
     let (camera, lens) = camera.map_or((None, None), |(camera, lens)| (Some(camera), lens));
     let render = root.or("render", None, |table| view::render(table).map(Some))?;
     let lights = root.or("light", Vec::new(), light::lights)?;
-    let lights = lights.into_iter();
-    let (lights, (light_names, light_forms)): (Vec<_>, (Vec<_>, Vec<_>)) = lights
-        .map(|(light, name, form)| (light, (name, form)))
-        .unzip();
+    let (lights, (light_names, (light_forms, light_places))): (Vec<_>, (Vec<_>, (Vec<_>, _))) =
+        lights.into_iter().unzip();
     let background = root.or("background", None, |value| value.radiance().map(Some))?;
     let ambient = root.or("ambient", None, |value| value.radiance().map(Some))?;
     let environment = root.or("environment", None, |table| {
@@ -113,6 +111,13 @@ pub(super) fn read(input: Input<'_>, imports: &mut Imports) -> Result<Scene, Sce
         joints: placed.joints,
         room,
         render: render.unwrap_or_default(),
+        places: Places {
+            lights: light_places,
+            aperture: root.place_of("camera", "aperture"),
+            environment: root.get("environment").map(Value::place).unwrap_or_default(),
+            bounces: root.place_of("render", "bounces"),
+            tone_mapping: root.place_of("render", "tone_mapping"),
+        },
         ..Scene::default()
     };
     let given = Given {
@@ -172,7 +177,13 @@ impl Given {
             scene.camera = Some(moved_camera(source, item, &camera)?);
             let scale = scale_of(&item.transform);
             scene.lens = import.lens.map(|lens| lens.scaled(scale));
-            scene.render = self.render.unwrap_or(import.render);
+            scene.places.aperture.clone_from(&import.places.aperture);
+            if self.render.is_none() {
+                scene.render = import.render;
+                scene.places.bounces.clone_from(&import.places.bounces);
+                let tones = &import.places.tone_mapping;
+                scene.places.tone_mapping.clone_from(tones);
+            }
         }
         if !self.lights {
             add_lights(scene, source, item, import)?;
@@ -180,6 +191,8 @@ impl Given {
         scene.background = scene.background.or(import.background);
         if scene.environment.is_none() {
             scene.environment.clone_from(&import.environment);
+            let place = &import.places.environment;
+            scene.places.environment.clone_from(place);
         }
         if let Some(room) = import.room {
             let room = joint::moved_room(room, &item.transform);
@@ -214,6 +227,7 @@ fn add_lights(
         scene.lights.push(light);
         let name = import.light_names.get(number).cloned();
         scene.light_names.push(name.unwrap_or_default());
+        scene.places.lights.push(import.places.light(number));
         scene
             .light_forms
             .push(form.map(|form| form.moved(&item.transform)));

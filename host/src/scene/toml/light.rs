@@ -1,11 +1,11 @@
 //! The tables `[[light]]`.
 
 use super::value::{Fields, Value};
-use crate::scene::{Light, LightForm, LightShape, SceneError, Spot};
+use crate::scene::{Light, LightForm, LightShape, SceneError, SourceSpan, Spot};
 use glam::DVec3;
 
-/// A light, its name and its form.
-pub(super) type Lit = (Light, String, Option<LightForm>);
+/// A light, its name, form and place.
+pub(super) type Lit = (Light, (String, (Option<LightForm>, SourceSpan)));
 
 const KINDS: [&str; 6] = [
     "point",
@@ -90,7 +90,7 @@ fn light(table: Value<'_>) -> Result<Lit, SceneError> {
             (Light::Point { position, color }, Some(form))
         }
     };
-    Ok((light, name, form))
+    Ok((light, (name, (form, table.place()))))
 }
 
 /// The form of a point light or a spot.

@@ -42,6 +42,7 @@ impl Palette {
         let mut palette = Self::default();
         for (name, table) in tables.entries()? {
             let material = Material {
+                place: table.source.place(&name.span),
                 name: name.text,
                 ..material(table, images)?
             };
@@ -50,13 +51,17 @@ impl Palette {
         Ok(palette)
     }
 
-    /// Adds a material of an import. One whose name is taken is renamed after the import, unless it is identical.
+    /// Adds a material of an import. One whose name is taken is renamed after the import, unless it is identical apart
+    /// from its place.
     pub(super) fn adopt(&mut self, material: &Material, import: &str) -> usize {
         let mut material = material.clone();
         while let Some(&index) = self.indices.get(&material.name) {
-            if self.materials[index] == material {
+            let known = &self.materials[index];
+            let place = std::mem::replace(&mut material.place, known.place.clone());
+            if *known == material {
                 return index;
             }
+            material.place = place;
             material.name = format!("{import}/{}", material.name);
         }
         self.push(material)

@@ -1,7 +1,7 @@
 //! Typed reads of TOML values whose errors point at the value.
 
 use super::source::{Name, Source, Span, nearest};
-use crate::scene::{Color, SceneError};
+use crate::scene::{Color, SceneError, SourceSpan};
 use crate::srgb::linear_of_srgb;
 use glam::DVec3;
 use std::ops::RangeInclusive;
@@ -28,6 +28,10 @@ pub(crate) struct Fields<'a> {
 impl<'a> Value<'a> {
     pub(crate) fn span(self) -> Span {
         self.node.span()
+    }
+
+    pub(crate) fn place(self) -> SourceSpan {
+        self.source.place(&self.span())
     }
 
     pub(crate) fn error(self, cause: impl Into<String>, remedy: impl Into<String>) -> SceneError {
@@ -373,6 +377,12 @@ impl<'a> Fields<'a> {
             key: key.get_ref(),
             node,
         })
+    }
+
+    /// Returns the place of a key of a table in this one, and the default one without it.
+    pub(crate) fn place_of(&self, table: &str, key: &str) -> SourceSpan {
+        let value = self.get(table).and_then(|it| it.member("", key).ok());
+        value.map(Value::place).unwrap_or_default()
     }
 
     pub(crate) fn require(&self, key: &str) -> Result<Value<'a>, SceneError> {

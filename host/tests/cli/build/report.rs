@@ -21,10 +21,14 @@ fn the_report_is_that_of_the_blob() {
     assert_eq!(report["collapsed"], json!([]));
     let effects = report["effects"].as_array().unwrap();
     let glass = effects.iter().find(|e| e["effect"] == "glass").unwrap();
-    assert_eq!(glass["by"], json!(["material glass"]));
+    let by = json!([{"part": "material glass", "file": "quick.toml", "line": 30}]);
+    assert_eq!(glass["by"], by);
 
     let text = folder.done(&["build", "quick.toml", "-o", "again.gridel"]);
-    assert!(text.contains("glass, for material glass"), "{text}");
+    assert!(
+        text.contains("glass, for material glass (quick.toml:30)"),
+        "{text}"
+    );
     assert_eq!(folder.read("again.gridel"), blob.bytes());
     assert_eq!(
         folder.names(),

@@ -81,6 +81,7 @@ fn an_empty_material_is_the_default_one_under_its_name() {
         scene.materials,
         [Material {
             name: "plain".into(),
+            place: scene.materials[0].place.clone(),
             ..Material::default()
         }]
     );
