@@ -1,5 +1,7 @@
 //! Tracks as records: times in ticks, values as integers.
 
+mod field_of_view;
+
 use super::CompileError;
 use super::camera::angle;
 use super::section::{Section, section};
@@ -25,6 +27,10 @@ pub fn sections(
     // What is supplied has the times of others, and is not to blame for them.
     for track in &all {
         times(track)?;
+        if let Some(cause) = field_of_view::blind(track) {
+            let remedy = "use smaller tangents, more keys, or linear interpolation";
+            return Err(fault(track, cause, remedy));
+        }
     }
     complete(&mut all, camera);
     let mut numbered: Vec<(TrackTarget, u32, &Track)> = Vec::new();

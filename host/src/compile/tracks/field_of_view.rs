@@ -1,0 +1,86 @@
+//! Fields of view between keys.
+
+use crate::scene::{Interpolation, Key, Track};
+use gridel_core::format::track::ValueKind;
+
+/// Returns where a spline leads out of the range of fields of view, for an error. A device would limit it, and has no
+/// picture there.
+pub(super) fn blind(track: &Track) -> Option<String> {
+    let is_angle = track.target.kind() == ValueKind::FieldOfView;
+    if !is_angle || track.interpolation != Interpolation::Cubic {
+        return None;
+    }
+    let pairs = track.keys.windows(2);
+    let mut times = pairs.flat_map(|pair| turns(&pair[0], &pair[1]));
+    times.find_map(|seconds| {
+        let [degrees, ..] = track.at(seconds);
+        (degrees <= 0.0 || degrees >= 180.0).then(|| {
+            format!(
+                "at {seconds:.3} s there is no picture, because the field of view is {degrees:.3} degrees; it must be \
+                 above 0 and below 180"
+            )
+        })
+    })
+}
+
+/// The times between two keys at which their spline turns back: where its slope, a polynomial of degree 2, is 0.
+fn turns(one: &Key, other: &Key) -> impl Iterator<Item = f64> + use<> {
+    let duration = other.seconds - one.seconds;
+    let change = other.value[0] - one.value[0];
+    let [leaving, entering] = [one.leaving, other.entering].map(|it| it[0] * duration);
+    let a = 3.0 * (leaving + entering) - 6.0 * change;
+    let b = 6.0 * change - 4.0 * leaving - 2.0 * entering;
+    let root = (b * b - 4.0 * a * leaving).sqrt();
+    // Without cancellation.
+    let sum = -0.5 * (b + root.copysign(b));
+    let parts = [sum / a, leaving / sum].into_iter();
+    let inside = parts.filter(|part| *part > 0.0 && *part < 1.0);
+    let begin = one.seconds;
+    inside.map(move |part| begin + part * duration)
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::compile::{CompileError, Options, compile};
+    use crate::scene::read;
+
+    fn compiled(keys: &str) -> Result<(), CompileError> {
+        let file = format!(
+            "[[object]]\nkind = 'sphere'\ncenter = [0, 0, 0]\nradius = 1\n\
+             [camera]\neye = [0, 0, 9]\ntarget = [0, 0, 0]\n\
+             [[track]]\ntarget = 'camera.fov'\ninterpolation = 'cubic'\n{keys}"
+        );
+        let imported = read("zoom.toml".as_ref(), file.into(), &Default::default()).unwrap();
+        compile(&imported.scene, &Options::default()).map(|_| ())
+    }
+
+    #[test]
+    fn splines_that_leave_the_range_of_fields_of_view_are_rejected() {
+        let below = "times = [0, 1, 2]\nvalues = [40, 1, 40]\ntangents = [0, -40, 0]";
+        let above = "times = [0, 2]\nvalues = [170, 170]\ntangents = [40, -40]";
+        for (keys, found) in [(below, "is -"), (above, "at 1.000 s there is no picture")] {
+            let error = compiled(keys).unwrap_err().to_string();
+            let told = [found, "field of view is", "zoom.toml:8", "camera.fov"];
+            assert!(told.iter().all(|it| error.contains(it)), "{error}");
+        }
+        assert!(
+            compiled(above)
+                .unwrap_err()
+                .to_string()
+                .contains("is 190.000 degrees")
+        );
+    }
+
+    #[test]
+    fn splines_within_the_range_of_fields_of_view_are_compiled() {
+        for keys in [
+            "times = [0, 1, 2]\nvalues = [40, 1, 40]\ntangents = [0, 0, 0]",
+            "times = [0, 1, 2]\nvalues = [40, 40, 40]",
+            "times = [0, 2]\nvalues = [170, 170]\ntangents = [19, -19]",
+            "times = [0, 2]\nvalues = [1, 179]\ntangents = [0, 0]",
+            "times = [0]\nvalues = [40]",
+        ] {
+            compiled(keys).unwrap();
+        }
+    }
+}
