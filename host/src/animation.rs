@@ -3,6 +3,7 @@
 //! Pictures are encoded one after the other, as they come, so that memory does not grow with their number. The same
 //! pictures give the same bytes, wherever they were rendered.
 
+use crate::scene::palette::{distance, median_cut, nearest};
 use gif::{Encoder, Frame, Repeat};
 use std::io::{self, Write};
 use std::path::Path;
@@ -105,8 +106,6 @@ impl Animation {
     }
 
     fn write_gif(&self, out: &mut dyn Write, next: NextPicture<'_>) -> io::Result<()> {
-        /// The colors of a frame are chosen from so many pixels at least, or from all; and from one in ten at least.
-        const LOOKED_AT: usize = 1 << 16;
         let plain = |error: gif::EncodingError| match error {
             gif::EncodingError::Io(error) => error,
             error => io::Error::other(error),
@@ -123,12 +122,54 @@ impl Animation {
             if pixels.len() != 3 * usize::from(width) * usize::from(height) {
                 return Err(io::Error::other("the pictures are not of one size"));
             }
-            let speed = (pixels.len() / 3 / LOOKED_AT).clamp(1, 10) as i32;
-            let mut frame = Frame::from_rgb_speed(width, height, &pixels, speed);
+            let mut frame = frame([width, height], &pixels);
             frame.delay = (time(number + 1) - time(number)) as u16;
             encoder.write_frame(&frame).map_err(plain)?;
         }
         Ok(())
+    }
+}
+
+/// A frame of a GIF: all colors of a picture, or the 256 that show it better of two choices. Boxes are better for few
+/// more colors, and the network of `color_quant` for many.
+fn frame([width, height]: [u16; 2], pixels: &[u8]) -> Frame<'static> {
+    /// Most colors of a frame.
+    const COLORS: usize = 256;
+    /// The network learns from so many pixels at least, or from all; and from one in ten at least.
+    const LOOKED_AT: usize = 1 << 16;
+    let (rgb, _) = pixels.as_chunks::<3>();
+    let colors: Vec<[u8; 4]> = rgb.iter().map(|&[r, g, b]| [r, g, b, 255]).collect();
+    let boxes = median_cut(&colors, COLORS);
+    let palette: Vec<u8> = boxes.iter().flat_map(|&[r, g, b, _]| [r, g, b]).collect();
+    let by_boxes = nearest(&boxes, &colors);
+    let by_boxes = Frame::from_palette_pixels(width, height, by_boxes, palette, None);
+    let error = |frame: &Frame<'_>| {
+        let (palette, _) = frame
+            .palette
+            .as_deref()
+            .unwrap_or_default()
+            .as_chunks::<3>();
+        let shown = frame.buffer.iter().map(|&number| {
+            let [r, g, b] = palette
+                .get(usize::from(number))
+                .copied()
+                .unwrap_or_default();
+            [r, g, b, 255]
+        });
+        let errors = shown
+            .zip(&colors)
+            .map(|(shown, color)| distance(&shown, color));
+        errors.map(u64::from).sum::<u64>()
+    };
+    let lost = error(&by_boxes);
+    if lost == 0 {
+        return by_boxes;
+    }
+    let speed = (colors.len() / LOOKED_AT).clamp(1, 10) as i32;
+    let by_network = Frame::from_rgb_speed(width, height, pixels, speed);
+    match error(&by_network) < lost {
+        true => by_network,
+        false => by_boxes,
     }
 }
 
@@ -284,6 +325,38 @@ mod tests {
         let indices = tenth.buffer.iter().map(|&it| usize::from(it));
         let tenth = off(&mut indices.flat_map(|it| palette[3 * it..][..3].to_vec()));
         assert!(all < tenth * 2 / 3, "{all} {tenth}");
+    }
+
+    #[test]
+    fn gif_keeps_nearly_all_colors_of_a_picture_with_few_more_than_it_holds() {
+        // 300 colors, 40 pixels of each.
+        let pixels: Vec<u8> = (0..300_u32)
+            .flat_map(|it| {
+                [
+                    (it % 7 * 36) as u8,
+                    (it / 7 * 5) as u8,
+                    (it % 11 * 23) as u8,
+                ]
+                .repeat(40)
+            })
+            .collect();
+        let kept = |frame: &Frame<'_>| {
+            let palette = frame.palette.as_ref().unwrap();
+            let shown = frame
+                .buffer
+                .iter()
+                .map(|&it| &palette[3 * usize::from(it)..][..3]);
+            shown
+                .zip(pixels.chunks_exact(3))
+                .filter(|(shown, color)| shown == color)
+                .count()
+        };
+        let by_network = kept(&Frame::from_rgb_speed(100, 120, &pixels, 1));
+        let found = kept(&frame([100, 120], &pixels));
+        assert!(
+            found > 200 * 40 && by_network < 100 * 40,
+            "{found} {by_network}"
+        );
     }
 
     #[test]

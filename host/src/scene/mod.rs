@@ -26,6 +26,7 @@ mod model;
 pub(crate) mod molecule;
 mod normals;
 mod options;
+pub(crate) mod palette;
 mod placement;
 mod places;
 mod plain_lights;

@@ -1,9 +1,10 @@
 //! Images in fewer and fewer bytes, with their levels.
 
 use crate::scene::Image;
+use crate::scene::palette::{median_cut, nearest};
 use gridel_core::format::record;
 use std::borrow::Cow;
-use std::collections::{HashMap, HashSet};
+use std::collections::HashSet;
 use std::sync::Arc;
 
 /// Most texels of a side.
@@ -254,24 +255,11 @@ impl Stored {
                 let mut bytes: Vec<u8> = Vec::with_capacity(self.bytes() as usize);
                 bytes.extend(palette.as_flattened());
                 bytes.resize(4 * COLORS, 0);
-                let mut nearest: HashMap<Roots, u8> = HashMap::new();
-                bytes.extend(pixels.iter().map(|pixel| {
-                    *nearest.entry(*pixel).or_insert_with(|| {
-                        let entries = (0..).zip(&palette);
-                        let best = entries.min_by_key(|(_, entry)| distance(pixel, entry));
-                        best.map_or(0, |(number, _): (usize, _)| number as u8)
-                    })
-                }));
+                bytes.extend(nearest(&palette, &pixels));
                 bytes
             }
         }
     }
-}
-
-fn distance(a: &Roots, b: &Roots) -> u32 {
-    let apart = |k: usize| u32::from(a[k].abs_diff(b[k])).pow(2);
-    // Green looks brightest, and blue darkest.
-    3 * apart(0) + 6 * apart(1) + apart(2) + 6 * apart(3)
 }
 
 /// At most [`COLORS`] colors for the pixels of an image, and for these with those of its levels. If those of the image fit,
@@ -288,53 +276,6 @@ fn palette(image: &[Roots], all: &[Roots]) -> Vec<Roots> {
         colors.extend(median_cut(&others, COLORS - colors.len()));
     }
     colors
-}
-
-/// At most so many colors for pixels: all of theirs, or the means of boxes by Heckbert's median cut (1982).
-fn median_cut(pixels: &[Roots], most: usize) -> Vec<Roots> {
-    let mut counts: HashMap<Roots, u64> = HashMap::new();
-    for pixel in pixels {
-        *counts.entry(*pixel).or_default() += 1;
-    }
-    let mut all: Vec<(Roots, u64)> = counts.into_iter().collect();
-    all.sort_unstable();
-    let mut boxes = vec![all];
-    while boxes.len() < most {
-        let range = |colors: &[(Roots, u64)], k: usize| {
-            let channel = colors.iter().map(|(color, _)| color[k]);
-            let highest = channel.clone().max().unwrap_or(0);
-            highest - channel.min().unwrap_or(0)
-        };
-        // The longest side of all boxes is cut.
-        let sides = boxes.iter().enumerate().flat_map(|(number, colors)| {
-            [0, 1, 2, 3].map(|k: usize| (range(colors, k), std::cmp::Reverse(number), k))
-        });
-        let Some((1.., std::cmp::Reverse(number), axis)) = sides.max() else {
-            break;
-        };
-        let mut colors = std::mem::take(&mut boxes[number]);
-        colors.sort_unstable_by_key(|(color, _)| (color[axis], *color));
-        let half = colors.iter().map(|(_, count)| count).sum::<u64>() / 2;
-        let mut sum = 0;
-        let middle = colors.iter().position(|(_, count)| {
-            sum += count;
-            sum > half
-        });
-        let middle = middle.unwrap_or(1).clamp(1, colors.len() - 1);
-        boxes.push(colors.split_off(middle));
-        boxes[number] = colors;
-    }
-    let mean = |colors: &Vec<(Roots, u64)>| {
-        let count: u64 = colors.iter().map(|(_, count)| count).sum();
-        [0, 1, 2, 3].map(|k: usize| {
-            let sum: u64 = colors
-                .iter()
-                .map(|(color, count)| u64::from(color[k]) * count)
-                .sum();
-            ((sum + count / 2) / count.max(1)) as u8
-        })
-    };
-    boxes.iter().filter(|it| !it.is_empty()).map(mean).collect()
 }
 
 #[cfg(test)]
