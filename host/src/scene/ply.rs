@@ -50,6 +50,7 @@ fn read(input: Input<'_>) -> Result<Imported, SceneError> {
     let header = header::read(path, bytes, &mut reader, &mut warnings)?;
     let mut payload = Payload::new(path, header.encoding, reader);
     let (mut vertices, mut faces, mut strips) = (Vec::new(), Vec::new(), Vec::new());
+    let mut ignored = Vec::new();
     for element in header.elements.values() {
         header::check(path, element, bytes.len())?;
         match element.name.as_str() {
@@ -60,10 +61,16 @@ fn read(input: Input<'_>) -> Result<Imported, SceneError> {
                 payload.read::<Skipped>(element, &header)?;
                 let sentence = format!("elements {name:?} are ignored");
                 warnings.add_times(SourceSpan::of(path), element.count.max(1), sentence);
+                if element.count > 0 {
+                    ignored.push(format!("{name:?}"));
+                }
             }
         }
     }
     payload.warn(&mut warnings);
+    if faces.is_empty() && strips.is_empty() {
+        return Err(without_surface(path, &ignored));
+    }
     let components = |vertex: &Vertex| vertex.normal.iter().filter(|it| it.is_finite()).count();
     if vertices.iter().map(components).any(|it| it == 1 || it == 2) {
         let sentence = "normals of vertices without nx, ny or nz are ignored";
@@ -85,6 +92,22 @@ fn read(input: Input<'_>) -> Result<Imported, SceneError> {
     };
     Ok(Imported::of(scene, warnings.into_sentences()))
 }
+
+/// The error of a file without faces, whose elements of these names are not read.
+fn without_surface(path: &Path, ignored: &[String]) -> SceneError {
+    let cause = "the file has no faces and no triangle strips";
+    match ignored {
+        [] => SceneError::new(path, cause, "export a mesh; points alone cannot be rendered"),
+        names => SceneError::new(
+            path,
+            format!("{cause}, and its elements {} are not read", names.join(", ")),
+            "export the surface as elements `face` with a list `vertex_indices`",
+        ),
+    }
+}
+
+/// The numbers that end a strip: -1, which is the largest number where a list has no sign.
+const STRIP_ENDS: [i64; 2] = [-1, u32::MAX as i64];
 
 /// The colors of vertices, if all have one.
 fn attributes(path: &Path, vertices: &[Vertex], warnings: &mut Warnings) -> Attributes {
@@ -113,12 +136,6 @@ fn mesh(
     warnings: &mut Warnings,
 ) -> Result<(Shape, Normals), SceneError> {
     let wrong = |cause: String, remedy: &str| SceneError::new(path, cause, remedy);
-    if faces.is_empty() && strips.is_empty() {
-        return Err(wrong(
-            String::from("the file has no faces and no triangle strips"),
-            "export a mesh; points alone cannot be rendered",
-        ));
-    }
     let vertices: Vec<DVec3> = read
         .iter()
         .map(|vertex| DVec3::from_array(vertex.position))
@@ -180,7 +197,7 @@ fn mesh(
         }
     }
     for (number, strip) in strips.iter().enumerate() {
-        for strip in strip.0.split(|&corner| corner == -1) {
+        for strip in strip.0.split(|corner| STRIP_ENDS.contains(corner)) {
             let mut corners = Vec::with_capacity(strip.len());
             for &corner in strip {
                 let index = u32::try_from(corner).ok();
@@ -295,7 +312,7 @@ impl PropertyAccess for Face {
     }
 
     fn set_property(&mut self, name: &str, property: Property) -> PropertyAccessResult {
-        if !["vertex_indices", "vertex_index"].contains(&name) {
+        if !header::CORNERS.contains(&name) {
             return PropertyAccessResult::Ignored;
         }
         fn wide<T: Into<i64>>(list: Vec<T>) -> Vec<i64> {

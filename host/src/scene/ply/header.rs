@@ -98,8 +98,11 @@ fn quoted(line: &[u8]) -> String {
     )
 }
 
+/// The names of the list of a face's vertices.
+pub(super) const CORNERS: [&str; 2] = ["vertex_indices", "vertex_index"];
+
 /// Rejects a number of elements that the file cannot hold at one byte each or more. Also rejects
-/// properties whose types do not match their meaning.
+/// properties whose types do not match their meaning, and faces without vertices.
 pub(super) fn check(path: &Path, element: &ElementDef, bytes: usize) -> Result<(), SceneError> {
     if element.count > bytes || (element.properties.is_empty() && element.count > 0) {
         return Err(SceneError::new(
@@ -134,6 +137,19 @@ pub(super) fn check(path: &Path, element: &ElementDef, bytes: usize) -> Result<(
                 property.name, element.name
             ),
             "export the file again, with properties of the usual types",
+        ));
+    }
+    let has_corners = element.properties.keys().any(|name| CORNERS.contains(&&**name));
+    if ["face", "tristrips"].contains(&&*element.name) && element.count > 0 && !has_corners {
+        let names = element.properties.keys().map(|name| format!("{name:?}"));
+        return Err(SceneError::new(
+            path,
+            format!(
+                "the elements {:?} have no list \"vertex_indices\", but {}",
+                element.name,
+                names.collect::<Vec<_>>().join(", ")
+            ),
+            "rename the list of their vertices to `vertex_indices`",
         ));
     }
     Ok(())

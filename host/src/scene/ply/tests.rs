@@ -315,6 +315,12 @@ fn triangle_strips_are_read() {
     assert_eq!(imported.warnings, [] as [&str; 0]);
     let (_, triangles) = mesh(&imported.scene.objects[0]);
     assert_eq!(triangles, [[0, 1, 2], [2, 1, 3], [2, 3, 4]]);
+    // Without a sign, -1 is the largest number.
+    let unsigned = text.replace("list int int", "list int uint");
+    let unsigned = unsigned.replace("-1", "4294967295");
+    let imported = read(unsigned.as_bytes()).unwrap();
+    let (_, without_sign) = mesh(&imported.scene.objects[0]);
+    assert_eq!(without_sign, triangles);
     for wrong in ["-1 2 3 5", "-1 2 3 -2"] {
         let error = read(text.replace("-1 2 3 4", wrong).as_bytes()).unwrap_err();
         assert!(
@@ -324,6 +330,19 @@ fn triangle_strips_are_read() {
             "{error}"
         );
     }
+}
+
+#[test]
+fn surfaces_that_are_not_read_are_named() {
+    let fans = "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\n\
+                property float z\nelement trifans 1\nproperty list int int vertex_indices\n\
+                end_header\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n";
+    let error = read(fans.as_bytes()).unwrap_err();
+    assert!(error.cause.contains("its elements \"trifans\" are not read"), "{error}");
+    let corners = fans.replace("trifans", "face").replace("vertex_indices", "corners");
+    let error = read(corners.as_bytes()).unwrap_err();
+    let told = ["\"face\" have no list \"vertex_indices\"", "\"corners\""];
+    assert!(told.iter().all(|it| error.cause.contains(it)), "{error}");
 }
 
 #[test]
