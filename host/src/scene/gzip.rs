@@ -16,7 +16,7 @@ const MAGIC: [u8; 2] = [0x1f, 0x8b];
 ///
 /// # Errors
 /// If the file is damaged, comes to more than [`MOST_INPUT`] bytes, or has other bytes than zeros
-/// behind the last member.
+/// behind the last member. Also if it is gzipped twice.
 pub(super) fn inflate(path: &Path, bytes: Vec<u8>) -> Result<Vec<u8>, SceneError> {
     inflate_at_most(path, bytes, MOST_INPUT)
 }
@@ -61,6 +61,13 @@ fn inflate_at_most(path: &Path, bytes: Vec<u8>, most: u64) -> Result<Vec<u8>, Sc
                 grouped(bytes.len())
             ),
             "compress the file again, or cut it off there; only zeros may follow",
+        ));
+    }
+    if inflated.starts_with(&MAGIC) {
+        return Err(SceneError::new(
+            path,
+            "the gzipped file holds another gzipped file",
+            "decompress it once with `gunzip`, and give that file",
         ));
     }
     Ok(inflated)
@@ -119,6 +126,14 @@ mod tests {
             let error = inflate(path, [&whole[..], b"\x1f\x8b\x08"].concat()).unwrap_err();
             assert!(error.cause.contains("is damaged"), "{error}");
         }
+    }
+
+    #[test]
+    fn files_that_are_gzipped_twice_are_named() {
+        let path = Path::new("a.off.gz");
+        let error = inflate(path, gzipped(&gzipped(b"OFF\n"))).unwrap_err();
+        assert!(error.cause.contains("another gzipped file"), "{error}");
+        assert!(error.remedy.contains("gunzip"), "{}", error.remedy);
     }
 
     #[test]
