@@ -4,7 +4,7 @@
 //! an interpolation, they are sampled [`RATE`] times per second and at their keys.
 
 use super::buffers::Buffers;
-use super::curve::Curve;
+use super::curve::{Curve, seconds, tick};
 use super::place::transform;
 use crate::scene::{
     Choice, Interpolation, Key, SceneError, SourceSpan, TICKS_PER_SECOND, Track, TrackTarget,
@@ -136,10 +136,7 @@ impl Motion {
                 )
             };
             found.check(target.property()).map_err(error)?;
-            // A sample at the tick of a key, which has been rounded, must not see what was before it.
-            for key in &mut found.keys {
-                key.seconds = seconds(tick(key.seconds));
-            }
+            found.round_times();
             *curve = Some(found);
         }
         Ok(motion)
@@ -400,16 +397,6 @@ impl Motion {
             place: place.clone(),
         }))
     }
-}
-
-/// The nearest tick, as the blob has times.
-fn tick(seconds: f64) -> i64 {
-    (seconds * f64::from(TICKS_PER_SECOND)).round() as i64
-}
-
-/// The time of a tick.
-fn seconds(tick: i64) -> f64 {
-    tick as f64 / f64::from(TICKS_PER_SECOND)
 }
 
 /// The time of a node's first key.

@@ -26,6 +26,11 @@ pub(super) struct Buffers<'a> {
     bytes: Vec<Rc<[u8]>>,
 }
 
+/// A number, or 0 where it is not finite: the file was warned of.
+fn or_zero(number: f64) -> f64 {
+    if number.is_finite() { number } else { 0.0 }
+}
+
 impl<'a> Buffers<'a> {
     /// Reads all buffers; `blob` is the one in the file itself.
     pub(super) fn read(
@@ -144,7 +149,13 @@ impl<'a> Buffers<'a> {
         };
         let number = self.channel(accessor, count > 0, "colors")?;
         self.values(accessor, [0.0; 4], |bytes| {
-            std::array::from_fn(|k| if k < count { number(bytes, k) } else { 1.0 })
+            std::array::from_fn(|k| {
+                if k < count {
+                    or_zero(number(bytes, k))
+                } else {
+                    1.0
+                }
+            })
         })
     }
 
@@ -155,9 +166,7 @@ impl<'a> Buffers<'a> {
         let found = self.values(accessor, [0.0; 2], |bytes| {
             [number(bytes, 0), number(bytes, 1)]
         })?;
-        // Not a number, nor infinite: the file was warned of.
-        let finite = |it: f64| if it.is_finite() { it } else { 0.0 };
-        Ok(found.into_iter().map(|it| it.map(finite)).collect())
+        Ok(found.into_iter().map(|it| it.map(or_zero)).collect())
     }
 
     /// Reads a component of colors or coordinates: a float, or an integer that means 0 to 1.

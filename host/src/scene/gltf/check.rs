@@ -74,11 +74,18 @@ impl Importer<'_> {
                 }
             }
         }
+        let parts = document.meshes().flat_map(|mesh| mesh.primitives());
+        let uses = parts.flat_map(|part| {
+            let attributes = part.attributes();
+            attributes.map(|(semantic, it)| (it.index(), semantic)).collect::<Vec<_>>()
+        });
+        let uses: HashMap<usize, Semantic> = uses.collect();
         for accessor in document.accessors().filter(stored) {
             if let Some(element) = self.buffers.first_not_finite(&accessor)? {
+                let index = accessor.index();
+                let follows = without_number(uses.get(&index));
                 self.warn(format!(
-                    "element {element} of accessor {} is not a finite number",
-                    accessor.index()
+                    "element {element} of accessor {index} is not a finite number; {follows}"
                 ));
             }
         }
@@ -98,5 +105,15 @@ impl Importer<'_> {
             format!("{place} uses vertex {corner}, and it has {vertices} vertices"),
             "export the file again; vertices count from 0",
         ))
+    }
+}
+
+/// What follows where a number of an attribute is not finite, as part of a sentence.
+fn without_number(semantic: Option<&Semantic>) -> &'static str {
+    match semantic {
+        Some(Semantic::Normals) => "triangles with such a normal are shaded flat",
+        Some(Semantic::Colors(0)) => "such a channel of a color is 0",
+        Some(Semantic::TexCoords(_)) => "such a texture coordinate is 0",
+        _ => "nothing that is drawn uses it",
     }
 }

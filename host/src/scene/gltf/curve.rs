@@ -2,7 +2,7 @@
 
 use super::buffers::Buffers;
 use crate::scene::track::interpolate;
-use crate::scene::{Interpolation, Key, SceneError};
+use crate::scene::{Interpolation, Key, SceneError, TICKS_PER_SECOND};
 use glam::{DAffine3, DMat3, DVec3, DVec4};
 use gltf::animation::Property;
 
@@ -110,6 +110,20 @@ impl Curve {
         curve
     }
 
+    /// Moves keys to the nearest tick, so that a sample there does not see what was before it. Keys that share a tick
+    /// keep their times, which errors show.
+    pub(super) fn round_times(&mut self) {
+        let ticks: Vec<i64> = self.keys.iter().map(|key| tick(key.seconds)).collect();
+        for (number, key) in self.keys.iter_mut().enumerate() {
+            let neighbors = [number.checked_sub(1), Some(number + 1)];
+            let neighbors = neighbors.into_iter().flatten();
+            let mut times = neighbors.filter_map(|it| ticks.get(it));
+            if times.all(|time| *time != ticks[number]) {
+                key.seconds = seconds(ticks[number]);
+            }
+        }
+    }
+
     /// Proves what glTF promises.
     pub(super) fn check(&self, property: Property) -> Result<(), &'static str> {
         if self.keys.is_empty() {
@@ -140,4 +154,14 @@ impl Curve {
         let turns = property == Property::Rotation;
         interpolate(self.interpolation, &self.keys, turns, seconds)
     }
+}
+
+/// The nearest tick, as the blob has times.
+pub(super) fn tick(seconds: f64) -> i64 {
+    (seconds * f64::from(TICKS_PER_SECOND)).round() as i64
+}
+
+/// The time of a tick.
+pub(super) fn seconds(tick: i64) -> f64 {
+    tick as f64 / f64::from(TICKS_PER_SECOND)
 }

@@ -325,19 +325,35 @@ fn broken_channels_are_rejected() {
     assert!(error.cause.contains("do not ascend"), "{error}");
 }
 
+/// Replaces the times of keys, which are 0, 1 and 2 seconds.
+fn set_times(document: &mut Value, times: [f32; 3]) {
+    let uri = document["buffers"][1]["uri"].as_str().unwrap().to_owned();
+    let (head, data) = uri.split_once(',').unwrap();
+    let mut bytes = STANDARD.decode(data).unwrap();
+    for (place, seconds) in times.into_iter().enumerate() {
+        bytes[4 * place..][..4].copy_from_slice(&seconds.to_le_bytes());
+    }
+    document["buffers"][1]["uri"] = json!(format!("{head},{}", STANDARD.encode(bytes)));
+}
+
+#[test]
+fn keys_within_a_tick_are_told_apart() {
+    let mut document = animated(json!([{"channels": [channel(0, 1, "translation")],
+        "samplers": [sampler(3, "LINEAR")]}]));
+    set_times(&mut document, [0.0, 0.000_001, 2.0]);
+    let (tracks, _) = tracks(&document);
+    let times = tracks[0].keys.iter().map(|key| key.seconds);
+    let times: Vec<_> = times.collect();
+    // The compiler rejects the track, and shows both times.
+    assert!(times[0] == 0.0 && times[1] > 0.0 && times[1] < 2e-6, "{times:?}");
+}
+
 /// The seconds of a file have 24 bits, and can lie just behind the tick to which they are rounded.
 #[test]
 fn a_rig_takes_each_step_at_its_tick() {
     let mut document = animated(json!([{"channels": [channel(0, 2, "translation")],
         "samplers": [sampler(3, "STEP")]}]));
-    // Keys at 0, 0.1 and 0.2 seconds in place of 0, 1 and 2.
-    let uri = document["buffers"][1]["uri"].as_str().unwrap().to_owned();
-    let (head, data) = uri.split_once(',').unwrap();
-    let mut bytes = STANDARD.decode(data).unwrap();
-    for (place, seconds) in [0.0_f32, 0.1, 0.2].into_iter().enumerate() {
-        bytes[4 * place..][..4].copy_from_slice(&seconds.to_le_bytes());
-    }
-    document["buffers"][1]["uri"] = json!(format!("{head},{}", STANDARD.encode(bytes)));
+    set_times(&mut document, [0.0, 0.1, 0.2]);
     let nodes = document["nodes"].as_array_mut().unwrap();
     nodes.push(json!({"children": [1]}));
     document["scenes"] = json!([{"nodes": [0, 2]}]);

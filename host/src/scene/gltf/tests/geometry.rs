@@ -75,6 +75,37 @@ fn strips_fans_and_meshes_without_indices() {
     assert_eq!(scene.objects[1].name, "tile 1");
 }
 
+#[test]
+fn numbers_that_are_not_finite_are_reported_with_what_follows() {
+    let mut document = document();
+    let mut numbers = [0.0_f32, 0.0, 1.0].repeat(4);
+    numbers[3] = f32::NAN;
+    let bytes: Vec<u8> = numbers.iter().flat_map(|it| it.to_le_bytes()).collect();
+    let uri = format!("data:application/octet-stream;base64,{}", STANDARD.encode(&bytes));
+    let push = |list: &mut Value, item: Value| list.as_array_mut().unwrap().push(item);
+    push(&mut document["buffers"], json!({"byteLength": 48, "uri": uri}));
+    push(&mut document["bufferViews"], json!({"buffer": 1, "byteLength": 48}));
+    push(
+        &mut document["accessors"],
+        json!({"bufferView": 2, "componentType": 5126, "count": 4, "type": "VEC3"}),
+    );
+    for (attribute, follows) in [
+        ("NORMAL", "triangles with such a normal are shaded flat"),
+        ("COLOR_0", "such a channel of a color is 0"),
+        ("_OTHER", "nothing that is drawn uses it"),
+    ] {
+        let mut document = document.clone();
+        document["meshes"][0]["primitives"][0]["attributes"][attribute] = json!(2);
+        let found = warnings(&document);
+        let told = format!("element 1 of accessor 2 is not a finite number; {follows}");
+        assert!(found.contains(&told), "{found:?}");
+        let attributes = &scene(&document).objects[0].attributes;
+        if attribute == "COLOR_0" {
+            assert_eq!(attributes.colors[1], [0.0, 0.0, 1.0]);
+        }
+    }
+}
+
 /// An accessor may replace elements of its view, or of nothing.
 #[test]
 fn sparse_positions() {
