@@ -39,6 +39,32 @@ const TOPICS: [(&str, &str); 9] = [
     ("paper", include_str!("../../docs/PAPER.md")),
 ];
 
+/// The command `help` of a program with a command for each of its subjects, as completions of shells list them.
+#[cfg(feature = "shell")]
+pub fn with_subjects(program: &Command) -> Command {
+    let subject = |name: &'static str| Command::new(name).disable_help_flag(true);
+    let commands = program.get_subcommands().map(|command| {
+        // The name must outlive the command, and the program ends soon.
+        let named = subject(command.get_name().to_owned().leak());
+        named.about(command.get_about().cloned().unwrap_or_default())
+    });
+    let about = |name: &str| {
+        let mut lines = TOPIC_LIST.lines();
+        let line = lines.find_map(|line| line.trim_start().strip_prefix(name));
+        line.unwrap_or_default().trim_start()
+    };
+    // `check` is a command, too.
+    let topics = TOPICS.iter().map(|&(name, _)| name);
+    let topics = topics.filter(|name| program.find_subcommand(name).is_none());
+    let topics = topics.map(|name| subject(name).about(about(name)));
+    let help = program.find_subcommand("help");
+    let help = help.and_then(Command::get_about).cloned();
+    Command::new("help")
+        .about(help.unwrap_or_default())
+        .disable_help_subcommand(true)
+        .subcommands(commands.chain(topics))
+}
+
 /// Prints the help of a command of `program`, a document, or the list of both.
 pub fn run(arguments: &Arguments, mut program: Command) -> Result<(), Failure> {
     let Some(subject) = arguments.subject.as_deref() else {

@@ -1,6 +1,7 @@
 //! `gridel completions` and `gridel man`: completion scripts for shells, and man pages.
 
 use super::failure::Failure;
+use super::help;
 use super::output::{print, write_texts};
 use clap::{Args, Command};
 use clap_complete::Shell;
@@ -31,6 +32,9 @@ pub struct ManArguments {
 
 /// Prints completions.
 pub fn completions(arguments: &CompletionArguments, mut program: Command) -> Result<(), Failure> {
+    // The program itself takes a subject as an argument, and has its own error for others.
+    let help = help::with_subjects(&program);
+    program = program.mut_subcommand("help", |_| help);
     let mut text = Vec::new();
     clap_complete::generate(arguments.shell, &mut program, "gridel", &mut text);
     print(String::from_utf8_lossy(&text))

@@ -10,6 +10,11 @@ fn completions_name_commands_and_options() {
         for word in ["render", "accuracy", "lattice-bits", "stm32vldiscovery"] {
             assert!(text.contains(word), "{shell}: no {word}");
         }
+        // Subjects of `gridel help`.
+        for topic in ["benchmarks", "speed against other libraries"] {
+            let is_named = text.contains(topic) || (shell == "bash" && topic.contains(' '));
+            assert!(is_named, "{shell}: no {topic}");
+        }
     }
     folder.fails(2, &["completions", "tcsh"], &["[possible values: bash"]);
 }
