@@ -15,9 +15,14 @@ impl Lattice {
         bits: u8,
         coarser: i32,
     ) -> Result<Self, CompileError> {
-        let half = ((highest - lowest) * 0.5).max_element();
+        let mut half = ((highest - lowest) * 0.5).max_element();
         if !half.is_finite() {
             return Err(CompileError::Extent { size: 2.0 * half });
+        }
+        let middle = (lowest + highest) * 0.5;
+        // Planes through one point: as far as they are from the camera that is supplied.
+        if half == 0.0 && middle != DVec3::ZERO {
+            half = middle.abs().max_element().max(1.0);
         }
         // Two steps to spare, for the rounding of the origin and of the coordinates.
         let units = f64::from(i16::MAX) - 2.0 * exp2(16 - i32::from(bits)).max(1.0);
@@ -40,7 +45,6 @@ impl Lattice {
             origin: DVec3::ZERO,
         };
         let step = lattice.step();
-        let middle = (lowest + highest) * 0.5;
         let steps = (middle / step).round();
         if steps.abs().max_element() > exp2(52) {
             return Err(CompileError::TooFar {
@@ -62,6 +66,24 @@ fn log2_below(x: f64) -> i32 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::compile::{Options, compile};
+    use crate::scene::read;
+
+    #[test]
+    fn planes_through_one_point_keep_their_places() {
+        for (place, bits) in [(0.3, 10), (0.3, 24), (-1e3, 16), (1e9, 12), (1e-9, 16)] {
+            let file =
+                format!("[[object]]\nkind = 'plane'\npoint = [0, {place}, 0]\nnormal = [0, 1, 0]");
+            let imported = read("ground.toml".as_ref(), file.into(), &Default::default());
+            let options = Options {
+                lattice_bits: bits,
+                ..Options::default()
+            };
+            let report = compile(&imported.unwrap().scene, &options).unwrap().report;
+            let most = f64::max(1.0, f64::abs(place)) * exp2(1 - i32::from(bits));
+            assert!(report.largest_displacement <= most, "{place} {bits}");
+        }
+    }
 
     #[test]
     fn extents_of_every_size_have_a_lattice_or_an_error() {
