@@ -27,6 +27,17 @@ fn patches_have_their_normals() {
 }
 
 #[test]
+fn patches_with_a_normal_of_length_0_are_flat() {
+    let patch = "pp 3\n0 0 0 0 0 1\n1 0 0 0 0 0\n0 1 0 .5 0 1\n";
+    let imported = read(&format!("{VIEW}f 1 1 1 1 0 0 0 0\n{patch}")).unwrap();
+    assert!(imported.scene.objects[0].normals.is_flat());
+    let [warning] = &imported.warnings[..] else {
+        panic!("{:?}", imported.warnings);
+    };
+    assert!(warning.contains("t.nff:11: a normal is 0 0 0"), "{warning}");
+}
+
+#[test]
 fn everything_the_format_has() {
     let text = format!(
         "b .1 .2 .3 # sky\n{VIEW}l 1 2 3\nl 4 5 6\nl 4 5 6 1 .5 0\nf 1 .5 0 .8 .25 20 .5 1.5\ns 1 2 3 -4\n\

@@ -1,4 +1,6 @@
 use super::*;
+use crate::compile::{Options, compile};
+use crate::scene::{Files, read_among};
 
 #[test]
 fn every_texel_with_light_is_drawn() {
@@ -145,4 +147,27 @@ fn what_is_too_bright_is_limited_with_a_warning_or_refused() {
     };
     let error = EnvironmentData::of(&Environment::of(gray), Up::Y, &plain).unwrap_err();
     assert!(error.to_string().contains("the environment"), "{error}");
+}
+
+#[test]
+fn whole_turns_of_a_picture_change_nothing() {
+    let mut files = Files::new();
+    let picture = include_bytes!("../../../../../fixtures/tiles.png");
+    files.insert("tiles.png", picture.to_vec());
+    let mut compiled = |rotation: &str| {
+        let file = format!(
+            "[environment]\nimage = 'tiles.png'\nsize = 16\nrotation = {rotation}\n\
+             [[object]]\nkind = 'sphere'\ncenter = [0, 0, 0]\nradius = 1"
+        );
+        files.insert("turned.toml", file.into_bytes());
+        let imported = read_among("turned.toml".as_ref(), &files, &Default::default()).unwrap();
+        let blob = compile(&imported.scene, &Options::default()).unwrap().blob;
+        blob.bytes().to_vec()
+    };
+    let [still, turned] = ["0", "37.5"].map(&mut compiled);
+    assert_ne!(still, turned);
+    for whole in ["360", "-720", "3.6e17"] {
+        assert_eq!(compiled(whole), still, "{whole}");
+    }
+    assert_eq!(compiled("397.5"), turned);
 }
