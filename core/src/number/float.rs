@@ -261,12 +261,7 @@ macro_rules! float_number {
 
             #[inline(always)]
             fn far(q13: i64) -> Self {
-                // Boards convert 32 bits in one instruction, and 64 in about forty.
-                let number = match i32::try_from(q13) {
-                    Ok(near) if cfg!(target_pointer_width = "32") => near as $float,
-                    _ => q13 as $float,
-                };
-                number * (1.0 / 8192.0)
+                q13 as $float * (1.0 / 8192.0)
             }
 
             #[inline(always)]
