@@ -16,6 +16,8 @@ mod crossings;
 mod distance;
 #[cfg(feature = "all-structures")]
 mod dynamic;
+#[cfg(all(feature = "avx2", target_arch = "x86_64"))]
+mod four;
 mod hit;
 mod placed;
 mod search;
@@ -25,6 +27,9 @@ mod unbounded;
 pub use all_hits::{HitList, all_hits, count_hits};
 pub(crate) use attributes::Tangent;
 pub use contains::{Solid, containment_ray, contains};
+#[cfg(all(feature = "avx2", target_arch = "x86_64"))]
+#[doc(hidden)]
+pub use four::{FourReadyRays, ReadyRay};
 pub use hit::{Hit, PrimitiveHit};
 
 use crate::accel::stack::StackView;
