@@ -2,8 +2,8 @@
 //!
 //! `search` tests the primitives of a structure's leaves, `clusters` those in leaves of eight, `unbounded` those that
 //! lie in no structure. `collect` keeps or lists the hits of a search. `all_hits` lists all hits with the search in
-//! `crossings`, and `contains` counts them. `hit` is the answer, `smooth` its normal for shading, `attributes` its
-//! vertex attributes, and `distance` its form for range finders.
+//! `crossings`, `every_hit` lists them on hosts, and `contains` counts them. `hit` is the answer, `smooth` its normal for
+//! shading, `attributes` its vertex attributes, and `distance` its form for range finders.
 
 mod all_hits;
 mod attributes;
@@ -18,6 +18,8 @@ mod distance;
 mod dynamic;
 #[cfg(all(feature = "avx2", target_arch = "x86_64"))]
 mod four;
+#[cfg(feature = "std")]
+mod every_hit;
 mod hit;
 mod placed;
 mod search;
@@ -30,6 +32,8 @@ pub use contains::{Solid, containment_ray, contains};
 #[cfg(all(feature = "avx2", target_arch = "x86_64"))]
 #[doc(hidden)]
 pub use four::{FourReadyRays, ReadyRay};
+#[cfg(feature = "std")]
+pub use every_hit::{OrderedHit, every_hit};
 pub use hit::{Hit, PrimitiveHit};
 
 use crate::accel::stack::StackView;
