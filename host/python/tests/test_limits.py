@@ -4,6 +4,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from test_scene import cube  # noqa: F401
 
 import gridel
 
@@ -164,3 +165,43 @@ def test_limits_of_every_shape_leave_out_what_lies_beyond(name, format):
     assert (scene.any(near, format=format) == (counts > 0)).mean() > 0.99
     first = scene.cast(near, format=format)
     assert np.array_equal(np.isfinite(first.t), scene.any(near, format=format))
+
+
+@pytest.mark.parametrize("format", ["fixed", "f32", "f64"])
+def test_t_is_never_outside_of_the_interval(format):
+    corners = np.array([[-1, -1, 1 / 3], [1, -1, 1 / 3], [0, 1, 1 / 3], [0, 0, -1]])
+    scene = gridel.Scene.from_arrays(corners, [[0, 1, 2], [0, 1, 3]])
+    heights = 1 / 3 + np.linspace(-3e-7, 3e-7, 301)
+    rays = np.zeros((301, 8))
+    rays[:, :3] = np.column_stack([np.full((301, 2), 0.1), heights])
+    rays[:, 6], rays[:, 7] = -1, np.inf
+    for least in (0, 1e-9):
+        rays[:, 3] = least
+        assert (scene.cast(rays, format=format).t >= least).all()
+        assert (scene.all(rays, format=format).t >= least).all()
+    rays[:, 2] += 1
+    rays[:, 3], rays[:, 7] = 0, 1
+    t = scene.cast(rays, format=format).t
+    assert (t[np.isfinite(t)] <= 1).all() and np.isfinite(t).any()
+    # The t of shapes that are not triangles, too.
+    assert (scene.all(rays, format=format).t <= 1).all()
+
+
+@pytest.mark.parametrize("format", ["fixed", "f32", "f64"])
+def test_hits_closer_than_the_lattice_come_in_the_order_of_t(format):
+    square = np.array([[-1, -1, 0], [1, -1, 0], [1, 1, 0], [-1, 1, 0.0]])
+    vertices = np.concatenate([square + [0, 0, 1e-9 * k] for k in range(3)])
+    faces = np.concatenate([np.array([[0, 1, 2], [0, 2, 3]]) + 4 * k for k in range(3)])
+    scene = gridel.Scene.from_arrays(vertices, faces)
+    rays = [[0.1, 0.2, 1, 0, 0, -1], [0.1, 0.2, -1, 0, 0, 1]]
+    every = scene.all(rays, format=format)
+    assert every.ray.tolist() == [0] * 3 + [1] * 3
+    assert (np.diff(every.t[:3]) >= 0).all() and (np.diff(every.t[3:]) >= 0).all()
+
+
+def test_intervals_limit_hits(cube):
+    rays = [[0.3, 0.6, -2, 0, 0, 0, 1, 1.9], [0.3, 0.6, -2, 2.5, 0, 0, 1, np.inf]]
+    hits = cube.cast(rays)
+    assert hits.t.tolist() == [np.inf, 3.0]
+    assert cube.any(rays).tolist() == [False, True]
+    assert cube.count(rays).tolist() == [0, 1]
