@@ -2,8 +2,8 @@
 //!
 //! `search` tests the primitives of a structure's leaves, `clusters` those in leaves of eight, `unbounded` those that
 //! lie in no structure. `collect` keeps or lists the hits of a search. `all_hits` lists all hits with the search in
-//! `crossings`, `every_hit` lists them on hosts, and `contains` counts them. `hit` is the answer, `smooth` its normal for
-//! shading, `attributes` its vertex attributes, and `distance` its form for range finders.
+//! `crossings`, `every_hit` visits them in no order, and `contains` counts them. `hit` is the answer, `smooth` its normal
+//! for shading, `attributes` its vertex attributes, and `distance` its form for range finders.
 
 mod all_hits;
 mod attributes;

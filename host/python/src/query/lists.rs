@@ -2,8 +2,10 @@
 
 use gridel_core::format::limits::MAX_STACK_DEPTH;
 use gridel_core::{
-    Accel, EveryHit, HitList, NoCount, Number, PrimitiveHit, Ray, Scene, Stack, all_hits, every_hit,
+    Accel, HitList, NoCount, Number, OrderedHit, PrimitiveHit, Ray, Scene, Stack, all_hits,
+    every_hit,
 };
+use std::cmp::Ordering;
 use std::ops::ControlFlow;
 
 /// Hits of most rays. A walk through the scene that fills this list ends early.
@@ -17,7 +19,7 @@ const MANY: usize = 64;
 pub struct Lists<N: Number> {
     stack: Stack<MAX_STACK_DEPTH>,
     many: HitList<N, MANY>,
-    every: EveryHit<N>,
+    every: Vec<OrderedHit<N>>,
     /// Hits of a ray that are needed.
     most: usize,
 }
@@ -28,7 +30,7 @@ impl<N: Number> Lists<N> {
         Box::new(Self {
             stack: Stack::new(),
             many: HitList::new(),
-            every: EveryHit::new(),
+            every: Vec::new(),
             most,
         })
     }
@@ -67,8 +69,14 @@ impl<N: Number> Lists<N> {
             all_hits::<N, A, _, MANY>(scene, ray, stack, &mut self.many, &mut NoCount);
             self.many.iter().skip(FEW).try_for_each(hit)
         } else {
-            every_hit::<N, A>(scene, ray, stack, &mut self.every);
-            self.every.iter().skip(FEW).try_for_each(hit)
+            let every = &mut self.every;
+            every.clear();
+            every_hit::<N, A>(scene, ray, stack, &mut |hit| every.push(hit));
+            every.sort_unstable_by(|a, b| a.partial_cmp(b).unwrap_or(Ordering::Equal));
+            // A structure can list a primitive in several cells.
+            every.dedup();
+            let mut behind = every.iter().skip(FEW);
+            behind.try_for_each(|found| hit(found.hit()))
         };
     }
 }
