@@ -88,12 +88,12 @@ pub use observe::event::{Event, RayKind};
 #[cfg(all(feature = "avx2", target_arch = "x86_64"))]
 #[doc(hidden)]
 pub use query::{FourReadyRays, ReadyRay};
-#[cfg(feature = "std")]
-pub use query::{OrderedHit, every_hit};
 pub use query::{
     Hit, HitList, PrimitiveHit, Solid, all_hits, any_hit, closest_hit, closest_primitive,
     containment_ray, contains, count_hits,
 };
+#[cfg(feature = "std")]
+pub use query::{OrderedHit, every_hit};
 #[cfg(all(feature = "avx2", target_arch = "x86_64"))]
 #[doc(hidden)]
 pub use ray::FourGivenRays;

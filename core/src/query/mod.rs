@@ -16,10 +16,10 @@ mod crossings;
 mod distance;
 #[cfg(feature = "all-structures")]
 mod dynamic;
-#[cfg(all(feature = "avx2", target_arch = "x86_64"))]
-mod four;
 #[cfg(feature = "std")]
 mod every_hit;
+#[cfg(all(feature = "avx2", target_arch = "x86_64"))]
+mod four;
 mod hit;
 mod placed;
 mod search;
@@ -29,11 +29,11 @@ mod unbounded;
 pub use all_hits::{HitList, all_hits, count_hits};
 pub(crate) use attributes::Tangent;
 pub use contains::{Solid, containment_ray, contains};
+#[cfg(feature = "std")]
+pub use every_hit::{OrderedHit, every_hit};
 #[cfg(all(feature = "avx2", target_arch = "x86_64"))]
 #[doc(hidden)]
 pub use four::{FourReadyRays, ReadyRay};
-#[cfg(feature = "std")]
-pub use every_hit::{OrderedHit, every_hit};
 pub use hit::{Hit, PrimitiveHit};
 
 use crate::accel::stack::StackView;
