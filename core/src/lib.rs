@@ -85,10 +85,18 @@ pub use format::{Aligned, BlobError, Effects, Kind, Requirements, Structure};
 pub use number::{Angle, Fixed, Format};
 pub use observe::count::{Counters, NoCount, Observer};
 pub use observe::event::{Event, RayKind};
+#[cfg(all(feature = "avx2", target_arch = "x86_64"))]
+#[doc(hidden)]
+pub use query::{FourReadyRays, ReadyRay};
 pub use query::{
     Hit, HitList, PrimitiveHit, Solid, all_hits, any_hit, closest_hit, closest_primitive,
     containment_ray, contains, count_hits,
 };
+#[cfg(feature = "std")]
+pub use query::{OrderedHit, every_hit};
+#[cfg(all(feature = "avx2", target_arch = "x86_64"))]
+#[doc(hidden)]
+pub use ray::FourGivenRays;
 pub use ray::{Pencil, Ray, RayError};
 pub use render::{Camera, Renderer, Rgb565, Rgb888, Settings, Up, Workspace};
 pub use scene::{Motion, Names, Parts, Poses, PosesView, Position, Prevalidated, Scene};

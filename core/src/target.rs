@@ -85,6 +85,20 @@ impl<T, const COUNT: usize> InSomeBuilds<T, COUNT> {
     }
 }
 
+/// Returns a value that only builds with [`WIDE`] hold. Unlike [`InSomeBuilds::new`] it is inlined with all that it
+/// calls, so that no part of the value goes through memory.
+#[inline(always)]
+pub(crate) fn wide_only<T>(make: impl FnOnce() -> T) -> WideOnly<T> {
+    #[cfg(feature = "wide")]
+    let held = [make()];
+    #[cfg(not(feature = "wide"))]
+    let held = {
+        let _ = make;
+        []
+    };
+    InSomeBuilds(held)
+}
+
 /// True if this core multiplies only 32 bits to 32. That is the Cortex-M0, the only family of Arm's without an
 /// instruction that compares and swaps.
 pub(crate) const NARROW_PRODUCTS: bool =

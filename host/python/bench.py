@@ -112,6 +112,39 @@ def rates(mesh, count, repeats):
     print(f"| `contains_points` | points in the box | {found['gridel']:.2f} | {found['trimesh']:.2f} | {occupancy} |")
 
 
+def many_hits(repeats):
+    """Rays and points inside of boxes around each other, which come in no order: ms per ray."""
+    box = trimesh.creation.box()
+    print("\n| query | hits per ray | gridel | trimesh, embreex | Open3D |")
+    print("|---|---|---|---|---|")
+    for count in (100, 1000, 4000):
+        vertices = np.concatenate([box.vertices * (1 + 1e-3 * k) for k in range(count)])
+        faces = np.concatenate([box.faces + 8 * k for k in range(count)])
+        mesh = trimesh.Trimesh(vertices, faces, process=False)
+        points = np.random.default_rng(4).uniform(-0.4, 0.4, (200, 3))
+        directions = np.tile([0.3, 0.5, 1.0], (200, 1))
+        rays = np.hstack([points, directions]).astype(np.float32)
+        mine, embree = gridel.trimesh.RayMeshIntersector(mesh, threads=1), Embree(mesh)
+        scenes = [RaycastingScene()] + ([open3d.t.geometry.RaycastingScene(nthreads=1)] if open3d else [])
+        for scene in scenes:
+            scene.add_triangles(vertices.astype(np.float32), faces.astype(np.uint32))
+            scene.cast_rays(rays[:1])
+        of_scenes = dict(zip(("gridel", "Open3D"), scenes))
+        queries = {
+            "intersects_id": [lambda it: it.intersects_id(points, directions, max_hits=2 * count), None],
+            "intersects_id(max_hits=1)": [lambda it: it.intersects_id(points, directions, max_hits=1), None],
+            "contains_points": [lambda it: it.contains_points(points), None],
+            "count_intersections": [None, lambda it: it.count_intersections(rays, nthreads=1)],
+            "list_intersections": [None, lambda it: it.list_intersections(rays, nthreads=1)],
+        }
+        for name, (of_trimesh, of_open3d) in queries.items():
+            peers = {"gridel": mine, "trimesh": embree} if of_trimesh else of_scenes
+            work = {peer: (lambda it=it: (of_trimesh or of_open3d)(it)) for peer, it in peers.items()}
+            found = race(work, len(points), repeats)
+            cells = [f"{1e-3 / found[peer]:.3f}" if peer in found else "-" for peer in ("gridel", "trimesh", "Open3D")]
+            print(f"| `{name}` | {count:,} | {' | '.join(cells)} |", flush=True)
+
+
 def accuracy():
     ball = trimesh.creation.icosphere(subdivisions=4)
     rng = np.random.default_rng(3)
@@ -149,4 +182,5 @@ if __name__ == "__main__":
     loaded = trimesh.load(given.mesh, force="mesh")
     print(f"{len(loaded.faces):,} triangles, {given.rays:,} rays, one thread\n")
     rates(loaded, given.rays, given.repeats)
+    many_hits(given.repeats)
     accuracy()

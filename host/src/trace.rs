@@ -2,11 +2,16 @@
 
 mod carry;
 mod direction_scale;
+#[cfg(target_arch = "x86_64")]
+mod four;
 mod frame;
 mod rejection;
 mod unit_ray;
 
 pub use direction_scale::DirectionScale;
+#[cfg(target_arch = "x86_64")]
+#[doc(hidden)]
+pub use four::Four;
 pub use frame::Frame;
 pub use rejection::{Rejection, Rejections};
 pub use unit_ray::UnitRay;
@@ -203,6 +208,10 @@ fn with_format<N: Number>(
 ) -> Result<Rejections, MissingStructure> {
     let (any, count) = (query.any, &mut NoCount);
     let scene = &chosen(scene, query.structure)?;
+    #[cfg(target_arch = "x86_64")]
+    if let Some(rejections) = four::trace(scene, rays, query, hits) {
+        return Ok(rejections);
+    }
     // Hosts and boards trace with these; the others are for comparison.
     Ok(match query.structure {
         Structure::Bvh => through::<N, Bvh, _>(scene, rays, any, hits, count),

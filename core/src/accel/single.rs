@@ -27,6 +27,12 @@ impl Single {
     pub(super) fn of<N: CullArithmetic>(ray: &Ray<N>) -> Self {
         let lanes = |v: [N; 3]| Vec4::new(v[0].to_f32(), v[1].to_f32(), v[2].to_f32(), 1.0);
         let (origin, slope) = (lanes(ray.origin), lanes(ray.slope));
+        Self::of_lanes(origin, slope)
+    }
+
+    /// The factors and the offsets for coordinates and slopes in lanes.
+    #[inline(always)]
+    pub(super) fn of_lanes(origin: Vec4, slope: Vec4) -> Self {
         let level = Vec4::splat(1.0 / 4096.0);
         let steepness = slope.abs();
         let parallel = steepness.cmple(level);

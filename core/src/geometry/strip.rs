@@ -20,6 +20,9 @@
 //! [`accept_in_box`](crate::accel::clamp::accept_in_box)). That interval also starts below 0 if on every axis the box
 //! does not begin ahead of the ray's start. This is true if some vertex lies there. No hit starts below 0.
 
+#[cfg(all(feature = "avx2", target_arch = "x86_64"))]
+mod four;
+
 use crate::format::cluster::{Rows, Strip};
 use crate::format::record::{Vertex16, Vertex24};
 use crate::geometry::Project;
@@ -41,6 +44,9 @@ pub(crate) struct StripRay<N> {
 }
 
 impl<N: Project> StripRay<N> {
+    /// The axes of the roles for each major axis.
+    const AXES: [u32; 3] = [0b00_10_01, 0b01_00_10, 0b10_01_00];
+
     /// A ray for the strips of a scene.
     #[inline(always)]
     pub(crate) fn new(ray: &Ray<N>, strips: &Strips<'_>) -> Self {
@@ -54,10 +60,11 @@ impl<N: Project> StripRay<N> {
         };
         let below = |axis: usize| u32::from(ray.slope[axis] < N::ZERO);
         let signs = below(0) | below(1) << 1 | below(2) << 2;
+        let [first, second, third] = Self::AXES;
         let (axes, descends) = match ray.major {
-            0 => (0b00_10_01, signs >> 1 | signs << 2),
-            1 => (0b01_00_10, signs >> 2 | signs << 1),
-            _ => (0b10_01_00, signs),
+            0 => (first, signs >> 1 | signs << 2),
+            1 => (second, signs >> 2 | signs << 1),
+            _ => (third, signs),
         };
         Self {
             projection,

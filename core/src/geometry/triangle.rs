@@ -153,7 +153,7 @@ pub(crate) fn is_narrow(sections: &Sections<'_>) -> bool {
 pub(crate) struct Projection<N> {
     pub(crate) axes: [AxisProjection<N>; 3],
     pub(crate) shear: [N; 2],
-    major: usize,
+    pub(in crate::geometry) major: usize,
 }
 
 /// Marks a major axis that is not known at compile time.

@@ -8,6 +8,8 @@ use crate::accel::{Accel, Number, StackView};
 use crate::format::limits::{INSTANCES, UNBOUNDED};
 use crate::geometry::{LATER, LEAVING, Part, PrimitiveId};
 use crate::instances::map::PlacedRay;
+#[cfg(feature = "std")]
+use crate::observe::count::NoCount;
 use crate::observe::count::Observer;
 use crate::query::candidate::Candidate;
 use crate::query::collect::Collect;
@@ -32,9 +34,9 @@ type Order<N> = (
 
 /// A hit with its place in the order.
 #[derive(Clone, Copy, Debug)]
-struct Entry<N: Number> {
-    order: Order<N>,
-    hit: PrimitiveHit<N>,
+pub(super) struct Entry<N: Number> {
+    pub(super) order: Order<N>,
+    pub(super) hit: PrimitiveHit<N>,
 }
 
 /// A list for some of the hits of a ray, in order. [`all_hits`] fills it and continues from it.
@@ -142,6 +144,8 @@ pub fn all_hits<N: Number, A: Accel, C: Observer, const SIZE: usize>(
         after: list.last,
         start_t: ray.start_t,
         placed: None,
+        #[cfg(feature = "std")]
+        every: None,
     };
     collect::<N, A, C>(scene, ray, &mut collector, stack, count);
     list.last = list.entries.last().map(|entry| entry.order);
@@ -195,6 +199,9 @@ struct Collector<'l, N: Number> {
     start_t: N::Wide,
     /// The instance that is searched; none for the scene's own objects.
     placed: Option<PlacedSearch<N>>,
+    /// Takes all hits, in any order, in place of the list.
+    #[cfg(feature = "std")]
+    every: Option<&'l mut dyn FnMut(Entry<N>)>,
 }
 
 /// The instance that is searched.
@@ -211,6 +218,11 @@ struct PlacedSearch<N: Number> {
 impl<N: Number> Collector<'_, N> {
     /// Inserts a hit in order, unless it was listed before.
     fn insert(&mut self, order: Order<N>, hit: PrimitiveHit<N>) {
+        #[cfg(feature = "std")]
+        if let Some(every) = &mut self.every {
+            every(Entry { order, hit });
+            return;
+        }
         if self.after.as_ref().is_some_and(|after| order <= *after) {
             return;
         }
@@ -284,6 +296,26 @@ impl<N: Number> Collect<N> for &mut Collector<'_, N> {
         // That of the part's ray stays.
         None
     }
+}
+
+/// Finds all hits of a ray in one walk, in any order. A hit can come more than once.
+#[cfg(feature = "std")]
+pub(super) fn collect_every<N: Number, A: Accel>(
+    scene: &Scene<'_>,
+    ray: &Ray<N>,
+    stack: &mut StackView,
+    every: &mut dyn FnMut(Entry<N>),
+) {
+    // Empty, it sets no limit to the search.
+    let mut unused = Vec::<_, 1>::new();
+    let mut collector = Collector {
+        entries: unused.as_mut_view(),
+        after: None,
+        start_t: ray.start_t,
+        placed: None,
+        every: Some(every),
+    };
+    collect::<N, A, _>(scene, ray, &mut collector, stack, &mut NoCount);
 }
 
 /// Finds the hits of a ray.

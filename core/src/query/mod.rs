@@ -2,8 +2,8 @@
 //!
 //! `search` tests the primitives of a structure's leaves, `clusters` those in leaves of eight, `unbounded` those that
 //! lie in no structure. `collect` keeps or lists the hits of a search. `all_hits` lists all hits with the search in
-//! `crossings`, and `contains` counts them. `hit` is the answer, `smooth` its normal for shading, `attributes` its
-//! vertex attributes, and `distance` its form for range finders.
+//! `crossings`, `every_hit` visits them in no order, and `contains` counts them. `hit` is the answer, `smooth` its normal
+//! for shading, `attributes` its vertex attributes, and `distance` its form for range finders.
 
 mod all_hits;
 mod attributes;
@@ -16,6 +16,10 @@ mod crossings;
 mod distance;
 #[cfg(feature = "all-structures")]
 mod dynamic;
+#[cfg(feature = "std")]
+mod every_hit;
+#[cfg(all(feature = "avx2", target_arch = "x86_64"))]
+mod four;
 mod hit;
 mod placed;
 mod search;
@@ -25,6 +29,11 @@ mod unbounded;
 pub use all_hits::{HitList, all_hits, count_hits};
 pub(crate) use attributes::Tangent;
 pub use contains::{Solid, containment_ray, contains};
+#[cfg(feature = "std")]
+pub use every_hit::{OrderedHit, every_hit};
+#[cfg(all(feature = "avx2", target_arch = "x86_64"))]
+#[doc(hidden)]
+pub use four::{FourReadyRays, ReadyRay};
 pub use hit::{Hit, PrimitiveHit};
 
 use crate::accel::stack::StackView;

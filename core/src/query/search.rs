@@ -19,7 +19,7 @@ use crate::query::candidate::Candidate;
 use crate::query::collect::Collect;
 use crate::ray::Ray;
 use crate::scene::Scene;
-use crate::target::{SMALL, WideOnly, inline_on_boards};
+use crate::target::{SMALL, WideOnly, inline_on_boards, wide_only};
 
 /// The search for hits, one leaf at a time: for the best of them, or for the hits that `F` collects.
 pub(super) struct Search<'s, 'a, N: Number, K, F> {
@@ -46,7 +46,10 @@ impl<'s, 'a, N: Number, K: Culling<N>, F: Collect<N>> Search<'s, 'a, N, K, F> {
             } else {
                 N::ZERO
             },
-            strip_ray: WideOnly::new(|| StripRay::new(ray, &scene.space.shapes.clusters().strips)),
+            strip_ray: wide_only(
+                #[inline(always)]
+                || StripRay::new(ray, &scene.space.shapes.clusters().strips),
+            ),
             tmax: ray.tmax,
             found,
         }
@@ -359,6 +362,7 @@ pub(super) fn search_structure<N: Number, A: Accel, C: Observer, F: Collect<N>, 
             &cull,
             stack,
             count,
+            #[cfg_attr(feature = "wide", inline(always))]
             |leaf, count| {
                 search.leaf::<A, C, ANY>(leaf, count);
                 search.found.is_any()
@@ -372,6 +376,7 @@ pub(super) fn search_structure<N: Number, A: Accel, C: Observer, F: Collect<N>, 
             &cull,
             stack,
             count,
+            #[cfg_attr(feature = "wide", inline(always))]
             |leaf, count| {
                 search.leaf::<A, C, ANY>(leaf, count);
                 let found = A::ONE_COPY && any && search.found.is_any();

@@ -1,11 +1,18 @@
 //! Rays, in the form that all kernels use.
 
 mod error;
+#[cfg(all(feature = "avx2", target_arch = "x86_64"))]
+mod four;
 mod given;
 mod pencil;
 mod start;
 
 pub use error::RayError;
+#[cfg(all(feature = "avx2", target_arch = "x86_64"))]
+#[doc(hidden)]
+pub use four::FourGivenRays;
+#[cfg(all(feature = "avx2", target_arch = "x86_64"))]
+pub(crate) use four::FourRays;
 pub(crate) use given::{FarPoint, Given};
 pub use pencil::Pencil;
 

@@ -76,7 +76,7 @@ pub(super) fn end_after<N: Arithmetic>(tmax: N::Wide, start_t: N::Wide) -> N {
 /// The greatest distance of a ray's start from the lattice's middle on any axis, with 13 fraction bits. On its way
 /// through the scene's box, which ends at 2^15 units, a ray rises by at most 2^16. Kernels keep their ranges up to
 /// here.
-const REACH: i64 = (3 * i16::MAX as i64) << 13;
+pub(super) const REACH: i64 = (3 * i16::MAX as i64) << 13;
 
 /// Returns true if every ray that is moved by this length along its major axis starts within [`REACH`]. Slopes are at
 /// most 1, and along its major axis a ray moves to the box. Always false for saturated numbers.

@@ -231,6 +231,8 @@ impl<'a> Scene<'a> {
     }
 
     /// The instances, in the order of the hierarchy above them.
+    // Every query calls it.
+    #[cfg_attr(feature = "wide", inline(always))]
     pub fn instances(&self) -> &'a [Instance] {
         self.placed.get().map_or(&[], |placed| placed.top.instances)
     }

@@ -59,11 +59,19 @@ impl F32x8 {
     #[inline(always)]
     pub fn from_i24(_: Avx2, low: &[u16; 8], high: &[u16; 4]) -> Self {
         Self(avx2!({
-            let words = _mm_cvtepu16_epi32(_mm_loadl_epi64(high.as_ptr().cast()));
+            let bytes = _mm256_broadcastq_epi64(_mm_loadl_epi64(high.as_ptr().cast()));
             // The byte of each lane moves to the top, and back with its sign.
-            let shift = _mm256_setr_epi32(24, 24, 24, 24, 16, 16, 16, 16);
-            let top = _mm256_sllv_epi32(_mm256_broadcastsi128_si256(words), shift);
-            let high = _mm256_slli_epi32::<16>(_mm256_srai_epi32::<24>(top));
+            let to_top = _mm256_setr_epi32(
+                0x00ff_ffff,
+                0x02ff_ffff,
+                0x04ff_ffff,
+                0x06ff_ffff,
+                0x01ff_ffff,
+                0x03ff_ffff,
+                0x05ff_ffff,
+                0x07ff_ffff,
+            );
+            let high = _mm256_srai_epi32::<8>(_mm256_shuffle_epi8(bytes, to_top));
             let low = _mm256_cvtepu16_epi32(_mm_loadu_si128(low.as_ptr().cast()));
             _mm256_cvtepi32_ps(_mm256_or_si256(high, low))
         }))

@@ -12,9 +12,11 @@
 #![cfg(target_arch = "x86_64")]
 
 mod f32x8;
+mod f64x4;
 
 use core::arch::x86_64::{_MM_HINT_ET0, _MM_HINT_T0, _mm_prefetch};
 pub use f32x8::F32x8;
+pub use f64x4::{F64x4, Mask4};
 
 /// Starts to load the cache line where a value begins, and does not wait for it. Only affects time.
 #[inline(always)]

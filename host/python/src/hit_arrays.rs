@@ -1,7 +1,7 @@
 //! Hits as arrays of NumPy's.
 
 use crate::arguments::invalid;
-use crate::query::{self, Columns, Found, How};
+use crate::query::{self, Columns, Found, How, Placed, Rows};
 use crate::rays::Rays;
 use gridel_core::Scene;
 use gridel_host::trace::SceneRay;
@@ -55,14 +55,15 @@ pub fn too_large(_: TryReserveError) -> PyErr {
 }
 
 impl<'py, T: numpy::Element + Send + Copy> Cast<'py, T> {
-    /// Finds the first hit of each ray. `place` gives its t and the weights of the corners of its triangle, and
-    /// `number` its t and its primitive as the caller has them.
+    /// Finds the first hit of each ray.
     pub fn of(
         py: Python<'py>,
         (scene, rays, how): (&Scene<'_>, Rays<'_>, How),
         has_instances: bool,
-        place: impl Fn(&SceneRay, &Found) -> Option<(f64, [f32; 2])> + Sync + Send,
-        number: impl Fn(&Found) -> (T, u32) + Sync + Send,
+        form: &Rows<
+            impl Fn(&SceneRay, &Found) -> Option<Placed> + Sync + Send,
+            impl Fn(&Found) -> (T, u32) + Sync + Send,
+        >,
     ) -> PyResult<Self> {
         let length = rays.len();
         let t = zeros(py, length)?;
@@ -84,7 +85,7 @@ impl<'py, T: numpy::Element + Send + Copy> Cast<'py, T> {
                 normal,
                 uv,
             };
-            let cast = || query::cast(scene, rays, how, columns, place, number);
+            let cast = || query::cast(scene, rays, how, columns, form);
             query::detach(py, how, length, cast)?;
         }
         Ok(Self {

@@ -76,10 +76,13 @@ macro_rules! dispatch {
 mod all_hits;
 mod columns;
 mod inside;
+mod limits;
+mod lists;
 
-pub use all_hits::{all, count, locations};
-pub use columns::{Columns, cast};
+pub use all_hits::{all, locations};
+pub use columns::{Columns, Placed, Rows, cast};
 pub use inside::{Inside, contains};
+pub use limits::{any, count};
 
 /// Calls a function that asks about so many rays or points, without the GIL, where there are the threads that it needs.
 pub fn detach<T: Send>(

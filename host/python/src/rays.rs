@@ -112,7 +112,12 @@ impl Values<'_> {
 #[derive(Clone, Copy)]
 pub enum Rays<'a> {
     /// Origin and direction; with eight numbers origin, tmin, direction, tmax.
-    Rows { values: Values<'a>, width: usize },
+    Rows {
+        values: Values<'a>,
+        width: usize,
+        /// How far beyond its limits a ray is searched, in scene units.
+        slack: f64,
+    },
     Two {
         origins: Values<'a>,
         directions: Values<'a>,
@@ -121,9 +126,13 @@ pub enum Rays<'a> {
 
 impl<'a> Rays<'a> {
     /// Rays in rows of six or eight numbers.
-    pub fn rows((values, width): (Values<'a>, usize)) -> PyResult<Self> {
+    pub fn rows((values, width): (Values<'a>, usize), slack: f64) -> PyResult<Self> {
         match width {
-            6 | 8 => Ok(Self::Rows { values, width }),
+            6 | 8 => Ok(Self::Rows {
+                values,
+                width,
+                slack,
+            }),
             _ => Err(PyValueError::new_err(format!(
                 "rays: rows have {width} numbers; they must have 6 (origin, direction) or 8 (origin, tmin, direction, \
                  tmax)"
@@ -148,7 +157,7 @@ impl<'a> Rays<'a> {
     /// Number of rays.
     pub fn len(&self) -> usize {
         match self {
-            Self::Rows { values, width } => values.len() / width,
+            Self::Rows { values, width, .. } => values.len() / width,
             Self::Two { origins, .. } => origins.len() / 3,
         }
     }
@@ -164,10 +173,10 @@ impl<'a> Rays<'a> {
         let places = (scene, frame, numbers);
         // A loop for each layout, so that no ray waits to learn its own.
         match *self {
-            Self::Rows { values, width } => match (values, width) {
+            Self::Rows { values, width, .. } => match (values, width) {
                 (Values::F32(values), 6) => fill(places, ready, |number| six(values, number)),
                 (Values::F64(values), 6) => fill(places, ready, |number| six(values, number)),
-                _ => fill(places, ready, |number| self.get(number)),
+                _ => fill(places, ready, |number| self.searched(number)),
             },
             Self::Two {
                 origins,
@@ -176,29 +185,83 @@ impl<'a> Rays<'a> {
                 (Values::F64(origins), Values::F64(directions)) => fill(places, ready, |number| {
                     endless(three(origins, 3 * number), three(directions, 3 * number))
                 }),
-                _ => fill(places, ready, |number| self.get(number)),
+                _ => fill(places, ready, |number| self.searched(number)),
             },
         }
     }
 
-    /// A ray, by its number.
-    #[inline(always)]
-    pub fn get(&self, number: usize) -> SceneRay {
+    /// True if rays may end anywhere.
+    pub fn have_limits(&self) -> bool {
+        matches!(self, Self::Rows { width: 8, .. })
+    }
+
+    /// Returns whether a ray has no limits but its origin.
+    pub fn is_endless(&self, number: usize) -> bool {
         match self {
-            Self::Rows { values, width: 6 } => {
-                endless(values.three(6 * number), values.three(6 * number + 3))
+            Self::Rows {
+                values, width: 8, ..
+            } => values.one(8 * number + 3) == 0.0 && values.one(8 * number + 7) == f64::INFINITY,
+            _ => true,
+        }
+    }
+
+    /// Returns whether a t is within the limits of a ray. One of a ray that is searched no farther is.
+    #[inline(always)]
+    pub fn holds(&self, number: usize, t: f64) -> bool {
+        match self {
+            Self::Rows {
+                values, width: 8, ..
+            } => values.one(8 * number + 3) <= t && t <= values.one(8 * number + 7),
+            _ => true,
+        }
+    }
+
+    /// A ray as it is searched, by its number: a little beyond its limits, if it has any.
+    #[inline(always)]
+    pub fn searched(&self, number: usize) -> SceneRay {
+        match *self {
+            Self::Rows {
+                values, width: 6, ..
+            } => endless(values.three(6 * number), values.three(6 * number + 3)),
+            Self::Rows { values, slack, .. } => {
+                let given = SceneRay {
+                    origin: values.three(8 * number),
+                    tmin: values.one(8 * number + 3),
+                    direction: values.three(8 * number + 4),
+                    tmax: values.one(8 * number + 7),
+                };
+                widened(given, slack)
             }
-            Self::Rows { values, .. } => SceneRay {
-                origin: values.three(8 * number),
-                tmin: values.one(8 * number + 3),
-                direction: values.three(8 * number + 4),
-                tmax: values.one(8 * number + 7),
-            },
             Self::Two {
                 origins,
                 directions,
             } => endless(origins.three(3 * number), directions.three(3 * number)),
         }
+    }
+}
+
+/// A ray with limits farther apart by a length in scene units. Its own origin, at 0, is no limit: a ray that is searched
+/// from before it takes longer.
+fn widened(ray: SceneRay, slack: f64) -> SceneRay {
+    let least = slack / ray.direction.length();
+    if slack == 0.0 || !least.is_finite() || ray.tmin.is_nan() || ray.tmin > ray.tmax {
+        return ray;
+    }
+    let by = |limit: f64| {
+        if limit.is_infinite() {
+            0.0
+        } else {
+            least + 4.0 * f64::EPSILON * limit.abs()
+        }
+    };
+    let tmin = match ray.tmin {
+        0.0 => 0.0,
+        tmin => tmin - by(tmin),
+    };
+    SceneRay {
+        tmin,
+        tmax: ray.tmax + by(ray.tmax),
+        ..ray
     }
 }
 

@@ -11,8 +11,8 @@ use crate::hit_arrays::{
 };
 use crate::meshes::{self, GivenMesh, Mesh};
 use crate::model::{Model, warn};
-use crate::query::{self, Any, FirstPrimitive, Found, Inside, NONE};
-use crate::rays::{Array, Points, Rays, TwoArrays};
+use crate::query::{self, Any, FirstPrimitive, Found, Inside, NONE, Rows};
+use crate::rays::{Array, Points, TwoArrays};
 use crate::threads::{in_pool, workers};
 use gridel_core::Settings;
 use gridel_host::blob::Blob;
@@ -127,10 +127,13 @@ impl NativeScene {
             self.how(format, accel, threads)?,
             Array::borrow(rays, "rays")?,
         );
-        let (scene, rays) = (self.chosen(how)?, Rays::rows(array.rows("rays")?)?);
-        let number = |hit: &Found| (hit.t, hit.primitive);
-        let place = |ray: &SceneRay, hit: &Found| Some(self.weights(ray, hit));
-        let found = Cast::of(py, (&scene, rays, how), true, place, number)?;
+        let (scene, rays) = (self.chosen(how)?, self.rays(&array)?);
+        let form = Rows {
+            places_normals: self.has_all_triangles(),
+            place: |ray: &SceneRay, hit: &Found| Some(self.placed(ray, hit)),
+            number: |hit: &Found| (hit.t, hit.primitive),
+        };
+        let found = Cast::of(py, (&scene, rays, how), true, &form)?;
         Ok((
             found.t,
             found.object,
@@ -153,7 +156,7 @@ impl NativeScene {
             self.how("f32", None, threads)?,
             Array::borrow(rays, "rays")?,
         );
-        let (scene, rays) = (self.chosen(how)?, Rays::rows(array.rows("rays")?)?);
+        let (scene, rays) = (self.chosen(how)?, self.rays(&array)?);
         let number = |hit: &Found| {
             // A ray without a direction hits nothing there.
             let t = if hit.t.is_nan() {
@@ -166,9 +169,14 @@ impl NativeScene {
         };
         // Nor does one whose t leaves single precision.
         let place = |ray: &SceneRay, hit: &Found| {
-            Some(self.weights(ray, hit)).filter(|(t, _)| (*t as f32).is_finite())
+            Some(self.placed(ray, hit)).filter(|placed| (placed.t as f32).is_finite())
         };
-        let found = Cast::of(py, (&scene, rays, how), false, place, number)?;
+        let form = Rows {
+            places_normals: self.has_all_triangles(),
+            place,
+            number,
+        };
+        let found = Cast::of(py, (&scene, rays, how), false, &form)?;
         Ok((
             found.t,
             found.object,
@@ -229,9 +237,11 @@ impl NativeScene {
             self.how(format, accel, threads)?,
             Array::borrow(rays, "rays")?,
         );
-        let (scene, rays) = (self.chosen(how)?, Rays::rows(array.rows("rays")?)?);
-        let found = query::detach(py, how, rays.len(), || query::ask::<Any>(&scene, rays, how))?
-            .map_err(too_large)?;
+        let (scene, rays) = (self.chosen(how)?, self.rays(&array)?);
+        let found = query::detach(py, how, rays.len(), || {
+            query::any(&scene, rays, how, &|ray, hit| self.place(ray, hit).t)
+        })?
+        .map_err(too_large)?;
         Ok(found.into_pyarray(py))
     }
 
@@ -248,9 +258,11 @@ impl NativeScene {
             self.how(format, accel, threads)?,
             Array::borrow(rays, "rays")?,
         );
-        let (scene, rays) = (self.chosen(how)?, Rays::rows(array.rows("rays")?)?);
-        let found = query::detach(py, how, rays.len(), || query::count(&scene, rays, how))?
-            .map_err(too_large)?;
+        let (scene, rays) = (self.chosen(how)?, self.rays(&array)?);
+        let found = query::detach(py, how, rays.len(), || {
+            query::count(&scene, rays, how, &|ray, hit| self.place(ray, hit).t)
+        })?
+        .map_err(too_large)?;
         Ok(found.into_pyarray(py))
     }
 
@@ -267,9 +279,9 @@ impl NativeScene {
             self.how(format, accel, threads)?,
             Array::borrow(rays, "rays")?,
         );
-        let (scene, rays) = (self.chosen(how)?, Rays::rows(array.rows("rays")?)?);
+        let (scene, rays) = (self.chosen(how)?, self.rays(&array)?);
         let (hits, uvs) = query::detach(py, how, rays.len(), || {
-            let mut hits = query::all(&scene, rays, how)?;
+            let mut hits = query::all(&scene, rays, how, !self.has_all_triangles())?;
             let uvs = self.place_all(rays, &mut hits)?;
             Ok((hits, uvs))
         })?
@@ -311,8 +323,8 @@ impl NativeScene {
         let scene = self.chosen(how)?;
         let chunks = query::detach(py, how, rays.len(), || {
             query::locations(&scene, rays, how, multiple_hits, max_hits, |ray, hit| {
-                let (t, place, _) = self.place(ray, hit);
-                (t, place.to_array())
+                let met = self.place(ray, hit);
+                (met.t, met.place.to_array())
             })
         })?
         .map_err(too_large)?;

@@ -153,8 +153,14 @@ def test_arguments_are_checked_in_empty_scenes_too():
     for scene in (RaycastingScene(), fill(RaycastingScene())):
         with pytest.raises(ValueError, match="query_points.*shape"):
             scene.compute_occupancy(np.zeros((2, 4)))
-    with pytest.raises(ValueError, match="nthreads is -1; it must be 0 to 1024"):
-        scene.cast_rays(grid(3), nthreads=-1)
+        with pytest.raises(TypeError, match="nthreads is 'two'; it must be an integer"):
+            scene.cast_rays(grid(3), nthreads="two")
+        for limits in (dict(tfar=None), dict(tnear=None), dict(tfar="2"), dict(tfar=[1.0, 2.0])):
+            with pytest.raises(TypeError, match="(tfar|tnear) is .*; it must be a number"):
+                scene.test_occlusions(grid(3), **limits)
+        assert scene.test_occlusions(grid(3), tfar=np.float32(2)).shape == (3, 3)
+    for threads in (-1, -5, 1025, 10**6):
+        assert np.isfinite(scene.cast_rays(grid(9), nthreads=threads)["t_hit"]).any()
 
 
 def test_scenes_pickle_and_copy_after_their_first_query():
@@ -163,6 +169,90 @@ def test_scenes_pickle_and_copy_after_their_first_query():
     for other in (copy.deepcopy(scene), pickle.loads(pickle.dumps(scene))):
         for key, value in other.cast_rays(grid(9)).items():
             assert np.array_equal(value, expected[key])
+
+
+def test_a_copy_and_its_original_are_apart():
+    for is_compiled in (False, True):
+        scene = RaycastingScene()
+        scene.add_triangles(TETRAHEDRON, SIDES)
+        rays = np.array([[0.1, 0.2, -1, 0, 0, 1], [3.1, 0.2, -1, 0, 0, 1]], dtype=np.float32)
+        if is_compiled:
+            scene.cast_rays(rays)
+        other = copy.copy(scene)
+        assert other.add_triangles(TETRAHEDRON + np.float32([3, 0, 0]), SIDES) == 1
+        assert scene.count_intersections(rays).tolist() == [2, 0]
+        assert other.count_intersections(rays).tolist() == [2, 2]
+        assert scene.add_triangles(TETRAHEDRON + np.float32([6, 0, 0]), SIDES) == 1
+        assert scene.count_intersections(rays).tolist() == [2, 0]
+        assert other.cast_rays(rays)["geometry_ids"].tolist() == [0, 1]
+
+
+def test_queries_of_distances_are_named_as_missing():
+    for name in ("compute_distance", "compute_signed_distance", "compute_closest_points"):
+        assert not hasattr(RaycastingScene, name)
+        with pytest.raises(AttributeError, match=f"{name} is not part of gridel.open3d.*use open3d"):
+            getattr(RaycastingScene(), name)
+    with pytest.raises(AttributeError, match="'RaycastingScene' object has no attribute 'cast'"):
+        RaycastingScene().cast
+
+
+def test_occlusions_at_the_t_of_hits():
+    # Vertices that are not on the lattice, in single precision.
+    vertices = (TETRAHEDRON / 3 + np.float32([0.1, 0.2, 0.3])).astype(np.float32)
+    rng = np.random.default_rng(13)
+    for kind in (np.float32, np.float64):
+        scene = RaycastingScene()
+        scene.add_triangles(vertices, SIDES)
+        origins = rng.normal(size=(400, 3)) + np.array([0.2, 0.3, 0.4])
+        rays = np.hstack([origins, np.array([0.2, 0.3, 0.4]) - origins]).astype(kind)
+        rays = rays[np.linalg.norm(rays[:, 3:], axis=1) > 1]
+        found = scene.cast_rays(rays)["t_hit"].numpy()
+        hit = np.isfinite(found)
+        assert hit.sum() > 100
+        for ray, t in zip(rays[hit], found[hit]):
+            before, behind = np.nextafter(t, np.float32(0)), np.nextafter(t, np.float32(9))
+            for limits, expected in (
+                [(0.0, t), True], [(t, behind), True], [(t, t), True], [(0.0, before), False], [(-1.0, t), True]
+            ):
+                assert scene.test_occlusions(ray[None], *map(float, limits)).tolist() == [expected]
+
+
+def test_one_ray_gives_results_without_rows():
+    scene = fill(RaycastingScene())
+    ray = np.array([0.1, 0.2, -1, 0, 0, 1], dtype=np.float32)
+
+    def shapes(convert):
+        given = convert(ray)
+        results = list(scene.cast_rays(given).values())
+        results += [scene.count_intersections(given), scene.test_occlusions(given)]
+        results.append(scene.compute_occupancy(convert(ray[:3])))
+        return [tuple(it.shape) for it in results]
+
+    expected = [(), (), (), (2,), (3,)] + [()] * 3
+    assert shapes(lambda it: it) == expected
+    o3d = pytest.importorskip("open3d", reason="Open3D is not installed")
+    assert shapes(o3d.core.Tensor) == expected
+
+
+def test_arrays_have_the_methods_of_tensors():
+    rays = grid(4)
+    found = fill(RaycastingScene()).cast_rays(rays)["primitive_normals"].reshape((-1, 3))
+    plain = found.numpy()
+    assert np.array_equal(found.min(dim=[0]), plain.min(0)) and np.array_equal(found.max(dim=0), plain.max(0))
+    assert found.sum(dim=[1], keepdim=True).shape == (16, 1) and found.mean(dim=(0, 1)) == plain.mean()
+    assert found.argmax(dim=[0]).tolist() == plain.argmax(0).tolist() and found.prod().item() == plain.prod()
+    assert found.gt(0).any(dim=[1]).tolist() == (plain > 0).any(1).tolist() and not found.lt(-2).all()
+    assert found.max().numpy() == plain.max() and f"{found.sum():.3f}" == f"{plain.sum():.3f}"
+    assert np.sum(found, axis=0).shape == (3,) and np.min(found) == plain.min() and found.sum(0).shape == (3,)
+    assert found.isclose(found).all() and found.allclose(found) is True
+    for name, function in dict(add=np.add, sub=np.subtract, mul=np.multiply, eq=np.equal, ne=np.not_equal, le=np.less_equal, ge=np.greater_equal).items():
+        assert np.array_equal(getattr(found, name)(0.5), function(plain, 0.5))
+    for name in ("exp", "floor", "ceil", "trunc", "sin", "cos"):
+        assert np.array_equal(getattr(found, name)(), getattr(np, name)(plain))
+    assert np.array_equal(found.abs().sqrt().neg(), -np.sqrt(np.abs(plain)))
+    assert np.array_equal(found.matmul(found.T), plain @ plain.T) and not found.T.is_contiguous()
+    assert found.T.contiguous().is_contiguous() and found.append(found).shape == (96,)
+    assert found.append(found, axis=0).shape == (32, 3) and found[0, 0].floor().item() == np.floor(plain[0, 0])
 
 
 def test_answers_are_those_of_open3d():

@@ -3,6 +3,7 @@
 import copy
 import inspect
 import pickle
+import time
 
 import numpy as np
 import pytest
@@ -239,3 +240,97 @@ def test_numbers_out_of_range_name_the_argument(ball):
         gridel.trimesh.RayMeshIntersector(ball, threads=-1).intersects_any([[0, 0, 5]], [[0, 0, -1]])
     misaligned = np.zeros(3 * 8 + 1, dtype=np.uint8)[1:].view(np.float64).reshape(1, 3)
     assert mine.intersects_any(misaligned, [[0, 0, -1]]).tolist() == [True]
+
+
+def boxes_with_faces_twice():
+    """Boxes some faces of which are there twice: with the same vertices, with turned corners, and with vertices of their
+    own."""
+    box = trimesh.creation.box()
+    for count in (1, 2, 12):
+        more = box.faces[:count]
+        for faces in (more, np.roll(more, 1, axis=1)):
+            yield trimesh.Trimesh(box.vertices, np.vstack([box.faces, faces]), process=False)
+        vertices = np.vstack([box.vertices, box.vertices * 1.0])
+        yield trimesh.Trimesh(vertices, np.vstack([more + 8, box.faces]), process=False)
+
+
+def test_faces_that_a_mesh_has_twice_count_once():
+    points = np.random.default_rng(8).uniform(-0.7, 0.7, (2000, 3))
+    inside = (np.abs(points) < 0.5).all(axis=1)
+    across = np.tile([0.3, 0.5, 1.0], (2000, 1))
+    for mesh in boxes_with_faces_twice():
+        mine = ours(mesh)
+        assert np.array_equal(mine.contains_points(points), inside)
+        places, rays, triangles = mine.intersects_location(points[inside], across[inside])
+        assert np.array_equal(rays, np.arange(inside.sum()))
+        assert (triangles == mine.intersects_first(points[inside], across[inside])).all()
+        # The numbers are those of the mesh, and of equal faces the first.
+        normals = mesh.face_normals[triangles]
+        assert np.abs(((places - mesh.triangles[triangles, 0]) * normals).sum(axis=1)).max() < 1e-12
+        first = np.abs(mesh.triangles_center[:, None] - mesh.triangles_center).max(axis=2).argmin(axis=1)
+        assert np.array_equal(first[triangles], triangles)
+        assert (mine.intersects_first([[5, 5, 5.0]], [[1, 0, 0]]) == -1).all()
+
+
+def test_faces_in_one_place_with_opposite_windings_are_two():
+    # Eight cubes that touch: each wall inside is there twice.
+    cubes = [trimesh.creation.box(bounds=[corner, np.add(corner, 1)]) for corner in np.ndindex(2, 2, 2)]
+    touching = trimesh.util.concatenate(cubes)
+    points = np.random.default_rng(9).uniform(-0.5, 2.5, (2000, 3))
+    inside = ((points > 0) & (points < 2)).all(axis=1)
+    mine = ours(touching)
+    assert np.array_equal(mine.contains_points(points), inside)
+    assert len(mine.intersects_id([[-1, 0.3, 0.4]], [[1, 0, 0]])[0]) == 4
+    box = trimesh.creation.box()
+    both = trimesh.Trimesh(box.vertices, np.vstack([box.faces, box.faces[:, ::-1]]), process=False)
+    assert ours(both).scene.primitives == 24
+    negative = box.vertices.copy()
+    negative[negative == -0.5] = -0.0
+    positive = np.where(negative == 0, 0.0, negative)
+    zeros = trimesh.Trimesh(np.vstack([negative, positive]), np.vstack([box.faces, box.faces + 8]), process=False)
+    assert ours(zeros).scene.primitives == 12
+
+
+def test_max_hits_are_the_first_and_save_the_others():
+    height, most = 3000, 3
+    square = np.array([[-1, -1, 0], [1, -1, 0], [1, 1, 0], [-1, 1, 0.0]])
+    vertices = np.concatenate([square + [0, 0, k] for k in range(height)])
+    faces = np.concatenate([np.array([[0, 1, 2], [0, 2, 3]]) + 4 * k for k in range(height)])
+    mine = ours(trimesh.Trimesh(vertices, faces, process=False))
+    origins, directions = np.tile([0.1, 0.2, 2.0 * height], (200, 1)), np.tile([0, 0, -1.0], (200, 1))
+
+    def seconds(**arguments):
+        begin = time.process_time()
+        found = mine.intersects_id(origins, directions, **arguments)
+        return time.process_time() - begin, found
+
+    mine.intersects_id(origins[:1], directions[:1])
+    some, (triangles, rays) = seconds(max_hits=most)
+    every, (all_triangles, _) = seconds()
+    assert np.array_equal(rays, np.repeat(np.arange(200), most))
+    assert np.array_equal(triangles.reshape(200, most), all_triangles.reshape(200, height)[:, :most])
+    assert some < every / 10
+    for multiple in (True, False):
+        assert len(mine.intersects_id(origins, directions, multiple_hits=multiple, max_hits=0)[0]) == 0
+    for most in (16, 17, 64, 65, 300):
+        triangles, rays = mine.intersects_id(origins, directions, max_hits=most)
+        assert np.array_equal(triangles.reshape(200, most), all_triangles.reshape(200, height)[:, :most])
+
+
+def test_numbers_in_objects_and_booleans_are_numbers(ball):
+    mine, theirs = ours(ball), embree.RayMeshIntersector(ball)
+    origins, directions = np.array([[0, 0, 5]], dtype=object), np.array([[0, 0.0, -1]], dtype=object)
+    assert mine.intersects_any(origins, directions).tolist() == theirs.intersects_any(origins, directions).tolist() == [True]
+    assert mine.contains_points(np.zeros((1, 3), dtype=object)).tolist() == [True]
+    assert mine.intersects_any([[False, False, True]], [[False, False, True]]).tolist() == [True]
+    for bad in ("1", None, 1j, [0]):
+        with pytest.raises(TypeError, match="ray_origins: the array has the type object"):
+            mine.intersects_any(np.array([[0, 0, bad]], dtype=object), directions)
+
+
+def test_mesh_is_taken_by_both_of_its_names(ball):
+    for named in ({"mesh": ball}, {"geometry": ball}):
+        assert gridel.trimesh.RayMeshIntersector(**named).contains_points([[0, 0, 0]]).tolist() == [True]
+    for wrong in ({}, {"mesh": ball, "geometry": ball}):
+        with pytest.raises(TypeError, match="one mesh, as geometry or as mesh"):
+            gridel.trimesh.RayMeshIntersector(**wrong)

@@ -23,12 +23,12 @@ pub enum CompileError {
     #[diagnostic(help("scale the scene to a size between 1e-250 and 1e250"))]
     Extent { size: f64 },
     #[error(
-        "the scene lies at ({:e}, {:e}, {:e}) and is only {size:e} large, so its coordinates hold no \
-         detail",
+        "the scene lies at ({:e}, {:e}, {:e}) and is only {size:e} large; with a lattice as fine as that it \
+         must lie within {most:.1e} of the origin on each axis",
         .middle.x, .middle.y, .middle.z
     )]
-    #[diagnostic(help("move the scene nearer to the origin"))]
-    TooFar { middle: DVec3, size: f64 },
+    #[diagnostic(help("move the scene nearer to the origin, or use fewer `--lattice-bits`"))]
+    TooFar { middle: DVec3, size: f64, most: f64 },
     #[error(
         "{object}: the closed mesh lies in one plane on the lattice, whose step is {step:e}, so it has \
          no inside left"

@@ -50,6 +50,7 @@ impl Lattice {
             return Err(CompileError::TooFar {
                 middle,
                 size: 2.0 * half,
+                most: step * exp2(52),
             });
         }
         lattice.origin = steps * step;

@@ -15,7 +15,8 @@ pub struct DirectionScale {
 
 impl DirectionScale {
     /// Powers of two up to which no product with a length leaves the range of numbers.
-    const ORDINARY: std::ops::Range<f64> = 1.0 / (1_u128 << 100) as f64..(1_u128 << 100) as f64;
+    pub(super) const ORDINARY: std::ops::Range<f64> =
+        1.0 / (1_u128 << 100) as f64..(1_u128 << 100) as f64;
 
     /// Returns the scale of a direction, and the direction with its length brought near 1 where it is extreme.
     pub(super) fn of(direction: DVec3, unit: f64, per_unit: f64) -> (Self, DVec3) {
@@ -31,11 +32,17 @@ impl DirectionScale {
         let largest = direction.abs().max_element();
         let factor = largest * per_unit;
         let is_ordinary = Self::ORDINARY.contains(&factor) && Self::ORDINARY.contains(&largest);
-        is_ordinary.then_some(Self {
+        is_ordinary.then_some(Self::of_factor(factor))
+    }
+
+    /// The scale of a direction that is not extreme, by its largest component in units.
+    #[inline(always)]
+    pub(super) fn of_factor(factor: f64) -> Self {
+        Self {
             factor,
             exponent: 0,
             begin: 0.0,
-        })
+        }
     }
 
     #[cold]
@@ -95,10 +102,16 @@ impl DirectionScale {
     #[inline(always)]
     pub fn multiple(&self, length: f64, error: impl Fn() -> f64) -> Result<f64, Rejection> {
         if self.exponent == 0 {
-            Ok((length + self.begin) / self.factor)
+            Ok(self.ordinary_multiple(length))
         } else {
             self.extreme_multiple(length, error())
         }
+    }
+
+    /// Multiples of a direction that is not extreme.
+    #[inline(always)]
+    pub(super) fn ordinary_multiple(&self, length: f64) -> f64 {
+        (length + self.begin) / self.factor
     }
 
     #[cold]

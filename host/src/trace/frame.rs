@@ -8,11 +8,11 @@ use gridel_core::{Number, Ray, RayError, Scene};
 /// How a scene's coordinates relate to the core's.
 #[derive(Clone, Copy, Debug)]
 pub struct Frame {
-    origin: DVec3,
+    pub(super) origin: DVec3,
     /// A power of two, whose exponent is at most 1,000 in magnitude.
     unit: f64,
     /// One over the unit: a product with it has the bits of the quotient, and takes less time.
-    per_unit: f64,
+    pub(super) per_unit: f64,
 }
 
 impl Frame {

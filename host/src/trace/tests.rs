@@ -99,3 +99,95 @@ fn t_is_never_outside_of_the_interval() {
         assert!(found > 0, "{query:?}");
     }
 }
+
+/// Numbers on the edges of what is ordinary.
+const EDGES: [f64; 16] = [
+    0.0,
+    -0.0,
+    1.0,
+    -1.0,
+    3.5,
+    1e4,
+    -1e9,
+    1e-9,
+    1e30,
+    -1e-31,
+    1e300,
+    5e-324,
+    f64::MAX,
+    f64::INFINITY,
+    f64::NEG_INFINITY,
+    f64::NAN,
+];
+
+#[test]
+fn rays_that_are_set_up_together_have_the_hits_of_each_alone() {
+    let ball = sample_of_wide();
+    let scene = ball.blob.scene().unwrap();
+    let mut state = 0x2545_f491_4f6c_dd1d_u64;
+    let mut number = |edges: bool, size: f64| {
+        state ^= state << 13;
+        state ^= state >> 7;
+        state ^= state << 17;
+        if edges && state % 5 == 0 {
+            EDGES[(state >> 32) as usize % EDGES.len()]
+        } else {
+            (state as i64 as f64) / (1_u64 << 63) as f64 * size
+        }
+    };
+    // As many rays as fill no batch.
+    let rays: Vec<_> = (0..40_003)
+        .map(|turn| {
+            let edges = turn % 3 == 0;
+            let mut three = |size: f64| {
+                DVec3::new(
+                    number(edges, size),
+                    number(edges, size),
+                    number(edges, size),
+                )
+            };
+            SceneRay {
+                origin: three(2.0),
+                direction: three(1.0),
+                tmin: if edges { number(true, 1.0) } else { 0.0 },
+                tmax: if edges {
+                    number(true, 9.0)
+                } else {
+                    f64::INFINITY
+                },
+            }
+        })
+        .collect();
+    for any in [false, true] {
+        let query = Query {
+            format: Format::F32,
+            structure: Structure::Wide,
+            any,
+        };
+        let mut together = vec![SceneHit::MISS; rays.len()];
+        let mut alone = together.clone();
+        let rejections = trace(&scene, &rays, query, &mut together).unwrap();
+        let counters = &mut Counters::default();
+        let expected = trace_counted(&scene, &rays, query, &mut alone, counters).unwrap();
+        assert_eq!(rejections, expected);
+        assert!(expected.count > 0);
+        // As text, in which NaN is equal to itself.
+        for ((ray, found), expected) in rays.iter().zip(&together).zip(&alone) {
+            assert_eq!(format!("{found:?}"), format!("{expected:?}"), "{ray:?}");
+        }
+    }
+}
+
+/// A mesh and a sphere, as `wide` stores them.
+fn sample_of_wide() -> Compiled {
+    let file = "[[object]]\nkind = 'sphere'\ncenter = [0, 0, 0]\nradius = 0.5\nname = 'ball'\n\
+        [[object]]\nkind = 'mesh'\nname = 'mesh'\n\
+        vertices = [[-1, -1, -1], [1, -1, -1], [0, 1, -0.5], [0, 0, 1]]\n\
+        triangles = [[0, 1, 2], [0, 3, 1], [1, 3, 2], [2, 3, 0]]";
+    let imported = scene::read("wide.toml".as_ref(), file.into(), &Default::default()).unwrap();
+    let options = Options {
+        structures: vec![Structure::Wide],
+        ..Options::default()
+    };
+    compile(&imported.scene, &options).unwrap()
+}

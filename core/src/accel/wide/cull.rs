@@ -3,6 +3,9 @@
 //!
 //! In lanes, rule and margins are those of `single.rs`.
 
+#[cfg(all(feature = "avx2", target_arch = "x86_64"))]
+mod four;
+
 use crate::accel::cull;
 use crate::accel::cull::{Cull, Culling, PairCulling};
 use crate::accel::cull_axis::CullArithmetic;

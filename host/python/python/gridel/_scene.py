@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import decimal
+import numbers
 import operator
 import os
 from typing import Any, NamedTuple, Optional, Sequence, Tuple, Union
@@ -85,7 +87,11 @@ def _numbers(values: ArrayLike, what: str) -> NDArray:
     """An array of float32 or float64 in C order, without a copy where it is one already."""
     array = np.asarray(values)
     if array.dtype not in (np.float32, np.float64):
-        if array.dtype.kind not in "iuf" and array.size:
+        # The values of a DataFrame may be objects, each a number.
+        is_numeric = array.dtype.kind in "iufb" or array.dtype == object and all(
+            isinstance(value, (numbers.Real, decimal.Decimal, np.bool_)) for value in array.flat
+        )
+        if not is_numeric and array.size:
             raise TypeError(f"{what}: the array has the type {array.dtype}; it must be a type of numbers")
         array = array.astype(np.float64)
     return np.require(array, requirements="CA")
@@ -180,10 +186,12 @@ class Scene:
         """Compiles a triangle mesh: vertices (n, 3) of numbers, faces (m, 3) of integers.
 
         Vertices are centered in float64 before they are rounded to the lattice, whose step is about 1e-7 of the mesh's
-        size at 24 bits, wherever the mesh lies within 5e8 times its size of the origin; :attr:`displacement` says how far
-        they moved. Its size is 1e-250 to 1e250. Vertices of no face do not count. A closed mesh thinner than a step becomes flat: rays hit it, and it contains nothing. Warns (UserWarning)
-        of triangles that are too small for the lattice. Raises ValueError for faces that name no
-        vertex, or one that is not finite.
+        size at 24 bits, wherever the mesh lies within 2.6e8 times its size of the origin; :attr:`displacement` says how far
+        they moved. Farther away, subtract a place near the mesh from vertices and rays, or use fewer ``lattice_bits``. Its
+        size is 1e-250 to 1e250. Vertices of no face do not count. A face that is there twice counts twice. A closed mesh
+        thinner than a step becomes flat: rays hit it, and it contains nothing. Warns (UserWarning) of triangles that are
+        too small for the lattice. Raises ValueError for faces that name no vertex, or one that is not finite, and for
+        meshes that lie too far away.
         """
         return cls._from_meshes([(vertices, faces)], accel, lattice_bits)
 
@@ -209,9 +217,15 @@ class Scene:
 
         A ray that touches an edge or a vertex hits it. This holds for rays and vertices as the query has them: it
         rounds directions to the number format, and vertices to the lattice. So a ray that is aimed at a silhouette, or at
-        the border of an open mesh, may pass beside it. At the same t the primitive that comes first counts. ``t`` and
-        ``uv`` of triangles are computed from the vertices as they were given, in float64. ``t`` is never outside of tmin
-        and tmax.
+        the border of an open mesh, may pass beside it. At the same t the primitive that comes first counts. ``t``,
+        ``uv`` and ``normal`` of triangles are computed from the vertices as they were given, in float64; those of
+        instances and of blobs are computed from the lattice. ``t`` is never outside of tmin and tmax.
+
+        tmin and tmax are compared with the ``t`` that is returned: a hit at a limit counts, so that a ray limited to the t
+        of its hit still hits. Two cases are uncertain. A tmin of 0 is compared with the surface on the lattice: a ray that
+        starts nearer to a surface than :attr:`displacement`, divided by the cosine between ray and normal, may hit it or
+        not, so start rays from surfaces with a small tmin above 0. And a surface that the ray meets at less than a degree
+        may be missed where its t is within the displacement, divided by the cosine, of a limit.
         """
         rays = _rows(rays, (6, 8), "rays")
         shape = rays.shape[:-1]

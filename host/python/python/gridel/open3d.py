@@ -13,48 +13,102 @@ from typing import Any, Optional, Tuple
 
 import numpy as np
 
-from ._scene import MISS, Scene, _mesh, _rows, _threads
+from ._scene import MISS, Scene, _integer, _mesh, _rows
 
 __all__ = ["Array", "RaycastingScene"]
+
+
+def _of_elements(function: Any, says: str) -> Any:
+    """A method that is a function of each number, or of each pair of numbers."""
+
+    def method(self: "Array", *values: Any) -> "Array":
+        # One number is a tensor too.
+        return np.asarray(function(self, *values)).view(Array)
+
+    method.__doc__ = f"Returns {says}."
+    return method
+
+
+def _over_dimensions(name: str, says: str) -> Any:
+    """A method of NumPy's over ``axis``, which takes Open3D's ``dim`` and ``keepdim`` as well."""
+    inner = getattr(np.ndarray, name)
+
+    def method(self: "Array", axis: Any = None, *args: Any, dim: Any = None, keepdim: bool = False, **kwargs: Any) -> "Array":
+        if dim is not None:
+            axis = dim if np.ndim(dim) == 0 or name.startswith("arg") else tuple(dim)
+            axis = axis[0] if isinstance(axis, (list, tuple)) and len(axis) == 1 else axis
+        if keepdim:
+            kwargs["keepdims"] = True
+        found = inner(self, axis, *args, **kwargs)
+        return found if isinstance(found, np.ndarray) else np.asarray(found).view(Array)
+
+    method.__name__ = name
+    method.__doc__ = f"Returns {says}, of all numbers or along dimensions."
+    return method
 
 
 class Array(np.ndarray):
     """A NumPy array with the methods of Open3D's tensors that code for ray casting calls.
 
-    Open3D takes it where it takes a tensor or an array.
+    Open3D takes it where it takes a tensor or an array. What both have is NumPy's where they differ: ``T`` is an
+    attribute, ``shape`` a tuple, and ``dtype`` a NumPy type, which Open3D's types cannot be compared with.
     """
+
+    isfinite = _of_elements(np.isfinite, "which numbers are finite")
+    isinf = _of_elements(np.isinf, "which numbers are infinite")
+    isnan = _of_elements(np.isnan, "which numbers are nan")
+    logical_not = _of_elements(np.logical_not, "which numbers are 0 or false")
+    abs = _of_elements(np.abs, "absolute values")
+    neg = _of_elements(np.negative, "numbers with the other sign")
+    sqrt = _of_elements(np.sqrt, "square roots")
+    exp = _of_elements(np.exp, "powers of e")
+    sin = _of_elements(np.sin, "sines")
+    cos = _of_elements(np.cos, "cosines")
+    floor = _of_elements(np.floor, "numbers rounded down")
+    ceil = _of_elements(np.ceil, "numbers rounded up")
+    trunc = _of_elements(np.trunc, "numbers rounded towards 0")
+    logical_and = _of_elements(np.logical_and, "where both are true")
+    logical_or = _of_elements(np.logical_or, "where either is true")
+    logical_xor = _of_elements(np.logical_xor, "where one of both is true")
+    add = _of_elements(np.add, "sums")
+    sub = _of_elements(np.subtract, "differences")
+    mul = _of_elements(np.multiply, "products")
+    div = _of_elements(np.divide, "quotients")
+    eq = _of_elements(np.equal, "where numbers are equal")
+    ne = _of_elements(np.not_equal, "where numbers differ")
+    lt = _of_elements(np.less, "where numbers are less")
+    le = _of_elements(np.less_equal, "where numbers are less or equal")
+    gt = _of_elements(np.greater, "where numbers are greater")
+    ge = _of_elements(np.greater_equal, "where numbers are greater or equal")
+    min = _over_dimensions("min", "the least number")
+    max = _over_dimensions("max", "the greatest number")
+    sum = _over_dimensions("sum", "the sum")
+    mean = _over_dimensions("mean", "the mean")
+    prod = _over_dimensions("prod", "the product")
+    any = _over_dimensions("any", "whether any number is true")
+    all = _over_dimensions("all", "whether all numbers are true")
+    argmin = _over_dimensions("argmin", "where the least number is")
+    argmax = _over_dimensions("argmax", "where the greatest number is")
 
     def numpy(self) -> np.ndarray:
         """Returns the plain array, without a copy."""
         return self.view(np.ndarray)
 
-    def isfinite(self) -> "Array":
-        """Returns which numbers are finite."""
-        return np.isfinite(self)
+    def matmul(self, value: Any) -> "Array":
+        """Returns the matrix product."""
+        return np.asarray(np.matmul(self, value)).view(Array)
 
-    def isinf(self) -> "Array":
-        """Returns which numbers are infinite."""
-        return np.isinf(self)
+    def isclose(self, other: Any, rtol: float = 1e-5, atol: float = 1e-8) -> "Array":
+        """Returns where numbers are nearly equal."""
+        return np.isclose(self, other, rtol, atol)
 
-    def isnan(self) -> "Array":
-        """Returns which numbers are nan."""
-        return np.isnan(self)
+    def allclose(self, other: Any, rtol: float = 1e-5, atol: float = 1e-8) -> bool:
+        """Returns whether all numbers are nearly equal."""
+        return np.allclose(self, other, rtol, atol)
 
-    def logical_not(self) -> "Array":
-        """Returns which numbers are 0 or false."""
-        return np.logical_not(self)
-
-    def logical_and(self, value: Any) -> "Array":
-        """Returns where both arrays are true."""
-        return np.logical_and(self, value)
-
-    def logical_or(self, value: Any) -> "Array":
-        """Returns where either array is true."""
-        return np.logical_or(self, value)
-
-    def abs(self) -> "Array":
-        """Returns absolute values."""
-        return np.abs(self)
+    def append(self, values: Any, axis: Optional[int] = None) -> "Array":
+        """Returns the array with others behind it, all in one row where there is no axis."""
+        return np.append(self, values, axis).view(Array)
 
     def num_elements(self) -> int:
         """Returns how many numbers there are."""
@@ -70,7 +124,11 @@ class Array(np.ndarray):
 
     def contiguous(self) -> "Array":
         """Returns the array in C order, without a copy where it is so."""
-        return np.require(self, requirements="C")
+        return np.require(self, requirements="C").view(Array)
+
+    def is_contiguous(self) -> bool:
+        """Returns whether the array is in C order."""
+        return self.flags.c_contiguous
 
     def to(self, dtype: Any, copy: bool = False) -> "Array":
         """Converts to a type of NumPy's or Open3D's. A device of Open3D's in its place changes nothing."""
@@ -96,8 +154,34 @@ def _array(value: Any) -> np.ndarray:
 def _like(given: Any, result: np.ndarray) -> Any:
     """Returns the result in the form of the argument."""
     if _is_tensor(given):
-        return sys.modules["open3d"].core.Tensor(np.ascontiguousarray(result))
+        # Not by `ascontiguousarray`, which makes a row of one number.
+        return sys.modules["open3d"].core.Tensor(np.require(result, requirements="C"))
     return result.view(Array)
+
+
+def _nthreads(value: Any) -> int:
+    """A number of threads: as in Open3D one below 0 means all cores, and there is no greatest."""
+    return min(max(_integer(value, "nthreads", -sys.maxsize, sys.maxsize), 0), 1024)
+
+
+def _limit(value: Any, what: str) -> float:
+    """A limit of rays."""
+    try:
+        if isinstance(value, (str, bytes)) or np.ndim(value) != 0:
+            raise TypeError
+        return float(value)
+    except (TypeError, ValueError):
+        raise TypeError(f"{what} is {value!r}; it must be a number") from None
+
+
+def _between(limit: float, toward: float) -> float:
+    """The farthest number that is the limit in single precision, on the side where hits are."""
+    with np.errstate(over="ignore"):
+        single = np.float32(limit)
+    if not np.isfinite(single) or single == 0.0:
+        return float(single)
+    beyond = np.nextafter(single, np.float32(toward))
+    return float(single) + 0.5 * (float(beyond) - float(single)) if np.isfinite(beyond) else float(single)
 
 
 class RaycastingScene:
@@ -105,10 +189,12 @@ class RaycastingScene:
 
     The methods have the names, arguments, keys and dtypes of Open3D's. Rays (..., 6) are origin and direction, float32 or
     float64; ``t_hit`` counts multiples of the direction. Meshes are compiled when the first ray is cast after one was
-    added. ``nthreads`` is at most 1024, and 0 for one thread per core. A ray through an edge or a vertex is counted once.
+    added. ``nthreads`` below 1 is one thread per core, and above 1024 it is 1024. A ray through an edge or a vertex is
+    counted once.
     Directions are rounded to single precision: a ray that is aimed at the border of an open mesh, or at a silhouette, may
     pass beside it. Rays may start at any distance. Invalid rays, as of :class:`gridel.Scene`, hit nothing. A closed mesh
-    thinner than a step of the lattice is met as a flat one.
+    thinner than a step of the lattice is met as a flat one. A triangle that was added twice counts twice. There are no
+    queries of distances.
     """
 
     INVALID_ID = MISS
@@ -173,7 +259,7 @@ class RaycastingScene:
         Keys: ``t_hit`` (...) float32, inf on a miss; ``geometry_ids`` and ``primitive_ids`` (...) uint32,
         ``INVALID_ID`` on a miss and where t leaves single precision; ``primitive_uvs`` (..., 2) and ``primitive_normals`` (..., 3) float32, 0 on a miss.
         """
-        array = self._rays(rays)
+        array, threads = self._rays(rays), _nthreads(nthreads)
         shape = array.shape[:-1]
         if self.scene is None:
             hits = {
@@ -184,9 +270,7 @@ class RaycastingScene:
                 "primitive_normals": np.zeros(shape + (3,), dtype=np.float32),
             }
         else:
-            t, geometries, primitives, normals, uvs = self.scene._native.cast_rays(
-                array, _threads(nthreads, "nthreads")
-            )
+            t, geometries, primitives, normals, uvs = self.scene._native.cast_rays(array, threads)
             hits = {
                 "t_hit": t.reshape(shape),
                 "geometry_ids": geometries.reshape(shape),
@@ -199,24 +283,29 @@ class RaycastingScene:
     def test_occlusions(
         self, rays: Any, tnear: float = 0.0, tfar: float = float("inf"), nthreads: int = 0
     ) -> Any:
-        """Returns whether rays (..., 6) hit anything from ``tnear`` to ``tfar``: (...) bool."""
+        """Returns whether rays (..., 6) hit anything from ``tnear`` to ``tfar``: (...) bool.
+
+        Hits at the limits count. They are compared in single precision, with the t that :meth:`cast_rays` returns. A
+        ``tnear`` of 0 is the origin: whether a ray hits the surface on which it starts is not certain.
+        """
         array = self._rays(rays)
+        tnear, tfar = _limit(tnear, "tnear"), _limit(tfar, "tfar")
+        threads = _nthreads(nthreads)
         if self.scene is None:
             return _like(rays, np.zeros(array.shape[:-1], dtype=bool))
         if tnear != 0.0 or tfar != float("inf"):
-            limited = np.empty(array.shape[:-1] + (8,), dtype=array.dtype)
+            limited = np.empty(array.shape[:-1] + (8,))
             limited[..., 0:3], limited[..., 4:7] = array[..., 0:3], array[..., 3:6]
-            with np.errstate(over="ignore"):  # infinite in single precision, which they are near
-                limited[..., 3], limited[..., 7] = tnear, tfar
+            limited[..., 3], limited[..., 7] = _between(tnear, -np.inf), _between(tfar, np.inf)
             array = limited
-        return _like(rays, self.scene.any(array, threads=_threads(nthreads, "nthreads")))
+        return _like(rays, self.scene.any(array, threads=threads))
 
     def count_intersections(self, rays: Any, nthreads: int = 0) -> Any:
         """Returns the number of crossings of rays (..., 6): (...) int32."""
-        array = self._rays(rays)
+        array, threads = self._rays(rays), _nthreads(nthreads)
         if self.scene is None:
             return _like(rays, np.zeros(array.shape[:-1], dtype=np.int32))
-        counts = self.scene.count(array, format="f32", threads=_threads(nthreads, "nthreads"))
+        counts = self.scene.count(array, format="f32", threads=threads)
         return _like(rays, counts.astype(np.int32))
 
     def list_intersections(self, rays: Any, nthreads: int = 0) -> dict[str, Any]:
@@ -226,13 +315,13 @@ class RaycastingScene:
         ``geometry_ids`` and ``primitive_ids`` (m) uint32. ``t_hit`` (m) float32. ``primitive_uvs``
         (m, 2) float32.
         """
-        array = self._rays(rays).reshape(-1, 6)
+        array, threads = self._rays(rays).reshape(-1, 6), _nthreads(nthreads)
         if self.scene is None:
             none = np.zeros(0, dtype=np.uint32)
             splits = np.zeros(len(array) + 1, dtype=np.uint32)
             hits = (splits, none, none, none, np.zeros(0, np.float32), np.zeros((0, 2), np.float32))
         else:
-            found = self.scene.all(array, format="f32", threads=_threads(nthreads, "nthreads"))
+            found = self.scene.all(array, format="f32", threads=threads)
             # Beyond single precision nothing is met.
             kept = found.t <= np.finfo(np.float32).max
             ray, objects, primitives, t, uv = (
@@ -254,20 +343,33 @@ class RaycastingScene:
     def compute_occupancy(self, query_points: Any, nthreads: int = 0, nsamples: int = 1) -> Any:
         """Returns 1 for points (..., 3) that all meshes together enclose an odd number of times, else 0: (...) float32.
 
-        A point in two meshes is outside, as in Open3D. One ray is enough: ``nsamples``, an odd number, changes nothing.
+        A point in two meshes is outside, as in Open3D. A mesh whose triangles are all there twice contains nothing. One ray is enough: ``nsamples``, an odd number, changes nothing.
         Points with nan or infinity are outside.
         """
         if nsamples < 1 or nsamples % 2 == 0:
             raise ValueError(f"nsamples is {nsamples}; it must be odd and at least 1")
-        points = _rows(_array(query_points), (3,), "query_points")
+        points, threads = _rows(_array(query_points), (3,), "query_points"), _nthreads(nthreads)
         if self.scene is None:
             return _like(query_points, np.zeros(points.shape[:-1], dtype=np.float32))
-        threads = _threads(nthreads, "nthreads")
         inside = self.scene._native.contains(points, "scene", "f64", None, threads)
         return _like(query_points, inside.reshape(points.shape[:-1]).astype(np.float32))
 
     def __getstate__(self) -> dict:
         return {**self.__dict__, "_scene": None}
+
+    def __copy__(self) -> "RaycastingScene":
+        other = RaycastingScene()
+        # Meshes do not change, nor does what was compiled of them; the list does.
+        other.__dict__.update(self.__dict__, _meshes=list(self._meshes))
+        return other
+
+    def __getattr__(self, name: str) -> Any:
+        if name in ("compute_distance", "compute_signed_distance", "compute_closest_points"):
+            raise AttributeError(
+                f"{name} is not part of gridel.open3d, which has no queries of distances; "
+                "use open3d.t.geometry.RaycastingScene for it"
+            )
+        raise AttributeError(f"{type(self).__name__!r} object has no attribute {name!r}")
 
     @staticmethod
     def create_rays_pinhole(*args: Any, **kwargs: Any) -> Any:

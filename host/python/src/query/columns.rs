@@ -1,9 +1,18 @@
 //! First hits, written to arrays.
 
-use super::{CHUNK, Closest, Found, How, NONE, ask_some, chunks_of, each_chunk};
+use super::limits::first_accepted;
+use super::{CHUNK, Closest, Found, How, NONE, Nearest, ask_some, chunks_of, each_chunk};
 use crate::rays::Rays;
 use gridel_core::Scene;
 use gridel_host::trace::SceneRay;
+
+/// Where a hit lies.
+pub struct Placed {
+    pub t: f64,
+    pub uv: [f32; 2],
+    /// `None` where the hit has its normal.
+    pub normal: Option<[f32; 3]>,
+}
 
 /// The first hits of some rays, as arrays hold them.
 pub struct Columns<'c, T> {
@@ -49,23 +58,51 @@ impl<'c, T> Columns<'c, T> {
 /// Rays whose hits are found before they are written: as many as a processor's nearest memory holds.
 const WRITTEN: usize = 256;
 
+/// How hits become rows.
+pub struct Rows<P, M> {
+    /// True if `place` gives the normals of all hits.
+    pub places_normals: bool,
+    /// Where a hit lies, or none where there is no hit after all.
+    pub place: P,
+    /// The t and the primitive of a hit as the arrays have them.
+    pub number: M,
+}
+
 /// Finds the first hit of each ray and writes it to arrays of as many rows.
-///
-/// `place` gives the t and the weights of corners of a hit, or none where there is no hit after all, and `number` its t and its primitive as the arrays have them.
-pub fn cast<T: Send + Copy>(
+pub fn cast<T, P, M>(
     scene: &Scene<'_>,
     rays: Rays<'_>,
     how: How,
     mut columns: Columns<'_, T>,
-    place: impl Fn(&SceneRay, &Found) -> Option<(f64, [f32; 2])> + Sync,
-    number: impl Fn(&Found) -> (T, u32) + Sync,
-) {
+    form: &Rows<P, M>,
+) where
+    T: Send + Copy,
+    P: Fn(&SceneRay, &Found) -> Option<Placed> + Sync,
+    M: Fn(&Found) -> (T, u32) + Sync,
+{
     let mut chunks = Vec::with_capacity(rays.len().div_ceil(CHUNK));
     for numbers in chunks_of(rays.len()) {
         let (chunk, rest) = columns.split(numbers.len());
         chunks.push((numbers.start, chunk));
         columns = rest;
     }
+    // Where the ray meets the hit, or the next one within the limits of the ray.
+    let place = |number: usize, hit: &mut Found| {
+        let ray = rays.searched(number);
+        let within = |hit: &Found| {
+            let placed = (form.place)(&ray, hit);
+            placed.filter(|placed| rays.holds(number, placed.t))
+        };
+        let mut placed = within(hit);
+        if placed.is_none() && rays.have_limits() {
+            first_accepted(scene, rays, how, number, &mut |next| {
+                placed = within(next);
+                *hit = *next;
+                placed.is_some()
+            });
+        }
+        placed
+    };
     let write = |(start, mut columns): (usize, Columns<'_, T>)| {
         let mut hits = [Found::MISS; WRITTEN];
         let mut start = start;
@@ -74,15 +111,22 @@ pub fn cast<T: Send + Copy>(
             let (rows, rest) = columns.split(count);
             let hits = &mut hits[..count];
             hits.fill(Found::MISS);
-            ask_some::<Closest>(scene, rays, how, (start, hits));
+            if form.places_normals {
+                ask_some::<Nearest>(scene, rays, how, (start, hits));
+            } else {
+                ask_some::<Closest>(scene, rays, how, (start, hits));
+            }
             for (row, hit) in hits.iter_mut().enumerate() {
                 if hit.primitive != NONE {
-                    match place(&rays.get(start + row), hit) {
-                        Some(placed) => (hit.t, rows.uv[row]) = placed,
+                    match place(start + row, hit) {
+                        Some(placed) => {
+                            (hit.t, rows.uv[row]) = (placed.t, placed.uv);
+                            hit.normal = placed.normal.unwrap_or(hit.normal);
+                        }
                         None => *hit = Found::MISS,
                     }
                 }
-                (rows.t[row], rows.primitive[row]) = number(hit);
+                (rows.t[row], rows.primitive[row]) = (form.number)(hit);
                 rows.object[row] = hit.object;
                 rows.normal[row] = hit.normal;
                 if let Some(instance) = rows.instance.get_mut(row) {

@@ -1,12 +1,13 @@
 //! Points inside of objects.
 
-use super::all_hits::each_hit;
+use super::lists::Lists;
 use super::{How, fill};
 use crate::rays::Points;
 use glam::DVec3;
 use gridel_core::accel::DynAccel;
 use gridel_core::{Accel, Fixed, Format, Number, Scene, Solid, Structure, Wide, containment_ray};
 use std::collections::TryReserveError;
+use std::ops::ControlFlow;
 
 /// When a point is inside.
 #[derive(Clone, Copy)]
@@ -54,6 +55,7 @@ fn contains_chunk<N: Number, A: Accel>(
         matches!(inside, Inside::Scene) || header.objects == 1 && scene.instances().is_empty();
     // Solids that are crossed an odd number of times so far.
     let mut odd: Vec<Solid> = Vec::new();
+    let mut lists = Lists::new(usize::MAX);
     for (number, answer) in (start..).zip(answers) {
         let units = (points.get(number) - origin) * per_unit;
         // A number format may make a number of NaN.
@@ -66,13 +68,13 @@ fn contains_chunk<N: Number, A: Accel>(
         };
         odd.clear();
         let mut is_odd = false;
-        each_hit::<N, A>(scene, &ray, |hit| {
+        lists.each::<A>(scene, &ray, |hit| {
             if !hit.encloses() {
-                return;
+                return ControlFlow::Continue(());
             }
             if is_single {
                 is_odd = !is_odd;
-                return;
+                return ControlFlow::Continue(());
             }
             let solid = Solid::of_hit(scene, hit);
             if let Some(place) = odd.iter().position(|&it| it == solid) {
@@ -80,6 +82,7 @@ fn contains_chunk<N: Number, A: Accel>(
             } else if is_closed(solid.object) {
                 odd.push(solid);
             }
+            ControlFlow::Continue(())
         });
         *answer = is_odd && is_closed(0) || !odd.is_empty();
     }

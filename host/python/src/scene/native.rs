@@ -4,14 +4,22 @@ use crate::arguments::{format, invalid, structure};
 use crate::closed::closed;
 use crate::model::Model;
 use crate::query::How;
-use crate::rays::Middle;
+use crate::rays::{Array, Middle, Rays};
 use gridel_core::{BlobError, Scene};
 use gridel_host::blob::Blob;
 use gridel_host::compile::Compiled;
 use gridel_host::scene::Shape;
+use gridel_host::trace::Frame;
 use pyo3::exceptions::PyKeyError;
 use pyo3::prelude::*;
 use std::sync::OnceLock;
+
+/// How much farther along a ray than across it the lattice may move a surface, in a search near the limits of rays: by
+/// so much where they meet at an angle of one degree.
+const SLACK: f64 = 64.0;
+
+/// Parts of a scene's size by which number formats may round the t of a hit.
+const ROUNDING: f64 = 1.0 / (1 << 22) as f64;
 
 type Checked<'b> = Result<Scene<'b>, BlobError>;
 
@@ -33,6 +41,8 @@ pub struct NativeScene {
     /// The number of the first primitive of each object of `model`.
     pub(super) firsts: Vec<u32>,
     pub(super) displacement: f64,
+    /// How far beyond their limits rays are searched, in scene units.
+    slack: f64,
     pub(super) middle: Middle,
     pub(super) closed: OnceLock<Vec<bool>>,
 }
@@ -40,8 +50,8 @@ pub struct NativeScene {
 impl NativeScene {
     pub(super) fn of_blob(blob: Blob, model: Option<Model>, displacement: f64) -> PyResult<Self> {
         let blob = CheckedBlob::new(blob, |blob| blob.scene());
-        let middle = match blob.borrow_dependent() {
-            Ok(scene) => Middle::of(scene),
+        let (middle, size) = match blob.borrow_dependent() {
+            Ok(scene) => (Middle::of(scene), size(scene)),
             Err(error) => return Err(invalid(format!("invalid scene blob: {error}"))),
         };
         let mut next = 0;
@@ -57,11 +67,16 @@ impl NativeScene {
                 first
             });
         let firsts = firsts.collect();
+        let slack = match model {
+            Some(_) => SLACK * displacement.max(size * ROUNDING),
+            None => 0.0,
+        };
         Ok(Self {
             blob,
             model,
             firsts,
             displacement,
+            slack,
             middle,
             closed: OnceLock::new(),
         })
@@ -124,9 +139,21 @@ impl NativeScene {
         Ok(found)
     }
 
+    /// The rays of an array.
+    pub(super) fn rays<'a>(&self, array: &'a Array<'_>) -> PyResult<Rays<'a>> {
+        Rays::rows(array.rows("rays")?, self.slack)
+    }
+
     /// The scene with a structure chosen.
     pub(super) fn chosen(&self, how: How) -> PyResult<Scene<'_>> {
         let chosen = self.scene()?.choose(how.structure);
         chosen.ok_or_else(|| invalid("the structure is not there"))
     }
+}
+
+/// The longest side of a scene's box, in scene units.
+fn size(scene: &Scene<'_>) -> f64 {
+    let sides = scene.bounds().0;
+    let lengths = sides.map(|[low, high]| f64::from(high) - f64::from(low));
+    Frame::of(scene).length(lengths.into_iter().fold(0.0, f64::max))
 }

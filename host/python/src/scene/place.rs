@@ -1,17 +1,29 @@
 //! Where rays meet triangles as they were given.
 
 use super::NativeScene;
-use crate::query::{Found, NONE};
+use crate::query::{Found, NONE, Placed};
 use crate::rays::Rays;
 use glam::DVec3;
 use gridel_host::scene::Shape;
 use gridel_host::trace::SceneRay;
 use std::collections::TryReserveError;
 
-/// Where a ray meets a triangle: its t, the place, and the weights of the second and third corner.
-type Meeting = (f64, DVec3, [f64; 2]);
+/// Where a ray meets a triangle.
+pub(super) struct Meeting {
+    pub t: f64,
+    pub place: DVec3,
+    /// The weights of the second and third corner.
+    weights: [f64; 2],
+    /// Of any length.
+    normal: Option<DVec3>,
+}
 
 impl NativeScene {
+    /// True if [`triangle`](Self::triangle) has the corners of whatever rays hit.
+    pub(super) fn has_all_triangles(&self) -> bool {
+        self.model.as_ref().is_some_and(|model| model.is_of_arrays)
+    }
+
     /// The corners of a triangle of a mesh as they were given, by its number; `None` of other primitives, and of those of
     /// instances.
     pub(super) fn triangle(&self, primitive: u32) -> Option<[DVec3; 3]> {
@@ -40,7 +52,12 @@ impl NativeScene {
         };
         let Some(corners) = triangle else {
             let t = ray.within(hit.t);
-            return (t, ray.origin + ray.direction * t, [f64::NAN; 2]);
+            return Meeting {
+                t,
+                place: ray.origin + ray.direction * t,
+                weights: [f64::NAN; 2],
+                normal: None,
+            };
         };
         let [a, b, c] = corners;
         // Products of two such squares stay in double precision.
@@ -73,34 +90,51 @@ impl NativeScene {
             tmax: near.tmax / stretch,
         };
         let own = (own - begin) / stretch;
-        let (t, place, weights) = meet(corners.map(|it| it * scale), &scaled, own);
-        (ray.within(begin + t * stretch), place / scale, weights)
+        let met = meet(corners.map(|it| it * scale), &scaled, own);
+        Meeting {
+            t: ray.within(begin + met.t * stretch),
+            place: met.place / scale,
+            ..met
+        }
     }
 
-    /// The t of a hit, and the weights of the corners of its triangle.
+    /// The t and normal of a hit, and the weights of the corners of its triangle.
     #[inline(always)]
-    pub(super) fn weights(&self, ray: &SceneRay, hit: &Found) -> (f64, [f32; 2]) {
-        let (t, _, uv) = self.place(ray, hit);
-        (t, uv.map(|weight| weight as f32))
+    pub(super) fn placed(&self, ray: &SceneRay, hit: &Found) -> Placed {
+        let met = self.place(ray, hit);
+        let normal = met.normal.and_then(DVec3::try_normalize);
+        Placed {
+            t: met.t,
+            uv: met.weights.map(|weight| weight as f32),
+            normal: normal.map(|normal| normal.as_vec3().to_array()),
+        }
     }
 
-    /// Gives the hits of rays, ray by ray in their order, their t, and returns the weights of the corners of their
-    /// triangles. Triangles closer to each other than the lattice moved them keep the order in which they are hit.
+    /// Gives the hits of rays, ray by ray in their order, their t and normals, and returns the weights of the corners of
+    /// their triangles. Leaves out what lies beyond the limits of rays. Triangles closer to each other than the lattice
+    /// moved them keep the order in which they are hit.
     pub(super) fn place_all(
         &self,
         rays: Rays<'_>,
-        hits: &mut [(usize, Found)],
+        hits: &mut Vec<(usize, Found)>,
     ) -> Result<Vec<[f32; 2]>, TryReserveError> {
         let mut all = Vec::new();
         all.try_reserve_exact(hits.len())?;
         let mut last = (usize::MAX, f64::NEG_INFINITY);
-        let placed = hits.iter_mut().map(|(number, hit)| {
-            let (t, _, uv) = self.place(&rays.get(*number), hit);
-            hit.t = if last.0 == *number { t.max(last.1) } else { t };
+        hits.retain_mut(|(number, hit)| {
+            let placed = self.placed(&rays.searched(*number), hit);
+            if !rays.holds(*number, placed.t) {
+                return false;
+            }
+            hit.t = placed.t;
+            if last.0 == *number {
+                hit.t = hit.t.max(last.1);
+            }
             last = (*number, hit.t);
-            uv.map(|weight| weight as f32)
+            hit.normal = placed.normal.unwrap_or(hit.normal);
+            all.push(placed.uv);
+            true
         });
-        all.extend(placed);
         Ok(all)
     }
 }
@@ -124,7 +158,17 @@ fn meet([a, b, c]: [DVec3; 3], ray: &SceneRay, own: f64) -> Meeting {
     let relative = place - a;
     let weight = |area: DVec3| (area.dot(normal) / square).clamp(0.0, 1.0);
     let weights = [weight(relative.cross(to_c)), weight(to_b.cross(relative))];
-    (t, place, weights)
+    // A triangle without an area, of which the lattice made one, has any normal across its longer side.
+    let across = || {
+        let is_longer = to_c.length_squared() > to_b.length_squared();
+        if is_longer { to_c } else { to_b }.any_orthogonal_vector()
+    };
+    Meeting {
+        t,
+        place,
+        weights,
+        normal: Some(if square > 0.0 { normal } else { across() }),
+    }
 }
 
 /// The t at which a ray that is nearly parallel to a triangle meets its plane, or the nearest t at which it is above or

@@ -1,0 +1,164 @@
+//! Queries of rays that are set up four at once, in `f32` through [`Wide`] with AVX2.
+
+use super::candidate::Candidate;
+use super::found;
+use super::hit::PrimitiveHit;
+use super::search::Search;
+use crate::accel::stack::StackView;
+use crate::accel::traverse::Traverse;
+use crate::accel::wide::cull::WideLanes;
+use crate::accel::{Accel, Wide};
+use crate::geometry::strip::StripRay;
+use crate::number::Vectors;
+use crate::observe::count::NoCount;
+use crate::ray::{FourGivenRays, FourRays, Ray};
+use crate::scene::Scene;
+use crate::simd::{Avx2, SimdLevel};
+use crate::target::wide_only;
+
+/// A ray with all that a query needs of it, in a scene that [suits](FourReadyRays::suit).
+#[derive(Clone, Copy, Debug)]
+pub struct ReadyRay {
+    ray: Ray<f32>,
+    cull: WideLanes,
+    strip_ray: StripRay<f32>,
+}
+
+/// Four rays with all that queries need of them.
+#[derive(Clone, Copy, Debug)]
+pub struct FourReadyRays {
+    ready: u32,
+    rays: [ReadyRay; 4],
+}
+
+impl FourReadyRays {
+    /// Returns the proof of the instructions if rays of a scene can be set up in fours: queries of it use AVX2, and it
+    /// has no instances and no shapes without bounds.
+    pub fn suit(scene: &Scene<'_>) -> Option<Avx2> {
+        match scene.space.simd() {
+            SimdLevel::Avx2(avx2) if scene.instances().is_empty() && !scene.has_unbounded => {
+                Some(avx2)
+            }
+            _ => None,
+        }
+    }
+
+    /// Rays that are to be set up.
+    pub fn empty() -> Self {
+        let ray = ReadyRay {
+            ray: Ray::unwritten(),
+            cull: WideLanes::default(),
+            strip_ray: StripRay::unwritten(),
+        };
+        Self {
+            ready: 0,
+            rays: [ray; 4],
+        }
+    }
+
+    /// Sets up four rays. Their bits are those of [`Ray::from_f64`].
+    // In place, because copies of what was just written in parts are slow.
+    #[inline(always)]
+    pub fn set_up(&mut self, avx2: Avx2, scene: &Scene<'_>, given: &FourGivenRays) {
+        let rays = FourRays::new(avx2, scene.bounds(), given);
+        self.ready = rays.ready;
+        let [a, b, c, d] = &mut self.rays;
+        let cull = [&mut a.cull, &mut b.cull, &mut c.cull, &mut d.cull];
+        WideLanes::write_four(&rays, cull);
+        let strip_rays = [
+            &mut a.strip_ray,
+            &mut b.strip_ray,
+            &mut c.strip_ray,
+            &mut d.strip_ray,
+        ];
+        StripRay::write_four(&rays, &scene.space.shapes.clusters().strips, strip_rays);
+        for (lane, ready) in self.rays.iter_mut().enumerate() {
+            rays.write(lane, &mut ready.ray);
+        }
+    }
+
+    /// A ray; `None` if [`Ray::from_f64`] must set it up, or reject it.
+    #[inline(always)]
+    pub fn get(&self, lane: usize) -> Option<&ReadyRay> {
+        let is_ready = self.ready >> (lane & 3) & 1 != 0;
+        is_ready.then_some(&self.rays[lane & 3])
+    }
+}
+
+impl ReadyRay {
+    /// The ray.
+    #[inline(always)]
+    pub fn ray(&self) -> &Ray<f32> {
+        &self.ray
+    }
+
+    /// [`closest_primitive`](crate::closest_primitive) of the ray.
+    #[inline(always)]
+    pub fn closest_primitive(
+        &self,
+        scene: &Scene<'_>,
+        stack: &mut StackView,
+    ) -> Option<PrimitiveHit<f32>> {
+        self.search::<false>(scene, stack)
+    }
+
+    /// [`any_hit`](crate::any_hit) of the ray.
+    #[inline(always)]
+    pub fn any_hit(&self, scene: &Scene<'_>, stack: &mut StackView) -> bool {
+        self.search::<true>(scene, stack).is_some()
+    }
+
+    #[inline(always)]
+    fn search<const ANY: bool>(
+        &self,
+        scene: &Scene<'_>,
+        stack: &mut StackView,
+    ) -> Option<PrimitiveHit<f32>> {
+        let (ray, cull, count) = (&self.ray, &self.cull, &mut NoCount);
+        let none: Option<Candidate<f32>> = None;
+        let mut search = Search {
+            scene,
+            ray,
+            cull,
+            recip_norm2: if scene.needs_norm {
+                f32::recip_norm2(ray.slope)
+            } else {
+                0.0
+            },
+            strip_ray: wide_only(|| self.strip_ray),
+            tmax: ray.tmax,
+            found: none,
+        };
+        let (space, views) = (&scene.space, Wide::views(&scene.structures));
+        if ANY {
+            Wide::walk_any(
+                space,
+                views,
+                ray,
+                cull,
+                stack,
+                count,
+                #[inline(always)]
+                |leaf, count| {
+                    search.leaf::<Wide, _, ANY>(leaf, count);
+                    search.found.is_some()
+                },
+            );
+        } else {
+            Wide::walk(
+                space,
+                views,
+                ray,
+                cull,
+                stack,
+                count,
+                #[inline(always)]
+                |leaf, count| {
+                    search.leaf::<Wide, _, ANY>(leaf, count);
+                    Some(search.tmax)
+                },
+            );
+        }
+        Some(found(scene, ray, search.found?))
+    }
+}
