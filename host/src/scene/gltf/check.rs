@@ -77,7 +77,9 @@ impl Importer<'_> {
         let parts = document.meshes().flat_map(|mesh| mesh.primitives());
         let uses = parts.flat_map(|part| {
             let attributes = part.attributes();
-            attributes.map(|(semantic, it)| (it.index(), semantic)).collect::<Vec<_>>()
+            attributes
+                .map(|(semantic, it)| (it.index(), semantic))
+                .collect::<Vec<_>>()
         });
         let uses: HashMap<usize, Semantic> = uses.collect();
         for accessor in document.accessors().filter(stored) {

@@ -338,8 +338,15 @@ fn surfaces_that_are_not_read_are_named() {
                 property float z\nelement trifans 1\nproperty list int int vertex_indices\n\
                 end_header\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n";
     let error = read(fans.as_bytes()).unwrap_err();
-    assert!(error.cause.contains("its elements \"trifans\" are not read"), "{error}");
-    let corners = fans.replace("trifans", "face").replace("vertex_indices", "corners");
+    assert!(
+        error
+            .cause
+            .contains("its elements \"trifans\" are not read"),
+        "{error}"
+    );
+    let corners = fans
+        .replace("trifans", "face")
+        .replace("vertex_indices", "corners");
     let error = read(corners.as_bytes()).unwrap_err();
     let told = ["\"face\" have no list \"vertex_indices\"", "\"corners\""];
     assert!(told.iter().all(|it| error.cause.contains(it)), "{error}");

@@ -345,7 +345,10 @@ fn keys_within_a_tick_are_told_apart() {
     let times = tracks[0].keys.iter().map(|key| key.seconds);
     let times: Vec<_> = times.collect();
     // The compiler rejects the track, and shows both times.
-    assert!(times[0] == 0.0 && times[1] > 0.0 && times[1] < 2e-6, "{times:?}");
+    assert!(
+        times[0] == 0.0 && times[1] > 0.0 && times[1] < 2e-6,
+        "{times:?}"
+    );
 }
 
 /// The seconds of a file have 24 bits, and can lie just behind the tick to which they are rounded.

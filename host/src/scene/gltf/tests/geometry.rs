@@ -81,10 +81,19 @@ fn numbers_that_are_not_finite_are_reported_with_what_follows() {
     let mut numbers = [0.0_f32, 0.0, 1.0].repeat(4);
     numbers[3] = f32::NAN;
     let bytes: Vec<u8> = numbers.iter().flat_map(|it| it.to_le_bytes()).collect();
-    let uri = format!("data:application/octet-stream;base64,{}", STANDARD.encode(&bytes));
+    let uri = format!(
+        "data:application/octet-stream;base64,{}",
+        STANDARD.encode(&bytes)
+    );
     let push = |list: &mut Value, item: Value| list.as_array_mut().unwrap().push(item);
-    push(&mut document["buffers"], json!({"byteLength": 48, "uri": uri}));
-    push(&mut document["bufferViews"], json!({"buffer": 1, "byteLength": 48}));
+    push(
+        &mut document["buffers"],
+        json!({"byteLength": 48, "uri": uri}),
+    );
+    push(
+        &mut document["bufferViews"],
+        json!({"buffer": 1, "byteLength": 48}),
+    );
     push(
         &mut document["accessors"],
         json!({"bufferView": 2, "componentType": 5126, "count": 4, "type": "VEC3"}),
