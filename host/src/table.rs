@@ -1,5 +1,6 @@
 //! Plain text tables.
 
+use std::borrow::Cow;
 use std::fmt;
 
 /// On which side a column's cells line up.
@@ -115,6 +116,32 @@ pub fn power_of_two(power: f64) -> String {
 
 /// Most characters of a name that texts show.
 const MAX_SHOWN: usize = 80;
+/// Most bytes of a sentence that is shown whole, and those of its two ends that are shown of others.
+const MAX_SENTENCE: usize = 1500;
+const SHOWN_ENDS: [usize; 2] = [800, 400];
+
+/// Returns the beginning of a text, for messages that quote it: at most 80 characters, and `...` for the rest.
+///
+/// ```
+/// assert_eq!(gridel_host::table::shortened(&"a".repeat(100)).len(), 83);
+/// ```
+pub fn shortened(text: &str) -> Cow<'_, str> {
+    match text.char_indices().nth(MAX_SHOWN) {
+        Some((end, _)) => Cow::Owned(format!("{}...", &text[..end])),
+        None => Cow::Borrowed(text),
+    }
+}
+
+/// Returns a sentence without its middle if it is too long to be read, because it lists what a file has.
+pub(crate) fn clipped(sentence: String) -> String {
+    if sentence.len() <= MAX_SENTENCE {
+        return sentence;
+    }
+    let [head, tail] = SHOWN_ENDS;
+    let head = sentence.floor_char_boundary(head);
+    let tail = sentence.ceil_char_boundary(sentence.len() - tail);
+    format!("{} ... {}", &sentence[..head], &sentence[tail..])
+}
 
 /// Returns a name of a scene file as a terminal can show it: on one line, at most 80 characters.
 /// Control characters are escaped as in Rust.
@@ -123,12 +150,8 @@ const MAX_SHOWN: usize = 80;
 /// assert_eq!(gridel_host::table::printable("a\nb"), "a\\nb");
 /// ```
 pub fn printable(name: &str) -> String {
-    let (shown, rest) = match name.char_indices().nth(MAX_SHOWN) {
-        Some((end, _)) => (&name[..end], "..."),
-        None => (name, ""),
-    };
-    let escaped = shown.escape_debug().to_string();
-    escaped.replace("\\\"", "\"").replace("\\'", "'") + rest
+    let escaped = shortened(name).escape_debug().to_string();
+    escaped.replace("\\\"", "\"").replace("\\'", "'")
 }
 
 /// A number with six digits that count, and without zeros that do not.
@@ -167,6 +190,16 @@ mod tests {
         assert_eq!(printable("a\\'b"), "a\\\\'b");
         assert_eq!(printable(&"ä".repeat(80)), "ä".repeat(80));
         assert_eq!(printable(&"ä".repeat(81)), "ä".repeat(80) + "...");
+    }
+
+    #[test]
+    fn long_sentences_lose_their_middle() {
+        let sentence = format!("a{}z", "ä".repeat(1_000_000));
+        let shown = clipped(sentence);
+        assert!(shown.len() <= 1206, "{} bytes", shown.len());
+        assert!(shown.starts_with("aä") && shown.ends_with("äz"));
+        assert!(shown.contains("ä ... ä"));
+        assert_eq!(clipped("ä".repeat(750)), "ä".repeat(750));
     }
 
     #[test]

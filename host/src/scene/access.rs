@@ -8,6 +8,7 @@
 use super::SceneError;
 use super::files::{Files, lexical};
 use super::image::Texels;
+use crate::table::shortened;
 use std::io;
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
@@ -130,7 +131,8 @@ impl Access {
             [
                 format!(
                     "{name:?} lies outside of the scene's folder, {}",
-                    root.display()
+                    root.display(),
+                    name = shortened(name)
                 ),
                 String::from(
                     "move the file into that folder, or allow such files with `--allow-outside`",

@@ -1,6 +1,8 @@
 //! Errors in scene files: the file, the place, the cause and the remedy.
 
-use miette::{Diagnostic, LabeledSpan, NamedSource, SourceCode};
+use super::excerpt::Excerpt;
+use crate::table::clipped;
+use miette::{Diagnostic, LabeledSpan, SourceCode};
 use std::path::{Path, PathBuf};
 
 /// An error in a scene file (or in one that it imports), or in a manifest of checks.
@@ -18,20 +20,13 @@ pub struct SceneError {
     excerpt: Option<Box<Excerpt>>,
 }
 
-/// The text of a file and the span (byte offset, length) to underline in it.
-#[derive(Debug)]
-struct Excerpt {
-    source: NamedSource<String>,
-    span: (usize, usize),
-}
-
 impl SceneError {
     pub fn new(file: &Path, cause: impl Into<String>, remedy: impl Into<String>) -> Self {
         Self {
             file: file.to_owned(),
             line: None,
-            cause: cause.into(),
-            remedy: remedy.into(),
+            cause: clipped(cause.into()),
+            remedy: clipped(remedy.into()),
             excerpt: None,
         }
     }
@@ -47,16 +42,17 @@ impl SceneError {
         let offset = offset.min(text.len());
         let before = &text.as_bytes()[..offset];
         self.line = Some(1 + before.iter().filter(|&&byte| byte == b'\n').count());
-        let source = NamedSource::new(self.file.display().to_string(), text.to_owned());
-        let span = (offset, length.min(text.len() - offset));
-        self.excerpt = Some(Box::new(Excerpt { source, span }));
+        let span = offset..offset + length.min(text.len() - offset);
+        let file = clipped(self.file.display().to_string());
+        self.excerpt = Some(Box::new(Excerpt::new(file, text, span)));
         self
     }
 }
 
 impl std::fmt::Display for SceneError {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        write!(f, "{}", self.file.display())?;
+        // The name of a file that there is not can be of any length.
+        f.write_str(&clipped(self.file.display().to_string()))?;
         if let Some(line) = self.line {
             write!(f, ":{line}")?;
         }
@@ -73,8 +69,8 @@ impl Diagnostic for SceneError {
 
     fn source_code(&self) -> Option<&dyn SourceCode> {
         self.excerpt
-            .as_ref()
-            .map(|excerpt| &excerpt.source as &dyn SourceCode)
+            .as_deref()
+            .map(|excerpt| excerpt as &dyn SourceCode)
     }
 
     fn labels(&self) -> Option<Box<dyn Iterator<Item = LabeledSpan> + '_>> {

@@ -3,7 +3,7 @@
 use super::size::{MOST_PRIMITIVES, Size, primitives};
 use super::{Instance, Object, Part, Scene, SceneError};
 use crate::shape::transform::Misfit;
-use crate::table::grouped;
+use crate::table::{grouped, shortened};
 use std::borrow::Cow;
 
 const KEEP: &str = "keep the instances with `--instances keep`, or place fewer of them";
@@ -102,7 +102,8 @@ fn placed(instance: &Instance, object: &Object) -> Result<Object, SceneError> {
     let misfit = |Misfit { cause, remedy }| {
         let cause = format!(
             "the object {:?} of instance {:?} {cause}",
-            object.name, instance.name
+            shortened(&object.name),
+            shortened(&instance.name)
         );
         error(instance, cause, remedy)
     };

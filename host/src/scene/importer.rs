@@ -4,6 +4,7 @@ use super::access::Access;
 use super::gzip;
 use super::text::{Source, check_encoding};
 use super::{Choice, ImportOptions, Imported, MoleculeOptions, SceneError};
+use crate::table::shortened;
 use gridel_core::Up;
 use std::fmt;
 use std::path::Path;
@@ -68,7 +69,10 @@ impl Importers {
         importer.map(Some).ok_or_else(|| {
             SceneError::new(
                 path,
-                format!("the extension {extension:?} names no scene format"),
+                format!(
+                    "the extension {:?} names no scene format",
+                    shortened(&extension)
+                ),
                 format!("use {}", self.extensions()),
             )
         })

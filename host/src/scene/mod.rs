@@ -14,6 +14,7 @@ mod damaged;
 mod emitters;
 mod environment;
 mod error;
+mod excerpt;
 mod exr_image;
 mod files;
 mod flatten;

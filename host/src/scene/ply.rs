@@ -14,6 +14,7 @@ use super::{
     Attributes, Imported, Material, Normals, Object, Scene, SceneError, Shape, SourceSpan,
 };
 use crate::srgb::linear_of_srgb;
+use crate::table::shortened;
 use glam::DVec3;
 use gridel_core::Up;
 use payload::{Payload, Skipped};
@@ -59,10 +60,10 @@ fn read(input: Input<'_>) -> Result<Imported, SceneError> {
             "tristrips" => strips = payload.read::<Face>(element, &header)?,
             name => {
                 payload.read::<Skipped>(element, &header)?;
-                let sentence = format!("elements {name:?} are ignored");
+                let sentence = format!("elements {name:?} are ignored", name = shortened(name));
                 warnings.add_times(SourceSpan::of(path), element.count.max(1), sentence);
                 if element.count > 0 {
-                    ignored.push(format!("{name:?}"));
+                    ignored.push(format!("{name:?}", name = shortened(name)));
                 }
             }
         }
@@ -97,10 +98,17 @@ fn read(input: Input<'_>) -> Result<Imported, SceneError> {
 fn without_surface(path: &Path, ignored: &[String]) -> SceneError {
     let cause = "the file has no faces and no triangle strips";
     match ignored {
-        [] => SceneError::new(path, cause, "export a mesh; points alone cannot be rendered"),
+        [] => SceneError::new(
+            path,
+            cause,
+            "export a mesh; points alone cannot be rendered",
+        ),
         names => SceneError::new(
             path,
-            format!("{cause}, and its elements {} are not read", names.join(", ")),
+            format!(
+                "{cause}, and its elements {} are not read",
+                names.join(", ")
+            ),
             "export the surface as elements `face` with a list `vertex_indices`",
         ),
     }

@@ -4,6 +4,7 @@
 
 use super::image::Fault;
 use super::image::fault;
+use crate::table::shortened;
 
 /// Width, height and linear pixels.
 type Decoded = (usize, usize, Vec<[f32; 3]>);
@@ -52,7 +53,10 @@ pub(super) fn decode(
     let magic = bytes.line()?;
     if !["#?RADIANCE", "#?RGBE"].contains(&magic.as_str()) {
         return Err(fault(
-            format!("begins with {magic:?}, not with \"#?RADIANCE\""),
+            format!(
+                "begins with {magic:?}, not with \"#?RADIANCE\"",
+                magic = shortened(&magic)
+            ),
             REMEDY,
         ));
     }
@@ -65,7 +69,10 @@ pub(super) fn decode(
             && format.trim() != "32-bit_rle_rgbe"
         {
             return Err(fault(
-                format!("has the format {format:?}; expected \"32-bit_rle_rgbe\""),
+                format!(
+                    "has the format {format:?}; expected \"32-bit_rle_rgbe\"",
+                    format = shortened(format)
+                ),
                 REMEDY,
             ));
         }
@@ -73,7 +80,10 @@ pub(super) fn decode(
     let resolution = bytes.line()?;
     let (width, height) = size(&resolution).ok_or_else(|| {
         fault(
-            format!("has the resolution {resolution:?}; expected one such as \"-Y 512 +X 1024\""),
+            format!(
+                "has the resolution {resolution:?}; expected one such as \"-Y 512 +X 1024\"",
+                resolution = shortened(&resolution)
+            ),
             "save the picture again with its upper row first",
         )
     })?;

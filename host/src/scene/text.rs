@@ -3,6 +3,7 @@
 
 use super::access::Access;
 use super::{SceneError, SourceSpan, gzip};
+use crate::table::{clipped, shortened};
 use std::collections::HashMap;
 use std::path::{Path, PathBuf};
 use std::string::FromUtf8Error;
@@ -76,12 +77,18 @@ impl Source {
             Ok(value) if value.is_finite() => Ok(value),
             Ok(_) => Err(self.error_at(
                 word,
-                format!("{what} is {word:?}, which is not a finite number"),
+                format!(
+                    "{what} is {word:?}, which is not a finite number",
+                    word = shortened(word)
+                ),
                 "write a finite decimal number, such as 1.5 or -2e3",
             )),
             Err(_) => Err(self.error_at(
                 word,
-                format!("{what} is {word:?}, which is not a number"),
+                format!(
+                    "{what} is {word:?}, which is not a number",
+                    word = shortened(word)
+                ),
                 "write a decimal number, such as 1.5 or -2e3",
             )),
         }
@@ -139,7 +146,7 @@ impl Warnings {
         times: usize,
         sentence: impl Into<String>,
     ) {
-        let sentence = sentence.into();
+        let sentence = clipped(sentence.into());
         if let Some(&index) = self.index.get(&sentence) {
             self.found[index].2 += times;
             return;

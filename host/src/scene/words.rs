@@ -2,6 +2,7 @@
 
 use super::SceneError;
 use super::text::Source;
+use crate::table::shortened;
 use std::fmt::Display;
 use std::iter::{Enumerate, Peekable};
 use std::str::Lines;
@@ -93,7 +94,10 @@ impl<'a> Words<'a> {
         word.parse().map_err(|_| {
             self.source.error_at(
                 word,
-                format!("{what} is {word:?}, which is not a whole number"),
+                format!(
+                    "{what} is {word:?}, which is not a whole number",
+                    word = shortened(word)
+                ),
                 "write a whole number, such as 3, and check that none is missing before it",
             )
         })

@@ -9,6 +9,7 @@ use super::importer::{Importer, Input};
 use super::molecule::{self, Atom, Element, Model, Parsed, Site};
 use super::text::{Source, Warnings};
 use super::{Imported, SceneError};
+use crate::table::shortened;
 use glam::DVec3;
 use gridel_core::Up;
 
@@ -59,7 +60,10 @@ fn parse<'a>(
             continue;
         };
         let count = word.parse::<usize>().map_err(|_| {
-            let cause = format!("{word:?} is not a number of atoms, with which a frame begins");
+            let cause = format!(
+                "{word:?} is not a number of atoms, with which a frame begins",
+                word = shortened(word)
+            );
             let remedy = match parsed.models.last() {
                 Some(Model { line, .. }) => format!(
                     "check the number of atoms in line {line}, behind which this line comes"
@@ -150,7 +154,10 @@ fn atom<'a>(
         Err(_) => Element::from_symbol(name),
     };
     let element = element.unwrap_or_else(|| {
-        let sentence = format!("the element of the atom {name:?} is unknown; it is drawn in pink");
+        let sentence = format!(
+            "the element of the atom {name:?} is unknown; it is drawn in pink",
+            name = shortened(name)
+        );
         warnings.add(source, line, sentence);
         Element::UNKNOWN
     });

@@ -9,7 +9,7 @@ use super::place::transform;
 use crate::scene::{
     Choice, Interpolation, Key, SceneError, SourceSpan, TICKS_PER_SECOND, Track, TrackTarget,
 };
-use crate::table::printable;
+use crate::table::{printable, shortened};
 use glam::{DAffine3, DMat3, DMat4, DQuat, DVec3};
 use gltf::animation::Property;
 use gltf::{Animation, Document};
@@ -83,7 +83,16 @@ pub(super) fn choose<'d>(
         true => String::from("leave `--animation` out"),
         false => format!("choose one of {}", names.join(", ")),
     };
-    let error = || SceneError::new(path, format!("there is no animation {wanted:?}"), remedy);
+    let error = || {
+        SceneError::new(
+            path,
+            format!(
+                "there is no animation {wanted:?}",
+                wanted = shortened(wanted)
+            ),
+            remedy,
+        )
+    };
     found.ok_or_else(error).map(|animation| {
         Some(ChosenAnimation {
             animation,

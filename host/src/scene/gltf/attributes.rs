@@ -6,6 +6,7 @@ use super::{Importer, material};
 use crate::scene::access::FileError;
 use crate::scene::texture::texture_transform;
 use crate::scene::{Attributes, Image, Material, NormalMap, SceneError, Texture, Wrap};
+use crate::table::shortened;
 use glam::{DAffine2, DVec2};
 use gltf::image::Source;
 use gltf::texture::{MagFilter, MinFilter, WrappingMode};
@@ -153,7 +154,8 @@ impl Importer<'_> {
         if alpha.is_some() && made.transmit != [0.0; 3] {
             let name = &made.name;
             self.warn(format!(
-                "the alpha of the texture of material {name:?} is ignored, because it is glass"
+                "the alpha of the texture of material {name:?} is ignored, because it is glass",
+                name = shortened(name)
             ));
         }
         let number = self.scene.materials.len();
@@ -193,7 +195,8 @@ impl Importer<'_> {
             let all: Vec<&str> = ignored.iter().map(|it| *it.0).collect();
             let all = all.join(", ");
             self.warn(format!(
-                "textures of material {name:?} are not drawn: {all}"
+                "textures of material {name:?} are not drawn: {all}",
+                name = shortened(name)
             ));
         }
         let Some(info) = surface.base_color_texture() else {
@@ -201,13 +204,11 @@ impl Importer<'_> {
         };
         if made.mirror != [0.0; 3] || made.transmit != [0.0; 3] {
             self.warn(format!(
-                "the texture of material {name:?} weights its diffuse color alone, not what it mirrors or lets through"
-            ));
+                "the texture of material {name:?} weights its diffuse color alone, not what it mirrors or lets through", name = shortened(name)));
         }
         let Some(source) = info.texture().source() else {
             self.warn(format!(
-                "the texture of material {name:?} names no image that Gridel reads; its plain color is used"
-            ));
+                "the texture of material {name:?} names no image that Gridel reads; its plain color is used", name = shortened(name)));
             return Ok(None);
         };
         let Some(image) = self.image(&source)? else {
@@ -232,22 +233,19 @@ impl Importer<'_> {
             info.texture().source(),
         ) else {
             self.warn(format!(
-                "the normal map of material {name:?} names no image that Gridel reads; it is not drawn"
-            ));
+                "the normal map of material {name:?} names no image that Gridel reads; it is not drawn", name = shortened(name)));
             return Ok(None);
         };
         if Placed::of_color(material).is_some_and(|it| it != placed) {
             self.warn(format!(
-                "the normal map of material {name:?} does not lie as the texture of its color does; it is not drawn"
-            ));
+                "the normal map of material {name:?} does not lie as the texture of its color does; it is not drawn", name = shortened(name)));
             return Ok(None);
         }
         let scale = f64::from(info.scale());
         let taken = scale.clamp(0.0, NormalMap::STEEPEST);
         if scale != taken {
             self.warn(format!(
-                "the normal map of material {name:?} has the scale {scale}; it is drawn with {taken}"
-            ));
+                "the normal map of material {name:?} has the scale {scale}; it is drawn with {taken}", name = shortened(name)));
         }
         let Some(image) = self.image(&source)? else {
             return Ok(None);
@@ -291,8 +289,13 @@ impl Importer<'_> {
             },
         };
         let name = image.name().map_or_else(|| what.clone(), str::to_owned);
-        let decoded = Image::decode(&name, &bytes, &self.access.texels)
-            .map_err(|[cause, remedy]| self.error(format!("{what} ({name:?}) {cause}"), &remedy))?;
+        let decoded =
+            Image::decode(&name, &bytes, &self.access.texels).map_err(|[cause, remedy]| {
+                self.error(
+                    format!("{what} ({name:?}) {cause}", name = shortened(&name)),
+                    &remedy,
+                )
+            })?;
         let decoded = Some(Arc::new(decoded));
         self.images.insert(key, decoded.clone());
         Ok(decoded)

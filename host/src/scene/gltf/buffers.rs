@@ -4,6 +4,7 @@
 
 use crate::scene::SceneError;
 use crate::scene::access::{Access, FileError};
+use crate::table::shortened;
 use base64::Engine as _;
 use base64::engine::general_purpose::STANDARD;
 use gltf::Document;
@@ -345,7 +346,10 @@ pub(super) fn fetch(
     });
     if local.is_none() && uri.contains("://") {
         return Err(wrong(
-            format!("lies at {uri:?}, and nothing is fetched from a network"),
+            format!(
+                "lies at {uri:?}, and nothing is fetched from a network",
+                uri = shortened(uri)
+            ),
             "put the file beside the scene file and name it there",
         ));
     }

@@ -21,6 +21,7 @@
 //! with alpha are the exception.
 
 use crate::scene::{Alpha, Color, Diffuse, Material};
+use crate::table::shortened;
 use gltf::material::AlphaMode;
 
 pub(super) fn name(material: &gltf::Material<'_>) -> String {
@@ -45,14 +46,14 @@ pub(super) fn ignored(material: &gltf::Material<'_>) -> impl Iterator<Item = Str
     let index = material.ior().filter(|ior| !(1.0..=4.0).contains(ior));
     [
         emission(material).iter().any(|&it| it > BRIGHTEST).then(|| {
-            format!("the emission of material {name:?} is limited to {BRIGHTEST}; lower its emissive strength")
+            format!("the emission of material {name:?} is limited to {BRIGHTEST}; lower its emissive strength", name = shortened(&name))
         }),
         (material.double_sided() && glows).then(|| {
-            format!("material {name:?} has two sides, and glows on the front alone")
+            format!("material {name:?} has two sides, and glows on the front alone", name = shortened(&name))
         }),
         index.map(|ior| {
             let taken = taken_ior(ior);
-            format!("the index of refraction {ior} of material {name:?} is taken as {taken}; it must be 1 to 4")
+            format!("the index of refraction {ior} of material {name:?} is taken as {taken}; it must be 1 to 4", name = shortened(&name))
         }),
     ]
     .into_iter()

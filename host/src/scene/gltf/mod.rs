@@ -31,6 +31,7 @@ use super::{
     Attributes, Choice, Image, Imported, Normals, Object, ScaleRange, Scene, SceneError, Shape,
     SourceSpan,
 };
+use crate::table::shortened;
 use animation::Motion;
 use buffers::{Buffers, MOST};
 use glam::{DMat4, DVec3};
@@ -242,9 +243,9 @@ impl Importer<'_> {
             .filter(|node| node.mesh().is_some() && bends(node));
         let bent: Vec<_> = bent.collect();
         if let Some(node) = bent.first().filter(|_| chosen.by_name) {
-            let name = node
-                .name()
-                .map_or(String::new(), |name| format!(" {name:?}"));
+            let name = node.name().map_or(String::new(), |name| {
+                format!(" {name:?}", name = shortened(name))
+            });
             let by = match self.motion.has_weights(node.index()) {
                 true => "morph targets",
                 false => "a skin",
@@ -319,9 +320,9 @@ impl Importer<'_> {
         if last == [0.0, 0.0, 0.0, 1.0] {
             return Ok(());
         }
-        let name = node
-            .name()
-            .map_or_else(String::new, |name| format!(" {name:?}"));
+        let name = node.name().map_or_else(String::new, |name| {
+            format!(" {name:?}", name = shortened(name))
+        });
         let [x, y, z, w] = last;
         Err(self.error(
             format!(
@@ -365,7 +366,8 @@ impl Importer<'_> {
             if material::is_cut_out(&part.material()) {
                 let name = material::name(&part.material());
                 self.warn(format!(
-                    "the alpha of material {name:?} is below its cutoff; what has it is left out"
+                    "the alpha of material {name:?} is below its cutoff; what has it is left out",
+                    name = shortened(&name)
                 ));
                 continue;
             }

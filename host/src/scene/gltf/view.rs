@@ -7,7 +7,7 @@
 use super::animation::Motion;
 use super::middle::middle;
 use crate::scene::{Camera, Color, Light, LightForm, Scene, SourceSpan, Spot, Track};
-use crate::table::printable;
+use crate::table::{printable, shortened};
 use glam::{DMat4, DVec3};
 use gltf::Node;
 use gltf::camera::Projection;
@@ -178,9 +178,13 @@ impl View {
         };
         let cause = match self.has_blind {
             true => format!(
-                "the camera {wanted:?} has no direction, or its yfov is not between 0 and 180 degrees"
+                "the camera {wanted:?} has no direction, or its yfov is not between 0 and 180 degrees",
+                wanted = shortened(wanted)
             ),
-            false => format!("there is no camera {wanted:?} with a perspective"),
+            false => format!(
+                "there is no camera {wanted:?} with a perspective",
+                wanted = shortened(wanted)
+            ),
         };
         Err([cause, remedy])
     }

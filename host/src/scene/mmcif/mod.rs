@@ -13,6 +13,7 @@ use super::importer::{Importer, Input};
 use super::molecule::{self, Atom, Element, End, Model, Parsed, Site};
 use super::text::{Source, Warnings};
 use super::{Imported, SceneError};
+use crate::table::shortened;
 use assembly::{GroupColumns, OperatorColumns};
 use cif::{Token, Tokens};
 use glam::DVec3;
@@ -92,8 +93,10 @@ fn parse<'a>(source: &'a Source, warnings: &mut Warnings) -> Result<Parsed<'a>, 
                 parser.row(&single)?;
                 single = Table::default();
                 if !parser.parsed.atoms.is_empty() {
-                    let sentence =
-                        format!("the data block {name:?} and what follows is passed over");
+                    let sentence = format!(
+                        "the data block {name:?} and what follows is passed over",
+                        name = shortened(name)
+                    );
                     parser.warnings.add(source, tokens.line, sentence);
                     return Ok(parser.parsed);
                 }
@@ -214,7 +217,10 @@ impl<'a> Parser<'a, '_> {
         let name = table.value(columns.name);
         let symbol = table.value([columns.symbol]);
         let element = Element::from_symbol(symbol).unwrap_or_else(|| {
-            let sentence = format!("the element {symbol:?} is unknown; it is drawn in pink");
+            let sentence = format!(
+                "the element {symbol:?} is unknown; it is drawn in pink",
+                symbol = shortened(symbol)
+            );
             self.warnings.add(self.source, table.line, sentence);
             Element::UNKNOWN
         });

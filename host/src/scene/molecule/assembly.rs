@@ -7,6 +7,7 @@ use super::operators::{MOST_INSTANCES, Operator};
 use super::parsed::{Atom, Parsed};
 use crate::scene::text::{Source, Warnings};
 use crate::scene::{Placement, SceneError};
+use crate::table::shortened;
 use std::collections::hash_map::Entry;
 use std::collections::{BTreeSet, HashMap, HashSet};
 
@@ -133,10 +134,14 @@ fn warn_of_missing(
     let mut missing = names.filter(|it| !by_chain.contains_key(*it));
     if let Some(first) = missing.next() {
         let sentence = match missing.count() {
-            0 => format!("the assembly names the chain {first:?}, which has no atoms"),
+            0 => format!(
+                "the assembly names the chain {first:?}, which has no atoms",
+                first = shortened(first)
+            ),
             more => format!(
                 "the assembly names {} chains without atoms, such as {first:?}",
-                more + 1
+                more + 1,
+                first = shortened(first)
             ),
         };
         warnings.add(source, chains.line, sentence);
@@ -180,7 +185,7 @@ fn in_words(chains: &Chains<'_>) -> String {
     let Some(names) = &chains.names else {
         return String::from("all chains");
     };
-    let few: Vec<&str> = names.iter().take(FEW).copied().collect();
+    let few: Vec<_> = names.iter().take(FEW).map(|it| shortened(it)).collect();
     let word = if names.len() == 1 { "chain" } else { "chains" };
     let more = if names.len() > FEW { " ..." } else { "" };
     format!("{word} {}{more}", few.join(" "))
@@ -196,14 +201,20 @@ fn unknown(source: &Source, parsed: &Parsed<'_>, wanted: &str) -> SceneError {
     }
     if names.is_empty() {
         return source.error(
-            format!("there is no assembly {wanted:?}: the file states none"),
+            format!(
+                "there is no assembly {wanted:?}: the file states none",
+                wanted = shortened(wanted)
+            ),
             "leave `--assembly` out; the atoms of the file are drawn as they stand",
         );
     }
     let more = if names.len() > LISTED { " ..." } else { "" };
-    names.truncate(LISTED);
+    let names: Vec<_> = names.iter().take(LISTED).map(|it| shortened(it)).collect();
     source.error(
-        format!("there is no assembly {wanted:?}"),
+        format!(
+            "there is no assembly {wanted:?}",
+            wanted = shortened(wanted)
+        ),
         format!("choose one of {}{more}", names.join(", ")),
     )
 }

@@ -26,6 +26,7 @@ pub(super) use parsed::{Atom, End, Group, Matrix, Model, Operators, Parsed};
 use super::importer::Input;
 use super::text::{Source, Warnings};
 use super::{Imported, Instance, Material, MoleculeStyle, Part, Scene, SceneError};
+use crate::table::shortened;
 use assembly::{Copied, assemble};
 use limit::check_size;
 use std::collections::{HashMap, HashSet};
@@ -192,7 +193,8 @@ fn missing_ends(source: &Source, parsed: &Parsed<'_>, warnings: &mut Warnings) {
     };
     let named = match first {
         End::Serial(serial) => format!("CONECT names the atom {serial}"),
-        End::Name([chain, number, _, name]) => {
+        End::Name(names) => {
+            let [chain, number, _, name] = names.map(shortened);
             format!("struct_conn names the atom {chain}/{number}/{name}")
         }
     };

@@ -3,6 +3,7 @@
 use super::parsed::{Matrix, Operators, Parsed};
 use crate::scene::text::Source;
 use crate::scene::{Placement, SceneError};
+use crate::table::shortened;
 use glam::{DMat3, DVec3};
 use std::collections::HashMap;
 
@@ -99,7 +100,10 @@ fn reject_doubled(source: &Source, matrices: &[Matrix<'_>]) -> Result<(), SceneE
 
 /// The error of two operators with one name, in these lines.
 fn doubled(source: &Source, name: &str, [first, second]: [usize; 2]) -> SceneError {
-    let cause = format!("two operators have the name {name}; the first is in line {first}");
+    let cause = format!(
+        "two operators have the name {}; the first is in line {first}",
+        shortened(name)
+    );
     let remedy = "remove one of them or give it another name, or choose another assembly";
     source.error(cause, remedy).at_line(second)
 }
@@ -152,7 +156,7 @@ impl Matrix<'_> {
 /// Returns the factors of an expression: the text in parentheses, or between them.
 fn factors<'a>(source: &Source, text: &'a str, line: usize) -> Result<Vec<&'a str>, SceneError> {
     let broken = |cause: &str| {
-        let cause = format!("the operators {text:?} {cause}");
+        let cause = format!("the operators {text:?} {cause}", text = shortened(text));
         let remedy = "write a list such as 1,2 or products of lists such as (1-60)(61,62)";
         source.error(cause, remedy).at_line(line)
     };
@@ -208,7 +212,10 @@ fn range(
         (Ok(low), Ok(high)) if low <= high => Ok(Some([low, high])),
         _ => Err(source
             .error(
-                format!("the operators {item:?} are no range of numbers"),
+                format!(
+                    "the operators {item:?} are no range of numbers",
+                    item = shortened(item)
+                ),
                 "write the smaller number first, such as 1-60",
             )
             .at_line(line)),
@@ -224,7 +231,10 @@ fn named(
 ) -> Result<Vec<Operator>, SceneError> {
     let find = |name: &str| {
         let matrix = parsed.operators.get(name).ok_or_else(|| {
-            let cause = format!("there is no operator {name:?}, which an assembly uses");
+            let cause = format!(
+                "there is no operator {name:?}, which an assembly uses",
+                name = shortened(name)
+            );
             let remedy = "add it to _pdbx_struct_oper_list, or choose another assembly";
             source.error(cause, remedy).at_line(line)
         })?;

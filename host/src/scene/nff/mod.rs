@@ -23,6 +23,7 @@ mod view;
 use super::importer::{Importer as Entry, Input};
 use super::text::{Source, Warnings};
 use super::{Color, Diffuse, Imported, Light, Material, Scene, SceneError};
+use crate::table::shortened;
 use glam::DVec3;
 use gridel_core::Up;
 use reader::{Line, Lines};
@@ -123,11 +124,11 @@ impl<'a> Importer<'a> {
             "pp" => self.polygon(line, lines, 6),
             word if word.parse::<f64>().is_ok() => Err(self.source.error_at(
                 word,
-                format!("the number {word} belongs to no entity"),
+                format!("the number {} belongs to no entity", shortened(word)),
                 "start a line with v, b, l, f, s, c, p or pp, or correct the vertex count before it",
             )),
             word => {
-                self.warnings.add(self.source, line.number, format!("the entity {word:?} is unknown and passed over"));
+                self.warnings.add(self.source, line.number, format!("the entity {word:?} is unknown and passed over", word = shortened(word)));
                 Ok(())
             }
         }

@@ -5,6 +5,7 @@ use super::reader::{Line, Lines};
 use crate::scene::polygon::{self, MAX_CONCAVE};
 use crate::scene::{Attributes, Material, Normals, Object, SceneError, Shape};
 use crate::shape::{Cone, Sphere};
+use crate::table::shortened;
 use glam::DVec3;
 
 impl<'a> Importer<'a> {
@@ -108,7 +109,10 @@ impl<'a> Importer<'a> {
         let count: usize = count.parse().map_err(|_| {
             self.source.error_at(
                 if count.is_empty() { line.text } else { count },
-                format!("the vertex count of a polygon is {count:?}"),
+                format!(
+                    "the vertex count of a polygon is {count:?}",
+                    count = shortened(count)
+                ),
                 "write a whole number from 3 up",
             )
         })?;
@@ -136,7 +140,7 @@ impl<'a> Importer<'a> {
                     given.text,
                     format!(
                         "{:?} stands where vertex {} of {count} is due",
-                        given.word(0),
+                        shortened(given.word(0)),
                         vertices.len() + 1
                     ),
                     "add the missing vertices or correct the count",

@@ -13,6 +13,7 @@ use crate::scene::access::FileError;
 use crate::scene::text::{Source, Warnings};
 use crate::scene::texture::Images;
 use crate::scene::{Color, Diffuse, Material, NormalMap, SceneError, Texture, Wrap};
+use crate::table::shortened;
 use glam::{DAffine2, DVec2};
 
 /// One material of a file.
@@ -108,7 +109,10 @@ pub(super) fn read(
                 );
             }
             _ => {
-                let sentence = format!("the statement {keyword:?} is unknown and ignored");
+                let sentence = format!(
+                    "the statement {keyword:?} is unknown and ignored",
+                    keyword = shortened(keyword)
+                );
                 warnings.add(source, number, sentence);
             }
         }
@@ -321,7 +325,10 @@ impl Reader<'_> {
         warnings: &mut Warnings,
     ) -> Result<Option<Color>, SceneError> {
         if let Some(way @ (&"spectral" | &"xyz")) = self.values.first() {
-            let sentence = format!("a color given as {way:?} is not read; the default is used");
+            let sentence = format!(
+                "a color given as {way:?} is not read; the default is used",
+                way = shortened(way)
+            );
             warnings.add(self.source, line, sentence);
             return Ok(None);
         }

@@ -3,7 +3,7 @@
 use super::super::text::Warnings;
 use super::super::{SceneError, SourceSpan};
 use super::payload::{Skipped, range};
-use crate::table::printable;
+use crate::table::{printable, shortened};
 use ply_rs_bw::parser::{ParseError, Parser, Reader};
 use ply_rs_bw::ply::{ElementDef, Header, PropertyType};
 use std::io::ErrorKind;
@@ -110,7 +110,7 @@ pub(super) fn check(path: &Path, element: &ElementDef, bytes: usize) -> Result<(
             format!(
                 "the header announces {} elements {:?} of {} properties, and the file has {bytes} bytes",
                 element.count,
-                element.name,
+                shortened(&element.name),
                 element.properties.len()
             ),
             "copy the file again, as binary, or export it again",
@@ -134,19 +134,26 @@ pub(super) fn check(path: &Path, element: &ElementDef, bytes: usize) -> Result<(
             path,
             format!(
                 "the header announces a property {:?} of {:?} that is not {expected}",
-                property.name, element.name
+                shortened(&property.name),
+                shortened(&element.name)
             ),
             "export the file again, with properties of the usual types",
         ));
     }
-    let has_corners = element.properties.keys().any(|name| CORNERS.contains(&&**name));
+    let has_corners = element
+        .properties
+        .keys()
+        .any(|name| CORNERS.contains(&&**name));
     if ["face", "tristrips"].contains(&&*element.name) && element.count > 0 && !has_corners {
-        let names = element.properties.keys().map(|name| format!("{name:?}"));
+        let names = element
+            .properties
+            .keys()
+            .map(|name| format!("{name:?}", name = shortened(name)));
         return Err(SceneError::new(
             path,
             format!(
                 "the elements {:?} have no list \"vertex_indices\", but {}",
-                element.name,
+                shortened(&element.name),
                 names.collect::<Vec<_>>().join(", ")
             ),
             "rename the list of their vertices to `vertex_indices`",

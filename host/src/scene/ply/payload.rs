@@ -2,7 +2,7 @@
 
 use super::super::text::Warnings;
 use super::super::{SceneError, SourceSpan};
-use crate::table::printable;
+use crate::table::{printable, shortened};
 use ply_rs_bw::parser::{Parser, Reader};
 use ply_rs_bw::ply::{
     ElementDef, Encoding, Header, Property, PropertyAccess, PropertyType, ScalarType,
@@ -101,7 +101,8 @@ impl<'p> Payload<'p> {
     fn ends_early(&self, element: &ElementDef, number: usize) -> SceneError {
         let cause = format!(
             "the file ends behind {number} of {} elements {:?}",
-            element.count, element.name
+            element.count,
+            shortened(&element.name)
         );
         let remedy = "copy the file again, as binary, or export it again";
         SceneError::new(self.path, cause, remedy)
@@ -178,8 +179,12 @@ impl fmt::Display for Named<'_> {
             Word::Length => write!(f, "the length of ")?,
             Word::Entry(entry) => write!(f, "entry {entry} (from 0) of ")?,
         }
-        let (element, number) = (words.element, words.number);
-        write!(f, "{property:?} of {element} {number} (from 0)")
+        let (element, number) = (shortened(words.element), words.number);
+        write!(
+            f,
+            "{property:?} of {element} {number} (from 0)",
+            property = shortened(property)
+        )
     }
 }
 

@@ -5,6 +5,7 @@ use super::material::Palette;
 use super::source::{Name, Source, Span, nearest};
 use crate::scene::size::{MOST_PRIMITIVES, Size, primitives};
 use crate::scene::{Object, Scene, SceneError};
+use crate::table::shortened;
 use std::collections::{BTreeMap, HashMap};
 
 /// How deep groups may be nested; reading and placing them takes stack.
@@ -80,7 +81,10 @@ impl<'c> Census<'c> {
         let mut warnings = Vec::new();
         for (name, group) in unused {
             let place = self.source.place(&group.span);
-            warnings.push(format!("{place}: the group {name:?} is placed nowhere"));
+            warnings.push(format!(
+                "{place}: the group {name:?} is placed nowhere",
+                name = shortened(name)
+            ));
             // Groups that are never placed must still be valid.
             self.open.push(name);
             self.items(&group.items, 1)?;
@@ -208,15 +212,19 @@ pub(super) fn find<'g>(
 ) -> Result<&'g Group, SceneError> {
     groups.get(&name.text).ok_or_else(|| {
         let remedy = match nearest(&name.text, groups.keys().map(String::as_str)) {
-            Some(near) => format!("did you mean {near:?}? Or define `[group.{}]`", name.text),
+            Some(near) => format!(
+                "did you mean {near:?}? Or define `[group.{}]`",
+                shortened(&name.text),
+                near = shortened(near)
+            ),
             None => format!(
                 "define it: `[[group.{}.object]]` above each of its objects",
-                name.text
+                shortened(&name.text)
             ),
         };
         source.error(
             &name.span,
-            format!("there is no group {:?}", name.text),
+            format!("there is no group {:?}", shortened(&name.text)),
             remedy,
         )
     })

@@ -114,7 +114,10 @@ pub(super) fn read(input: Input<'_>, imports: &mut Imports) -> Result<Scene, Sce
         places: Places {
             lights: light_places,
             aperture: root.place_of("camera", "aperture"),
-            environment: root.get("environment").map(Value::place).unwrap_or_default(),
+            environment: root
+                .get("environment")
+                .map(Value::place)
+                .unwrap_or_default(),
             bounces: root.place_of("render", "bounces"),
             tone_mapping: root.place_of("render", "tone_mapping"),
         },

@@ -5,6 +5,7 @@ use super::value::Fields;
 use crate::scene::access::Access;
 use crate::scene::importer::{Choices, Importers, Input};
 use crate::scene::{Choice, Imported, MoleculeOptions, Scene, SceneError};
+use crate::table::shortened;
 use std::collections::HashMap;
 use std::path::PathBuf;
 use std::rc::Rc;
@@ -81,7 +82,10 @@ impl Kinds {
         ] {
             if let Some(value) = fields.get(key).filter(|_| !is_used) {
                 return Err(value.error(
-                    format!("`{key}` is for {kind}, and {} has none", file.text),
+                    format!(
+                        "`{key}` is for {kind}, and {} has none",
+                        shortened(&file.text)
+                    ),
                     "leave the key out",
                 ));
             }

@@ -4,6 +4,7 @@ use super::item::{InstanceItem, JointItem};
 use super::source::{Source, nearest};
 use super::value::Value;
 use crate::scene::SceneError;
+use crate::table::shortened;
 use glam::{DAffine3, DVec3};
 use std::collections::{HashMap, HashSet};
 
@@ -32,7 +33,11 @@ pub(super) fn read(list: Value<'_>) -> Result<Joints, SceneError> {
             let text = value.filled()?;
             if names.contains(text) && !joints.numbers.contains_key(text) {
                 return Err(value.error(
-                    format!("the joint {text:?} is not above the joint {:?}", name.text),
+                    format!(
+                        "the joint {text:?} is not above the joint {:?}",
+                        shortened(&name.text),
+                        text = shortened(text)
+                    ),
                     "write a joint behind its parent; joints cannot hang on each other in a circle",
                 ));
             }
@@ -42,7 +47,7 @@ pub(super) fn read(list: Value<'_>) -> Result<Joints, SceneError> {
         if joints.numbers.insert(name.text.clone(), number).is_some() {
             return Err(table.source.error(
                 &name.span,
-                format!("there are two joints {:?}", name.text),
+                format!("there are two joints {:?}", shortened(&name.text)),
                 "give one of them another name",
             ));
         }
@@ -60,7 +65,12 @@ impl Joints {
     /// The number of the joint that a key names.
     pub(super) fn find(&self, value: Value<'_>) -> Result<usize, SceneError> {
         let text = value.filled()?;
-        let error = |remedy| value.error(format!("there is no joint {text:?}"), remedy);
+        let error = |remedy| {
+            value.error(
+                format!("there is no joint {text:?}", text = shortened(text)),
+                remedy,
+            )
+        };
         self.number(text).map_err(error)
     }
 
@@ -70,9 +80,15 @@ impl Joints {
         found.ok_or_else(|| {
             match nearest(name, self.items.iter().map(|it| it.name.text.as_str())) {
                 Some(near) => {
-                    format!("did you mean {near:?}? Or define a `[[joint]]` of this name")
+                    format!(
+                        "did you mean {near:?}? Or define a `[[joint]]` of this name",
+                        near = shortened(near)
+                    )
                 }
-                None => format!("define it: `[[joint]]` with `name = {name:?}`"),
+                None => format!(
+                    "define it: `[[joint]]` with `name = {name:?}`",
+                    name = shortened(name)
+                ),
             }
         })
     }
@@ -97,7 +113,10 @@ pub(super) fn unused(source: &Source, joints: &Joints, instances: &[InstanceItem
     let warning = |(joint, _): (&JointItem, bool)| {
         let place = source.place(&joint.span);
         let name = &joint.name.text;
-        format!("{place}: no instance hangs on the joint {name:?}, so it moves nothing")
+        format!(
+            "{place}: no instance hangs on the joint {name:?}, so it moves nothing",
+            name = shortened(name)
+        )
     };
     unused.map(warning).collect()
 }

@@ -5,6 +5,7 @@ use super::source::{Name, Source, nearest};
 use super::value::{Fields, Value};
 use crate::scene::texture::{Images, texture_transform};
 use crate::scene::{Alpha, Diffuse, Image, Material, NormalMap, SceneError, Texture, Wrap};
+use crate::table::shortened;
 use glam::{DAffine2, DVec2, DVec3};
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -80,13 +81,14 @@ impl Palette {
             let remedy = match nearest(&name.text, known()) {
                 Some(near) => format!(
                     "did you mean {near:?}? Or define `[material.{}]`",
-                    name.text
+                    shortened(&name.text),
+                    near = shortened(near)
                 ),
-                None => format!("define `[material.{}]`", name.text),
+                None => format!("define `[material.{}]`", shortened(&name.text)),
             };
             source.error(
                 &name.span,
-                format!("there is no material {:?}", name.text),
+                format!("there is no material {:?}", shortened(&name.text)),
                 remedy,
             )
         })

@@ -7,6 +7,7 @@ use super::source::{Source, nearest};
 use super::transform;
 use super::value::Value;
 use crate::scene::SceneError;
+use crate::table::shortened;
 use std::collections::{HashMap, HashSet};
 
 impl Reader<'_> {
@@ -20,7 +21,7 @@ impl Reader<'_> {
             if !names.insert(name.text.clone()) {
                 return Err(self.source.error(
                     &name.span,
-                    format!("there are two parts {:?}", name.text),
+                    format!("there are two parts {:?}", shortened(&name.text)),
                     "give one of them another name",
                 ));
             }
@@ -52,10 +53,19 @@ pub(super) fn instances(
         let text = part.filled()?;
         let number = numbers.get(text).copied().ok_or_else(|| {
             let remedy = match nearest(text, parts.iter().map(|it| it.name.text.as_str())) {
-                Some(near) => format!("did you mean {near:?}? Or define a `[[part]]` of this name"),
-                None => format!("define it: `[[part]]` with `name = {text:?}`"),
+                Some(near) => format!(
+                    "did you mean {near:?}? Or define a `[[part]]` of this name",
+                    near = shortened(near)
+                ),
+                None => format!(
+                    "define it: `[[part]]` with `name = {text:?}`",
+                    text = shortened(text)
+                ),
             };
-            part.error(format!("there is no part {text:?}"), remedy)
+            part.error(
+                format!("there is no part {text:?}", text = shortened(text)),
+                remedy,
+            )
         })?;
         let (name, named) = match fields.get("name") {
             None => (format!("{text} {}", instances.len() + 1), part),
@@ -63,7 +73,7 @@ pub(super) fn instances(
         };
         if !names.insert(name.clone()) {
             return Err(named.error(
-                format!("there are two instances {name:?}"),
+                format!("there are two instances {name:?}", name = shortened(&name)),
                 "give one of them another name; one without a name has that of its part and its number",
             ));
         }
@@ -91,7 +101,7 @@ pub(super) fn unplaced(
         let place = source.place(&part.span);
         format!(
             "{place}: no instance places the part {:?}; it is left out",
-            part.name.text
+            shortened(&part.name.text)
         )
     };
     unplaced.map(warning).collect()

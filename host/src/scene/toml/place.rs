@@ -11,6 +11,7 @@ use crate::scene::{
     Track,
 };
 use crate::shape::transform::OUT_OF_RANGE;
+use crate::table::shortened;
 use glam::DAffine3;
 use std::collections::{BTreeMap, HashMap};
 
@@ -109,7 +110,7 @@ impl<'p> Placer<'p> {
                         &part.span,
                         format!(
                             "the part {:?} has no object: its imports are empty",
-                            part.name.text
+                            shortened(&part.name.text)
                         ),
                         "add objects to it, or remove it",
                     ));
@@ -258,7 +259,11 @@ impl<'p> Placer<'p> {
         for instance in &scene.instances {
             let placement = instance.placement.within(&outer);
             if !placement.is_valid() {
-                let cause = format!("the instance {:?} {}", instance.name, OUT_OF_RANGE.cause);
+                let cause = format!(
+                    "the instance {:?} {}",
+                    shortened(&instance.name),
+                    OUT_OF_RANGE.cause
+                );
                 return Err(self.source.error(&item.span, cause, OUT_OF_RANGE.remedy));
             }
             self.placed.instances.push(Instance {
@@ -278,7 +283,11 @@ impl<'p> Placer<'p> {
         for joint in &scene.joints {
             let pivot = site.transform.transform_point3(joint.pivot);
             if !pivot.is_finite() {
-                let cause = format!("the joint {:?} {}", joint.name, OUT_OF_RANGE.cause);
+                let cause = format!(
+                    "the joint {:?} {}",
+                    shortened(&joint.name),
+                    OUT_OF_RANGE.cause
+                );
                 return Err(self.source.error(&item.span, cause, OUT_OF_RANGE.remedy));
             }
             self.placed.joints.push(Joint {
@@ -342,12 +351,19 @@ impl<'p> Placer<'p> {
         if self.in_part && !shape.is_bounded() {
             return Err(self.source.error(
                 &item.span,
-                format!("the object {name:?} has no end, and a part has a box"),
+                format!(
+                    "the object {name:?} has no end, and a part has a box",
+                    name = shortened(name)
+                ),
                 "move it out of the part, to the scene's own objects",
             ));
         }
         let shape = shape.transformed(transform).map_err(|misfit| {
-            let cause = format!("the object {name:?} {}", misfit.cause);
+            let cause = format!(
+                "the object {name:?} {}",
+                misfit.cause,
+                name = shortened(name)
+            );
             self.source.error(&item.span, cause, misfit.remedy)
         })?;
         self.primitives += primitives(&shape);

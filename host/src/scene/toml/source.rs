@@ -3,6 +3,7 @@
 use crate::scene::access::Access;
 use crate::scene::text::check_encoding;
 use crate::scene::{SceneError, SourceSpan};
+use crate::table::shortened;
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -98,6 +99,8 @@ impl Source {
 
 /// Returns the name among `known` that is most similar to `wanted`.
 pub(crate) fn nearest<'k>(wanted: &str, known: impl Iterator<Item = &'k str>) -> Option<&'k str> {
-    let likeness = |name: &str| strsim::jaro_winkler(wanted, name);
+    // Of long names, the beginning: the time is the product of the lengths.
+    let wanted = shortened(wanted);
+    let likeness = |name: &str| strsim::jaro_winkler(&wanted, &shortened(name));
     known.max_by(|a, b| likeness(a).total_cmp(&likeness(b)))
 }

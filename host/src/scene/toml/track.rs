@@ -11,7 +11,7 @@ use crate::scene::{
     Diffuse, Interpolation, Key, LARGEST_SCALE, LEAST_SCALE, Light, LightForm, SceneError, Track,
     TrackTarget,
 };
-use crate::table::counted;
+use crate::table::{counted, shortened};
 use glam::{DQuat, DVec3};
 use gridel_core::format::track::ValueKind;
 use std::collections::HashMap;
@@ -157,7 +157,10 @@ fn parse(target: Value<'_>) -> Result<(Owner, &'static str, TrackTarget), SceneE
     let text = target.filled()?;
     let Some((owner, rest)) = text.split_once('.') else {
         return Err(target.error(
-            format!("`target` is {text:?}, which names no property"),
+            format!(
+                "`target` is {text:?}, which names no property",
+                text = shortened(text)
+            ),
             EXAMPLES,
         ));
     };
@@ -166,7 +169,10 @@ fn parse(target: Value<'_>) -> Result<(Owner, &'static str, TrackTarget), SceneE
         let last = rest.rsplit('.').next().unwrap_or(rest);
         let near = nearest(last, names.iter().copied()).unwrap_or_default();
         target.error(
-            format!("`target` is {text:?}, and a {owner} has no such property that moves"),
+            format!(
+                "`target` is {text:?}, and a {owner} has no such property that moves",
+                text = shortened(text)
+            ),
             format!(
                 "did you mean `{near}`? The properties are {}",
                 names.join(", ")
@@ -193,7 +199,11 @@ fn parse(target: Value<'_>) -> Result<(Owner, &'static str, TrackTarget), SceneE
         }
         "joint" => named(&JOINT).map(|(owner, name, moved)| (Owner::Joint(owner), name, moved)),
         _ => Err(target.error(
-            format!("`target` is {text:?}, and nothing called {owner:?} moves"),
+            format!(
+                "`target` is {text:?}, and nothing called {owner:?} moves",
+                text = shortened(text),
+                owner = shortened(owner)
+            ),
             EXAMPLES,
         )),
     }
@@ -346,7 +356,8 @@ impl Targets<'_> {
                     &target.span,
                     format!(
                         "{:?} moves already by the track at {}",
-                        target.text, first.place
+                        shortened(&target.text),
+                        first.place
                     ),
                     "put the keys of both into one track",
                 ));
@@ -372,7 +383,10 @@ impl Targets<'_> {
                 if is_spot && track.target == TrackTarget::LightDirection {
                     return Err(self.source.error(
                         &target.span,
-                        format!("light {name} is a spot, whose `direction` cannot move yet"),
+                        format!(
+                            "light {} is a spot, whose `direction` cannot move yet",
+                            shortened(name)
+                        ),
                         "move its `position` or `color`, or write several scene files",
                     ));
                 }
@@ -383,12 +397,12 @@ impl Targets<'_> {
                 };
                 Err(self.source.error(
                     &target.span,
-                    format!("light {name} has no `{property}`"),
+                    format!("light {} has no `{property}`", shortened(name)),
                     format!("move its `{instead}`, or change the light's `kind`"),
                 ))
             }
             Owner::Joint(name) => self.joints.number(name).map_err(|remedy| {
-                let cause = format!("there is no joint {name:?}");
+                let cause = format!("there is no joint {name:?}", name = shortened(name));
                 self.source.error(&target.span, cause, remedy)
             }),
             Owner::Material(name) => {
@@ -399,7 +413,7 @@ impl Targets<'_> {
                 let index = self.palette.find(self.source, &name)?;
                 let plain = matches!(self.palette.get(index).diffuse, Diffuse::Plain(_));
                 let wrong = |cause: &str, remedy: &str| {
-                    let cause = format!("material {:?} {cause}", name.text);
+                    let cause = format!("material {:?} {cause}", shortened(&name.text));
                     Err(self.source.error(&target.span, cause, remedy))
                 };
                 match (plain, *property) {
@@ -448,13 +462,13 @@ impl Targets<'_> {
         match (named.next(), named.next()) {
             (Some((index, _)), None) => Ok(index),
             (Some(_), Some(_)) => Err(error(
-                format!("several lights are called {name:?}"),
+                format!("several lights are called {name:?}", name = shortened(name)),
                 String::from("give them different names, or write the light's number"),
             )),
             (None, _) => Err(error(
-                format!("there is no light {name:?}"),
+                format!("there is no light {name:?}", name = shortened(name)),
                 match nearest(name, known()) {
-                    Some(near) => format!("did you mean {near:?}?"),
+                    Some(near) => format!("did you mean {near:?}?", near = shortened(near)),
                     None => String::from("write the light's number, or give the light a `name`"),
                 },
             )),

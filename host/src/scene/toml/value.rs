@@ -3,6 +3,7 @@
 use super::source::{Name, Source, Span, nearest};
 use crate::scene::{Color, SceneError, SourceSpan};
 use crate::srgb::linear_of_srgb;
+use crate::table::shortened;
 use glam::DVec3;
 use std::ops::RangeInclusive;
 use toml::Spanned;
@@ -45,7 +46,7 @@ impl<'a> Value<'a> {
             DeValue::Integer(_) => "an integer".into(),
             other => format!("a {}", other.type_str()),
         };
-        let key = self.key;
+        let key = shortened(self.key);
         self.error(
             format!("`{key}` holds {found}; expected {expected}"),
             format!("write it like {example}"),
@@ -154,7 +155,7 @@ impl<'a> Value<'a> {
         match self.node.get_ref() {
             DeValue::String(text) => srgb(text).ok_or_else(|| {
                 self.error(
-                    format!("`{}` is {text:?}, which is no color", self.key),
+                    format!("`{}` is {text:?}, which is no color", self.key, text = shortened(text)),
                     "write \"#rrggbb\" with six hexadecimal digits, or three linear numbers like [0.8, 0.1, 0.1]",
                 )
             }),
@@ -266,8 +267,16 @@ impl<'a> Value<'a> {
             .ok_or_else(|| {
                 let near = nearest(text, words.iter().copied()).unwrap_or_default();
                 self.error(
-                    format!("`{}` is {text:?}, which means nothing here", self.key),
-                    format!("did you mean {near:?}? It may be {}", words.join(", ")),
+                    format!(
+                        "`{}` is {text:?}, which means nothing here",
+                        self.key,
+                        text = shortened(text)
+                    ),
+                    format!(
+                        "did you mean {near:?}? It may be {}",
+                        words.join(", "),
+                        near = shortened(near)
+                    ),
                 )
             })
     }
@@ -358,7 +367,7 @@ impl<'a> Fields<'a> {
             let valid: Vec<_> = valid().collect();
             return Err(source.error(
                 &key.span(),
-                format!("this {what} has no key `{}`", key.get_ref()),
+                format!("this {what} has no key `{}`", shortened(key.get_ref())),
                 format!("did you mean `{near}`? The keys are {}", valid.join(", ")),
             ));
         }
