@@ -19,6 +19,7 @@ use super::size::Size;
 use super::text::{Source, Warnings};
 use super::texture::Images;
 use super::{Attributes, Color, Imported, Material, Normals, Object, Scene, SceneError, Shape};
+use crate::table::shortened;
 use glam::{DVec2, DVec3};
 use gridel_core::Up;
 use parser::{NO_NORMAL, Parsed, Part};
@@ -60,10 +61,7 @@ fn import(source: &Source, access: &Access) -> Result<Imported, SceneError> {
     let mut warnings = Warnings::default();
     let parsed = parser::parse(source, &mut warnings)?;
     if parsed.parts.is_empty() {
-        return Err(source.error(
-            "the file has no faces",
-            "export the surfaces as polygons (f lines)",
-        ));
+        return Err(without_faces(source, &parsed));
     }
     check_size(source, &parsed)?;
     let library = read_libraries(source, &parsed, access, &mut warnings)?;
@@ -99,6 +97,28 @@ fn import(source: &Source, access: &Access) -> Result<Imported, SceneError> {
     }
     scene.materials = materials.used;
     Ok(Imported::of(scene, warnings.into_sentences()))
+}
+
+/// The error of a file in which no face is left, with what was passed over.
+fn without_faces(source: &Source, parsed: &Parsed<'_>) -> SceneError {
+    let mut cause = String::from("the file has no faces");
+    for (number, skipped) in parsed.skipped.iter().enumerate() {
+        cause += &match number {
+            0 => format!(": {}", skipped.sentence),
+            _ => format!("; line {}: {}", skipped.line, skipped.sentence),
+        };
+        cause += &match skipped.more {
+            0 => String::new(),
+            1 => String::from(" (and once more)"),
+            more => format!(" (and {more} times more)"),
+        };
+    }
+    let remedy = "export the surfaces as polygons (f lines) of at least three vertices";
+    let error = source.error(cause, remedy);
+    match parsed.skipped.first() {
+        Some(first) => error.at_line(first.line),
+        None => error,
+    }
 }
 
 /// Rejects files whose parts repeat a long name until no memory holds it.
@@ -157,7 +177,8 @@ fn read_libraries(
                 Err(error) => {
                     let cause = format!(
                         "the material file {name:?} {}; its materials are replaced",
-                        error.cause
+                        error.cause,
+                        name = shortened(name)
                     );
                     warnings.add(source, line, cause);
                 }
@@ -184,7 +205,10 @@ impl<'a> Materials<'a> {
             .and_then(|name| self.library.get(name))
             .cloned();
         if let (Some(name), None) = (part.material, &known) {
-            let sentence = format!("the material {name:?} is defined nowhere; the default is used");
+            let sentence = format!(
+                "the material {name:?} is defined nowhere; the default is used",
+                name = shortened(name)
+            );
             warnings.add(source, part.line, sentence);
         }
         let index = self.used.len();

@@ -3,6 +3,7 @@
 use crate::scene::text::{Source, Warnings};
 use crate::scene::{Color, SceneError};
 use crate::srgb::linear_of_srgb;
+use crate::table::shortened;
 use glam::{DVec2, DVec3};
 
 #[derive(Default)]
@@ -18,7 +19,21 @@ pub(super) struct Parsed<'a> {
     pub(super) parts: Vec<Part<'a>>,
     /// The text behind each `mtllib`, with its line.
     pub(super) libraries: Vec<(usize, &'a str)>,
+    /// The first few kinds of lines that may have been meant as faces and are not.
+    pub(super) skipped: Vec<Skipped>,
 }
+
+/// Lines that are passed over.
+pub(super) struct Skipped {
+    pub(super) sentence: String,
+    /// The first of them.
+    pub(super) line: usize,
+    /// The number of further ones.
+    pub(super) more: usize,
+}
+
+/// Most kinds of lines that an error lists.
+const MOST_SKIPPED: usize = 4;
 
 /// Faces in a row that belong to one object and have one material.
 pub(super) struct Part<'a> {
@@ -244,7 +259,7 @@ impl<'a> Parser<'a> {
                 "a face of {} vertices has no surface and is skipped",
                 corners.len()
             );
-            warnings.add(self.source, line, sentence);
+            self.skip(line, &sentence, warnings);
             return Ok(());
         }
         if self.fresh {
@@ -277,6 +292,21 @@ impl<'a> Parser<'a> {
         Ok(())
     }
 
+    /// Warns of a line that is passed over.
+    fn skip(&mut self, line: usize, sentence: &str, warnings: &mut Warnings) {
+        warnings.add(self.source, line, sentence);
+        let skipped = &mut self.parsed.skipped;
+        if let Some(same) = skipped.iter_mut().find(|it| it.sentence == sentence) {
+            same.more += 1;
+        } else if skipped.len() < MOST_SKIPPED {
+            skipped.push(Skipped {
+                sentence: sentence.to_owned(),
+                line,
+                more: 0,
+            });
+        }
+    }
+
     /// Reads the position of `position/texture/normal` as an index counted from 0.
     fn corner(&mut self, word: &'a str, index: &str) -> Result<u32, SceneError> {
         let remedy = "vertices are counted from 1, or backwards from -1";
@@ -284,7 +314,8 @@ impl<'a> Parser<'a> {
         let fault = |cause: String| Err(self.source.error_at(word, cause, remedy));
         match index.parse::<i64>() {
             Err(_) => fault(format!(
-                "a face has the vertex {word:?}, which is not an index"
+                "a face has the vertex {word:?}, which is not an index",
+                word = shortened(word)
             )),
             Ok(0) => fault("a face has the vertex index 0".to_owned()),
             Ok(index) if index < 0 && index.unsigned_abs() > count as u64 => fault(format!(
@@ -316,11 +347,10 @@ impl<'a> Parser<'a> {
                 self.material = material;
             }
             "mtllib" => self.parsed.libraries.push((number, rest)),
-            "l" | "p" => warnings.add(
-                self.source,
-                number,
-                "points and lines have no surface and are skipped",
-            ),
+            "l" | "p" => {
+                let sentence = "points and lines have no surface and are skipped";
+                self.skip(number, sentence, warnings);
+            }
             "s" if !["", "0", "off"].contains(&rest) => {
                 self.smoothing.get_or_insert(number);
             }
@@ -333,9 +363,10 @@ impl<'a> Parser<'a> {
             _ if keyword.starts_with('#') || PASSED_OVER.contains(&keyword) => {}
             _ => {
                 let sentence = format!(
-                    "the statement {keyword:?} is unknown or about curves, and passed over"
+                    "the statement {keyword:?} is unknown or about curves, and passed over",
+                    keyword = shortened(keyword)
                 );
-                warnings.add(self.source, number, sentence);
+                self.skip(number, &sentence, warnings);
             }
         }
     }

@@ -92,6 +92,18 @@ fn weights_colors_and_lines_are_no_geometry() {
 fn faults_name_line_and_cause() {
     assert_eq!(fault(""), "t.obj: the file has no faces");
     assert_eq!(fault(CORNERS), "t.obj: the file has no faces");
+    assert_eq!(
+        fault(&format!("{CORNERS}f 1 2\n")),
+        "t.obj:5: the file has no faces: a face of 2 vertices has no surface and is skipped"
+    );
+    assert_eq!(
+        fault(&format!(
+            "{CORNERS}\nl 1 2\np 1\nl 2 3\nf 1\ncurv 0 1 1 2\n"
+        )),
+        "t.obj:6: the file has no faces: points and lines have no surface and are skipped (and 2 times more); \
+         line 9: a face of 1 vertices has no surface and is skipped; \
+         line 10: the statement \"curv\" is unknown or about curves, and passed over"
+    );
     assert_eq!(fault("v 1 2\n"), "t.obj:1: a vertex has 2 of 3 coordinates");
     assert_eq!(
         fault("\nv 1 nan 2\n"),
