@@ -10,6 +10,7 @@
 use super::importer::{Importer, Input, stem};
 use super::text::{Source, Warnings, check_encoding};
 use super::{Imported, Material, Object, Scene, SceneError, Shape, SourceSpan};
+use crate::table::shortened;
 use glam::DVec3;
 use gridel_core::Up;
 use std::collections::HashMap;
@@ -141,7 +142,9 @@ fn text(source: &Source) -> Result<Imported, SceneError> {
     let mut soup = Soup::default();
     // The corners of the facet that is open.
     let mut facet: Option<Vec<DVec3>> = None;
-    for (number, line) in source.lines() {
+    let lines = source.lines();
+    let statements = lines.flat_map(|(number, line)| Statements(line).map(move |it| (number, it)));
+    for (number, line) in statements {
         let mut words = line.split_whitespace();
         let Some(word) = words.next() else { continue };
         let misplaced = |cause: &str| {
@@ -182,7 +185,10 @@ fn text(source: &Source) -> Result<Imported, SceneError> {
             },
             "outer" | "endloop" | "endsolid" => {}
             _ => {
-                let sentence = format!("lines that begin with {word:?} are passed over");
+                let sentence = format!(
+                    "lines that begin with {word:?} are passed over",
+                    word = shortened(word)
+                );
                 warnings.add(source, number, sentence);
             }
         }
@@ -201,6 +207,41 @@ fn text(source: &Source) -> Result<Imported, SceneError> {
         }
     }
     scene(&source.path, objects, warnings.into_sentences())
+}
+
+/// The statements of a line: one, or several in files without line breaks.
+#[derive(Clone)]
+struct Statements<'a>(&'a str);
+
+impl<'a> Iterator for Statements<'a> {
+    type Item = &'a str;
+
+    fn next(&mut self) -> Option<&'a str> {
+        const KEYWORDS: [&str; 7] = [
+            "solid", "facet", "outer", "vertex", "endloop", "endfacet", "endsolid",
+        ];
+        let line = self.0.trim_start();
+        let mut words = line.split_whitespace();
+        let first = words.next()?;
+        let is = |word: &str, keyword: &str| word.eq_ignore_ascii_case(keyword);
+        let is_keyword = |word: &str| KEYWORDS.iter().any(|it| is(word, it));
+        let ends = is(first, "endsolid");
+        let behind = words.clone().skip(1).chain([""]);
+        // Names can have words that are keywords. In comments and the like words mean nothing.
+        let next = words.zip(behind).find(|&(word, behind)| match first {
+            _ if ends => is(word, "solid"),
+            _ if is(first, "solid") => {
+                is(word, "facet") && is(behind, "normal") || is(word, "endsolid")
+            }
+            _ => is_keyword(first) && is_keyword(word),
+        });
+        let end = next.map_or(line.len(), |(word, _)| {
+            word.as_ptr() as usize - line.as_ptr() as usize
+        });
+        let (statement, rest) = line.split_at(end);
+        self.0 = rest;
+        Some(statement)
+    }
 }
 
 fn scene(path: &Path, objects: Vec<Object>, warnings: Vec<String>) -> Result<Imported, SceneError> {

@@ -63,6 +63,45 @@ fn every_solid_of_a_text_is_an_object() {
 }
 
 #[test]
+fn texts_without_line_breaks_are_read() {
+    let lines = read(TWO_SOLIDS.as_bytes()).unwrap();
+    let text = TWO_SOLIDS.replace('\n', " ");
+    let imported = read(text.as_bytes()).unwrap();
+    assert_eq!(imported.warnings, [""; 0]);
+    let shapes = |it: &Imported| {
+        let objects = it.scene.objects.iter();
+        let named = objects.map(|it| (it.name.clone(), it.shape.clone()));
+        named.collect::<Vec<_>>()
+    };
+    assert_eq!(shapes(&imported), shapes(&lines));
+    // Words of names are no statements.
+    let text = TWO_SOLIDS.replace("solid tip", "solid outer facet vertex 1");
+    let imported = read(text.as_bytes()).unwrap();
+    assert_eq!(imported.scene.objects[0].name, "outer facet vertex 1");
+    assert_eq!(imported.warnings, [""; 0]);
+    let error = read(b"solid x facet normal 0 0 1 vertex 0 0 vertex 1 0 0").unwrap_err();
+    assert!(error.cause.contains("fewer than three"), "{error}");
+}
+
+/// The time for a line is in proportion to its words.
+#[test]
+fn long_lines_of_a_text_are_read_at_once() {
+    let start = std::time::Instant::now();
+    for words in [
+        "endsolid ",
+        "solid ",
+        "facet ",
+        "solid facet ",
+        "endsolid x ",
+        "x solid ",
+    ] {
+        let text = format!("solid {}", words.repeat(100_000));
+        assert!(read(text.as_bytes()).is_err(), "{words}");
+    }
+    assert!(start.elapsed().as_secs() < 10, "{:?}", start.elapsed());
+}
+
+#[test]
 fn binary_files_share_vertices_and_say_what_is_too_much() {
     let [a, b, c, d] = [
         [0.0, 0.0, 0.0],
