@@ -4,10 +4,12 @@ use super::container::{self, Container};
 use super::normal_transforms::{self, NormalTransforms};
 use crate::scene::text::Warnings;
 use crate::scene::{SceneError, SourceSpan};
+use crate::table::shortened;
 use gltf::Document;
 use gltf::json::camera::Type;
+use gltf::json::image::MimeType;
 use gltf::json::validation::{Checked, Error, Validate};
-use gltf::json::{Root, Value};
+use gltf::json::{Index, Root, Value};
 use std::path::Path;
 
 const AGAIN: &str = "export the file again, as glTF 2.0";
@@ -29,11 +31,15 @@ pub(super) fn read(
     if let Some(least) = least.filter(|least| *least != "2.0") {
         return Err(SceneError::new(
             path,
-            format!("the file needs at least glTF of version {least}; version 2.0 is understood"),
+            format!(
+                "the file needs at least glTF of version {}; version 2.0 is understood",
+                shortened(least)
+            ),
             AGAIN,
         ));
     }
     leave_out_shapeless(path, &mut root, warnings);
+    complete_images(path, &mut root, warnings);
     check_indices(path, &root)?;
     validate(path, &root)?;
     let document = Document::from_json_without_validation(root);
@@ -50,10 +56,11 @@ fn parse(
     // Compiled once, in its own crate: the generic function would be compiled again here.
     Root::from_slice(container.text).or_else(|error| {
         let value = gltf::json::deserialize::from_slice::<Value>(container.text).ok();
-        let repaired = value.clone().and_then(without_untargeted_channels);
-        if let Some(root) = repaired {
-            let sentence = "channels of animations without a node are ignored";
-            warnings.add_times(SourceSpan::of(path), 1, sentence);
+        if let Some((root, has_untargeted)) = value.clone().and_then(repaired) {
+            if has_untargeted {
+                let sentence = "channels of animations without a node are ignored";
+                warnings.add_times(SourceSpan::of(path), 1, sentence);
+            }
             return Ok(root);
         }
         // Other versions have other types where this one has its own.
@@ -76,11 +83,40 @@ fn parse(
     })
 }
 
-/// Takes out the channels of animations that name no node, which are valid: extensions say what these move. Returns
-/// `None` if there are none, or something else is broken.
-fn without_untargeted_channels(mut document: Value) -> Option<Root> {
+/// Reads a document with two things that the crate rejects and the format does not: scenes without nodes, and channels
+/// of animations without a node. Returns whether there are such channels, which are taken out. `None` if there is
+/// neither, or something else is broken.
+fn repaired(mut document: Value) -> Option<(Root, bool)> {
+    let scenes = add_nodes(&mut document);
+    let channels = take_untargeted_channels(&mut document);
+    // As text, for the function of `parse`.
+    let root = |document: Value| Root::from_slice(document.to_string().as_bytes()).ok();
+    (scenes || channels).then(|| root(document).map(|root| (root, channels)))?
+}
+
+/// Adds a list of no nodes to scenes without one. Returns whether there are any.
+fn add_nodes(document: &mut Value) -> bool {
     let mut found = false;
-    for animation in document.get_mut("animations")?.as_array_mut()? {
+    let scenes = document.get_mut("scenes").and_then(Value::as_array_mut);
+    for scene in scenes
+        .into_iter()
+        .flatten()
+        .filter_map(Value::as_object_mut)
+    {
+        if !scene.contains_key("nodes") {
+            scene.insert(String::from("nodes"), Value::Array(Vec::new()));
+            found = true;
+        }
+    }
+    found
+}
+
+/// Takes out the channels of animations that name no node: extensions say what these move. Returns whether there are
+/// any.
+fn take_untargeted_channels(document: &mut Value) -> bool {
+    let mut found = false;
+    let animations = document.get_mut("animations").and_then(Value::as_array_mut);
+    for animation in animations.into_iter().flatten() {
         let Some(channels) = animation.get_mut("channels").and_then(Value::as_array_mut) else {
             continue;
         };
@@ -91,8 +127,33 @@ fn without_untargeted_channels(mut document: Value) -> Option<Root> {
             !is_untargeted
         });
     }
-    // As text, for the function of `parse`.
-    found.then(|| Root::from_slice(document.to_string().as_bytes()).ok())?
+    found
+}
+
+/// Completes images that lack what the crate reads without having validated it. Images are told apart by their bytes,
+/// so that their kind is not needed; without data they are taken from their textures.
+fn complete_images(path: &Path, root: &mut Root, warnings: &mut Warnings) {
+    let mut empty = vec![false; root.images.len()];
+    for (number, image) in root.images.iter_mut().enumerate() {
+        let name = image.name.as_ref();
+        let name = name.map_or_else(String::new, |name| format!(" {:?}", shortened(name)));
+        let mut warn = |what: &str| {
+            let sentence = format!("image {number}{name} has {what}");
+            warnings.add_times(SourceSpan::of(path), 1, sentence);
+        };
+        if image.buffer_view.is_none() && image.uri.is_none() {
+            empty[number] = true;
+            warn("neither `uri` nor `bufferView`; it is not drawn");
+        } else if image.buffer_view.is_some() && image.mime_type.is_none() {
+            image.mime_type = Some(MimeType(String::new()));
+            warn("no `mimeType`; it is told by its first bytes");
+        }
+    }
+    for texture in &mut root.textures {
+        if empty.get(texture.source.value()) == Some(&true) {
+            texture.source = Index::new(u32::MAX);
+        }
+    }
 }
 
 fn check_version(path: &Path, version: &str) -> Result<(), SceneError> {
@@ -101,7 +162,10 @@ fn check_version(path: &Path, version: &str) -> Result<(), SceneError> {
     }
     Err(SceneError::new(
         path,
-        format!("the file is glTF of version {version}; version 2 is required"),
+        format!(
+            "the file is glTF of version {}; version 2 is required",
+            shortened(version)
+        ),
         AGAIN,
     ))
 }
@@ -188,7 +252,10 @@ fn validate(path: &Path, root: &Root) -> Result<(), SceneError> {
         None => Ok(()),
         Some((place, Error::Unsupported)) => Err(SceneError::new(
             path,
-            format!("an extension that the file requires is not understood: {place}"),
+            format!(
+                "an extension that the file requires is not understood: {}",
+                shortened(&place)
+            ),
             "export without it; compressed and quantized meshes are not read",
         )),
         Some((place, error)) => {

@@ -204,10 +204,6 @@ fn textures_without_a_source_are_read() {
     assert!(cause(&document).contains("baseColorTexture"));
 }
 
-fn push(document: &mut Value, list: &str, value: Value) {
-    document[list].as_array_mut().unwrap().push(value);
-}
-
 /// The square with texture coordinates 0, 1/2, 1 in 16 bits, colors in 8 bits, and a texture of two by one texels.
 fn textured() -> Value {
     let mut document = document();
@@ -384,6 +380,53 @@ fn images_that_cannot_be_read_are_named() {
         found.len() == 1 && found[0].contains("no TEXCOORD_0"),
         "{found:?}"
     );
+}
+
+/// The members `mimeType`, `uri` and `bufferView` of images.
+#[test]
+fn images_without_a_kind_or_data_are_told_by_their_bytes_or_left_out() {
+    let mut document = textured();
+    let image = scene(&document).materials[0].texture.clone().unwrap().image;
+    let pixels = [[255, 0, 0, 255], [0, 0, 255, 255]];
+    let bytes = crate::scene::image::tests::png_of(2, 1, &pixels);
+    push(
+        &mut document,
+        "buffers",
+        json!({
+            "byteLength": bytes.len(),
+            "uri": format!("data:application/octet-stream;base64,{}", STANDARD.encode(&bytes)),
+        }),
+    );
+    let buffer = document["buffers"].as_array().unwrap().len() - 1;
+    push(
+        &mut document,
+        "bufferViews",
+        json!({"buffer": buffer, "byteLength": bytes.len()}),
+    );
+    let view = document["bufferViews"].as_array().unwrap().len() - 1;
+    document["images"] = json!([{"name": "wood", "bufferView": view}]);
+    assert_eq!(
+        warnings(&document),
+        ["image 0 \"wood\" has no `mimeType`; it is told by its first bytes"]
+    );
+    let read = scene(&document).materials[0].texture.clone().unwrap().image;
+    assert_eq!(read.pixels(), image.pixels());
+    for (image, named) in [
+        (json!({}), "image 0"),
+        (json!({"name": "wood"}), "image 0 \"wood\""),
+    ] {
+        document["images"] = json!([image]);
+        assert_eq!(
+            warnings(&document),
+            [
+                format!("{named} has neither `uri` nor `bufferView`; it is not drawn"),
+                String::from(
+                    "the texture of material \"plain\" names no image that Gridel reads; its plain color is used"
+                ),
+            ]
+        );
+        assert_eq!(scene(&document).materials[0].texture, None);
+    }
 }
 
 #[test]

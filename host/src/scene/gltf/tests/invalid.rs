@@ -92,6 +92,25 @@ fn a_million_instances_are_rejected() {
     assert!(error.remedy.contains("--instances keep"), "{error}");
 }
 
+/// The member `nodes` of a scene is optional.
+#[test]
+fn scenes_without_nodes_are_read() {
+    let mut document = document();
+    push(&mut document, "scenes", json!({}));
+    document["animations"] = json!([{
+        "channels": [{"sampler": 0, "target": {"path": "pointer"}}],
+        "samplers": [{"input": 0, "output": 0}],
+    }]);
+    assert_eq!(scene(&document).objects.len(), 1);
+    let empty = json!({"asset": {"version": "2.0"}, "scene": 0, "scenes": [{}]});
+    assert_eq!(
+        warnings(&empty),
+        ["the scene of the file has no triangles; nothing is drawn"]
+    );
+    let broken = json!({"asset": {"version": "2.0"}, "scenes": [{"nodes": 1}]});
+    assert!(cause(&broken).contains("the JSON is broken"));
+}
+
 /// glTF allows any JSON there.
 #[test]
 fn extras_of_any_kind_are_passed_over() {

@@ -54,6 +54,10 @@ fn document() -> Value {
     })
 }
 
+fn push(document: &mut Value, list: &str, value: Value) {
+    document[list].as_array_mut().unwrap().push(value);
+}
+
 pub(in crate::scene) fn text() -> String {
     document().to_string()
 }
