@@ -23,6 +23,8 @@ mod image;
 mod importer;
 mod joint;
 mod light_form;
+#[cfg(test)]
+mod long_words;
 mod model;
 pub(crate) mod molecule;
 mod normals;
