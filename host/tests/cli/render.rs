@@ -180,6 +180,10 @@ fn wrong_numbers_are_usage_errors() {
         &["render", "quick.gridel", "-o", "a.jpg"],
         &["a.jpg: unsupported image format `.jpg`"],
     );
+    for name in ["a.apng", "a.gif"] {
+        let words = ["an animation has several frames", "`--frames 0..48`"];
+        folder.fails(2, &["render", "quick.gridel", "-o", name], &words);
+    }
 }
 
 #[test]

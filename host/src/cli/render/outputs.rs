@@ -8,6 +8,7 @@ use crate::cli::output::{Content, check_writable, reject_same, unsupported, writ
 use clap::Args;
 use gridel_core::Scene;
 use gridel_core::render::RenderError;
+use gridel_host::animation::AnimationFormat;
 use gridel_host::layer::{Layer, LinearFormat, Window, write_npy};
 use gridel_host::openexr;
 use gridel_host::output::place;
@@ -300,6 +301,12 @@ fn stored(output: &Path) -> Result<Stored, Failure> {
     }
     if let Some(format) = PictureFormat::of(output) {
         return Ok(Stored::Shown(format));
+    }
+    if AnimationFormat::of(output).is_some() {
+        return Err(Failure::usage(
+            format!("{}: an animation has several frames", output.display()),
+            format!("say which with `--frames`, such as `--frames 0..48`, or write {FORMATS}"),
+        ));
     }
     let format = LinearFormat::of(output).ok_or_else(|| unsupported(output, "image", FORMATS))?;
     if !format.is_available() {
