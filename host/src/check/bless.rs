@@ -1,7 +1,7 @@
 //! Records the found figures in place of the expected ones, where these are broken.
 
 use super::manifest::Manifest;
-use super::report::{Figure, Key, Outcome, Record, Report};
+use super::report::{Figure, Finding, Key, Outcome, Record, Report};
 use crate::output::{Files, place};
 use std::collections::BTreeSet;
 use std::io;
@@ -15,6 +15,8 @@ pub struct Blessed {
     old: String,
     new: String,
     references: Vec<(PathBuf, super::Image)>,
+    /// References that are left, and why.
+    mixed: Vec<(PathBuf, String)>,
     /// Failures that cannot be recorded: names of checks, the key of each, and why, where the table does not say it.
     pub left: Vec<String>,
 }
@@ -46,6 +48,7 @@ pub fn bless(manifest: &Manifest, report: &Report) -> Blessed {
         old: manifest.text.clone(),
         new: manifest.text.clone(),
         references: Vec::new(),
+        mixed: Vec::new(),
         left: Vec::new(),
     };
     // It was read before, so it is TOML.
@@ -110,6 +113,11 @@ impl Blessed {
             match others.find(|(_, other)| !other.is_like(&new.image)) {
                 Some((it, _)) => {
                     let on = it.on.as_deref().unwrap_or_default();
+                    let why = format!(
+                        "the reference is not recorded, because the picture on {on} differs from another one by more \
+                         than the `tolerance`; name a file for each, or allow more"
+                    );
+                    self.mixed.push((here, why));
                     self.left.push(format!(
                         "{}: {} on {on} (another picture has the same reference, and differs by more than the \
                          `tolerance`; name a file for each)",
@@ -126,6 +134,19 @@ impl Blessed {
         self.references.iter().any(|(path, _)| place(path) == here)
     }
 
+    /// Why a reference that there is not is left.
+    fn why_missing(&self, finding: &Finding) -> Option<String> {
+        let Some(Record::Picture(picture)) = &finding.record else {
+            return None;
+        };
+        let is_missing = finding.evidence.as_ref()?.expected.is_none();
+        let here = place(&picture.path);
+        let mut mixed = self.mixed.iter().filter(|_| is_missing);
+        mixed
+            .find(|(path, _)| *path == here)
+            .map(|(_, why)| why.clone())
+    }
+
     /// Notes in a report which findings hold once this is recorded.
     pub fn note_in(&self, report: &mut Report) {
         for finding in &mut report.findings {
@@ -134,8 +155,13 @@ impl Blessed {
                 Some(Record::Picture(picture)) => self.records(&picture.path),
                 None => false,
             };
-            if is_mended && matches!(finding.outcome, Outcome::Failed(_)) {
+            if !matches!(finding.outcome, Outcome::Failed(_)) {
+                continue;
+            }
+            if is_mended {
                 finding.outcome = Outcome::Recorded;
+            } else if let Some(why) = self.why_missing(finding) {
+                finding.outcome = Outcome::Failed(why);
             }
         }
     }

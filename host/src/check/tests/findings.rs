@@ -210,6 +210,25 @@ fn junit_names_suites_cases_and_reasons() {
     assert!(xml.contains("blob_bytes is"), "{xml}");
 }
 
+/// While they are recorded, a missing file is not the cause.
+#[test]
+fn formats_that_differ_are_named_where_their_reference_is_not_recorded() {
+    let folder = Folder::new();
+    let scene = BALL.replace("width = 16, height = 12", "width = 160, height = 120");
+    fs::write(folder.path("ball.toml"), scene).unwrap();
+    let text = "[[check]]\nscene = \"ball.toml\"\nformats = [\"fixed\", \"f64\"]\nreference = \"one.png\"\n";
+    let (manifest, mut report) = folder.run(text);
+    assert!(why(&report.findings[0]).contains("let `gridel check --bless`"));
+    let blessed = bless(&manifest, &report);
+    blessed.note_in(&mut report);
+    assert_eq!((report.failed(), report.recorded()), (2, 0));
+    for finding in &report.findings {
+        let why = why(finding);
+        let expected = "the picture on f64 differs from another one by more than the `tolerance`";
+        assert!(why.contains(expected) && !why.contains("--bless"), "{why}");
+    }
+}
+
 /// Of two that differ, neither would pass with the other as its reference.
 #[test]
 fn pictures_that_differ_are_not_recorded_as_one_reference() {
