@@ -2,11 +2,14 @@
 
 use super::arguments::{LightChange, SceneOptions};
 use super::failure::Failure;
+use glam::DVec3;
+use gridel_core::format::light_form::LightForm;
 use gridel_core::format::record::{self, View};
 use gridel_core::{BlobError, Scene};
 use gridel_host::compile::{self, CompileError};
 use gridel_host::scene::{Light, ToneMapping};
 use gridel_host::state::Poses;
+use std::f64::consts::PI;
 
 /// The changes to a blob.
 pub struct Changes {
@@ -77,7 +80,7 @@ impl Changes {
         }
         let mut numbers = options.lights.iter().map(LightChange::number);
         let is_shown =
-            |&number: &usize| before[number] != lights[number] && scene.is_shown(&own[number]);
+            |&number: &usize| before[number] != lights[number] && is_face(scene, &own[number]);
         if let Some(number) = numbers.find(is_shown) {
             return Err(Failure::usage(
                 format!(
@@ -103,6 +106,36 @@ impl Changes {
             lights: lights.map_err(|error| Failure::Usage(miette::Report::new(error)))?,
         })
     }
+}
+
+/// Returns whether a light is a face of an object that glows. A blob states it where materials are rough. Elsewhere the
+/// light of an area is taken for one if a material that has lights emits the same radiance.
+fn is_face(scene: &Scene<'_>, light: &record::Light) -> bool {
+    if scene.lights().iter().any(|it| scene.is_shown(it)) {
+        return scene.is_shown(light);
+    }
+    let Some(form) = scene.light_form(light).filter(|_| light.is_area()) else {
+        return false;
+    };
+    let edges = form
+        .edges
+        .map(|edge| DVec3::from_array(edge.map(f64::from)));
+    let across = edges[0].cross(edges[1]).length();
+    // Over π, as the square of the reference.
+    let area = match form.shape {
+        LightForm::SPHERE => edges[0].x * edges[0].x,
+        LightForm::RECTANGLE => across / PI,
+        LightForm::TRIANGLE => across / (2.0 * PI),
+        _ => across,
+    };
+    let reference = f64::from(form.reference);
+    let color = light.color;
+    let radiance = color.map(|it| f64::from(it) * (reference * reference / area));
+    // Lengths are rounded, and a sphere's surface is lifted.
+    let spare = 0.02 * radiance.into_iter().fold(0.0, f64::max);
+    let is_same = |(it, own): (f64, i32)| (it - f64::from(own)).abs() <= spare;
+    let mut emissions = scene.emissions().iter().filter(|it| it.lights == 1);
+    emissions.any(|it| radiance.into_iter().zip(it.radiance).all(is_same))
 }
 
 /// Returns whether a light shines within a cone.

@@ -107,6 +107,36 @@ fn changes_that_do_not_fit_are_rejected() {
     }
 }
 
+/// A surface that glows would keep its color.
+#[test]
+fn lights_that_are_faces_of_objects_do_not_change() {
+    let folder = folder();
+    let lamp = "[material.lamp]\nemission = [17, 12, 5]\n[[object]]\nkind = 'mesh'\nmaterial = 'lamp'\n\
+                vertices = [[-1, 3, -1], [1, 3, -1], [1, 3, 1], [-1, 3, 1]]\nfaces = [[0, 1, 2, 3]]\n";
+    let disc = "[[light]]\nkind = 'disc'\ncenter = [0, 4, 0]\nnormal = [0, -1, 0]\nradius = 1\nradiance = 9\n";
+    let rough = "[material.rough]\nmirror = 1\nroughness = 0.3\n[[object]]\nkind = 'sphere'\n\
+                 center = [1, 0.5, 0]\nradius = 0.2\nmaterial = 'rough'\n";
+    for rough in ["", rough] {
+        let scene = format!("{SCENE}{disc}{rough}{lamp}");
+        folder.write("lamp.toml", scene.as_bytes());
+        folder.done(&["build", "lamp.toml", "-o", "lamp.gridel"]);
+        for input in ["lamp.toml", "lamp.gridel"] {
+            let render = [
+                "render", input, "-o", "lamp.ppm", "--size", "8x6", "--light",
+            ];
+            for change in ["3.color=5,0,0", "3.position=0,3,1"] {
+                let words = ["light 3", "object"];
+                folder.fails(2, &[&render[..], &[change]].concat(), &words);
+            }
+            // No surface stands for the other lights.
+            for change in ["0.color=5,0,0", "2.color=5,0,0"] {
+                folder.done(&[&render[..], &[change]].concat());
+            }
+            std::fs::remove_file(folder.path("lamp.ppm")).unwrap();
+        }
+    }
+}
+
 /// The environment of a blob is no light that a scene file states.
 #[test]
 fn lights_of_an_environment_do_not_change() {
