@@ -4,7 +4,9 @@
 use super::manifest::Budget;
 use super::report::{Figure, Key, Outcome};
 use super::run::{Compared, Run};
-use crate::measure::board::{Account, Board, MemoryReport, NotMeasured, Rendering, Target};
+use crate::measure::board::{
+    Account, Board, MemoryReport, NotMeasured, Rendering, Target, working_bytes,
+};
 use crate::table::grouped;
 use gridel_core::{Format, Scene, Structure};
 
@@ -21,6 +23,22 @@ impl Run<'_> {
                 width: self.settings(scene).width,
             };
             self.memory_in(board, &rendering, scene, blob);
+        }
+    }
+
+    /// Compares the working memory of pictures with its budget, if it has one.
+    pub(super) fn working_memory(&mut self, scene: &Scene<'_>, format: Format, blob: &[u8]) {
+        const WHAT: &str = "working_bytes";
+        let Some(most) = self.check.budget.working_bytes.map(Figure::Count) else {
+            return;
+        };
+        let on = Some(format.name().to_owned());
+        match working_bytes(scene, blob, format, scene.view().depth) {
+            Some(bytes) => self.budget(on, WHAT, Figure::Count(bytes), Some(most)),
+            None => {
+                let why = String::from("the views of parts were not measured");
+                self.push(on, WHAT, None, Some(most), Outcome::Failed(why));
+            }
         }
     }
 

@@ -7,7 +7,7 @@ use super::report::{Evidence, Figure, Finding, Key, Outcome, Record, ReferencePi
 use crate::blob::{Blob, is_blob};
 use crate::compile::{self, Options};
 use crate::explained;
-use crate::measure::{Rendered, board_memory};
+use crate::measure::Rendered;
 use crate::picture::hash;
 use crate::scene::{self, ImportOptions, Posed};
 use crate::state::{State, ticks};
@@ -97,7 +97,7 @@ impl Run<'_> {
         );
         self.memory(&scene, structure, blob.bytes());
         for (&format, name) in check.formats.iter().zip(&check.evidence) {
-            self.format(&shown, structure, format, name)?;
+            self.format(&shown, (structure, blob.bytes()), format, name)?;
             progress();
         }
         self.certify(&shown, structure)?;
@@ -188,17 +188,13 @@ impl Run<'_> {
     fn format(
         &mut self,
         scene: &Scene<'_>,
-        structure: Structure,
+        (structure, blob): (Structure, &[u8]),
         format: Format,
         name: &str,
     ) -> Result<(), String> {
         let check = self.check;
         let on = Some(format.name().to_owned());
-        if let Some(most) = check.budget.working_bytes {
-            let bytes = board_memory(scene, format, scene.view().depth).workspace as u64;
-            let (found, most) = (Figure::Count(bytes), Some(Figure::Count(most)));
-            self.budget(on.clone(), "working_bytes", found, most);
-        }
+        self.working_memory(scene, format, blob);
         let tests = check.budget.tests_per_ray;
         if check.hash.is_none() && check.reference.is_none() && tests.is_none() {
             return Ok(());
@@ -422,7 +418,13 @@ impl Run<'_> {
     }
 
     /// Compares a figure with a key of `[check.budget]`, if that is there.
-    fn budget(&mut self, on: Option<String>, what: &str, found: Figure, most: Option<Figure>) {
+    pub(super) fn budget(
+        &mut self,
+        on: Option<String>,
+        what: &str,
+        found: Figure,
+        most: Option<Figure>,
+    ) {
         if most.is_some() {
             let keys = vec![Key::Name("budget".into()), Key::Name(what.into())];
             self.held_to(on, Compared { what, found, most }, keys, None);

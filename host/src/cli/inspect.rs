@@ -13,7 +13,7 @@ use clap::Args;
 use glam::DVec3;
 use gridel_core::{Format, Kind, Scene, Structure};
 use gridel_host::compile::{self, Names};
-use gridel_host::measure::board::MemoryReport;
+use gridel_host::measure::board::{MemoryReport, WorkingRow, working_rows};
 use gridel_host::measure::{Deforming, MemoryMap, WorkingMemory, working_memory};
 use gridel_host::table::{Align, Table, counted, grouped, power_of_two, printable};
 use joints::JointLine;
@@ -26,8 +26,9 @@ use tracks::TrackList;
 /// Show the memory map of a blob, its limits and the RAM that it needs
 ///
 /// Compiles a scene file as `gridel build` does by default, without writing a blob. Working memory
-/// is what the caller provides besides the call stack. It is exact for this machine, and for 32-bit
-/// boards that align an f64 to 8 bytes. A scene that does not fit the board of --target is shown,
+/// is what the caller provides besides the call stack: for pictures a workspace and, on boards, the
+/// RAM of parts, of meshes that deform and of instances that move. The workspace is exact for this
+/// machine, and for 32-bit boards that align an f64 to 8 bytes. A scene that does not fit the board of --target is shown,
 /// and the exit code is 3.
 #[derive(Args)]
 #[command(after_help = super::failure::EXIT_CODES)]
@@ -67,6 +68,9 @@ struct Inspection {
     /// Empty where the blob has none.
     names: NameLists,
     working_memory: Vec<WorkingMemory>,
+    /// RAM of a 32-bit board beside the workspace.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    working_rows: Vec<WorkingRow>,
     effects: Vec<CalledFor>,
     /// Where a board is given.
     #[serde(rename = "memory_report", skip_serializing_if = "Option::is_none")]
@@ -168,6 +172,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
             .unwrap_or_default()
             .into(),
         working_memory: working_memory(&scene),
+        working_rows: working_rows(&scene, source.blob.bytes()),
         effects: match &source.report {
             Some(report) => CalledFor::in_report(report),
             None => CalledFor::in_blob(&scene),
@@ -279,9 +284,10 @@ impl Inspection {
             each(self.memory_map.bytes_per_primitive),
         ]);
         format!(
-            "{map}\n{}\n{}",
+            "{map}\n{}\n{}{}",
             self.facts(),
-            working_memory_table(&self.working_memory)
+            working_memory_table(&self.working_memory),
+            working_rows_text(&self.working_rows)
         ) + &self
             .memory
             .as_ref()
@@ -396,6 +402,18 @@ impl Inspection {
         }
         table
     }
+}
+
+/// What a 32-bit board needs for the scene beside a workspace.
+fn working_rows_text(rows: &[WorkingRow]) -> String {
+    let line = |row: &WorkingRow| {
+        let bytes = row.bytes.map_or(String::from("unknown"), grouped);
+        format!(
+            "32-bit board, beside the workspace: {bytes} for {}\n",
+            row.what
+        )
+    };
+    rows.iter().map(line).collect()
 }
 
 fn working_memory_table(needs: &[WorkingMemory]) -> Table {

@@ -91,6 +91,15 @@ fn parts_are_listed_with_what_they_take() {
         grouped(parts[0]["bytes"].as_u64().unwrap())
     );
     assert!(text.contains(&expected), "{text}");
+    // What a board needs for them beside the workspace.
+    let rows = inspection["working_rows"].as_array().unwrap();
+    assert_eq!(rows.len(), 3, "{rows:?}");
+    for row in rows {
+        let bytes = grouped(row["bytes"].as_u64().unwrap());
+        let what = row["what"].as_str().unwrap();
+        let expected = format!("32-bit board, beside the workspace: {bytes} for {what}\n");
+        assert!(text.contains(&expected), "{text}");
+    }
 }
 
 #[test]

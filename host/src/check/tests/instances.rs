@@ -44,6 +44,27 @@ fn found(report: &Report, check: &str, what: &str) -> Figure {
     finding.and_then(|it| it.found.clone()).expect(what)
 }
 
+/// The working memory is what the memory report lists beside the row of pixels and the call stack.
+#[test]
+fn working_memory_counts_parts_and_joints() {
+    let folder = Folder::new();
+    fs::write(folder.path("beam.toml"), BEAM).unwrap();
+    let text = "[[check]]\nscene = \"beam.toml\"\ntarget = \"stm32f411\"\nformats = [\"f32\"]\n\
+                budget = { working_bytes = 1, ram = 1, call_stack = 1 }\n";
+    let (_, report) = folder.run(text);
+    let count = |what: &str| match found(&report, "beam", what) {
+        Figure::Count(count) => count,
+        other => panic!("{other:?}"),
+    };
+    let row = 16 * 2;
+    assert_eq!(
+        count("working_bytes") + row + count("call_stack"),
+        count("ram"),
+        "{}",
+        report.table()
+    );
+}
+
 #[test]
 fn instances_are_kept_or_copied_where_they_are() {
     let folder = Folder::new();

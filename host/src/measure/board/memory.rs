@@ -15,11 +15,11 @@ use super::account::Account;
 use super::estimate::{CODE, PROFILES, ProgramEstimate};
 use super::programs::{Known, Profile, Programs};
 use super::rendering::Rendering;
+use super::working;
 use crate::measure::bytes::{MemoryMap, board_memory};
-use crate::measure::deforming::Deforming;
 use crate::state::raised_materials;
-use crate::table::{counted, grouped};
-use gridel_core::{Motion, Poses, Prevalidated, Rgb565, Scene, Structure, Tracks};
+use crate::table::grouped;
+use gridel_core::{Prevalidated, Rgb565, Scene, Structure};
 use serde::Serialize;
 
 /// Memory of a board that a scene is to fit into.
@@ -153,22 +153,8 @@ impl MemoryReport {
             }
         }
         program.list_code(&mut flash);
-        let parts = scene.parts().len() as u64;
-        if parts > 0 {
-            let bytes = programs.part_view().map(|view| parts * view);
-            ram.add(format!("views of {parts} parts, at most"), bytes);
-        }
-        for mesh in Deforming::all(scene) {
-            ram.add(
-                format!(
-                    "deforming mesh, {} vertices and {} pairs",
-                    mesh.vertices, mesh.pairs
-                ),
-                Some(mesh.bytes as u64),
-            );
-        }
-        for (what, bytes) in moving(scene, blob) {
-            ram.add(what, Some(bytes));
+        for row in working::rows(programs, scene, blob) {
+            ram.add(row.what, row.bytes);
         }
         let need = board_memory(scene, format, scene.view().depth);
         ram.add(
@@ -309,31 +295,6 @@ impl MemoryReport {
     }
 }
 
-/// Rows of the RAM in which a program moves the instances of a scene with joints; none without joints. A program that
-/// leaves them at rest needs none of it.
-fn moving(scene: &Scene<'_>, blob: &[u8]) -> Vec<(String, u64)> {
-    // They were checked with the scene.
-    let joints = Tracks::from_bytes(blob).map_or(0, |tracks| tracks.joints().len() as u64);
-    if joints == 0 {
-        return Vec::new();
-    }
-    let instances = scene.instances().len() as u64;
-    // Records of 32 bits only, with the same size on boards.
-    vec![
-        (
-            format!(
-                "moved instances ({})",
-                counted(instances as usize, "instance")
-            ),
-            instances * size_of::<Poses<1>>() as u64,
-        ),
-        (
-            format!("motions of {}", counted(joints as usize, "joint")),
-            joints * size_of::<Motion>() as u64,
-        ),
-    ]
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -413,24 +374,6 @@ mod tests {
         assert_eq!(bytes(&report.flash, CODE), Some(30_300));
         assert_eq!(bytes(&report.ram, "call stack"), Some(1508));
         assert_eq!(report.fit(), Fit::Fits);
-    }
-
-    #[test]
-    fn joints_take_ram_for_instances_and_motions() {
-        let text = "ambient = 1\n[[part]]\nname = 'p'\n\
-                    object = [{ kind = 'sphere', center = [0, 0, 0], radius = 1 }]\n\
-                    [[joint]]\nname = 'a'\n[[joint]]\nname = 'b'\nparent = 'a'\n\
-                    [[instance]]\npart = 'p'\njoint = 'a'\n[[instance]]\npart = 'p'\njoint = 'b'\n\
-                    [[instance]]\npart = 'p'\n\
-                    [[track]]\ntarget = 'joint.a.shift'\ntimes = [0, 1]\nvalues = [[0, 0, 0], [1, 0, 0]]\n";
-        let imported = crate::scene::read("a.toml".as_ref(), text.into(), &Default::default());
-        let compiled = compile(&imported.unwrap().scene, &Options::default()).unwrap();
-        let scene = compiled.blob.scene().unwrap();
-        let rows = moving(&scene, compiled.blob.bytes());
-        assert_eq!(
-            rows.iter().map(|row| row.1).collect::<Vec<_>>(),
-            [3 * 92, 2 * 64]
-        );
     }
 
     #[test]

@@ -7,6 +7,7 @@
 //! | `programs.rs` | these figures, and what bounds the others |
 //! | `estimate.rs` | code and call stack of a scene's program |
 //! | `memory.rs` | the memory report: what a scene takes of a board, and what remains |
+//! | `working.rs` | RAM of parts, of meshes that deform, and of instances that move |
 //! | `text.rs` | the memory report as text |
 //! | `advice.rs` | what makes it smaller |
 //! | `instructions.rs` | instructions per ray of recorded pictures |
@@ -20,11 +21,13 @@ mod memory;
 pub mod programs;
 mod rendering;
 mod text;
+mod working;
 
 pub use account::{Account, Item};
 pub use instructions::{PICTURE_COSTS, PictureCost, core_names, instructions, names};
 pub use memory::{Fit, MemoryReport, NotMeasured, Sizes, Target, WORK_LIST};
 pub use rendering::Rendering;
+pub use working::{WorkingRow, working_bytes, working_rows};
 
 use gridel_core::Format;
 

@@ -1,0 +1,145 @@
+//! The RAM of a board for parts, meshes that deform, and instances that move, beside workspace and call stack.
+
+use super::programs::Programs;
+use crate::measure::bytes::board_memory;
+use crate::measure::deforming::Deforming;
+use crate::table::counted;
+use gridel_core::{Format, Motion, Poses, Scene, Tracks};
+use serde::Serialize;
+
+/// RAM of a board that a program takes for a scene, beside workspace and call stack.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+pub struct WorkingRow {
+    /// What it holds.
+    pub what: String,
+    /// `None` where no program with parts was measured.
+    pub bytes: Option<u64>,
+}
+
+/// Returns the RAM of a 32-bit board for the parts of a scene, its meshes that deform, and its instances that move.
+///
+/// ```
+/// # use gridel_host::compile::{Options, compile};
+/// # let file = "[[object]]\nkind = 'sphere'\ncenter = [0, 0, 0]\nradius = 1\nname = 'ball'";
+/// # let imported = gridel_host::scene::read("ball.toml".as_ref(), file.into(), &Default::default())?;
+/// # let blob = compile(&imported.scene, &Options::default())?.blob;
+/// use gridel_host::measure::board::working_rows;
+///
+/// // A scene without parts takes none.
+/// assert!(working_rows(&blob.scene()?, blob.bytes()).is_empty());
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+pub fn working_rows(scene: &Scene<'_>, blob: &[u8]) -> Vec<WorkingRow> {
+    rows(&Programs::recorded(), scene, blob)
+}
+
+/// Returns all working memory of a 32-bit board for pictures of some ray depth: the workspace, and the
+/// [rows](working_rows) of the scene. `None` if a row is not known.
+///
+/// ```
+/// # use gridel_host::compile::{Options, compile};
+/// # let file = "[[object]]\nkind = 'sphere'\ncenter = [0, 0, 0]\nradius = 1\nname = 'ball'";
+/// # let imported = gridel_host::scene::read("ball.toml".as_ref(), file.into(), &Default::default())?;
+/// # let blob = compile(&imported.scene, &Options::default())?.blob;
+/// use gridel_core::Format;
+/// use gridel_host::measure::board::working_bytes;
+///
+/// let scene = blob.scene()?;
+/// assert_eq!(working_bytes(&scene, blob.bytes(), Format::F32, 0), Some(8));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+pub fn working_bytes(scene: &Scene<'_>, blob: &[u8], format: Format, depth: u8) -> Option<u64> {
+    let workspace = board_memory(scene, format, depth).workspace as u64;
+    let rows = working_rows(scene, blob);
+    rows.iter()
+        .try_fold(workspace, |sum, row| Some(sum + row.bytes?))
+}
+
+/// The rows with figures of some programs.
+pub(super) fn rows(programs: &Programs, scene: &Scene<'_>, blob: &[u8]) -> Vec<WorkingRow> {
+    let row = |what, bytes| WorkingRow { what, bytes };
+    let mut rows = Vec::new();
+    let parts = scene.parts().len();
+    if parts > 0 {
+        let bytes = programs.part_view().map(|view| parts as u64 * view);
+        rows.push(row(
+            format!("views of {}, at most", counted(parts, "part")),
+            bytes,
+        ));
+    }
+    for mesh in Deforming::all(scene) {
+        let what = format!(
+            "deforming mesh, {} vertices and {} pairs",
+            mesh.vertices, mesh.pairs
+        );
+        rows.push(row(what, Some(mesh.bytes as u64)));
+    }
+    let moving = moving(scene, blob).into_iter();
+    rows.extend(moving.map(|(what, bytes)| row(what, Some(bytes))));
+    rows
+}
+
+/// Rows of the RAM in which a program moves the instances of a scene with joints; none without joints. A program that
+/// leaves them at rest needs none of it.
+fn moving(scene: &Scene<'_>, blob: &[u8]) -> Vec<(String, u64)> {
+    // They were checked with the scene.
+    let joints = Tracks::from_bytes(blob).map_or(0, |tracks| tracks.joints().len());
+    if joints == 0 {
+        return Vec::new();
+    }
+    let instances = scene.instances().len();
+    // Records of 32 bits only, with the same size on boards.
+    vec![
+        (
+            format!("moved instances ({})", counted(instances, "instance")),
+            (instances * size_of::<Poses<1>>()) as u64,
+        ),
+        (
+            format!("motions of {}", counted(joints, "joint")),
+            (joints * size_of::<Motion>()) as u64,
+        ),
+    ]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::compile::{Options, compile};
+
+    #[test]
+    fn joints_take_ram_for_instances_and_motions() {
+        let text = "ambient = 1\n[[part]]\nname = 'p'\n\
+                    object = [{ kind = 'sphere', center = [0, 0, 0], radius = 1 }]\n\
+                    [[joint]]\nname = 'a'\n[[joint]]\nname = 'b'\nparent = 'a'\n\
+                    [[instance]]\npart = 'p'\njoint = 'a'\n[[instance]]\npart = 'p'\njoint = 'b'\n\
+                    [[instance]]\npart = 'p'\n\
+                    [[track]]\ntarget = 'joint.a.shift'\ntimes = [0, 1]\nvalues = [[0, 0, 0], [1, 0, 0]]\n";
+        let imported = crate::scene::read("a.toml".as_ref(), text.into(), &Default::default());
+        let compiled = compile(&imported.unwrap().scene, &Options::default()).unwrap();
+        let scene = compiled.blob.scene().unwrap();
+        let bytes = compiled.blob.bytes();
+        let rows = moving(&scene, bytes);
+        assert_eq!(
+            rows.iter().map(|row| row.1).collect::<Vec<_>>(),
+            [3 * 92, 2 * 64]
+        );
+        // With the view of the part, they count beside the workspace.
+        let view = Programs::recorded().part_view().unwrap();
+        let workspace = board_memory(&scene, Format::Fixed, 0).workspace as u64;
+        assert_eq!(
+            working_bytes(&scene, bytes, Format::Fixed, 0),
+            Some(workspace + view + 3 * 92 + 2 * 64)
+        );
+        assert_eq!(
+            working_rows(&scene, bytes)
+                .iter()
+                .map(|row| row.what.clone())
+                .collect::<Vec<_>>(),
+            [
+                "views of 1 part, at most",
+                "moved instances (3 instances)",
+                "motions of 2 joints"
+            ]
+        );
+    }
+}
