@@ -129,7 +129,7 @@ fn rays_that_are_set_up_together_have_the_hits_of_each_alone() {
         state ^= state << 13;
         state ^= state >> 7;
         state ^= state << 17;
-        if edges && state % 5 == 0 {
+        if edges && state.is_multiple_of(5) {
             EDGES[(state >> 32) as usize % EDGES.len()]
         } else {
             (state as i64 as f64) / (1_u64 << 63) as f64 * size
