@@ -209,7 +209,7 @@ fn with_format<N: Number>(
     let (any, count) = (query.any, &mut NoCount);
     let scene = &chosen(scene, query.structure)?;
     #[cfg(target_arch = "x86_64")]
-    if let Some(rejections) = four::trace(scene, rays, query, hits) {
+    if let Some(rejections) = Four::trace(scene, rays, query, hits) {
         return Ok(rejections);
     }
     // Hosts and boards trace with these; the others are for comparison.

@@ -83,33 +83,33 @@ impl Four {
         let ray = self.rays.get(lane)?;
         Some((ray, DirectionScale::of_factor(self.factors[lane & 3])))
     }
-}
 
-/// Traces rays, as [`trace`](super::trace) does. `None` if this code does not suit the query or the scene.
-pub fn trace(
-    scene: &Scene<'_>,
-    rays: &[SceneRay],
-    query: Query,
-    hits: &mut [SceneHit],
-) -> Option<Rejections> {
-    if (query.format, query.structure) != (Format::F32, Structure::Wide) {
-        return None;
+    /// Traces rays, as [`trace`](super::trace) does. `None` if this code does not suit the query or the scene.
+    pub(super) fn trace(
+        scene: &Scene<'_>,
+        rays: &[SceneRay],
+        query: Query,
+        hits: &mut [SceneHit],
+    ) -> Option<Rejections> {
+        if (query.format, query.structure) != (Format::F32, Structure::Wide) {
+            return None;
+        }
+        let avx2 = FourReadyRays::suit(scene)?;
+        let arguments = (scene, rays, hits, (), ());
+        Some(if query.any {
+            avx2.call(
+                #[inline(always)]
+                |avx2, scene, rays, hits, (), ()| any_of_each(avx2, scene, rays, hits),
+                arguments,
+            )
+        } else {
+            avx2.call(
+                #[inline(always)]
+                |avx2, scene, rays, hits, (), ()| closest_of_each(avx2, scene, rays, hits),
+                arguments,
+            )
+        })
     }
-    let avx2 = FourReadyRays::suit(scene)?;
-    let arguments = (scene, rays, hits, (), ());
-    Some(if query.any {
-        avx2.call(
-            #[inline(always)]
-            |avx2, scene, rays, hits, (), ()| any_of_each(avx2, scene, rays, hits),
-            arguments,
-        )
-    } else {
-        avx2.call(
-            #[inline(always)]
-            |avx2, scene, rays, hits, (), ()| closest_of_each(avx2, scene, rays, hits),
-            arguments,
-        )
-    })
 }
 
 /// Makes a batch of rays ready. Where there are less than four, the last stands for those that lack.
