@@ -2,14 +2,14 @@
 
 use crate::rays::{Rays, Ready};
 use crate::threads::in_pool;
-#[cfg(target_arch = "x86_64")]
-use gridel_core::SimdLevel;
 use gridel_core::accel::DynAccel;
 use gridel_core::format::limits::MAX_STACK_DEPTH;
 use gridel_core::{
     Accel, Fixed, Format, NoCount, Number, PrimitiveHit, Ray, Scene, Stack, Structure, Wide,
     any_hit, closest_primitive,
 };
+#[cfg(target_arch = "x86_64")]
+use gridel_core::{FourReadyRays, SimdLevel};
 #[cfg(target_arch = "x86_64")]
 use gridel_host::simd;
 use gridel_host::trace::{DirectionScale, Frame};
@@ -75,6 +75,8 @@ macro_rules! dispatch {
 
 mod all_hits;
 mod columns;
+#[cfg(target_arch = "x86_64")]
+mod fours;
 mod inside;
 mod limits;
 mod lists;
@@ -283,15 +285,15 @@ fn ask_some<Q: Question>(
     how: How,
     (start, answers): (usize, &mut [Q::Answer]),
 ) {
-    // The most frequent case, compiled entirely for the instructions of newer processors.
     #[cfg(target_arch = "x86_64")]
     if let (Format::F32, Structure::Wide, SimdLevel::Avx2(avx2)) =
         (how.format, how.structure, simd::level())
     {
         return avx2.call(
             #[inline(always)]
-            |_, scene, rays, start, answers, ()| {
-                ask_inline::<f32, Wide, Q>(scene, rays, start, answers);
+            |_, scene, rays, start, answers, ()| match FourReadyRays::suit(scene) {
+                Some(avx2) => fours::ask::<Q>(avx2, scene, rays, start, answers),
+                None => ask_inline::<f32, Wide, Q>(scene, rays, start, answers),
             },
             (scene, rays, start, answers, ()),
         );
