@@ -183,7 +183,7 @@ fn sample_of_wide() -> Compiled {
     let file = "[[object]]\nkind = 'sphere'\ncenter = [0, 0, 0]\nradius = 0.5\nname = 'ball'\n\
         [[object]]\nkind = 'mesh'\nname = 'mesh'\n\
         vertices = [[-1, -1, -1], [1, -1, -1], [0, 1, -0.5], [0, 0, 1]]\n\
-        triangles = [[0, 1, 2], [0, 3, 1], [1, 3, 2], [2, 3, 0]]";
+        faces = [[0, 1, 2], [0, 3, 1], [1, 3, 2], [2, 3, 0]]";
     let imported = scene::read("wide.toml".as_ref(), file.into(), &Default::default()).unwrap();
     let options = Options {
         structures: vec![Structure::Wide],
