@@ -17,6 +17,7 @@ use crate::shade::basis::beside;
 use crate::shade::effect::{Effect, Tracer};
 use crate::shade::light::{Reach, length};
 use crate::shade::surface::{Aim, Cone, Lighting, Surface};
+use crate::target::inline_on_boards;
 
 pub(crate) struct AreaLight;
 
@@ -69,33 +70,34 @@ impl Effect for AreaLight {
     }
 }
 
-/// Turns the way to a light's position into the way to a random point of it.
-#[inline(always)]
-fn at<N: Number>(form: &LightForm, aim: &mut Aim<N>, [u, v]: [u32; 2]) {
-    let ratio = |point: u32| N::ratio((point >> 2) as i32);
-    let turn = || Angle(v).sin_cos().map(N::ratio);
-    let [along, across] = match form.shape {
-        LightForm::SPHERE => return on_sphere(form, aim, ratio(u), turn()),
-        LightForm::RECTANGLE => [ratio(u), ratio(v)],
-        // The half of a parallelogram beyond the third side is folded onto the other half.
-        LightForm::TRIANGLE if (u >> 2) + (v >> 2) > 1 << 30 => {
-            [N::ONE - ratio(u), N::ONE - ratio(v)]
-        }
-        LightForm::TRIANGLE => [ratio(u), ratio(v)],
-        LightForm::DISC => {
-            let (radius, [sine, cosine]) = (ratio(u).sqrt(), turn());
-            [radius * cosine, radius * sine]
-        }
-        _ => return,
-    };
-    let [first, second] = form.edges;
-    let axis = |k: usize| {
-        let offset = length::<N>(first[k]) * along + length::<N>(second[k]) * across;
-        aim.way[k] + offset.widen()
-    };
-    aim.way = [axis(0), axis(1), axis(2)];
-    aim.distance = Some(far_extent::<N>(aim.way));
-}
+inline_on_boards!(
+    /// Turns the way to a light's position into the way to a random point of it.
+    fn at<N: Number>(form: &LightForm, aim: &mut Aim<N>, [u, v]: [u32; 2]) {
+        let ratio = |point: u32| N::ratio((point >> 2) as i32);
+        let turn = || Angle(v).sin_cos().map(N::ratio);
+        let [along, across] = match form.shape {
+            LightForm::SPHERE => return on_sphere(form, aim, ratio(u), turn()),
+            LightForm::RECTANGLE => [ratio(u), ratio(v)],
+            // The half of a parallelogram beyond the third side is folded onto the other half.
+            LightForm::TRIANGLE if (u >> 2) + (v >> 2) > 1 << 30 => {
+                [N::ONE - ratio(u), N::ONE - ratio(v)]
+            }
+            LightForm::TRIANGLE => [ratio(u), ratio(v)],
+            LightForm::DISC => {
+                let (radius, [sine, cosine]) = (ratio(u).sqrt(), turn());
+                [radius * cosine, radius * sine]
+            }
+            _ => return,
+        };
+        let [first, second] = form.edges;
+        let axis = |k: usize| {
+            let offset = length::<N>(first[k]) * along + length::<N>(second[k]) * across;
+            aim.way[k] + offset.widen()
+        };
+        aim.way = [axis(0), axis(1), axis(2)];
+        aim.distance = Some(far_extent::<N>(aim.way));
+    }
+);
 
 /// Turns the way to the middle of a sphere into the way to where a random direction hits it; no way from inside the
 /// sphere.

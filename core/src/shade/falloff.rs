@@ -13,6 +13,7 @@ use crate::observe::event::Event;
 use crate::shade::Color;
 use crate::shade::effect::{Effect, Tracer};
 use crate::shade::surface::{Lighting, Surface};
+use crate::target::inline_on_boards;
 
 pub(crate) struct Falloff;
 
@@ -93,48 +94,49 @@ fn has_cone(form: &LightForm) -> bool {
     form.cone_cosine > -(1 << 30)
 }
 
-/// Returns the arriving part of a light's color.
-#[inline(always)]
-fn falling<N: Number>(form: &LightForm, lighting: &Lighting<'_, N>, color: Color<N>) -> Color<N> {
-    let middle = lighting.cone.map(|cone| cone.distance);
-    let Some(distance) = middle.or_else(|| lighting.light_distance()) else {
-        return Color::BLACK;
-    };
-    let mut arriving = if form.reference == 0 {
-        color
-    } else {
-        fallen(color, distance.half_length(form.reference), distance.half)
-    };
-    if form.range > 0 {
-        // KHR_lights_punctual: 1 minus the fourth power of the distance over the range.
-        let part = distance.half.div(distance.half_length(form.range));
-        if part >= N::ONE {
+inline_on_boards!(
+    /// Returns the arriving part of a light's color.
+    fn falling<N: Number>(form: &LightForm, lighting: &Lighting<'_, N>, color: Color<N>) -> Color<N> {
+        let middle = lighting.cone.map(|cone| cone.distance);
+        let Some(distance) = middle.or_else(|| lighting.light_distance()) else {
             return Color::BLACK;
-        }
-        let square = part * part;
-        arriving = arriving.scaled(N::ONE - square * square);
-    }
-    if let Some(cone) = lighting.cone {
-        // A cone around a sphere takes 2 s² / (1 + cos) of π, where s is the sine of its angle.
-        let arriving = arriving.scaled(cone.widening);
-        return arriving.plus(arriving);
-    }
-    match form.shape {
-        LightForm::RECTANGLE | LightForm::DISC | LightForm::TRIANGLE => {
-            arriving.scaled(lighting.facing)
-        }
-        _ if has_cone(form) => {
-            let within = lighting.facing - N::ratio(form.cone_cosine);
-            let width = N::ratio(form.cone_width);
-            if within >= width {
-                return arriving;
+        };
+        let mut arriving = if form.reference == 0 {
+            color
+        } else {
+            fallen(color, distance.half_length(form.reference), distance.half)
+        };
+        if form.range > 0 {
+            // KHR_lights_punctual: 1 minus the fourth power of the distance over the range.
+            let part = distance.half.div(distance.half_length(form.range));
+            if part >= N::ONE {
+                return Color::BLACK;
             }
-            let part = within.div(width);
-            arriving.scaled(part).scaled(part)
+            let square = part * part;
+            arriving = arriving.scaled(N::ONE - square * square);
         }
-        _ => arriving,
+        if let Some(cone) = lighting.cone {
+            // A cone around a sphere takes 2 s² / (1 + cos) of π, where s is the sine of its angle.
+            let arriving = arriving.scaled(cone.widening);
+            return arriving.plus(arriving);
+        }
+        match form.shape {
+            LightForm::RECTANGLE | LightForm::DISC | LightForm::TRIANGLE => {
+                arriving.scaled(lighting.facing)
+            }
+            _ if has_cone(form) => {
+                let within = lighting.facing - N::ratio(form.cone_cosine);
+                let width = N::ratio(form.cone_width);
+                if within >= width {
+                    return arriving;
+                }
+                let part = within.div(width);
+                arriving.scaled(part).scaled(part)
+            }
+            _ => arriving,
+        }
     }
-}
+);
 
 /// Maximum number of times that a distance is doubled until it is no shorter than another.
 const DOUBLINGS: u32 = 32;
