@@ -96,7 +96,11 @@ fn has_cone(form: &LightForm) -> bool {
 
 inline_on_boards!(
     /// Returns the arriving part of a light's color.
-    fn falling<N: Number>(form: &LightForm, lighting: &Lighting<'_, N>, color: Color<N>) -> Color<N> {
+    fn falling<N: Number>(
+        form: &LightForm,
+        lighting: &Lighting<'_, N>,
+        color: Color<N>,
+    ) -> Color<N> {
         let middle = lighting.cone.map(|cone| cone.distance);
         let Some(distance) = middle.or_else(|| lighting.light_distance()) else {
             return Color::BLACK;
