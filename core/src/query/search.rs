@@ -362,7 +362,6 @@ pub(super) fn search_structure<N: Number, A: Accel, C: Observer, F: Collect<N>, 
             &cull,
             stack,
             count,
-            #[cfg_attr(feature = "wide", inline(always))]
             |leaf, count| {
                 search.leaf::<A, C, ANY>(leaf, count);
                 search.found.is_any()
@@ -376,7 +375,6 @@ pub(super) fn search_structure<N: Number, A: Accel, C: Observer, F: Collect<N>, 
             &cull,
             stack,
             count,
-            #[cfg_attr(feature = "wide", inline(always))]
             |leaf, count| {
                 search.leaf::<A, C, ANY>(leaf, count);
                 let found = A::ONE_COPY && any && search.found.is_any();
