@@ -9,7 +9,6 @@ use crate::accel::traverse::Traverse;
 use crate::accel::wide::cull::WideLanes;
 use crate::accel::{Accel, Wide};
 use crate::geometry::strip::StripRay;
-use crate::number::Vectors;
 use crate::observe::count::NoCount;
 use crate::ray::{FourGivenRays, FourRays, Ray};
 use crate::scene::Scene;
@@ -116,19 +115,8 @@ impl ReadyRay {
     ) -> Option<PrimitiveHit<f32>> {
         let (ray, cull, count) = (&self.ray, &self.cull, &mut NoCount);
         let none: Option<Candidate<f32>> = None;
-        let mut search = Search {
-            scene,
-            ray,
-            cull,
-            recip_norm2: if scene.needs_norm {
-                f32::recip_norm2(ray.slope)
-            } else {
-                0.0
-            },
-            strip_ray: wide_only(|| self.strip_ray),
-            tmax: ray.tmax,
-            found: none,
-        };
+        let strip_ray = wide_only(|| self.strip_ray);
+        let mut search = Search::with_strip_ray(scene, ray, cull, none, strip_ray);
         let (space, views) = (&scene.space, Wide::views(&scene.structures));
         if ANY {
             Wide::walk_any(

@@ -37,6 +37,22 @@ pub(super) struct Search<'s, 'a, N: Number, K, F> {
 impl<'s, 'a, N: Number, K: Culling<N>, F: Collect<N>> Search<'s, 'a, N, K, F> {
     #[inline(always)]
     pub(super) fn new(scene: &'s Scene<'a>, ray: &'s Ray<N>, cull: &'s K, found: F) -> Self {
+        let strip_ray = wide_only(
+            #[inline(always)]
+            || StripRay::new(ray, &scene.space.shapes.clusters().strips),
+        );
+        Self::with_strip_ray(scene, ray, cull, found, strip_ray)
+    }
+
+    /// A search with a ray that is already in the form in which strips are tested.
+    #[inline(always)]
+    pub(super) fn with_strip_ray(
+        scene: &'s Scene<'a>,
+        ray: &'s Ray<N>,
+        cull: &'s K,
+        found: F,
+        strip_ray: WideOnly<StripRay<N>>,
+    ) -> Self {
         Self {
             scene,
             ray,
@@ -46,10 +62,7 @@ impl<'s, 'a, N: Number, K: Culling<N>, F: Collect<N>> Search<'s, 'a, N, K, F> {
             } else {
                 N::ZERO
             },
-            strip_ray: wide_only(
-                #[inline(always)]
-                || StripRay::new(ray, &scene.space.shapes.clusters().strips),
-            ),
+            strip_ray,
             tmax: ray.tmax,
             found,
         }

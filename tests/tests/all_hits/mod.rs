@@ -5,9 +5,11 @@ mod exact;
 mod points;
 
 use glam::DVec3;
+use gridel_core::accel::DynAccel;
 use gridel_core::format::limits::MAX_STACK_DEPTH;
 use gridel_core::{
-    Fixed, Format, HitList, Kind, Number, Ray, Scene, Solid, Stack, Structure, containment_ray,
+    Fixed, Format, HitList, Kind, Number, PrimitiveHit, Ray, Scene, Solid, Stack, Structure,
+    containment_ray, every_hit,
 };
 use gridel_host::scene::{self, Shape};
 use gridel_host::shape::{Cuboid, Disc, Plane, Sphere, Torus};
@@ -21,6 +23,24 @@ use gridel_tests::scenes;
 /// A hit, whether the ray leaves there, and the bits of its t.
 type Listed = (Option<HitBits>, bool, u64);
 
+fn listed<N: Number>(scene: &Scene<'_>, ray: &Ray<N>, hit: &PrimitiveHit<N>) -> Listed {
+    let whole = hit.hit(scene, ray);
+    let t = N::far_to_f64(hit.t).to_bits();
+    (whole.as_ref().map(HitBits::of), hit.leaves(), t)
+}
+
+/// Returns all hits, found in one walk and then sorted.
+fn every<N: Number>(scene: &Scene<'_>, ray: &Ray<N>) -> Vec<Listed> {
+    let mut stack = Stack::<MAX_STACK_DEPTH>::new();
+    let mut hits = Vec::new();
+    let visit = &mut |hit| hits.push(hit);
+    every_hit::<N, DynAccel>(scene, ray, stack.as_view(), visit);
+    hits.sort_by(|a, b| a.partial_cmp(b).expect("t is a number"));
+    hits.dedup();
+    let hits = hits.iter();
+    hits.map(|found| listed(scene, ray, found.hit())).collect()
+}
+
 /// Returns all hits, listed `SIZE` at a time.
 fn list<N: Number, const SIZE: usize>(scene: &Scene<'_>, ray: &Ray<N>) -> Vec<Listed> {
     let mut stack = Stack::<MAX_STACK_DEPTH>::new();
@@ -29,11 +49,7 @@ fn list<N: Number, const SIZE: usize>(scene: &Scene<'_>, ray: &Ray<N>) -> Vec<Li
     loop {
         let more = scene.all_hits(ray, stack.as_view(), &mut list);
         assert!(more == (list.len() == SIZE));
-        all.extend(list.iter().map(|hit| {
-            let whole = hit.hit(scene, ray);
-            let t = N::far_to_f64(hit.t).to_bits();
-            (whole.as_ref().map(HitBits::of), hit.leaves(), t)
-        }));
+        all.extend(list.iter().map(|hit| listed(scene, ray, hit)));
         if !more {
             let again = scene.all_hits(ray, stack.as_view(), &mut list);
             assert!(!again && list.is_empty(), "a list that is done stays done");
@@ -97,6 +113,7 @@ pub(crate) fn all_agree<N: Number>(name: &str, scene: &Scene<'_>, ray: &UnitRay)
         };
         let about = || format!("{}, {}", structure.name(), about());
         assert_eq!(list::<N, 3>(&chosen, &ready), expected, "{}", about());
+        assert_eq!(every(&chosen, &ready), expected, "{}", about());
         let count = chosen.count_hits(&ready, Stack::<MAX_STACK_DEPTH>::new().as_view());
         assert_eq!(count as usize, expected.len(), "{}", about());
     }

@@ -60,8 +60,8 @@ mod tests {
         let above = "times = [0, 2]\nvalues = [170, 170]\ntangents = [40, -40]";
         for (keys, found) in [(below, "is -"), (above, "at 1.000 s there is no picture")] {
             let error = compiled(keys).unwrap_err().to_string();
-            let told = [found, "field of view is", "zoom.toml:8", "camera.fov"];
-            assert!(told.iter().all(|it| error.contains(it)), "{error}");
+            let parts = [found, "field of view is", "zoom.toml:8", "camera.fov"];
+            assert!(parts.iter().all(|it| error.contains(it)), "{error}");
         }
         assert!(
             compiled(above)

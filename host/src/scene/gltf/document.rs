@@ -130,8 +130,8 @@ fn take_untargeted_channels(document: &mut Value) -> bool {
     found
 }
 
-/// Completes images that lack what the crate reads without having validated it. Images are told apart by their bytes,
-/// so that their kind is not needed; without data they are taken from their textures.
+/// Completes images that lack what the crate reads without having validated it. The decoder
+/// recognizes the kind of an image by its bytes. Textures lose images without data.
 fn complete_images(path: &Path, root: &mut Root, warnings: &mut Warnings) {
     let mut empty = vec![false; root.images.len()];
     for (number, image) in root.images.iter_mut().enumerate() {
@@ -146,7 +146,7 @@ fn complete_images(path: &Path, root: &mut Root, warnings: &mut Warnings) {
             warn("neither `uri` nor `bufferView`; it is not drawn");
         } else if image.buffer_view.is_some() && image.mime_type.is_none() {
             image.mime_type = Some(MimeType(String::new()));
-            warn("no `mimeType`; it is told by its first bytes");
+            warn("no `mimeType`; its first bytes show whether it is PNG or JPEG");
         }
     }
     for texture in &mut root.textures {

@@ -348,8 +348,8 @@ fn surfaces_that_are_not_read_are_named() {
         .replace("trifans", "face")
         .replace("vertex_indices", "corners");
     let error = read(corners.as_bytes()).unwrap_err();
-    let told = ["\"face\" have no list \"vertex_indices\"", "\"corners\""];
-    assert!(told.iter().all(|it| error.cause.contains(it)), "{error}");
+    let parts = ["\"face\" have no list \"vertex_indices\"", "\"corners\""];
+    assert!(parts.iter().all(|it| error.cause.contains(it)), "{error}");
 }
 
 #[test]

@@ -407,7 +407,7 @@ fn images_without_a_kind_or_data_are_told_by_their_bytes_or_left_out() {
     document["images"] = json!([{"name": "wood", "bufferView": view}]);
     assert_eq!(
         warnings(&document),
-        ["image 0 \"wood\" has no `mimeType`; it is told by its first bytes"]
+        ["image 0 \"wood\" has no `mimeType`; its first bytes show whether it is PNG or JPEG"]
     );
     let read = scene(&document).materials[0].texture.clone().unwrap().image;
     assert_eq!(read.pixels(), image.pixels());

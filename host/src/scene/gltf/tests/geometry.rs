@@ -106,8 +106,8 @@ fn numbers_that_are_not_finite_are_reported_with_what_follows() {
         let mut document = document.clone();
         document["meshes"][0]["primitives"][0]["attributes"][attribute] = json!(2);
         let found = warnings(&document);
-        let told = format!("element 1 of accessor 2 is not a finite number; {follows}");
-        assert!(found.contains(&told), "{found:?}");
+        let warning = format!("element 1 of accessor 2 is not a finite number; {follows}");
+        assert!(found.contains(&warning), "{found:?}");
         let attributes = &scene(&document).objects[0].attributes;
         if attribute == "COLOR_0" {
             assert_eq!(attributes.colors[1], [0.0, 0.0, 1.0]);
