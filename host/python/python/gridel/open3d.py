@@ -33,7 +33,9 @@ def _over_dimensions(name: str, says: str) -> Any:
     """A method of NumPy's over ``axis``, which takes Open3D's ``dim`` and ``keepdim`` as well."""
     inner = getattr(np.ndarray, name)
 
-    def method(self: "Array", axis: Any = None, *args: Any, dim: Any = None, keepdim: bool = False, **kwargs: Any) -> "Array":
+    def method(
+        self: "Array", axis: Any = None, *args: Any, dim: Any = None, keepdim: bool = False, **kwargs: Any
+    ) -> "Array":
         if dim is not None:
             axis = dim if np.ndim(dim) == 0 or name.startswith("arg") else tuple(dim)
             axis = axis[0] if isinstance(axis, (list, tuple)) and len(axis) == 1 else axis
@@ -343,7 +345,8 @@ class RaycastingScene:
     def compute_occupancy(self, query_points: Any, nthreads: int = 0, nsamples: int = 1) -> Any:
         """Returns 1 for points (..., 3) that all meshes together enclose an odd number of times, else 0: (...) float32.
 
-        A point in two meshes is outside, as in Open3D. A mesh whose triangles are all there twice contains nothing. One ray is enough: ``nsamples``, an odd number, changes nothing.
+        A point in two meshes is outside, as in Open3D. A mesh whose triangles are all there twice contains nothing. One
+        ray is enough: ``nsamples``, an odd number, changes nothing.
         Points with nan or infinity are outside.
         """
         if nsamples < 1 or nsamples % 2 == 0:

@@ -159,8 +159,9 @@ class RayMeshIntersector:
     def contains_points(self, points: ArrayLike) -> NDArray[np.bool_]:
         """Returns whether the mesh contains each point: points (n, 3), the result (n,) bool.
 
-        Right for every closed mesh, also where it has faces twice; of an open one it says how often one ray leaves it. A point nearer to the surface
-        than ``scene.displacement`` may be on either side. Points with nan or infinity are in no mesh.
+        Right for every closed mesh, also where it has faces twice; of an open one it says how often one ray leaves it. A
+        point nearer to the surface than ``scene.displacement`` may be on either side. Points with nan or infinity are in
+        no mesh.
         """
         points = _numbers(points, "points")
         if points.ndim != 2 or points.shape[1] != 3:
