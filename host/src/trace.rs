@@ -325,20 +325,23 @@ fn answer<N: Number>(
     (ray, direction_scale): (&Ray<N>, &DirectionScale),
     met: Option<PrimitiveHit<N>>,
 ) -> Result<SceneHit, Rejection> {
-    let Some(found) = met.and_then(|met| met.hit(scene, ray)) else {
+    let Some((met, normal)) = met.and_then(|met| Some((met, met.normal(scene, ray)?))) else {
         return Ok(SceneHit::MISS);
     };
-    let error = || found.error.length_to_f64();
-    let t = direction_scale.multiple(N::far_to_f64(found.t), error)?;
+    let error = || {
+        met.hit(scene, ray)
+            .map_or(0.0, |hit| hit.error.length_to_f64())
+    };
+    let t = direction_scale.multiple(N::far_to_f64(met.t), error)?;
     Ok(SceneHit {
         t: scene_ray.within(t),
-        object: found.object,
-        primitive: found.primitive,
-        instance: found
+        object: scene.object(met.primitive),
+        primitive: met.primitive,
+        instance: met
             .instance()
             .and_then(|index| scene.instances().get(index as usize))
             .map_or(u32::MAX, |instance| instance.number),
-        normal: found.normal.map(|x| x.ratio_to_f64() as f32),
+        normal: normal.map(|x| x.ratio_to_f64() as f32),
     })
 }
 

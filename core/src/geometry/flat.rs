@@ -26,6 +26,34 @@ pub(crate) fn face<N: Arithmetic>(
     }
 }
 
+/// The axis at right angles to which a plane with this normal lies, if there is one.
+#[inline(always)]
+fn axis_of<N: Arithmetic>(normal: [N; 3]) -> Option<usize> {
+    let [x, y, z] = normal.map(|component| component == N::ZERO);
+    match (x, y, z) {
+        (false, true, true) => Some(0),
+        (true, false, true) => Some(1),
+        (true, true, false) => Some(2),
+        _ => None,
+    }
+}
+
+/// The normal of length 1 of a [`surface`].
+#[inline(always)]
+pub(crate) fn unit_normal<N: Arithmetic>(normal: [N; 3]) -> [N; 3] {
+    match axis_of(normal) {
+        Some(axis) => {
+            let toward = |k: usize| match k == axis {
+                true if normal[k] > N::ZERO => N::ONE,
+                true => -N::ONE,
+                false => N::ZERO,
+            };
+            [toward(0), toward(1), toward(2)]
+        }
+        None => N::normalize(normal).0,
+    }
+}
+
 /// The surface of a plane, at a point of it next to `point`. `normal` is of any length, and `through` is the point of
 /// the plane from which t was computed.
 #[inline(always)]
@@ -35,12 +63,8 @@ pub(crate) fn surface<N: Arithmetic>(
     point: [N; 3],
 ) -> Surface<N> {
     let through = through.map(N::from_lattice);
-    let [x, y, z] = normal.map(|component| component == N::ZERO);
-    let axis = match (x, y, z) {
-        (false, true, true) => 0,
-        (true, false, true) => 1,
-        (true, true, false) => 2,
-        _ => return tilted(N::normalize(normal).0, through, point),
+    let Some(axis) = axis_of(normal) else {
+        return tilted(N::normalize(normal).0, through, point);
     };
     face(
         axis,

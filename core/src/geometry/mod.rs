@@ -7,7 +7,7 @@
 pub mod attributes;
 pub(crate) mod cluster;
 mod crossing;
-mod flat;
+pub(crate) mod flat;
 mod half_open;
 mod layouts;
 pub(crate) mod pack;

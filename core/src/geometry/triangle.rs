@@ -244,8 +244,18 @@ pub(crate) fn passes<N: Project>(ray: &Ray<N>, corners: [[i32; 3]; 3]) -> bool {
     half_open::encloses_origin(corner(a), corner(b), corner(c))
 }
 
-/// Returns where a ray crosses the plane of a triangle that it [hits](Projection::meets), and true if it does so
-/// steeply. Returns `None` where the ray runs along the plane.
+/// Where a ray crosses the plane of a triangle.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct PlaneCrossing<N> {
+    pub(crate) t: N,
+    /// True if `t` needs no clamping: see [`cross`].
+    pub(crate) is_steep: bool,
+    /// The triangle's normal, of any length.
+    pub(crate) normal: [N; 3],
+}
+
+/// Returns where a ray crosses the plane of a triangle that it [hits](Projection::meets). Returns `None` where the ray
+/// runs along the plane.
 ///
 /// A steep hit needs no clamping of t to the interval of the triangle's box, because t already lies in it. Let `q` be
 /// the point of the triangle that is seen where the ray is, and `t'` its depth. Its lateral distance from the ray is
@@ -258,13 +268,17 @@ pub(crate) fn passes<N: Project>(ray: &Ray<N>, corners: [[i32; 3]; 3]) -> bool {
 /// least 2^-8, the hit lies within 1/8 unit of `q`. A point within 1/4 unit of a box has a t in its interval (see
 /// [`cull`](crate::accel)).
 #[inline(always)]
-pub(crate) fn cross<N: Project>(ray: &Ray<N>, corners: [[i32; 3]; 3]) -> Option<(N, bool)> {
+pub(crate) fn cross<N: Project>(ray: &Ray<N>, corners: [[i32; 3]; 3]) -> Option<PlaneCrossing<N>> {
     let relative = |axis: usize| N::from_lattice(corners[0][axis]) - ray.origin[axis];
     let relative = [relative(0), relative(1), relative(2)];
     let normal = normal(corners);
     let approach = N::dot(normal, ray.slope);
     let t = cross_plane(normal, relative, approach)?;
-    Some((t, N::is_steep(approach)))
+    Some(PlaneCrossing {
+        t,
+        is_steep: N::is_steep(approach),
+        normal,
+    })
 }
 
 inline_unless_small!(

@@ -263,7 +263,7 @@ impl<N: Number> Collect<N> for &mut Collector<'_, N> {
     }
 
     fn commit(&mut self, scene: &Scene<'_>, (t, part): (N, Part), place: PrimitiveId) -> Option<N> {
-        let best = Candidate { t, place, part };
+        let best = Candidate::new((t, part), place);
         let key = scene.key(place);
         // In first, out, in again, out.
         let end = u8::from(part & LATER != 0) << 1 | u8::from(part & LEAVING != 0);
@@ -339,11 +339,7 @@ fn collect<N: Number, A: Accel, C: Observer>(
             } = far;
             // Farther than kernels count, the t that the caller counts decides.
             let near = ray.tmax.min(after_start);
-            let best = Candidate {
-                t: near,
-                place,
-                part: 0,
-            };
+            let best = Candidate::new((near, 0), place);
             let key = scene.key(place);
             let hit = PrimitiveHit {
                 t,

@@ -4,6 +4,7 @@ use crate::accel::Number;
 use crate::geometry::{Part, PrimitiveId};
 use crate::query::candidate::Candidate;
 use crate::scene::Scene;
+use crate::target::{WIDE, wide_only};
 
 /// Collects the hits of a search: keeps the best one, or lists all of them.
 pub(super) trait Collect<N: Number> {
@@ -20,6 +21,10 @@ pub(super) trait Collect<N: Number> {
     /// Collects a hit in the remaining interval. Returns the t beyond which hits are ignored from here on, if that
     /// changes.
     fn commit(&mut self, scene: &Scene<'_>, hit: (N, Part), place: PrimitiveId) -> Option<N>;
+
+    /// Keeps the normal of a triangle, of any length, if the last collected hit is one of it.
+    #[inline(always)]
+    fn keep_normal(&mut self, _place: PrimitiveId, _normal: [N; 3]) {}
 }
 
 /// The best hit so far.
@@ -42,7 +47,17 @@ impl<N: Number> Collect<N> for Option<Candidate<N>> {
         if tie.is_some_and(|best| scene.key(best.place) <= scene.key(place)) {
             return None;
         }
-        *self = Some(Candidate { t, place, part });
+        *self = Some(Candidate::new((t, part), place));
         Some(t)
+    }
+
+    #[inline(always)]
+    fn keep_normal(&mut self, place: PrimitiveId, normal: [N; 3]) {
+        if WIDE
+            && let Some(best) = self
+            && best.place == place
+        {
+            best.normal = wide_only(|| normal);
+        }
     }
 }

@@ -4,6 +4,7 @@ use crate::accel::Number;
 use crate::accel::cull::Culling;
 use crate::format::record::UnitBox;
 use crate::geometry::primitive::Primitive;
+use crate::geometry::triangle::PlaneCrossing;
 use crate::geometry::{Crossing, LATER, LEAVING, Part, PrimitiveId, is_flat, triangle};
 use crate::query::collect::Collect;
 use crate::query::search::Search;
@@ -98,21 +99,18 @@ impl<N: Number, K: Culling<N>, F: Collect<N>> Search<'_, '_, N, K, F> {
     pub(super) fn triangle_half_open(
         &mut self,
         corners: [[i32; 3]; 3],
-        crossing: Option<(N, bool)>,
+        crossing: Option<PlaneCrossing<N>>,
         place: PrimitiveId,
     ) {
         if !triangle::passes(self.ray, corners) {
             return;
         }
-        match crossing {
-            Some((t, true)) => self.consider_both(Crossing::flat(t), place),
-            Some((t, false)) => {
-                self.consider_both_in_box(Crossing::flat(t), triangle::bounds(corners), place);
-            }
-            None => {
-                let start = Crossing::flat(self.ray.tmin);
-                self.consider_both_in_box(start, triangle::bounds(corners), place);
-            }
+        let place_on_ray = crossing.map_or(self.ray.tmin, |crossing| crossing.t);
+        let flat = Crossing::flat(place_on_ray);
+        if crossing.is_some_and(|crossing| crossing.is_steep) {
+            self.consider_both(flat, place);
+        } else {
+            self.consider_both_in_box(flat, triangle::bounds(corners), place);
         }
     }
 }

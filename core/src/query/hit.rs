@@ -4,7 +4,7 @@ use crate::accel::Number;
 use crate::format::Leaf;
 use crate::format::instance::Instance;
 use crate::format::limits::UNBOUNDED;
-use crate::geometry::LEAVING;
+use crate::geometry::{LEAVING, flat};
 use crate::instances::map::{Map, PlacedSurface};
 use crate::observe::event::QueryHit;
 use crate::query::candidate::Candidate;
@@ -49,6 +49,31 @@ impl<N: Number> PrimitiveHit<N> {
     pub fn encloses(&self) -> bool {
         self.best.place.kind.encloses()
     }
+
+    inline_on_hosts!(
+        /// Returns the geometric normal of the [whole hit](Self::hit): faster where nothing else of it is needed.
+        /// `scene` and `ray` are those of the query.
+        ///
+        /// ```
+        /// # static BLOB: &[u8] =
+        /// #     gridel_core::include_blob!(concat!(env!("CARGO_MANIFEST_DIR"), "/../fixtures/blobs/dual-split.gridel"));
+        /// use gridel_core::{DualSplit, NoCount, Ray, Scene, Stack, closest_primitive};
+        ///
+        /// let scene = Scene::from_bytes(BLOB)?;
+        /// let mut stack = Stack::<32>::new();
+        /// let down = Ray::<f32>::from_f64(scene.bounds(), [0.0, 1e6, 0.0], [0.0, -1.0, 0.0], 0.0, 1e9)?;
+        /// let found = closest_primitive::<f32, DualSplit, _>(&scene, &down, stack.as_view(), &mut NoCount);
+        /// let normal = found.and_then(|found| found.normal(&scene, &down)).expect("a ball");
+        /// assert!(normal[1] > 0.0);
+        /// # Ok::<(), Box<dyn std::error::Error>>(())
+        /// ```
+        pub fn normal(&self, scene: &Scene<'_>, ray: &Ray<N>) -> Option<[N; 3]> {
+            match self.best.normal() {
+                Some(normal) if self.instance().is_none() => Some(flat::unit_normal(normal)),
+                _ => Some(self.hit(scene, ray)?.normal),
+            }
+        }
+    );
 
     inline_on_hosts!(
         /// Returns the whole hit, with point and surface. `scene` and `ray` are those of the

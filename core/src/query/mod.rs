@@ -177,11 +177,7 @@ fn search_all<N: Number, A: Accel, C: Observer, const ANY: bool>(
 ) -> Option<PrimitiveHit<N>> {
     let far = unbounded::nearest(scene, ray, count);
     let end = far.map_or(*ray, |far| ray.until(far.after_start));
-    let first = far.map(|far| Candidate {
-        t: end.tmax,
-        place: far.place,
-        part: 0,
-    });
+    let first = far.map(|far| Candidate::new((end.tmax, 0), far.place));
     let best = if any && first.is_some() {
         first?
     } else {

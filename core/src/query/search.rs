@@ -11,7 +11,7 @@ use crate::format::{Kind, Leaf};
 use crate::geometry::primitive::Primitive;
 use crate::geometry::sphere::{self, Spheres};
 use crate::geometry::strip::StripRay;
-use crate::geometry::triangle::{self, Triangles, Vertices};
+use crate::geometry::triangle::{self, PlaneCrossing, Triangles, Vertices};
 use crate::geometry::{Crossing, Part, PrimitiveId, accept};
 use crate::observe::count::Observer;
 use crate::observe::event::Event;
@@ -339,15 +339,21 @@ impl<'s, 'a, N: Number, K: Culling<N>, F: Collect<N>> Search<'s, 'a, N, K, F> {
         let crossing = triangle::cross(self.ray, corners);
         if F::ALL {
             self.triangle_half_open(corners, crossing, place);
-        } else if let Some((t, steeply)) = crossing {
+        } else if let Some(PlaneCrossing {
+            t,
+            is_steep,
+            normal,
+        }) = crossing
+        {
             let crossing = Crossing::flat(t);
-            if steeply {
+            if is_steep {
                 self.consider(crossing, place);
             } else {
                 self.consider_in_box(crossing, triangle::bounds(corners), place);
             }
+            self.found.keep_normal(place, normal);
         }
-        let crossing = crossing.map(|(t, _)| Crossing::flat(t));
+        let crossing = crossing.map(|crossing| Crossing::flat(crossing.t));
         self.observe(place, crossing.as_ref(), count);
     }
 }

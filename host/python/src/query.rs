@@ -257,12 +257,12 @@ fn found<N: Number>(
     (ray, scale): (&Ray<N>, &DirectionScale),
     hit: &PrimitiveHit<N>,
 ) -> Found {
-    let Some(whole) = hit.hit(scene, ray) else {
+    let Some(normal) = hit.normal(scene, ray) else {
         return Found::MISS;
     };
     let mut found = bare(scene, (ray, scale), hit);
     if found.primitive != NONE {
-        found.normal = whole.normal.map(|x| x.ratio_to_f64() as f32);
+        found.normal = normal.map(|x| x.ratio_to_f64() as f32);
     }
     found
 }

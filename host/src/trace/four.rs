@@ -181,20 +181,20 @@ fn closest_of_each(
                     rejections.followed_by(first + place, one(scene, scene_ray, false, hit));
                 continue;
             };
-            let Some(met) = met[place] else {
+            let Some(met) = &met[place] else {
                 *hit = SceneHit::MISS;
                 continue;
             };
-            let Some(found) = met.hit(scene, ray.ray()) else {
+            let Some(normal) = met.normal(scene, ray.ray()) else {
                 *hit = SceneHit::MISS;
                 continue;
             };
             // One by one, because copies of what was just written in parts are slow.
-            hit.t = scene_ray.within(scale.ordinary_multiple(found.t.into()));
-            hit.object = found.object;
-            hit.primitive = found.primitive;
+            hit.t = scene_ray.within(scale.ordinary_multiple(met.t.into()));
+            hit.object = scene.object(met.primitive);
+            hit.primitive = met.primitive;
             hit.instance = u32::MAX;
-            hit.normal = found.normal;
+            hit.normal = normal;
         }
     }
     rejections

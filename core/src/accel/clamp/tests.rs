@@ -60,8 +60,8 @@ fn triangle_is_in_its_box<N: Number>(corners: [[i32; 3]; 3], origin: [f64; 3], a
     if !projection.meets::<{ triangle::ANY }, Vertex24>(&a, &b, &c) {
         return;
     }
-    if let Some((t, true)) = triangle::cross(&ray, corners) {
-        is_in_its_box(&ray, Crossing::flat(t), triangle::bounds(corners));
+    if let Some(crossing) = triangle::cross(&ray, corners).filter(|crossing| crossing.is_steep) {
+        is_in_its_box(&ray, Crossing::flat(crossing.t), triangle::bounds(corners));
     }
 }
 
