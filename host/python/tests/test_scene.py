@@ -467,6 +467,8 @@ def test_render_is_interrupted():
     # The whole picture would take far longer than the test allows.
     code = (
         "import numpy as np, gridel, os, signal, threading\n"
+        # What a shell runs in the background ignores the signal.
+        "signal.signal(signal.SIGINT, signal.default_int_handler)\n"
         "scene = gridel.Scene.from_arrays(np.eye(3), [[0, 1, 2]])\n"
         "threading.Timer(0.3, os.kill, (os.getpid(), signal.SIGINT)).start()\n"
         "scene.render(1024, 65535, samples=64)\n"

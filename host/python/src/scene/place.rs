@@ -156,7 +156,8 @@ fn meet([a, b, c]: [DVec3; 3], ray: &SceneRay, own: f64) -> Meeting {
     let t = ray.within(t);
     let place = ray.origin + ray.direction * t;
     let relative = place - a;
-    let weight = |area: DVec3| (area.dot(normal) / square).clamp(0.0, 1.0);
+    let inverse = 1.0 / square;
+    let weight = |area: DVec3| (area.dot(normal) * inverse).clamp(0.0, 1.0);
     let weights = [weight(relative.cross(to_c)), weight(to_b.cross(relative))];
     // A triangle without an area, of which the lattice made one, has any normal across its longer side.
     let across = || {
