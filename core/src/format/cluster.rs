@@ -297,8 +297,10 @@ pub(crate) trait Strip: Pod {
     /// The corners of a place's triangle, in 1/256 unit.
     #[inline(always)]
     fn triangle(&self, place: u32) -> Option<[[i32; 3]; 3]> {
-        let corners = self.members().corners(place)?;
-        Some(corners.map(|lane| self.rows().position(lane)))
+        // Written out, because the compiler may call `array::map` and pass the corners through memory.
+        let [a, b, c] = self.members().corners(place)?;
+        let rows = self.rows();
+        Some([rows.position(a), rows.position(b), rows.position(c)])
     }
 }
 

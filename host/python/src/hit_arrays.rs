@@ -61,6 +61,7 @@ impl<'py, T: numpy::Element + Send + Copy> Cast<'py, T> {
         (scene, rays, how): (&Scene<'_>, Rays<'_>, How),
         has_instances: bool,
         form: &Rows<
+            impl Fn(&Found) + Sync + Send,
             impl Fn(&SceneRay, &Found) -> Option<Placed> + Sync + Send,
             impl Fn(&Found) -> (T, u32) + Sync + Send,
         >,

@@ -128,11 +128,15 @@ impl NativeScene {
             Array::borrow(rays, "rays")?,
         );
         let (scene, rays) = (self.chosen(how)?, self.rays(&array)?);
-        let form = Rows {
-            places_normals: self.has_all_triangles(),
-            place: |ray: &SceneRay, hit: &Found| Some(self.placed(ray, hit)),
-            number: |hit: &Found| (hit.t, hit.primitive),
-        };
+        let form = Rows::new(
+            self.has_all_triangles(),
+            #[inline(always)]
+            |hit: &Found| self.load_ahead(hit),
+            #[inline(always)]
+            |ray: &SceneRay, hit: &Found| Some(self.placed(ray, hit)),
+            #[inline(always)]
+            |hit: &Found| (hit.t, hit.primitive),
+        );
         let found = Cast::of(py, (&scene, rays, how), true, &form)?;
         Ok((
             found.t,
@@ -157,25 +161,27 @@ impl NativeScene {
             Array::borrow(rays, "rays")?,
         );
         let (scene, rays) = (self.chosen(how)?, self.rays(&array)?);
-        let number = |hit: &Found| {
-            // A ray without a direction hits nothing there.
-            let t = if hit.t.is_nan() {
-                f32::INFINITY
-            } else {
-                hit.t as f32
-            };
-            let first = self.firsts.get(hit.object as usize).copied();
-            (t, first.map_or(NONE, |first| hit.primitive - first))
-        };
-        // Nor does one whose t leaves single precision.
-        let place = |ray: &SceneRay, hit: &Found| {
-            Some(self.placed(ray, hit)).filter(|placed| (placed.t as f32).is_finite())
-        };
-        let form = Rows {
-            places_normals: self.has_all_triangles(),
-            place,
-            number,
-        };
+        let form = Rows::new(
+            self.has_all_triangles(),
+            #[inline(always)]
+            |hit: &Found| self.load_ahead(hit),
+            // A ray whose t leaves single precision hits nothing there.
+            #[inline(always)]
+            |ray: &SceneRay, hit: &Found| {
+                Some(self.placed(ray, hit)).filter(|placed| (placed.t as f32).is_finite())
+            },
+            // Nor does one without a direction.
+            #[inline(always)]
+            |hit: &Found| {
+                let t = if hit.t.is_nan() {
+                    f32::INFINITY
+                } else {
+                    hit.t as f32
+                };
+                let first = self.firsts.get(hit.object as usize).copied();
+                (t, first.map_or(NONE, |first| hit.primitive - first))
+            },
+        );
         let found = Cast::of(py, (&scene, rays, how), false, &form)?;
         Ok((
             found.t,

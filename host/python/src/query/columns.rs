@@ -58,25 +58,41 @@ impl<'c, T> Columns<'c, T> {
 /// Rays whose hits are found before they are written: as many as a processor's nearest memory holds.
 const WRITTEN: usize = 256;
 
+/// Hits that are placed together.
+const PLACED: usize = 32;
+
 /// How hits become rows.
-pub struct Rows<P, M> {
-    /// True if `place` gives the normals of all hits.
-    pub places_normals: bool,
-    /// Where a hit lies, or none where there is no hit after all.
-    pub place: P,
-    /// The t and the primitive of a hit as the arrays have them.
-    pub number: M,
+pub struct Rows<A, P, M> {
+    places_normals: bool,
+    load_ahead: A,
+    place: P,
+    number: M,
+}
+
+impl<A, P, M> Rows<A, P, M> {
+    /// `places_normals` is true if `place` gives the normals of all hits. `load_ahead` starts to load what `place` needs.
+    /// `place` gives where a hit lies, or none where there is no hit after all. `number` gives the t and the primitive of
+    /// a hit as the arrays have them.
+    pub fn new(places_normals: bool, load_ahead: A, place: P, number: M) -> Self {
+        Self {
+            places_normals,
+            load_ahead,
+            place,
+            number,
+        }
+    }
 }
 
 /// Finds the first hit of each ray and writes it to arrays of as many rows.
-pub fn cast<T, P, M>(
+pub fn cast<T, A, P, M>(
     scene: &Scene<'_>,
     rays: Rays<'_>,
     how: How,
     mut columns: Columns<'_, T>,
-    form: &Rows<P, M>,
+    form: &Rows<A, P, M>,
 ) where
     T: Send + Copy,
+    A: Fn(&Found) + Sync,
     P: Fn(&SceneRay, &Found) -> Option<Placed> + Sync,
     M: Fn(&Found) -> (T, u32) + Sync,
 {
@@ -86,23 +102,6 @@ pub fn cast<T, P, M>(
         chunks.push((numbers.start, chunk));
         columns = rest;
     }
-    // Where the ray meets the hit, or the next one within the limits of the ray.
-    let place = |number: usize, hit: &mut Found| {
-        let ray = rays.searched(number);
-        let within = |hit: &Found| {
-            let placed = (form.place)(&ray, hit);
-            placed.filter(|placed| rays.holds(number, placed.t))
-        };
-        let mut placed = within(hit);
-        if placed.is_none() && rays.have_limits() {
-            first_accepted(scene, rays, how, number, &mut |next| {
-                placed = within(next);
-                *hit = *next;
-                placed.is_some()
-            });
-        }
-        placed
-    };
     let write = |(start, mut columns): (usize, Columns<'_, T>)| {
         let mut hits = [Found::MISS; WRITTEN];
         let mut start = start;
@@ -116,9 +115,19 @@ pub fn cast<T, P, M>(
             } else {
                 ask_some::<Closest>(scene, rays, how, (start, hits));
             }
-            for (row, hit) in hits.iter_mut().enumerate() {
+            for row in 0..count {
+                if row % PLACED == 0 {
+                    let ahead = row..count.min(row + PLACED);
+                    hits[ahead].iter().for_each(&form.load_ahead);
+                }
+                let hit = &mut hits[row];
                 if hit.primitive != NONE {
-                    match place(start + row, hit) {
+                    let number = start + row;
+                    let mut placed = within(rays, number, hit, &form.place);
+                    if placed.is_none() && rays.have_limits() {
+                        placed = next_within((scene, rays, how), number, hit, &form.place);
+                    }
+                    match placed {
                         Some(placed) => {
                             (hit.t, rows.uv[row]) = (placed.t, placed.uv);
                             hit.normal = placed.normal.unwrap_or(hit.normal);
@@ -138,4 +147,35 @@ pub fn cast<T, P, M>(
         }
     };
     each_chunk(how, chunks, write);
+}
+
+/// Where a ray meets a hit, if that is within the limits of the ray.
+#[inline(always)]
+fn within<P: Fn(&SceneRay, &Found) -> Option<Placed>>(
+    rays: Rays<'_>,
+    number: usize,
+    hit: &Found,
+    place: &P,
+) -> Option<Placed> {
+    // The function itself, because one by reference is not inlined.
+    let placed = (*place)(&rays.searched(number), hit);
+    placed.filter(|placed| rays.holds(number, placed.t))
+}
+
+/// The next hit of a ray within its limits, and where the ray meets it.
+#[cold]
+#[inline(never)]
+fn next_within<P: Fn(&SceneRay, &Found) -> Option<Placed>>(
+    (scene, rays, how): (&Scene<'_>, Rays<'_>, How),
+    number: usize,
+    hit: &mut Found,
+    place: &P,
+) -> Option<Placed> {
+    let mut placed = None;
+    first_accepted(scene, rays, how, number, &mut |next| {
+        placed = within(rays, number, next, place);
+        *hit = *next;
+        placed.is_some()
+    });
+    placed
 }

@@ -14,19 +14,34 @@ pub(super) struct Meeting {
     pub place: DVec3,
     /// The weights of the second and third corner.
     weights: [f64; 2],
-    /// Of any length.
+    /// Of length 1.
     normal: Option<DVec3>,
 }
 
 impl NativeScene {
-    /// True if [`triangle`](Self::triangle) has the corners of whatever rays hit.
+    /// True if [`corners`](Self::corners) has the corners of whatever rays hit.
     pub(super) fn has_all_triangles(&self) -> bool {
         self.model.as_ref().is_some_and(|model| model.is_of_arrays)
     }
 
+    /// Starts to load the triangle of a hit: those of rays side by side are far apart in memory.
+    #[inline(always)]
+    pub(super) fn load_ahead(&self, hit: &Found) {
+        #[cfg(target_arch = "x86_64")]
+        if hit.primitive != NONE
+            && hit.instance == NONE
+            && let Some(corners) = self.corners(hit.primitive)
+        {
+            corners.into_iter().for_each(gridel_x86::prefetch);
+        }
+        #[cfg(not(target_arch = "x86_64"))]
+        let _ = hit;
+    }
+
     /// The corners of a triangle of a mesh as they were given, by its number; `None` of other primitives, and of those of
     /// instances.
-    pub(super) fn triangle(&self, primitive: u32) -> Option<[DVec3; 3]> {
+    #[inline(always)]
+    fn corners(&self, primitive: u32) -> Option<[&DVec3; 3]> {
         let model = self.model.as_ref()?;
         let object = self.firsts.partition_point(|&first| first <= primitive);
         let object = object.checked_sub(1)?;
@@ -37,8 +52,9 @@ impl NativeScene {
         else {
             return None;
         };
-        let corners = triangles.get((primitive - self.firsts[object]) as usize)?;
-        Some(corners.map(|corner| vertices[corner as usize]))
+        let [a, b, c] = *triangles.get((primitive - self.firsts[object]) as usize)?;
+        let corner = |number: u32| vertices.get(number as usize);
+        Some([corner(a)?, corner(b)?, corner(c)?])
     }
 
     /// Where a ray meets a triangle as it was given, in double precision; by the hit's own t where the triangle is not a
@@ -47,7 +63,7 @@ impl NativeScene {
     #[inline(always)]
     pub(super) fn place(&self, ray: &SceneRay, hit: &Found) -> Meeting {
         let triangle = match hit.instance {
-            NONE => self.triangle(hit.primitive),
+            NONE => self.corners(hit.primitive),
             _ => None,
         };
         let Some(corners) = triangle else {
@@ -59,16 +75,18 @@ impl NativeScene {
                 normal: None,
             };
         };
+        // One by one, because copies of what was just written in parts are slow.
         let [a, b, c] = corners;
+        let (a, b, c) = (*a, *b, *c);
         // Products of two such squares stay in double precision.
         let ordinary = 1e-140..1e140;
         let is_ordinary = ordinary.contains(&(b - a).cross(c - a).length_squared())
             && ordinary.contains(&ray.direction.length_squared())
             && (a - ray.origin).abs().max_element() < self.middle.far;
         if is_ordinary {
-            meet(corners, ray, hit.t)
+            meet([a, b, c], ray, hit.t)
         } else {
-            self.meet_extreme(corners, *ray, hit.t)
+            self.meet_extreme([a, b, c], *ray, hit.t)
         }
     }
 
@@ -102,11 +120,10 @@ impl NativeScene {
     #[inline(always)]
     pub(super) fn placed(&self, ray: &SceneRay, hit: &Found) -> Placed {
         let met = self.place(ray, hit);
-        let normal = met.normal.and_then(DVec3::try_normalize);
         Placed {
             t: met.t,
             uv: met.weights.map(|weight| weight as f32),
-            normal: normal.map(|normal| normal.as_vec3().to_array()),
+            normal: met.normal.map(|normal| normal.as_vec3().to_array()),
         }
     }
 
@@ -168,7 +185,11 @@ fn meet([a, b, c]: [DVec3; 3], ray: &SceneRay, own: f64) -> Meeting {
         t,
         place,
         weights,
-        normal: Some(if square > 0.0 { normal } else { across() }),
+        normal: if square >= f64::MIN_POSITIVE {
+            Some(normal * inverse.sqrt())
+        } else {
+            across().try_normalize()
+        },
     }
 }
 
