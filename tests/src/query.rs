@@ -6,7 +6,7 @@ use gridel_core::accel::DynAccel;
 use gridel_core::format::limits::MAX_STACK_DEPTH;
 use gridel_core::{
     Accel, Fixed, Hit, NoCount, Number, Observer, Ray, Scene, Stack, Structure, any_hit,
-    closest_hit,
+    closest_hit, closest_primitive,
 };
 use std::any::Any;
 
@@ -99,10 +99,14 @@ fn ask_f64(structure: Structure, scene: &Scene<'_>, ray: &Ray<f64>) -> Answer<f6
 
 fn ask<N: Number>(structure: Structure, scene: &Scene<'_>, ray: &Ray<N>) -> Answer<N> {
     let chosen = scene.choose(structure).expect("a structure that is held");
-    (
-        closest::<N, DynAccel>(&chosen, ray, &mut NoCount),
-        any::<N, DynAccel>(&chosen, ray),
-    )
+    let mut stack = Stack::<MAX_STACK_DEPTH>::new();
+    let found = closest_primitive::<N, DynAccel, _>(&chosen, ray, stack.as_view(), &mut NoCount);
+    let hit = found.map(|found| {
+        let hit = found.hit(&chosen, ray).expect("a surface");
+        assert_eq!(found.normal(&chosen, ray), Some(hit.normal));
+        hit
+    });
+    (hit, any::<N, DynAccel>(&chosen, ray))
 }
 
 /// Returns the largest error of t, measured along the normal. It is the bound of the largest coordinate of ray and hit,
