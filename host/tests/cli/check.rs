@@ -379,3 +379,21 @@ fn reports_for_programs_do_not_share_standard_output() {
         "{run:?}"
     );
 }
+
+#[test]
+fn manifests_with_a_byte_order_mark_are_recorded_and_keep_it() {
+    for ends in ["\n", "\r\n"] {
+        let folder = folder();
+        let manifest = format!("\u{feff}{}", MANIFEST.replace('\n', ends));
+        folder.write("check.toml", manifest.as_bytes());
+        folder.done(&["check", "check.toml", "--bless"]);
+        let recorded = String::from_utf8(folder.read("check.toml")).unwrap();
+        let text = recorded.strip_prefix('\u{feff}').unwrap();
+        assert!(!text.contains('\u{feff}') && recorded != manifest);
+        assert_eq!(
+            text.matches("\r\n").count(),
+            manifest.matches("\r\n").count()
+        );
+        folder.done(&["check", "check.toml"]);
+    }
+}
