@@ -315,6 +315,10 @@ impl Inspection {
             "primitives",
             match (kinds.is_empty(), contents.collapsed) {
                 (true, 0) => String::from("0"),
+                (true, collapsed) => format!(
+                    "{}, which collapsed on the lattice",
+                    grouped(collapsed as u64)
+                ),
                 (_, 0) => format!("{}: {}", grouped(contents.primitives), kinds.join(", ")),
                 (_, collapsed) => format!(
                     "{}: {}, and {collapsed} that collapsed on the lattice",
