@@ -172,7 +172,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     drop(progress);
     state.write(&pixels)?;
 
-    let report = Report::of(&settings, &pixels, &pictures);
+    let report = Report::of(&world, &settings, &pixels, &pictures);
     let command = explain_command(arguments, &settings);
     write_results(&folder, &stem, (&report, &pixels, &pictures), &command)?;
     if arguments.json {
