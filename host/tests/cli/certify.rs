@@ -105,18 +105,25 @@ fn states_of_other_pictures_and_broken_ones_are_replaced_with_a_warning() {
     }
     let short = forged(&state, |_| ())[..state.len() - PIXEL - 4].to_vec();
     assert_eq!(with_warning(&short, &SMALL, "is damaged"), whole);
-    for bytes in [&b""[..], b"my own"] {
-        assert_eq!(with_warning(bytes, &SMALL, "is of another picture"), whole);
+    // Also where the key is damaged.
+    let mut keyed = state.clone();
+    keyed[9] ^= 1;
+    for bytes in [&b""[..], b"my own", &keyed] {
+        assert_eq!(with_warning(bytes, &SMALL, "is damaged"), whole);
     }
     // Of other samples, of another depth, of another scene.
     for more in [["--samples", "2"], ["--depth", "0"]] {
-        with_warning(&state, &[&SMALL[..], &more].concat(), "another picture");
+        with_warning(
+            &state,
+            &[&SMALL[..], &more].concat(),
+            "is of another picture",
+        );
     }
     folder.write(
         "ball.toml",
         BALL.replace("radius = 1", "radius = 2").as_bytes(),
     );
-    with_warning(&state, &SMALL, "another picture");
+    with_warning(&state, &SMALL, "is of another picture");
 }
 
 #[test]
