@@ -210,19 +210,19 @@ fn only_pictures_become_references() {
             &["check.toml:4", "would be written over it", "another name"],
         );
     }
-    folder.write("notes.txt", b"to be kept");
-    folder.write("check.toml", check("notes.txt").as_bytes());
+    folder.write("notes.png", b"to be kept");
+    folder.write("check.toml", check("notes.png").as_bytes());
     let run = folder.run(&["check", "check.toml", "--bless"]);
     assert_eq!(run.code, Some(1), "{}", run.stderr);
     for word in [
-        "check.toml:4: notes.txt cannot be read",
+        "check.toml:4: notes.png cannot be read",
         "write the path of an RGB or gray PNG",
         "0 recorded, 1 failed",
     ] {
         assert!(run.stdout.contains(word), "{}", run.stdout);
     }
     assert!(run.stderr.contains("quick: reference cannot be recorded"));
-    assert_eq!(folder.read("notes.txt"), b"to be kept");
+    assert_eq!(folder.read("notes.png"), b"to be kept");
 
     folder.write("check.toml", check("new.png").as_bytes());
     let run = folder.run(&["check", "check.toml"]);
