@@ -3,7 +3,9 @@
 //! Let `q` be a point relative to the base, `w` the axis, `h = w.w` and `a = q.w`. The mantle is where `h (h q.q - a^2)
 //! = (r0 h + (r1 - r0) a)^2`. Only the nappe where the right side's root is positive counts.
 
-use super::crossing::{APEX, BASE, Crossing, Grazes, MANTLE, Ray, compare, exact, flat_normal};
+use super::crossing::{
+    APEX, BASE, Crossing, Grazes, MANTLE, Ray, Start, compare, exact, flat_normal,
+};
 use super::number::*;
 use super::world::Form;
 use std::cmp::Ordering;
@@ -172,8 +174,8 @@ pub fn crossings<N: Enclosure>(
             }
         }
     }
-    ends(&enters, Ordering::Greater, sure, false, found);
-    ends(&leaves, Ordering::Less, sure, true, found);
+    ends(&enters, Ordering::Greater, sure, ray.start, found);
+    ends(&leaves, Ordering::Less, sure, ray.start, found);
     Ok(())
 }
 
@@ -182,9 +184,10 @@ fn ends<N: Enclosure>(
     all: &[Crossing<N>],
     sign: Ordering,
     sure: bool,
-    leaves: bool,
+    start: Start,
     found: &mut Vec<Crossing<N>>,
 ) {
+    let leaves = sign == Ordering::Less;
     let mut left: Vec<Crossing<N>> = Vec::with_capacity(2);
     for (index, crossing) in all.iter().enumerate() {
         let beaten = (0..all.len()).any(|other| match compare(&all[other], crossing) {
@@ -202,7 +205,7 @@ fn ends<N: Enclosure>(
             sure: sure && left.len() == 1,
             ..*crossing
         }
-        .keep(found);
+        .keep(start, found);
     }
 }
 

@@ -34,6 +34,16 @@ pub enum Start {
     },
 }
 
+impl Start {
+    /// Returns whether a t counts: from 0 on at a free start, above 0 on a surface. `None` if that is open.
+    pub fn is_before<N: Enclosure>(self, t: N) -> Option<bool> {
+        match self {
+            Self::Free => positive(-t).map(|is_behind| !is_behind),
+            Self::On { .. } => positive(t),
+        }
+    }
+}
+
 /// A crossing of a primitive's surface ahead of a ray's start.
 #[derive(Clone, Copy, Debug)]
 pub struct Crossing<N> {
@@ -72,9 +82,9 @@ pub fn exact<N: Enclosure>(v: [i64; 3]) -> Three<N> {
 }
 
 impl<N: Enclosure> Crossing<N> {
-    /// Adds a crossing if its t may be above 0.
-    pub fn keep(mut self, found: &mut Vec<Self>) {
-        match positive(self.t) {
+    /// Adds a crossing if it may be ahead of a start.
+    pub fn keep(mut self, start: Start, found: &mut Vec<Self>) {
+        match start.is_before(self.t) {
             Some(true) => found.push(self),
             Some(false) => {}
             None => {

@@ -32,7 +32,7 @@ const EQUAL: f64 = 1e-40;
 pub struct Enclosed {
     /// Linear values that enclose the exact ones, red, green and blue: 1 is display white.
     pub linear: [[f64; 2]; 3],
-    /// Where an open comparison is, in units.
+    /// Where an open comparison is, in lattice units.
     pub point: [f32; 3],
     /// The primitive of an open comparison, or [`NONE`].
     pub primitive: u32,

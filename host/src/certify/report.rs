@@ -3,6 +3,7 @@
 use super::picture::{Enclosed, LEVELS, code, enclose};
 use super::reason::Reason;
 use super::world::{NONE, World};
+use crate::trace::Frame;
 use gridel_core::{Format, Settings};
 use rayon::prelude::*;
 use serde::Serialize;
@@ -92,8 +93,8 @@ pub struct OpenPixel {
     pub pixel: [usize; 2],
     #[serde(skip_serializing_if = "Option::is_none")]
     pub primitive: Option<u32>,
-    /// In lattice units.
-    pub point: [f32; 3],
+    /// In scene units.
+    pub point: [f64; 3],
     pub depth: u8,
 }
 
@@ -139,10 +140,12 @@ const NARROWEST: i32 = -17;
 impl Report {
     /// The report of pixels and of pictures in some formats, as 16-bit values.
     pub fn of(
+        world: &World<'_>,
         settings: &Settings,
         pixels: &[Enclosed],
         pictures: &[(Format, Vec<[u16; 3]>)],
     ) -> Self {
+        let frame = Frame::of(world.scene);
         let width = usize::from(settings.width);
         let place = |index: usize| [index % width, index / width];
         let proved = pixels.iter().filter(|it| it.proved().is_some()).count();
@@ -161,7 +164,7 @@ impl Report {
             let example = |(index, it): (usize, &Enclosed)| OpenPixel {
                 pixel: place(index),
                 primitive: (it.primitive != NONE).then_some(it.primitive),
-                point: it.point,
+                point: frame.place(it.point.map(f64::from)).to_array(),
                 depth: it.depth,
             };
             reasons.push(OpenPixels {
@@ -293,7 +296,7 @@ mod tests {
 
     #[test]
     fn reports_list_all_different_and_open_pixels() {
-        with_world(|_, settings| {
+        with_world(|world, settings| {
             let known = Enclosed {
                 done: 1,
                 ..Enclosed::default()
@@ -301,6 +304,7 @@ mod tests {
             let open = Enclosed {
                 high: [255; 3],
                 reason: Reason::Hit as u8,
+                point: [3.0, 0.0, 0.0],
                 ..known
             };
             let mut pixels = [known; 24];
@@ -308,10 +312,14 @@ mod tests {
             let mut picture = vec![[0; 3]; 24];
             picture[2] = [u16::MAX; 3];
             picture[7] = [0, u16::MAX, 0];
-            let report = Report::of(settings, &pixels, &[(Format::F32, picture)]);
+            let report = Report::of(world, settings, &pixels, &[(Format::F32, picture)]);
             let of = |pixel| DifferentPixel { pixel, error: 255 };
             assert_eq!(report.formats[0].different_pixels, [of([2, 0]), of([1, 1])]);
             assert_eq!(report.reasons[0].examples.len(), 15);
+            // A place in lattice units is written in scene units.
+            let header = world.scene.header();
+            let x = header.origin[0] + libm::ldexp(3.0, header.unit_exponent.into());
+            assert_eq!(report.reasons[0].examples[0].point[0], x);
         });
     }
 }

@@ -1,7 +1,7 @@
 //! Where a ray crosses a primitive, and the surface there, by the formulas that define the shapes.
 //!
 //! Solids are closed. A ray from a surface starts exactly on it. The t of its start is excluded by what is known of the
-//! start, not by a comparison.
+//! start, not by a comparison. A free start may lie on a surface by chance: it meets that surface at t = 0.
 
 use super::cone;
 use super::crossing::{
@@ -55,6 +55,30 @@ pub fn crossings<N: Enclosure>(
     ray: &Ray<N>,
     found: &mut Vec<Crossing<N>>,
 ) -> Result<(), Grazes> {
+    let before = found.len();
+    all_crossings((solid, instance), ray, found)?;
+    // Kernels compute exactly where surfaces across an axis are. At others their rounding decides about t = 0.
+    let is_exact = match solid.form {
+        Form::Cuboid { .. } => instance == NONE,
+        Form::Plane { normal, .. } | Form::Disc { normal, .. } => {
+            instance == NONE && axis_of(normal).is_some()
+        }
+        _ => false,
+    };
+    if ray.start == Start::Free && !is_exact {
+        let found = found[before..].iter_mut();
+        found
+            .filter(|it| it.t.sign() == Some(Ordering::Equal))
+            .for_each(|it| it.sure = false);
+    }
+    Ok(())
+}
+
+fn all_crossings<N: Enclosure>(
+    (solid, instance): (&Solid, u32),
+    ray: &Ray<N>,
+    found: &mut Vec<Crossing<N>>,
+) -> Result<(), Grazes> {
     let (surfaces, itself) = match ray.start {
         Start::On {
             instance: from,
@@ -95,7 +119,7 @@ pub fn crossings<N: Enclosure>(
             }
             let relative = minus(exact(point), ray.origin);
             if let Some(crossing) = flat(exact(normal), relative, ray)? {
-                crossing.keep(found);
+                crossing.keep(ray.start, found);
             }
             Ok(())
         }
@@ -171,7 +195,7 @@ fn triangle<N: Enclosure>(
     }
     if let Some(mut crossing) = flat(exact(normal), a, ray)? {
         crossing.sure = !open;
-        crossing.keep(found);
+        crossing.keep(ray.start, found);
     }
     Ok(())
 }
@@ -199,7 +223,7 @@ fn disc<N: Enclosure>(
         Some(_) => {}
         None => crossing.sure = false,
     }
-    crossing.keep(found);
+    crossing.keep(ray.start, found);
     Ok(())
 }
 
@@ -225,7 +249,7 @@ fn sphere<N: Enclosure>(
     match itself {
         Some((_, false)) => return,
         // The other root is 0.
-        Some((_, true)) => return crossing(closest + closest, true, true).keep(found),
+        Some((_, true)) => return crossing(closest + closest, true, true).keep(ray.start, found),
         None => {}
     }
     let apart = norm2(along(relative, -closest, ray.direction));
@@ -237,8 +261,8 @@ fn sphere<N: Enclosure>(
     let Some(half) = square.over(length).map(N::sqrt) else {
         return;
     };
-    crossing(closest - half, false, sure).keep(found);
-    crossing(closest + half, true, sure).keep(found);
+    crossing(closest - half, false, sure).keep(ray.start, found);
+    crossing(closest + half, true, sure).keep(ray.start, found);
 }
 
 /// Returns the last of several crossings, or the first if `sign` is less. Returns each crossing that may be it.
@@ -315,7 +339,7 @@ fn cuboid<N: Enclosure>(
         }
     }
     if grazes {
-        let behind = |it: &Crossing<N>| positive(it.t) == Some(false);
+        let behind = |it: &Crossing<N>| ray.start.is_before(it.t) == Some(false);
         return if leaves.iter().any(behind) {
             Ok(())
         } else {
@@ -331,7 +355,7 @@ fn cuboid<N: Enclosure>(
                 sure: sure && all.len() == 1,
                 ..*crossing
             }
-            .keep(found);
+            .keep(ray.start, found);
         }
     }
     Ok(())

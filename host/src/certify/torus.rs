@@ -101,7 +101,7 @@ pub fn crossings<N: Enclosure>(
             leaves,
             sure,
         }
-        .keep(found);
+        .keep(ray.start, found);
     };
     for piece in pieces {
         if part >= PARTS {

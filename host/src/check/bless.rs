@@ -8,6 +8,9 @@ use std::io;
 use std::path::{Path, PathBuf};
 use toml_edit::{DocumentMut, InlineTable, Item, Value};
 
+/// The byte order mark.
+const MARK: &str = "\u{feff}";
+
 /// A manifest with the new records.
 #[derive(Clone, Debug)]
 pub struct Blessed {
@@ -91,7 +94,14 @@ pub fn bless(manifest: &Manifest, report: &Report) -> Blessed {
             set(table, keys, value(figure));
         }
     }
-    blessed.new = super::diff::with_line_ends(&manifest.text, &document.to_string());
+    // A byte order mark is no part of the document, and stays.
+    let (mark, old) = match manifest.text.strip_prefix(MARK) {
+        Some(old) => (MARK, old),
+        None => ("", manifest.text.as_str()),
+    };
+    let new = document.to_string();
+    let new = super::diff::with_line_ends(old, new.strip_prefix(MARK).unwrap_or(&new));
+    blessed.new = mark.to_owned() + &new;
     blessed
 }
 
@@ -190,7 +200,7 @@ impl Blessed {
         if self.old != self.new {
             let here = |error| (self.path.clone(), error);
             let now = std::fs::read_to_string(&self.path).map_err(here)?;
-            if now.trim_start_matches('\u{feff}') != self.old {
+            if now != self.old {
                 let why = "it has changed while the checks ran, so nothing is recorded; run the command again";
                 return Err(here(io::Error::other(why)));
             }

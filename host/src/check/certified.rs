@@ -33,7 +33,7 @@ impl Run<'_> {
         let Ok(()) = certify(&world, &settings, &mut pixels, &|| (), |_| {
             Ok::<_, Infallible>(())
         });
-        let report = Report::of(&settings, &pixels, &pictures);
+        let report = Report::of(&world, &settings, &pixels, &pictures);
         if let Some(least) = check.certified {
             let outcome = if report.certified >= least {
                 Outcome::Passed

@@ -127,6 +127,7 @@ impl Manifest {
             checks,
         };
         manifest.reject_lost_files()?;
+        manifest.reject_other_pictures()?;
         Ok(manifest)
     }
 
@@ -141,6 +142,22 @@ impl Manifest {
                 "is a scene or a program of this manifest, or the manifest itself: a reference \
                  that is recorded would be written over it",
                 "give the reference another name",
+            )),
+        }
+    }
+
+    /// Rejects references in formats other than PNG, as PNG files are recorded.
+    fn reject_other_pictures(&self) -> Result<(), SceneError> {
+        let is_png = |it: &&Named| {
+            let extension = it.path.extension();
+            extension.is_some_and(|it| it.eq_ignore_ascii_case("png"))
+        };
+        match self.references().find(|it| !is_png(it)) {
+            None => Ok(()),
+            Some(picture) => Err(self.error(
+                picture,
+                "is no PNG file, as references must be",
+                "write a path that ends in `.png`; `--bless` creates the picture",
             )),
         }
     }

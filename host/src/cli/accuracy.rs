@@ -18,6 +18,7 @@ use gridel_host::accuracy::{
     Bench, MOST_MEASURED_SAMPLES, MeasureError, Point, Truth, Worth, answers, frontier,
     least_reference_samples, page, plot, sentences, sweep,
 };
+use gridel_host::compile::scene_warnings;
 use gridel_host::measure::InstanceCount;
 use gridel_host::table::{counted, grouped, significant};
 use measure::measure;
@@ -117,7 +118,9 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
             format!("ask for at least {least} with `--reference-samples`, or leave it out"),
         ));
     }
-    warn_of_file(path, bench.warnings().map_err(failed)?, &mut warnings);
+    let mut all = scene_warnings(&imported.scene);
+    all.extend(bench.warnings().map_err(failed)?);
+    warn_of_file(path, all, &mut warnings);
     let key = format!(
         "gridel {} scene {:08x} size {size:?} structure {} reference {}{}",
         env!("CARGO_PKG_VERSION"),

@@ -73,7 +73,7 @@ const STATE: &str = "certify.state";
 const MOST_PIXELS: usize = 1 << 22;
 
 /// The version of what is proved and how. Raise it with every change, so that older states are not continued.
-const RULES: u32 = 3;
+const RULES: u32 = 4;
 
 /// How often the state is written.
 const OFTEN: Duration = Duration::from_secs(5);
@@ -172,7 +172,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     drop(progress);
     state.write(&pixels)?;
 
-    let report = Report::of(&settings, &pixels, &pictures);
+    let report = Report::of(&world, &settings, &pixels, &pictures);
     let command = explain_command(arguments, &settings);
     write_results(&folder, &stem, (&report, &pixels, &pictures), &command)?;
     if arguments.json {
@@ -237,16 +237,13 @@ impl State {
 
     /// The bytes of the pixels.
     fn kept<'b>(&self, bytes: &'b [u8]) -> Result<&'b [u8], &'static str> {
-        let Some(rest) = bytes.strip_prefix(self.key.as_bytes()) else {
-            return Err("is of another picture");
-        };
-        let (pixels, sum) = rest.split_last_chunk().ok_or("is damaged")?;
-        let all = &bytes[..bytes.len() - sum.len()];
-        if u32::from_le_bytes(*sum) == checksum(all) {
-            Ok(pixels)
-        } else {
-            Err("is damaged")
+        let (all, sum) = bytes.split_last_chunk().ok_or("is damaged")?;
+        // The checksum holds for the key, too: without it, a damaged key looks like that of another picture.
+        if u32::from_le_bytes(*sum) != checksum(all) {
+            return Err("is damaged");
         }
+        let pixels = all.strip_prefix(self.key.as_bytes());
+        pixels.ok_or("is of another picture")
     }
 
     fn write(&self, pixels: &[Enclosed]) -> Result<(), Failure> {

@@ -102,6 +102,8 @@ struct NameLists {
     objects: Vec<String>,
     materials: Vec<String>,
     lights: Vec<String>,
+    /// Those of a scene file; a blob does not hold them.
+    instances: Vec<String>,
 }
 
 impl From<Names> for NameLists {
@@ -110,12 +112,14 @@ impl From<Names> for NameLists {
             objects,
             materials,
             lights,
+            instances,
             ..
         } = names;
         Self {
             objects,
             materials,
             lights,
+            instances,
         }
     }
 }
@@ -168,9 +172,12 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         tracks: TrackList::of(source.blob.bytes()),
         joints: JointLine::all(&scene, source.blob.bytes()),
         deforming: Deforming::all(&scene),
-        names: Names::of_blob(&scene, source.blob.bytes())
-            .unwrap_or_default()
-            .into(),
+        names: NameLists {
+            instances: source.names(&scene).instances,
+            ..Names::of_blob(&scene, source.blob.bytes())
+                .unwrap_or_default()
+                .into()
+        },
         working_memory: working_memory(&scene),
         working_rows: working_rows(&scene, source.blob.bytes()),
         effects: match &source.report {
@@ -315,6 +322,10 @@ impl Inspection {
             "primitives",
             match (kinds.is_empty(), contents.collapsed) {
                 (true, 0) => String::from("0"),
+                (true, collapsed) => format!(
+                    "{}, which collapsed on the lattice",
+                    grouped(collapsed as u64)
+                ),
                 (_, 0) => format!("{}: {}", grouped(contents.primitives), kinds.join(", ")),
                 (_, collapsed) => format!(
                     "{}: {}, and {collapsed} that collapsed on the lattice",

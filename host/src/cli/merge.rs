@@ -9,6 +9,7 @@ use clap::Args;
 use gridel_host::animation::AnimationFormat;
 use gridel_host::merge::{Merge, MergeError, Part};
 use gridel_host::picture::PictureFormat;
+use gridel_host::table::counted;
 use serde::Serialize;
 use std::fs::File;
 use std::io::BufReader;
@@ -95,8 +96,11 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         print_json(&merged)
     } else {
         print(format!(
-            "{}: {}x{} pixels from {} parts\n",
-            merged.picture, merged.width, merged.height, merged.parts
+            "{}: {}x{} pixels from {}\n",
+            merged.picture,
+            merged.width,
+            merged.height,
+            counted(merged.parts, "part")
         ))
     }
 }

@@ -15,6 +15,8 @@ pub struct NameTable {
     /// `None` for those without a name.
     materials: Vec<Option<String>>,
     lights: Vec<Option<String>>,
+    /// In the order of the numbers that hits have; a blob holds no names of instances.
+    instances: Vec<Option<String>>,
 }
 
 #[derive(Serialize)]
@@ -56,6 +58,7 @@ impl NameTable {
         let given = |name: Option<&String>| name.filter(|name| !name.is_empty()).cloned();
         let materials = 0..scene.materials().len();
         let lights = 0..scene.lights().len();
+        let instances = 0..scene.instances().len();
         Self {
             objects: (0..).zip(counts).map(row).collect(),
             materials: materials
@@ -63,6 +66,9 @@ impl NameTable {
                 .collect(),
             lights: lights
                 .map(|number| given(names.lights.get(number)))
+                .collect(),
+            instances: instances
+                .map(|number| given(names.instances.get(number)))
                 .collect(),
         }
     }

@@ -190,11 +190,7 @@ impl Source {
         let names = Names::of_scene(&imported.scene);
         let mut warnings = imported.warnings;
         let mut sentences = report.warnings(compiling.lattice_bits);
-        if imported.scene.objects.is_empty() && imported.scene.instances.is_empty() {
-            sentences.push(String::from(
-                "the scene has no object: pictures show the background",
-            ));
-        }
+        sentences.extend(compile::scene_warnings(&imported.scene));
         warn_of_file(input.path(), sentences, &mut warnings);
         Ok(Self {
             input,

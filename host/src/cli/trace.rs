@@ -77,7 +77,8 @@ pub struct Arguments {
     threads: usize,
 
     /// Count the hits by name: print the objects with the most, or with --json all. With a file, write the
-    /// names of objects, materials and lights there, and the primitives of each object, in place of the table
+    /// names of objects, materials, lights and instances there, and the primitives of each object, in place of the
+    /// table
     #[arg(long, value_name = "NAMES.json", num_args = 0..=1)]
     names: Option<Option<PathBuf>>,
 

@@ -180,15 +180,17 @@ pub enum CompileError {
     #[diagnostic(help("make it an object of the scene itself"))]
     UnboundedPart { object: String, part: String },
     #[error(
-        "the instance {instance} is too small for the scene, which is {size:.1e} wide with all that moves and its `room`"
+        "the instance {instance} has a scale of {scale:.1e}, too small for the scene's lattice, which is {size:.1e} wide \
+         to hold all that moves and its `room`"
     )]
     #[diagnostic(help(
-        "place it at a size of at least {least:.1e} of the scene's, or bring nearer what is far away: an object, \
-         another instance, a track or the `room`"
+        "use a scale of at least {least:.1e}, or bring nearer what is far away: an object, another instance, a track \
+         or the `room`"
     ))]
     SmallInstance {
         instance: String,
         size: f64,
+        scale: f64,
         least: f64,
     },
     #[error(

@@ -1,8 +1,9 @@
 //! The camera and the background of a scene that states none.
 
 use super::extent::Shapes;
-use crate::scene::{Camera, Color, Scene};
-use glam::DVec3;
+use crate::scene::{Camera, Color, Scene, Shape};
+use crate::shape::unit;
+use glam::{DQuat, DVec3};
 
 /// The background of a scene that states neither a camera nor a background. On light gray, white objects are visible by
 /// their shades, and black ones by their outline.
@@ -23,7 +24,8 @@ const NEAREST: f64 = 1.0 / 16.0;
 ///
 /// The front is that of the scene's [up](Scene::up): the camera looks along -z where y is up, and along +y where z is
 /// up. A flat scene that would be seen from its edge is seen from above or from its right. Unbounded shapes do not
-/// count if there are bounded ones.
+/// count if there are bounded ones. If the eye lay in a plane or near one, the view is raised or turned by 15 degrees
+/// or more, so that the eye lies in front of the plane.
 ///
 /// ```
 /// # let file = "[[object]]\nkind = 'sphere'\ncenter = [0, 0, 0]\nradius = 1\nname = 'ball'";
@@ -43,10 +45,7 @@ pub fn framing(scene: &Scene, fov_degrees: Option<f64>) -> Camera {
 pub(super) fn framing_of(shapes: &Shapes<'_>, fov_degrees: Option<f64>) -> Camera {
     let scene = shapes.scene();
     let fov_degrees = fov_degrees.unwrap_or(FOV_DEGREES);
-    let support = |direction: DVec3| {
-        let largest = shapes.support(direction);
-        if largest.is_finite() { largest } else { 0.0 }
-    };
+    let support = |direction| support(shapes, direction);
     let highest = DVec3::from_array(DVec3::AXES.map(support));
     let lowest = -DVec3::from_array(DVec3::AXES.map(|axis| support(-axis)));
     let middle = lowest.midpoint(highest);
@@ -63,6 +62,23 @@ pub(super) fn framing_of(shapes: &Shapes<'_>, fov_degrees: Option<f64>) -> Camer
         _ if is_seen_from_edge(shapes, up) => (-right, up),
         _ => (-up, forward),
     };
+    let fitted = |view| fitted(shapes, [lowest, highest], view, fov_degrees);
+    off_planes(scene, [forward, up], fitted)
+}
+
+/// The camera of a direction of view and one up, at a right angle to it, from which a scene within a box takes its
+/// share of the picture.
+fn fitted(
+    shapes: &Shapes<'_>,
+    [lowest, highest]: [DVec3; 2],
+    [forward, up]: [DVec3; 2],
+    fov_degrees: f64,
+) -> Camera {
+    let scene = shapes.scene();
+    let support = |direction| support(shapes, direction);
+    let middle = lowest.midpoint(highest);
+    let half = highest - middle;
+    let extent_along = |axis: DVec3| half.dot(axis.abs());
     let right = forward.cross(up);
     let [across, along, deep] = [right, up, forward].map(extent_along);
 
@@ -92,6 +108,80 @@ pub(super) fn framing_of(shapes: &Shapes<'_>, fov_degrees: Option<f64>) -> Camer
     }
 }
 
+/// The largest `point.dot(direction)` of a scene; 0 without points, and where it has no end.
+fn support(shapes: &Shapes<'_>, direction: DVec3) -> f64 {
+    let largest = shapes.support(direction);
+    if largest.is_finite() { largest } else { 0.0 }
+}
+
+/// The least distance of the eye from planes, as a part of its distance from what it looks at.
+const OFF_PLANES: f64 = 1.0 / 32.0;
+
+/// Degrees by which a view is raised and turned, in the order in which they are tried.
+const TURNS: [[f64; 2]; 11] = [
+    [15.0, 0.0],
+    [-15.0, 0.0],
+    [0.0, 15.0],
+    [0.0, -15.0],
+    [15.0, 15.0],
+    [15.0, -15.0],
+    [-15.0, 15.0],
+    [-15.0, -15.0],
+    [30.0, 30.0],
+    [30.0, -30.0],
+    [-30.0, 30.0],
+];
+
+/// The camera of a view. If its eye lies in a plane, or near one, the view is raised or turned so far that it lies
+/// in front of that plane: each ray from within a plane hits it at once.
+fn off_planes(
+    scene: &Scene,
+    [forward, up]: [DVec3; 2],
+    fitted: impl Fn([DVec3; 2]) -> Camera,
+) -> Camera {
+    let planes = scene
+        .objects
+        .iter()
+        .filter_map(|object| match &object.shape {
+            Shape::Plane(plane) => Some((plane.point, unit(plane.normal))),
+            _ => None,
+        });
+    let planes: Vec<(DVec3, DVec3)> = planes.collect();
+    let above = |camera: &Camera, (point, normal): (DVec3, DVec3)| {
+        (camera.eye - point).dot(normal) / camera.eye.distance(camera.target)
+    };
+    let first = fitted([forward, up]);
+    // The planes to be left, on the side of their normal, come first.
+    let (near, far): (Vec<_>, Vec<_>) = planes
+        .into_iter()
+        .partition(|&plane| above(&first, plane).abs() < OFF_PLANES);
+    if near.is_empty() {
+        return first;
+    }
+    let clearance = |camera: &Camera| {
+        let near = near.iter().map(|&plane| above(camera, plane));
+        let far = far.iter().map(|&plane| above(camera, plane).abs());
+        near.chain(far).fold(f64::INFINITY, f64::min)
+    };
+    let mut best = (clearance(&first), first);
+    for [raised, turned] in TURNS {
+        let (raise, turn) = (
+            DQuat::from_axis_angle(forward.cross(up), -f64::to_radians(raised)),
+            DQuat::from_axis_angle(up, f64::to_radians(turned)),
+        );
+        let view = [forward, up].map(|it| turn * (raise * it));
+        let camera = Camera { up, ..fitted(view) };
+        let clearance = clearance(&camera);
+        if clearance >= OFF_PLANES {
+            return camera;
+        }
+        if clearance > best.0 {
+            best = (clearance, camera);
+        }
+    }
+    best.1
+}
+
 /// The least part of the area of flat faces that a view must show.
 const LEAST_SHOWN: f64 = 1e-3;
 
@@ -111,8 +201,8 @@ fn is_seen_from_edge(shapes: &Shapes<'_>, forward: DVec3) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scene::{Material, Object, Shape, SourceSpan};
-    use crate::shape::Cuboid;
+    use crate::scene::{Material, Object, SourceSpan};
+    use crate::shape::{Cuboid, Plane};
     use gridel_core::Up;
 
     fn scene(min: [f64; 3], max: [f64; 3], up: Up) -> Scene {
@@ -273,6 +363,33 @@ mod tests {
             assert!(looks(&camera, DVec3::NEG_X));
             assert_eq!(camera.up, DVec3::AXES[up.axis()]);
             assert!((share(&wall, &camera).0[0] - 0.8).abs() < 1e-9);
+        }
+    }
+
+    #[test]
+    fn eye_lies_in_front_of_planes_that_it_would_lie_in() {
+        let above = |camera: &Camera, normal: DVec3| {
+            camera.eye.dot(normal) / camera.eye.distance(camera.target)
+        };
+        for up in [Up::Y, Up::Z] {
+            let alone = scene([-1.0; 3], [1.0; 3], up);
+            let first = framing(&alone, None);
+            for axis in DVec3::AXES.into_iter().chain([DVec3::new(1.0, 1.0, 0.0)]) {
+                for normal in [axis, -axis].map(DVec3::normalize) {
+                    let mut cut = alone.clone();
+                    cut.objects.push(cut.objects[0].clone());
+                    let point = DVec3::ZERO;
+                    cut.objects[1].shape = Shape::Plane(Plane { point, normal });
+                    let camera = framing(&cut, None);
+                    if above(&first, normal).abs() > 0.1 {
+                        assert_eq!(camera, first);
+                        continue;
+                    }
+                    assert!(above(&camera, normal) >= OFF_PLANES, "{up:?} {normal}");
+                    let sides = share(&alone, &camera).0;
+                    assert!(sides[0].max(sides[1]) < 0.81, "{sides:?}");
+                }
+            }
         }
     }
 

@@ -217,7 +217,8 @@ impl Parts {
             return Err(CompileError::SmallInstance {
                 instance: instance_name(instance),
                 size: lattice.unit() * exp2(16),
-                least: exp2(-(most as i32)),
+                scale: placement.scale,
+                least: rounded_up(least_scale(stretch * placement.scale, smallest)),
             });
         }
         let large = |cause| CompileError::LargeInstance {
@@ -326,6 +327,25 @@ fn alone(part: &Part, scene: &Scene) -> Result<Scene, CompileError> {
     })
 }
 
+/// The least scale at rest with which an instance fits: `stretch` is that of a scale of 1, and `smallest` the logarithm
+/// of the least scale that its joints give it.
+fn least_scale(stretch: f64, smallest: f64) -> f64 {
+    let [_, most] = INSTANCE_EXPONENT;
+    stretch * libm::exp2(-(most as f64 + smallest).floor())
+}
+
+/// A number with two digits that is not below another.
+fn rounded_up(number: f64) -> f64 {
+    let digit = libm::exp10(libm::floor(libm::log10(number)) - 1.0);
+    let up = (number / digit).ceil();
+    // The quotient may be rounded down.
+    if up * digit >= number {
+        up * digit
+    } else {
+        (up + 1.0) * digit
+    }
+}
+
 fn instance_name(instance: &Instance) -> String {
     format!("{} ({})", printable(&instance.name), instance.place)
 }
@@ -353,6 +373,30 @@ mod tests {
             matches!(error, CompileError::TinyInstance { .. }),
             "{error}"
         );
+    }
+
+    #[test]
+    fn error_of_a_small_instance_names_the_least_scale_that_works() {
+        let with_scale = |scale: f64| {
+            let instance = format!("[[instance]]\npart = 'p'\nscale = {scale:e}\n");
+            let far = "[[object]]\nkind = 'sphere'\ncenter = [1000, 0, 0]\nradius = 300\n";
+            compile(
+                &scene(&format!("{far}{PART}{instance}")),
+                &Options::default(),
+            )
+        };
+        let error = with_scale(1e-9).unwrap_err();
+        let CompileError::SmallInstance {
+            size, scale, least, ..
+        } = error
+        else {
+            panic!("{error}");
+        };
+        assert!(scale == 1e-9 && size >= 1300.0, "{size}");
+        assert!(with_scale(least).is_ok(), "{least:e}");
+        assert!(with_scale(0.9 * least).is_err(), "{least:e}");
+        let help = miette::Diagnostic::help(&error).unwrap().to_string();
+        assert!(help.contains(&format!("at least {least:.1e}")), "{help}");
     }
 
     #[test]

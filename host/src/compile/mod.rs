@@ -59,6 +59,7 @@ pub use requirements::RequiringPart;
 pub(crate) use shading::light_record;
 pub use shading::{EnvironmentFigures, TextureFigures, radiance};
 pub use structures::{takes_hierarchy, usual_budget};
+pub use warnings::scene_warnings;
 pub use wide::Quality;
 
 pub use crate::scene::TICKS_PER_SECOND;

@@ -2,7 +2,38 @@
 
 use super::LATTICE_BITS;
 use super::report::Report;
+use crate::scene::{Scene, Shape};
+use crate::shape::unit;
 use crate::table::{counted, grouped, printable};
+
+/// How near a plane an eye lies in it, as a part of its distance from what it looks at.
+const IN_PLANE: f64 = 1e-9;
+
+/// What is odd about a scene's objects and its camera before it is compiled. A scene file's author would want to know.
+pub fn scene_warnings(scene: &Scene) -> Vec<String> {
+    let mut warnings = Vec::new();
+    if scene.objects.is_empty() && scene.instances.is_empty() {
+        warnings.push(String::from(
+            "the scene has no object: pictures show the background",
+        ));
+    }
+    let Some(camera) = scene.camera else {
+        return warnings;
+    };
+    let near = IN_PLANE * camera.eye.distance(camera.target);
+    let around = scene.objects.iter().find(|object| match &object.shape {
+        Shape::Plane(plane) => (camera.eye - plane.point).dot(unit(plane.normal)).abs() <= near,
+        _ => false,
+    });
+    warnings.extend(around.map(|plane| {
+        format!(
+            "the camera lies in the plane {} ({}), which hides all else: move its eye off the plane",
+            printable(&plane.name),
+            plane.place
+        )
+    }));
+    warnings
+}
 
 /// Primitives that a warning names; the rest are counted.
 const NAMED: usize = 3;
@@ -86,6 +117,7 @@ impl Report {
 
 #[cfg(test)]
 mod tests {
+    use super::scene_warnings;
     use crate::compile::{Options, compile};
     use crate::scene::{self, Environment, Panorama, Sky};
 
@@ -128,5 +160,23 @@ mod tests {
                     .all(|it| it.contains("flag") && it.contains("glows"))
             );
         }
+    }
+
+    #[test]
+    fn cameras_in_a_plane_have_a_warning() {
+        let warnings = |eye: &str| {
+            let file = format!(
+                "[camera]\neye = {eye}\ntarget = [0, 0, 0]\n\
+                 [[object]]\nkind = 'plane'\npoint = [1, 1, 0]\nnormal = [3, 1, 0]\nname = 'wall'\n"
+            );
+            let imported = crate::scene::read("a.toml".as_ref(), file.into(), &Default::default());
+            scene_warnings(&imported.unwrap().scene)
+        };
+        let found = warnings("[0, 4, 7]");
+        assert!(
+            found.len() == 1 && found[0].contains("lies in the plane wall (a.toml:4)"),
+            "{found:?}"
+        );
+        assert_eq!(warnings("[0, 4.001, 7]"), Vec::<String>::new());
     }
 }

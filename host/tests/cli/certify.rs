@@ -105,18 +105,25 @@ fn states_of_other_pictures_and_broken_ones_are_replaced_with_a_warning() {
     }
     let short = forged(&state, |_| ())[..state.len() - PIXEL - 4].to_vec();
     assert_eq!(with_warning(&short, &SMALL, "is damaged"), whole);
-    for bytes in [&b""[..], b"my own"] {
-        assert_eq!(with_warning(bytes, &SMALL, "is of another picture"), whole);
+    // Also where the key is damaged.
+    let mut keyed = state.clone();
+    keyed[9] ^= 1;
+    for bytes in [&b""[..], b"my own", &keyed] {
+        assert_eq!(with_warning(bytes, &SMALL, "is damaged"), whole);
     }
     // Of other samples, of another depth, of another scene.
     for more in [["--samples", "2"], ["--depth", "0"]] {
-        with_warning(&state, &[&SMALL[..], &more].concat(), "another picture");
+        with_warning(
+            &state,
+            &[&SMALL[..], &more].concat(),
+            "is of another picture",
+        );
     }
     folder.write(
         "ball.toml",
         BALL.replace("radius = 1", "radius = 2").as_bytes(),
     );
-    with_warning(&state, &SMALL, "another picture");
+    with_warning(&state, &SMALL, "is of another picture");
 }
 
 #[test]
@@ -182,4 +189,34 @@ fn blobs_with_clusters_alone_are_certified() {
     folder.done(&["build", "ball.toml", "--accel", "wide", "-o", "wide.gridel"]);
     let report = folder.json(&["certify", "wide.gridel", "--size", "13x7", "-o", "out"]);
     assert_eq!(report["pixels"], 91);
+}
+
+#[test]
+fn eye_on_a_surface_proves_no_pixel_different() {
+    let folder = Folder::new();
+    let objects = [
+        "kind = 'box'\nmin = [-1, -1, -1]\nmax = [1, 0, 1]",
+        "kind = 'plane'\npoint = [0, 0, 0]\nnormal = [0, 1, 0]",
+        "kind = 'plane'\npoint = [0, 0, 0.5]\nnormal = [1, 2, 3]",
+        "kind = 'disc'\ncenter = [0, 0, 0]\nnormal = [0, 1, 0]\nradius = 1",
+        "kind = 'triangle'\nvertices = [[-1, 0, 1], [1, 0, 1], [0, 0, -1]]",
+        "kind = 'cylinder'\nbase = [0, -1, 0]\ntop = [0, 0, 0]\nradius = 1",
+        "kind = 'sphere'\ncenter = [0, 0, 0]\nradius = 0.5",
+    ];
+    for object in objects {
+        let file = format!(
+            "background = [0.2, 0.4, 0.8]\n[camera]\neye = [0, 0, 0.5]\ntarget = [0.1, 0.13, -5]\n\
+             [[light]]\nkind = 'directional'\ndirection = [0.3, -1, -0.4]\n\
+             [[object]]\nkind = 'sphere'\ncenter = [0, 1, -5]\nradius = 1\n[[object]]\n{object}\n"
+        );
+        folder.write("eye.toml", file.as_bytes());
+        let report = folder.json(&["certify", "eye.toml", "--size", "12x12", "-o", "out"]);
+        for format in report["formats"].as_array().unwrap() {
+            assert_eq!(format["different"], 0, "{object}: {format}");
+        }
+        // Where an axis is normal to the surface, nothing is open.
+        if object.contains("'box'") || object.contains("[0, 1, 0]") {
+            assert_eq!(report["proved"], 144, "{object}");
+        }
+    }
 }

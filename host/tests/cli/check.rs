@@ -210,19 +210,19 @@ fn only_pictures_become_references() {
             &["check.toml:4", "would be written over it", "another name"],
         );
     }
-    folder.write("notes.txt", b"to be kept");
-    folder.write("check.toml", check("notes.txt").as_bytes());
+    folder.write("notes.png", b"to be kept");
+    folder.write("check.toml", check("notes.png").as_bytes());
     let run = folder.run(&["check", "check.toml", "--bless"]);
     assert_eq!(run.code, Some(1), "{}", run.stderr);
     for word in [
-        "check.toml:4: notes.txt cannot be read",
+        "check.toml:4: notes.png cannot be read",
         "write the path of an RGB or gray PNG",
         "0 recorded, 1 failed",
     ] {
         assert!(run.stdout.contains(word), "{}", run.stdout);
     }
     assert!(run.stderr.contains("quick: reference cannot be recorded"));
-    assert_eq!(folder.read("notes.txt"), b"to be kept");
+    assert_eq!(folder.read("notes.png"), b"to be kept");
 
     folder.write("check.toml", check("new.png").as_bytes());
     let run = folder.run(&["check", "check.toml"]);
@@ -378,4 +378,22 @@ fn reports_for_programs_do_not_share_standard_output() {
         run.said().contains("cannot both go to standard output"),
         "{run:?}"
     );
+}
+
+#[test]
+fn manifests_with_a_byte_order_mark_are_recorded_and_keep_it() {
+    for ends in ["\n", "\r\n"] {
+        let folder = folder();
+        let manifest = format!("\u{feff}{}", MANIFEST.replace('\n', ends));
+        folder.write("check.toml", manifest.as_bytes());
+        folder.done(&["check", "check.toml", "--bless"]);
+        let recorded = String::from_utf8(folder.read("check.toml")).unwrap();
+        let text = recorded.strip_prefix('\u{feff}').unwrap();
+        assert!(!text.contains('\u{feff}') && recorded != manifest);
+        assert_eq!(
+            text.matches("\r\n").count(),
+            manifest.matches("\r\n").count()
+        );
+        folder.done(&["check", "check.toml"]);
+    }
 }

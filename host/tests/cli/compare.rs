@@ -108,3 +108,15 @@ fn structures_that_were_asked_for_and_do_not_fit_are_rejected() {
         run.stderr
     );
 }
+
+#[test]
+fn scenes_without_objects_have_a_warning() {
+    let folder = Folder::new();
+    folder.write("empty.toml", b"ambient = 0.5\n");
+    let small = ["empty.toml", "--size", "8x6", "--repeat", "1"];
+    for (command, more) in [("compare", &[][..]), ("accuracy", &["-o", "out"])] {
+        let run = folder.run(&[&[command], &small[..], more].concat());
+        assert_eq!(run.code, Some(0), "{}", run.stderr);
+        assert!(run.said().contains("the scene has no object"), "{command}");
+    }
+}

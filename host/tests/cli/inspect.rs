@@ -223,3 +223,20 @@ fn broken_blobs_are_rejected_with_the_reason() {
         &["absent.gridel cannot be read"],
     );
 }
+
+#[test]
+fn collapsed_primitives_alone_are_stated_without_an_empty_list() {
+    let folder = Folder::new();
+    let triangle = |x: u8| {
+        format!(
+            "[[object]]\nkind = 'triangle'\nvertices = [[{x}, 0, 0], [{x}, 1e-12, 0], [{x}, 0, 1e-12]]\n"
+        )
+    };
+    folder.write("tiny.toml", (triangle(0) + &triangle(1)).as_bytes());
+    let text = folder.done(&["inspect", "tiny.toml"]);
+    let line = text.lines().find(|line| line.starts_with("primitives"));
+    assert!(
+        line.is_some_and(|it| it.ends_with("  2, which collapsed on the lattice")),
+        "{text}"
+    );
+}

@@ -25,7 +25,8 @@ fn parts_become_the_bytes_of_the_whole() {
     }
     // A picture that is split into one part is a part.
     render(&folder, "all.png", Some("0..36"));
-    folder.done(&["merge", "all.png", "-o", "one.png"]);
+    let text = folder.done(&["merge", "all.png", "-o", "one.png"]);
+    assert!(text.contains("from 1 part\n"), "{text}");
     assert!(folder.read("one.png") == folder.read("whole.png"));
     let report = folder.json(&["merge", "a.png", "b.png", "c.png", "-o", "new.png"]);
     assert_eq!(report["parts"], 3);

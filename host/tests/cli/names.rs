@@ -298,3 +298,37 @@ fn importers_name_objects_materials_and_lights() {
     let inspection = folder.json(&["inspect", "a.nff"]);
     assert_eq!(inspection["names"]["objects"], json!([]));
 }
+
+#[test]
+fn instances_are_named_in_the_order_of_their_numbers() {
+    let folder = Folder::new();
+    let part = "part = [{ name = 'p', object = [{ kind = 'sphere', center = [0, 0, 0], radius = 0.5 }] }]\n";
+    folder.write(
+        "inner.toml",
+        format!("{part}[[instance]]\npart = 'p'\nname = 'within'\n").as_bytes(),
+    );
+    let file = format!(
+        "{part}[[instance]]\npart = 'p'\nname = 'own'\ntranslate = [4, 0, 0]\n\
+         [[object]]\nkind = 'import'\nfile = 'inner.toml'\nname = 'import'\n"
+    );
+    folder.write("outer.toml", file.as_bytes());
+    let names = json!(["import/within", "own"]);
+    let inspection = folder.json(&["inspect", "outer.toml"]);
+    assert_eq!(inspection["names"]["instances"], names);
+    folder.write(
+        "rays.npy",
+        &npy("<f8", &[[4.0, 0.0, 9.0, 0.0, 0.0, -1.0, 0.0, 100.0]]),
+    );
+    folder.done(&[
+        "trace",
+        "outer.toml",
+        "--rays",
+        "rays.npy",
+        "-o",
+        "hits.npy",
+        "--names",
+        "names.json",
+    ]);
+    let table: Value = serde_json::from_slice(&folder.read("names.json")).unwrap();
+    assert_eq!(table["instances"], names);
+}

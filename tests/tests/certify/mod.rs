@@ -161,7 +161,8 @@ fn scenes_are_certified_and_f64_is_right_where_they_are_proved() {
         let job = Job::whole(Format::F64, Structure::DualSplit, settings);
         let picture = render(&scene, &job, &|| ()).expect("a picture");
         let pictures = [(Format::F64, picture.pixels)];
-        let report = Report::of(&settings, &pixels, &pictures);
+        let world = World::of(&scene).expect("a scene that is known");
+        let report = Report::of(&world, &settings, &pixels, &pictures);
         eprintln!("{name}: {:.3} % proved", 100.0 * report.certified);
         if report.certified < 0.98 {
             all_wrong.push(format!("{name}: {:?}", report.reasons));
@@ -236,7 +237,8 @@ fn the_table_in_the_readme_is_measured() {
             let picture = render(&scene, &job, &|| ()).expect("a picture");
             (format, picture.pixels)
         });
-        let formats = Report::of(&settings, &pixels, &pictures).formats;
+        let world = World::of(&scene).expect("a scene that is known");
+        let formats = Report::of(&world, &settings, &pixels, &pictures).formats;
         let shares = formats.iter().map(|format| {
             let share = 100.0 * format.equal as f64 / pixels.len() as f64;
             format!("{share:.2} %")

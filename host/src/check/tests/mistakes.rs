@@ -38,6 +38,12 @@ fn mistakes_name_line_cause_and_remedy() {
             "another name",
         ),
         (
+            "[[check]]\nscene = \"a\"\nreference = \"q.jpg\"",
+            3,
+            "q.jpg is no PNG file",
+            "path that ends in `.png`",
+        ),
+        (
             "[[check]]\nscene = \"a\"\nbudget = {}\nformats = [\"f64\"]",
             1,
             "expects nothing",
