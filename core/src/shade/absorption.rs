@@ -141,7 +141,9 @@ impl Within {
     /// The glass behind a face that a ray crosses.
     #[inline(never)]
     fn beyond(self, scene: &Scene<'_>, object: u32, enters: bool) -> Self {
-        let is_glass = scene.material(object).is_some_and(Glass::is_required_by_material);
+        let is_glass = scene
+            .material(object)
+            .is_some_and(Glass::is_required_by_material);
         if !is_glass || scene.place_among_media(object).is_some() {
             return self;
         }
