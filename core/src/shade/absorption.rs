@@ -1,7 +1,7 @@
 //! Glass that absorbs light along the way: Beer's law.
 //!
 //! A ray knows the glass without a priority that it is inside of, so that what lies in the glass is seen through it, and
-//! lit through it. Of glass in such glass only the inner is known. A waiting ray needs four more bytes for it.
+//! lit through it. Of glass in such glass only the inner is known. A waiting ray needs two more bytes for it.
 
 use crate::accel::Number;
 use crate::format::Effects;
@@ -96,15 +96,16 @@ impl Effect for Absorption {
     }
 }
 
-/// The glass without a priority that a ray is inside of: the number of its material plus 1, or 0. Bytes, so that they
-/// fill gaps next to other states.
+/// The glass without a priority that a ray is inside of: the number of its material plus 1, or 0, also for one of the
+/// materials behind the first 65,535. Bytes, so that they fill gaps next to other states.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub(crate) struct Within([u8; 4 * ABSORPTION as usize]);
+pub(crate) struct Within([u8; 2 * ABSORPTION as usize]);
 
 impl Within {
     #[inline(always)]
     fn of(number: u32) -> Self {
         let mut own = Self::default();
+        let number = u16::try_from(number).unwrap_or(0);
         for (own, byte) in own.0.iter_mut().zip(number.to_le_bytes()) {
             *own = byte;
         }
@@ -114,12 +115,12 @@ impl Within {
     /// The glass that fills the place.
     #[inline(always)]
     fn medium<'s>(self, scene: &'s Scene<'s>) -> Option<&'s Material> {
-        let mut bytes = [0; 4];
+        let mut bytes = [0; 2];
         for (byte, own) in bytes.iter_mut().zip(self.0) {
             *byte = own;
         }
-        let number = u32::from_le_bytes(bytes).checked_sub(1)?;
-        scene.materials().get(number as usize)
+        let number = u16::from_le_bytes(bytes).checked_sub(1)?;
+        scene.materials().get(usize::from(number))
     }
 
     /// The glass that a ray passed on its way to a hit. A ray that hits a back face began inside, if nothing else is
