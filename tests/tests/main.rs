@@ -2,7 +2,6 @@
 //! replace the allocator (`allocation`, `memory`) and those of boards (`board`) are programs of their
 //! own.
 
-mod absorption;
 mod accuracy;
 mod all_hits;
 mod apex;
