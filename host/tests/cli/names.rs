@@ -172,21 +172,23 @@ fn explain_names_objects_materials_and_lights_of_a_blob() {
     assert!(text.contains("which is object 0, at"), "{text}");
 }
 
+/// The options to trace the rays of a file, with names.
+const TRACED: [&str; 6] = [
+    "--rays",
+    "rays.npy",
+    "-o",
+    "hits.npy",
+    "--names",
+    "names.json",
+];
+
 #[test]
 fn trace_writes_names_and_counts_hits_by_name() {
     let folder = folder();
     folder.write("rays.npy", &rays());
     folder.done(&["build", "a.toml", "-o", "a.gridel"]);
-    let options = [
-        "--rays",
-        "rays.npy",
-        "-o",
-        "hits.npy",
-        "--names",
-        "names.json",
-    ];
     for input in ["a.gridel", "a.toml"] {
-        let traced = folder.json(&[&["trace", input], &options[..]].concat());
+        let traced = folder.json(&[&["trace", input], &TRACED[..]].concat());
         assert_eq!(traced["hits_by_name"], json!({"ball": 3, OBJECTS[2]: 1}));
         let names: Value = serde_json::from_slice(&folder.read("names.json")).unwrap();
         assert_eq!(
@@ -200,7 +202,7 @@ fn trace_writes_names_and_counts_hits_by_name() {
         assert_eq!(names["lights"], json!(["sun"]));
     }
     folder.done(&["build", "a.toml", "-o", "b.gridel", "--strip-names"]);
-    let traced = folder.json(&[&["trace", "b.gridel"], &options[..]].concat());
+    let traced = folder.json(&[&["trace", "b.gridel"], &TRACED[..]].concat());
     assert_eq!(
         traced["hits_by_name"],
         json!({"object 0": 2, "object 1": 1, "object 2": 1})
@@ -317,18 +319,13 @@ fn instances_are_named_in_the_order_of_their_numbers() {
     assert_eq!(inspection["names"]["instances"], names);
     folder.write(
         "rays.npy",
-        &npy("<f8", &[[4.0, 0.0, 9.0, 0.0, 0.0, -1.0, 0.0, 100.0]]),
+        &npy("<f8", &[[4.0, 0.0, 9.0, 0.0, 0.0, 0.0, -1.0, 100.0]]),
     );
-    folder.done(&[
-        "trace",
-        "outer.toml",
-        "--rays",
-        "rays.npy",
-        "-o",
-        "hits.npy",
-        "--names",
-        "names.json",
-    ]);
+    folder.done(&[&["trace", "outer.toml"], &TRACED[..]].concat());
     let table: Value = serde_json::from_slice(&folder.read("names.json")).unwrap();
     assert_eq!(table["instances"], names);
+    // The hit on the file's own instance: t, object and primitive are before its number, and the normal behind it.
+    let hits = folder.read("hits.npy");
+    let (_, hit) = hits.split_at(hits.len() - 32);
+    assert_eq!(hit[16..20], 1_u32.to_le_bytes());
 }

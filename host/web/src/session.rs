@@ -8,7 +8,7 @@ use crate::{Answer, pictures};
 use gridel_core::format::limits::MAX_RAY_DEPTH;
 use gridel_core::{Effects, Format, Scene as Checked, Settings, Structure};
 use gridel_host::blob::Blob;
-use gridel_host::compile::{Compiled, LATTICE_BITS, Names, Options, compile};
+use gridel_host::compile::{Compiled, LATTICE_BITS, Names, Options, compile, scene_warnings};
 use gridel_host::explain::{Shown, Subject, explain};
 use gridel_host::measure::board::{BOARDS, Board, Fit, MemoryReport, Rendering, Target};
 use gridel_host::scene::{
@@ -100,11 +100,7 @@ impl Session {
         let imported = self.imported(&how.name)?;
         let mut warnings = imported.warnings.clone();
         let mut sentences = report.warnings(how.lattice_bits);
-        if imported.scene.objects.is_empty() && imported.scene.instances.is_empty() {
-            sentences.push(String::from(
-                "the scene has no object: pictures show the background",
-            ));
-        }
+        sentences.extend(scene_warnings(&imported.scene));
         warnings.extend(sentences.iter().map(|it| format!("{}: {it}", how.name)));
         // It depends on the camera, and the program places it by the camera that it is given.
         let mut supplied = report.supplied.iter();

@@ -20,8 +20,8 @@ pub struct ShutterOptions {
         allow_hyphen_values = true)]
     pub shutter: Option<f64>,
 
-    /// Moments while the shutter is open, evenly apart, 1 to 256. Samples are shared out among them, so their number should divide
-    /// that of the samples per pixel [default: 16, or another number near it that divides the samples]
+    /// Moments while the shutter is open, evenly apart, 1 to 256. Samples are shared out among them, so their number
+    /// should divide that of the samples per pixel [default: 16, or another number near it that divides the samples]
     #[arg(long, value_name = "N", requires = "shutter",
         value_parser = clap::value_parser!(u16).range(1..=256))]
     pub moments: Option<u16>,
