@@ -2,6 +2,7 @@
 //! replace the allocator (`allocation`, `memory`) and those of boards (`board`) are programs of their
 //! own.
 
+mod absorption;
 mod accuracy;
 mod all_hits;
 mod apex;

@@ -219,9 +219,9 @@ pub enum Event {
         /// Its diffuse part and its highlight.
         radiance: [f64; 3],
     },
-    /// The ray passed glass that absorbed light on the way.
+    /// The ray passed glass that absorbed light on the way; or light for a shadow did, on the last part of its way.
     Absorbed {
-        /// The part of the ray's weight that remains.
+        /// The part of the ray's weight, or of the light, that remains.
         weight: [f64; 3],
     },
     /// Radiance is added to the sample, with its weight.

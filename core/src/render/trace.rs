@@ -25,7 +25,7 @@ use crate::scene::textures::Footprint;
 use crate::shade::effect::{EffectList, Tracer};
 use crate::shade::sampler::Sampler;
 use crate::shade::surface::{
-    Aim, Arrival, Bounce, Filter, Lighting, Secondary, Surface, depart, secondary_ray,
+    Aim, Arrival, Bounce, Filter, Lighting, Reach, Secondary, Surface, depart, secondary_ray,
 };
 use crate::shade::{All, Color};
 use crate::target::{WIDE, inline_on_boards};
@@ -403,6 +403,12 @@ impl<'s, N: Number, A: Accel, C: Observer, const EFFECTS: u32> Tracer<'s, N>
         let mut state = self.state;
         All::filter::<EFFECTS, N, _>(self, &mut state, ray, filter);
         self.state = state;
+    }
+
+    #[inline(always)]
+    fn reach(&mut self, reach: &mut Reach<'s, N>) {
+        let mut state = self.state;
+        All::reach::<EFFECTS, N, _>(self, &mut state, reach);
     }
 
     #[inline(always)]

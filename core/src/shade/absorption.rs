@@ -1,21 +1,26 @@
 //! Glass that absorbs light along the way: Beer's law.
+//!
+//! A ray knows the glass without a priority that it is inside of, so that what lies in the glass is seen through it, and
+//! lit through it. Of glass in such glass only the inner is known. A waiting ray needs two more bytes for it.
 
 use crate::accel::Number;
 use crate::format::Effects;
+use crate::format::limits::ABSORPTION;
 use crate::format::record::Material;
 use crate::observe::count::Observer;
 use crate::observe::event::Event;
 use crate::query::Hit;
 use crate::ray::Ray;
+use crate::scene::Scene;
 use crate::shade::Color;
 use crate::shade::effect::{Effect, Tracer};
 use crate::shade::glass::Glass;
-use crate::shade::surface::{Arrival, Filter};
+use crate::shade::surface::{Arrival, Filter, Reach, Secondary};
 
 pub(crate) struct Absorption;
 
 impl Effect for Absorption {
-    type State<N: Number> = ();
+    type State<N: Number> = Within;
 
     const EFFECT: Effects = Effects::ABSORPTION;
     const FILTERS: bool = true;
@@ -28,14 +33,13 @@ impl Effect for Absorption {
     #[inline(always)]
     fn arrive<'s, N: Number, X: Tracer<'s, N>>(
         tracer: &mut X,
-        (): &mut (),
+        within: &mut Within,
         ray: &Ray<N>,
         arrival: &mut Arrival<'s, '_, N>,
     ) {
         let Arrival { hit, material, .. } = *arrival;
-        let is_behind = Glass::is_required_by_material(material) && !hit.front;
-        let medium = arrival.medium.or(is_behind.then_some(material));
-        if let Some(medium) = medium {
+        let own = within.passed(tracer.scene(), hit, material);
+        if let Some(medium) = arrival.medium.or(own) {
             arrival.weight = arrival.weight.times(left(ray, hit, medium));
             if X::Observer::ENABLED {
                 tracer.count().event(Event::Absorbed {
@@ -47,15 +51,108 @@ impl Effect for Absorption {
 
     #[inline(always)]
     fn filter<'s, N: Number, X: Tracer<'s, N>>(
-        _: &mut X,
-        (): &mut (),
+        tracer: &mut X,
+        within: &mut Within,
         ray: &Ray<N>,
         filter: &mut Filter<'s, '_, N>,
     ) {
         // It is not yet known whether any light passes: alpha decides after this.
-        let is_behind = Glass::is_required_by_material(filter.material) && !filter.hit.front;
-        if let Some(medium) = filter.medium.or(is_behind.then_some(filter.material)) {
-            filter.left = filter.left.times(left(ray, filter.hit, medium));
+        let (scene, hit) = (tracer.scene(), filter.hit);
+        let own = within.passed(scene, hit, filter.material);
+        if let Some(medium) = filter.medium.or(own) {
+            filter.left = filter.left.times(left(ray, hit, medium));
+        }
+        *within = within.beyond(scene, hit.object, hit.front);
+    }
+
+    #[inline(always)]
+    fn reach<'s, N: Number, X: Tracer<'s, N>>(
+        tracer: &mut X,
+        within: &mut Within,
+        reach: &mut Reach<'s, N>,
+    ) {
+        let medium = reach.medium.or_else(|| within.medium(tracer.scene()));
+        if let Some(medium) = medium {
+            let length = N::from_wide(N::narrow(reach.distance).wide(reach.norm));
+            reach.left = reach.left.times(absorb(medium, length));
+            if X::Observer::ENABLED {
+                tracer.count().event(Event::Absorbed {
+                    weight: reach.left.ratios_to_f64(),
+                });
+            }
+        }
+    }
+
+    #[inline(always)]
+    fn leave<'s, N: Number, X: Tracer<'s, N>>(
+        tracer: &mut X,
+        within: &mut Within,
+        hit: &Hit<N>,
+        secondary: &mut Secondary<N>,
+    ) {
+        if secondary.outward != hit.front {
+            *within = within.beyond(tracer.scene(), hit.object, hit.front);
+        }
+    }
+}
+
+/// The glass without a priority that a ray is inside of: the number of its material plus 1, or 0, also for one of the
+/// materials behind the first 65,535. Bytes, so that they fill gaps next to other states.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(crate) struct Within([u8; 2 * ABSORPTION as usize]);
+
+impl Within {
+    #[inline(always)]
+    fn of(number: u32) -> Self {
+        let mut own = Self::default();
+        let number = u16::try_from(number).unwrap_or(0);
+        for (own, byte) in own.0.iter_mut().zip(number.to_le_bytes()) {
+            *own = byte;
+        }
+        own
+    }
+
+    /// The glass that fills the place.
+    #[inline(always)]
+    fn medium<'s>(self, scene: &'s Scene<'s>) -> Option<&'s Material> {
+        let mut bytes = [0; 2];
+        for (byte, own) in bytes.iter_mut().zip(self.0) {
+            *byte = own;
+        }
+        let number = u16::from_le_bytes(bytes).checked_sub(1)?;
+        scene.materials().get(usize::from(number))
+    }
+
+    /// The glass that a ray passed on its way to a hit. A ray that hits a back face began inside, if nothing else is
+    /// known.
+    #[inline(always)]
+    fn passed<'s, N: Number>(
+        self,
+        scene: &'s Scene<'s>,
+        hit: &Hit<N>,
+        material: &'s Material,
+    ) -> Option<&'s Material> {
+        if Glass::is_required_by_material(material) && !hit.front {
+            Some(material)
+        } else {
+            self.medium(scene)
+        }
+    }
+
+    /// The glass behind a face that a ray crosses.
+    #[inline(never)]
+    fn beyond(self, scene: &Scene<'_>, object: u32, enters: bool) -> Self {
+        let is_glass = scene
+            .material(object)
+            .is_some_and(Glass::is_required_by_material);
+        if !is_glass || scene.place_among_media(object).is_some() {
+            return self;
+        }
+        let own = Self::of(scene.material_number(object).wrapping_add(1));
+        match enters {
+            true => own,
+            false if self == own => Self::default(),
+            false => self,
         }
     }
 }

@@ -13,7 +13,7 @@ use crate::query::Hit;
 use crate::ray::Ray;
 use crate::scene::Scene;
 use crate::shade::Color;
-use crate::shade::surface::{Aim, Arrival, Bounce, Filter, Lighting, Secondary, Surface};
+use crate::shade::surface::{Aim, Arrival, Bounce, Filter, Lighting, Reach, Secondary, Surface};
 use core::fmt::Debug;
 
 /// The ray loop, as effects use it.
@@ -48,6 +48,9 @@ pub(crate) trait Tracer<'s, N: Number> {
 
     /// Lets the effects in use pass light through a surface.
     fn filter(&mut self, ray: &Ray<N>, filter: &mut Filter<'s, '_, N>);
+
+    /// Lets the effects in use act on light on the last part of its way.
+    fn reach(&mut self, reach: &mut Reach<'s, N>);
 
     /// Puts a ray that leaves a surface on the work list, unless its weight is too small.
     fn send(&mut self, hit: &Hit<N>, secondary: Secondary<N>);
@@ -267,6 +270,9 @@ places! {
 
     /// A surface is in the way of light to another one: it may let a part through.
     fn filter(ray: &Ray<N>, filter: &mut Filter<'s, '_, N>);
+
+    /// Nothing else is in the way of light from a place to another surface: a part of it may remain.
+    fn reach(reach: &mut Reach<'s, N>);
 
     /// A ray hits nothing: its radiance, first the background, may change.
     fn miss(ray: &Ray<N>, radiance: &mut Color<N>);

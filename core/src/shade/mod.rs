@@ -6,17 +6,18 @@
 //! | place | when | today |
 //! |---|---|---|
 //! | `camera` | a ray leaves the camera | depth of field |
-//! | `arrive` | a ray has come to a hit | absorption |
+//! | `arrive` | a ray has come to a hit | nested, absorption |
 //! | `surface` | a ray hits a surface | checker, smooth, texture levels, normal map, vertex colors, texture, alpha, indirect |
 //! | `emit` | a surface sends out light of its own | emission |
 //! | `aim` | a surface looks for a light | area light, environment |
 //! | `face` | a surface faces a light | smooth, normal map, falloff |
 //! | `reflect` | a surface reflects a light | highlight, glossy |
 //! | `light` | light arrives at a surface | environment, shadow, falloff |
-//! | `filter` | a surface is in the way of light | glass, absorption, alpha |
+//! | `filter` | a surface is in the way of light | glass, nested, absorption, alpha |
+//! | `reach` | nothing else is in the way of light | absorption |
 //! | `miss` | a ray hits nothing | environment |
 //! | `bounce` | a surface sends rays on | glossy, mirror, glass, alpha, indirect |
-//! | `leave` | a ray leaves a hit | smooth, normal map, glossy, indirect |
+//! | `leave` | a ray leaves a hit | smooth, normal map, glossy, nested, absorption, indirect |
 //! | `pixel` | all rays of a sample were traced | |
 //! | `develop` | the mean of a pixel's samples is known | tone mapping |
 

@@ -23,7 +23,7 @@ use crate::ray::Ray;
 use crate::scene::Scene;
 use crate::shade::Color;
 use crate::shade::effect::{Effect, Tracer};
-use crate::shade::surface::{Arrival, Filter, Interface, Secondary, Surface};
+use crate::shade::surface::{Arrival, Filter, Interface, Reach, Secondary, Surface};
 
 pub(crate) struct Nested;
 
@@ -87,6 +87,18 @@ impl Effect for Nested {
         let scene = tracer.scene();
         if !scene.media().is_empty() {
             pass(scene, inside, filter);
+        }
+    }
+
+    #[inline(always)]
+    fn reach<'s, N: Number, X: Tracer<'s, N>>(
+        tracer: &mut X,
+        inside: &mut Inside,
+        reach: &mut Reach<'s, N>,
+    ) {
+        let scene = tracer.scene();
+        if !scene.media().is_empty() {
+            reach.medium = medium(scene, inside.highest());
         }
     }
 

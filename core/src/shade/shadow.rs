@@ -9,7 +9,7 @@ use crate::observe::count::Observer;
 use crate::observe::event::{Event, RayKind};
 use crate::shade::Color;
 use crate::shade::effect::{Effect, Tracer};
-use crate::shade::surface::{Filter, Lighting, Surface, depart, secondary_ray};
+use crate::shade::surface::{Filter, Lighting, Reach, Surface, depart, secondary_ray};
 
 /// Maximum number of surfaces that a shadow ray passes; light behind more surfaces does not arrive.
 const SURFACES: usize = 4 * MAX_RAY_DEPTH;
@@ -55,6 +55,7 @@ fn through<'s, N: Number, X: Tracer<'s, N>>(
         mut way,
         mut distance,
         to_light,
+        norm,
         ..
     } = *lighting;
     let mut left = Color::WHITE;
@@ -73,7 +74,17 @@ fn through<'s, N: Number, X: Tracer<'s, N>>(
             return if dark { Color::BLACK } else { left };
         }
         let Some(hit) = tracer.closest_hit(&ray) else {
-            return left;
+            let Some(distance) = distance else {
+                return left;
+            };
+            let mut reach = Reach {
+                distance,
+                norm,
+                medium: None,
+                left,
+            };
+            tracer.reach(&mut reach);
+            return reach.left;
         };
         let Some(material) = scene.material(hit.object) else {
             return Color::BLACK;

@@ -38,7 +38,7 @@ pub(crate) struct Surface<'h, N: Number> {
 /// A ray that reached a hit.
 pub(crate) struct Arrival<'s, 'h, N: Number> {
     pub(crate) hit: &'h Hit<N>,
-    pub(crate) material: &'h Material,
+    pub(crate) material: &'s Material,
     /// The material that the ray passed, if an effect knows it.
     pub(crate) medium: Option<&'s Material>,
     /// The ratio of the light from there that arrives at the eye.
@@ -124,7 +124,7 @@ pub(crate) struct Aim<N: Number> {
 /// A surface between a light and another surface.
 pub(crate) struct Filter<'s, 'h, N: Number> {
     pub(crate) hit: &'h Hit<N>,
-    pub(crate) material: &'h Material,
+    pub(crate) material: &'s Material,
     /// The direction of the light, with length 1.
     pub(crate) to_light: [N; 3],
     /// The ratio of the light that remains.
@@ -135,6 +135,18 @@ pub(crate) struct Filter<'s, 'h, N: Number> {
     pub(crate) interface: Option<Interface<N>>,
     /// True if any light passes: no surface transmits light unless an effect says so.
     pub(crate) passes: bool,
+}
+
+/// The last part of the way of light to another surface, on which nothing is in its way.
+pub(crate) struct Reach<'s, N: Number> {
+    /// The distance of the light along the largest component of the way.
+    pub(crate) distance: N::Wide,
+    /// The length of the way, of whose largest component this is a multiple.
+    pub(crate) norm: N,
+    /// The material that fills the place, if an effect knows it.
+    pub(crate) medium: Option<&'s Material>,
+    /// The ratio of the light that remains.
+    pub(crate) left: Color<N>,
 }
 
 /// A surface that can send secondary rays.

@@ -2,7 +2,7 @@
 
 use super::crossing::Start;
 use super::log2::Log2;
-use super::media::{Inside, Interface};
+use super::media::{Crossed, Inside, Interface};
 use super::number::*;
 use super::path::Path;
 use gridel_core::format::record::Material;
@@ -35,6 +35,14 @@ impl<N: Enclosure> Hit<N> {
             self.normal
         } else {
             opposite(self.normal)
+        }
+    }
+
+    /// The face, for a ray that goes on beyond it.
+    pub fn crossed(&self) -> Crossed {
+        Crossed {
+            object: self.object,
+            enters: self.front,
         }
     }
 

@@ -187,7 +187,7 @@ impl Tracer<'_, '_> {
             return Ok(black);
         }
         let mut surfaces = self.one_each(&surfaces, ray, depth)?;
-        if !scene.media().is_empty() {
+        if !scene.media().is_empty() || self.has(Effects::ABSORPTION) {
             self.sort(&mut surfaces, ray, depth)?;
         }
         let mut inside = path.inside;
@@ -226,7 +226,7 @@ impl Tracer<'_, '_> {
                 let length = norm2(ray.direction).sqrt() * self.since(&surfaces, index)?;
                 part = times(part, shade::absorbed(medium, length));
             }
-            inside = boundary.map_or(inside, |it| it.beyond);
+            inside = inside.beyond(scene, boundary.as_ref(), hit.crossed());
             let passed = times(left, part);
             left = if candidate.crossing.sure {
                 passed
@@ -234,6 +234,13 @@ impl Tracer<'_, '_> {
                 self.note(Reason::Shadow, depth, hit.primitive, hit.point);
                 hull(left, passed)
             };
+        }
+        if !is_far && let Some(medium) = inside.material(scene).filter(|it| it.absorption != [0; 3])
+        {
+            let before = surfaces.iter().map(|it| it.crossing.t);
+            let before = before.fold(N::zero(), |a, b| a.at_least(b));
+            let length = norm2(ray.direction).sqrt() * (N::one() - before).at_least(N::zero());
+            left = times(left, shade::absorbed(medium, length));
         }
         if !surfaces.is_empty() {
             let [red, green, blue] = left;

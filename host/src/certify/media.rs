@@ -30,21 +30,26 @@ impl<N: Enclosure> Interface<N> {
     }
 }
 
-/// How often a ray is inside of each medium, from the highest priority on.
+/// The glass that a ray is inside of.
 #[derive(Clone, Copy, Debug, Default)]
-pub struct Inside([u8; MAX_MEDIA]);
+pub struct Inside {
+    /// How often it is inside of each medium, from the highest priority on.
+    counts: [u8; MAX_MEDIA],
+    /// The number of the material of glass without a priority: the last that the ray entered and did not leave.
+    plain: Option<u32>,
+}
 
 impl Inside {
     /// The most that is counted.
     const MOST: u8 = 15;
 
     fn highest(self) -> Option<u8> {
-        let place = self.0.iter().position(|&count| count > 0)?;
+        let place = self.counts.iter().position(|&count| count > 0)?;
         Some(place as u8)
     }
 
     fn with(mut self, place: u8, change: impl Fn(u8) -> u8) -> Self {
-        let count = &mut self.0[usize::from(place)];
+        let count = &mut self.counts[usize::from(place)];
         *count = change(*count);
         self
     }
@@ -56,6 +61,42 @@ impl Inside {
     fn left(self, place: u8) -> Self {
         self.with(place, |count| count.saturating_sub(1))
     }
+
+    /// The glass behind a face that a ray crosses.
+    pub fn beyond(self, scene: &Scene<'_>, boundary: Option<&Boundary>, hit: Crossed) -> Self {
+        if let Some(boundary) = boundary {
+            return boundary.beyond;
+        }
+        let Crossed { object, enters } = hit;
+        let is_glass = scene
+            .material(object)
+            .is_some_and(|it| it.transmit != [0; 3]);
+        let own = Some(scene.material_number(object));
+        let plain = match enters {
+            _ if !is_glass => self.plain,
+            true => own,
+            false if self.plain == own => None,
+            false => self.plain,
+        };
+        Self { plain, ..self }
+    }
+
+    /// The material that fills a place, where no face says otherwise.
+    pub fn material<'s>(self, scene: &Scene<'s>) -> Option<&'s Material> {
+        let plain = self
+            .plain
+            .and_then(|number| scene.materials().get(number as usize));
+        medium(scene, self.highest()).or(plain)
+    }
+}
+
+/// A face that a ray crosses.
+#[derive(Clone, Copy, Debug)]
+pub struct Crossed {
+    /// The object.
+    pub object: u32,
+    /// True if the ray enters it.
+    pub enters: bool,
 }
 
 /// A face of a medium that a ray crosses.
@@ -115,12 +156,18 @@ pub fn passed<'s>(
 ) -> Option<&'s Material> {
     let own = scene.material(object)?;
     let is_behind = own.transmit != [0; 3] && !enters;
-    let place = match boundary {
-        Some(boundary) => boundary.from,
-        None if is_behind => return Some(own),
-        None => inside.highest(),
+    let known = match boundary {
+        Some(boundary) => medium(scene, boundary.from),
+        None if is_behind => None,
+        None => medium(scene, inside.highest()),
     };
-    medium(scene, place).or(is_behind.then_some(own))
+    let plain = match is_behind {
+        true => Some(own),
+        false => inside
+            .plain
+            .and_then(|number| scene.materials().get(number as usize)),
+    };
+    known.or(plain)
 }
 
 fn medium<'s>(scene: &Scene<'s>, place: Option<u8>) -> Option<&'s Material> {

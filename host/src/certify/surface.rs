@@ -80,7 +80,7 @@ impl Tracer<'_, '_> {
             weight,
             passing,
             interface: interface.unwrap_or(Interface::of(hit.front, material)),
-            beyond: boundary.map_or(path.inside, |it| it.beyond),
+            beyond: path.inside.beyond(scene, boundary.as_ref(), hit.crossed()),
             reflections: path.reflections + u8::from(path.kind == RayKind::Diffuse),
             length,
         })

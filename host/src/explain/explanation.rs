@@ -179,6 +179,8 @@ pub struct Lighting {
     pub shadow: Vec<Walk>,
     /// The part of the light that is left behind each.
     pub filtered: Vec<[f64; 3]>,
+    /// The part that remains after the glass around the light; `None` where no glass is there that absorbs.
+    pub absorbed: Option<[f64; 3]>,
     /// The point of an area from which this sample sees light, in scene units.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub from_area: Option<[f64; 3]>,
@@ -280,7 +282,10 @@ impl Ray {
                         .push(Lighting::new(number, 0.0, LightOutcome::Here)),
                 }
             }
-            Event::Absorbed { weight } => self.absorbed = Some(weight),
+            Event::Absorbed { weight } => match self.lights.last_mut().filter(|_| *light) {
+                Some(lighting) => lighting.absorbed = Some(weight),
+                None => self.absorbed = Some(weight),
+            },
             Event::Smooth { normal } => self.smooth = Some(normal),
             Event::NormalMapped { texel, normal } => {
                 self.normal_map = Some(Mapped { texel, normal });
@@ -380,6 +385,7 @@ impl Lighting {
             cosine,
             shadow: Vec::new(),
             filtered: Vec::new(),
+            absorbed: None,
             from_area: None,
             from_environment: None,
             arriving: None,

@@ -329,6 +329,11 @@ impl Shown<'_> {
             ),
             None => String::new(),
         };
+        let around = match lighting.absorbed {
+            Some(left) => format!(", of which the glass around it leaves {}", color(left)),
+            None => String::new(),
+        };
+        let glass = glass + &around;
         let from = match lighting.from_area {
             Some(point) => format!(", from its point {},", vector(point, significant)),
             None => match lighting.from_environment {

@@ -121,7 +121,12 @@ impl Exact<'_> {
         let mut left = [one(), one(), one()];
         for _ in 0..SURFACES {
             let Some(blocker) = self.nearest(&line, end.as_ref()) else {
-                return left;
+                return match (end, self.around(inside)) {
+                    (Some(end), Some(medium)) => {
+                        product(&left, &self.absorbed(medium, &(end * norm(&line.slope))))
+                    }
+                    _ => left,
+                };
             };
             let length = &blocker.t * norm(&line.slope);
             let Some(passed) = self.passed(&blocker, to_light, &length, inside) else {

@@ -7,23 +7,28 @@ use gridel_core::format::limits::MAX_MEDIA;
 use gridel_core::format::record::Material;
 use gridel_host::shape::exact::{Real, Vector, along, dot, scaled};
 
-/// How often a ray is inside of each medium, the one with the highest priority first.
+/// The glass that a ray is inside of.
 #[derive(Clone, Copy, Default)]
-pub struct Inside([u8; MAX_MEDIA]);
+pub struct Inside {
+    /// How often it is inside of each medium, the one with the highest priority first.
+    counts: [u8; MAX_MEDIA],
+    /// The material of the glass without a priority that it came into last.
+    plain: Option<u32>,
+}
 
 impl Inside {
     /// The medium that fills the place.
     fn highest(self) -> Option<usize> {
-        self.0.iter().position(|&count| count > 0)
+        self.counts.iter().position(|&count| count > 0)
     }
 
     fn entered(mut self, medium: usize) -> Self {
-        self.0[medium] = (self.0[medium] + 1).min(15);
+        self.counts[medium] = (self.counts[medium] + 1).min(15);
         self
     }
 
     fn left(mut self, medium: usize) -> Self {
-        self.0[medium] = self.0[medium].saturating_sub(1);
+        self.counts[medium] = self.counts[medium].saturating_sub(1);
         self
     }
 }
@@ -119,19 +124,35 @@ impl<'s> Exact<'s> {
         Some(&self.scene.materials()[number as usize])
     }
 
+    fn plain(&self, inside: Inside) -> Option<&'s Material> {
+        Some(&self.scene.materials()[inside.plain? as usize])
+    }
+
+    /// The glass that fills a place.
+    pub fn around(&self, inside: Inside) -> Option<&'s Material> {
+        self.medium(inside.highest()).or(self.plain(inside))
+    }
+
     pub fn face(&self, inside: Inside, met: &Met<'_>) -> Face<'s> {
         let material = self.material(met);
         let is_glass = material.transmit != [0; 3];
         let Some(place) = self.scene.place_among_media(met.object) else {
             let leaves_glass = is_glass && !met.front;
+            let own = Some(self.scene.material_number(met.object));
+            let mut beyond = inside;
+            if is_glass && met.front {
+                beyond.plain = own;
+            } else if leaves_glass && inside.plain == own {
+                beyond.plain = None;
+            }
             return Face {
                 before: match leaves_glass {
                     true => Some(material),
-                    false => self.medium(inside.highest()),
+                    false => self.around(inside),
                 },
                 interface: is_glass.then(|| Interface::of(material, met.front)),
                 is_hidden: false,
-                beyond: inside,
+                beyond,
             };
         };
         let place = usize::from(place);
@@ -145,7 +166,7 @@ impl<'s> Exact<'s> {
         let (from, to) = (near.highest(), beyond.highest());
         let before = self.medium(from);
         Face {
-            before,
+            before: before.or(self.plain(inside)),
             interface: Some(Interface::between(before, self.medium(to))),
             is_hidden: from == to,
             beyond,

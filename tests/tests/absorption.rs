@@ -1,0 +1,82 @@
+//! Glass that absorbs: what lies in it is seen and lit through it, with and without a priority.
+
+use gridel_core::Format;
+use gridel_host::compile::{Options, compile};
+use gridel_tests::measured::{measured, read, wrong_pixels};
+
+/// With a priority and without.
+const PRIORITIES: [&str; 2] = ["", "priority = 1\n"];
+
+/// A look down at the middle of a floor with albedo 0.8 through glass that bends nothing and absorbs half of the light
+/// in ln 2 / 0.5 units.
+fn pool(eye_y: f64, rest: &str) -> String {
+    format!(
+        "[camera]\neye = [0, {eye_y}, 0]\ntarget = [0, 0, 0]\nup = [0, 0, 1]\nfov = 0.05\n\
+         [render]\nwidth = 4\nheight = 4\ncutoff = 1e-6\n\
+         [material.floor]\ndiffuse = 0.8\n\
+         [material.glass]\ndiffuse = 0\ntransmit = 1\nior = 1\nabsorption = 0.5\n{rest}\
+         [[object]]\nkind = 'box'\nmin = [-5, -1, -5]\nmax = [5, 0, 5]\nmaterial = 'floor'\n"
+    )
+}
+
+fn glass(min: [f64; 3], max: [f64; 3]) -> String {
+    format!("[[object]]\nkind = 'box'\nmin = {min:?}\nmax = {max:?}\nmaterial = 'glass'\n")
+}
+
+fn check(name: &str, text: &str, exact: f64) {
+    let scene = read(text);
+    let blob = compile(&scene, &Options::default()).expect("compiles").blob;
+    for format in Format::ALL {
+        let (mean, _) = measured(&blob, format, 1);
+        assert!(
+            (mean / exact - 1.0).abs() < 2e-3,
+            "{name} {format:?}: {mean} for {exact}"
+        );
+        assert_eq!(wrong_pixels(&blob, format), 0, "{name} {format:?}");
+    }
+}
+
+const LIGHT: &str = "[[light]]\nkind = 'directional'\ndirection = [0, -1, 0]\n";
+
+#[test]
+fn a_floor_under_glass_is_seen_and_lit_through_it() {
+    for priority in PRIORITIES {
+        // Its sides lie in the floor, two units of it above.
+        let text = pool(5.0, priority) + &glass([-4.0, -0.5, -4.0], [4.0, 2.0, 4.0]) + LIGHT;
+        // Down to the floor, and up to the eye.
+        check("pool", &text, 0.8 * (-2.0_f64).exp());
+    }
+}
+
+#[test]
+fn a_light_in_glass_is_absorbed_up_to_where_the_glass_ends() {
+    for priority in PRIORITIES {
+        // The eye is below the glass.
+        let lamp = "[[light]]\nkind = 'point'\nposition = [0, 3, 0]\n";
+        let text = pool(1.0, priority) + &glass([-1.0, 2.0, -1.0], [1.0, 4.0, 1.0]) + lamp;
+        check("lamp", &text, 0.8 * (-0.5_f64).exp());
+    }
+}
+
+#[test]
+fn a_light_and_a_surface_in_the_same_glass_are_absorbed_once() {
+    for priority in PRIORITIES {
+        let lamp = "[[light]]\nkind = 'point'\nposition = [0.5, 1, 0]\n";
+        let text = pool(5.0, priority) + &glass([-4.0, -0.5, -4.0], [4.0, 2.0, 4.0]) + lamp;
+        let way = 1.25_f64.sqrt();
+        check("both", &text, 0.8 / way * (-0.5 * (2.0 + way)).exp());
+    }
+}
+
+#[test]
+fn a_mirror_in_glass_keeps_rays_in_it() {
+    for priority in PRIORITIES {
+        let mirror = "[material.mirror]\ndiffuse = 0\nmirror = 1\n\
+             [material.glow]\ndiffuse = 0\nemission = 1\nlights = false\n\
+             [[object]]\nkind = 'disc'\ncenter = [0, 1, 0]\nnormal = [1, 1, 0]\nradius = 0.5\nmaterial = 'mirror'\n\
+             [[object]]\nkind = 'box'\nmin = [1.5, 0.5, -0.5]\nmax = [2, 1.5, 0.5]\nmaterial = 'glow'\n";
+        let text = pool(5.0, priority) + &glass([-4.0, -0.5, -4.0], [4.0, 2.0, 4.0]) + mirror;
+        // One unit down to the mirror, and from there to the box.
+        check("mirror", &text, (-0.5_f64 * 2.5).exp());
+    }
+}
