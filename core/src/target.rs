@@ -59,6 +59,9 @@ pub(crate) type DepthOfFieldOnly<T> =
 /// A value that only builds with the code for indirect light hold.
 pub(crate) type IndirectOnly<T> = InSomeBuilds<T, { cfg!(feature = "indirect") as usize }>;
 
+/// A value that only builds with the code for glass that absorbs hold.
+pub(crate) type AbsorptionOnly<T> = InSomeBuilds<T, { cfg!(feature = "absorption") as usize }>;
+
 /// A value that only builds with the code for nested dielectrics hold.
 pub(crate) type NestedOnly<T> = InSomeBuilds<T, { cfg!(feature = "nested") as usize }>;
 
@@ -73,6 +76,15 @@ impl<T, const COUNT: usize> InSomeBuilds<T, COUNT> {
     #[inline(always)]
     pub(crate) fn new(make: impl Fn() -> T) -> Self {
         Self(core::array::from_fn(|_| make()))
+    }
+
+    /// A value that is at hand: without code that could overflow, as far as the compiler knows.
+    #[inline(always)]
+    pub(crate) fn of(value: T) -> Self
+    where
+        T: Copy,
+    {
+        Self([value; COUNT])
     }
 
     #[inline(always)]

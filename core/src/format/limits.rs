@@ -75,9 +75,6 @@ pub(crate) const UNBOUNDED: bool = cfg!(feature = "unbounded");
 /// True if this build holds the code for indirect light.
 pub(crate) const INDIRECT: bool = cfg!(feature = "indirect");
 
-/// True if this build holds the code for glass that absorbs.
-pub(crate) const ABSORPTION: bool = cfg!(feature = "absorption");
-
 /// True if this build holds the code for nested dielectrics.
 pub(crate) const NESTED: bool = cfg!(feature = "nested");
 

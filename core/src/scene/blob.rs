@@ -140,11 +140,17 @@ impl<'a> Scene<'a> {
     #[inline(always)]
     pub fn place_among_media(&self, object: u32) -> Option<u8> {
         let number = self.material_number(object);
-        let mut media = self.media().iter().take(MAX_MEDIA);
-        let place = media.position(|&medium| medium == number)?;
-        // A program can have replaced it with a material that is not glass.
-        let material = self.materials.get(number as usize)?;
-        (material.transmit != [0; 3]).then_some(place as u8)
+        // Counted by hand: what `Iterator::position` adds could overflow, as far as the compiler knows.
+        let mut place = 0_u8;
+        for &medium in self.media().iter().take(MAX_MEDIA) {
+            if medium == number {
+                // A program can have replaced it with a material that is not glass.
+                let material = self.materials.get(number as usize)?;
+                return (material.transmit != [0; 3]).then_some(place);
+            }
+            place = place.wrapping_add(1);
+        }
+        None
     }
 
     /// For each of the first materials, the α of its facets' distribution, with 30 fraction bits. It is 0 for a smooth

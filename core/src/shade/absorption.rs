@@ -5,7 +5,6 @@
 
 use crate::accel::Number;
 use crate::format::Effects;
-use crate::format::limits::ABSORPTION;
 use crate::format::record::Material;
 use crate::observe::count::Observer;
 use crate::observe::event::Event;
@@ -16,6 +15,7 @@ use crate::shade::Color;
 use crate::shade::effect::{Effect, Tracer};
 use crate::shade::glass::Glass;
 use crate::shade::surface::{Arrival, Filter, Reach, Secondary};
+use crate::target::AbsorptionOnly;
 
 pub(crate) struct Absorption;
 
@@ -98,28 +98,26 @@ impl Effect for Absorption {
 
 /// The glass without a priority that a ray is inside of: the number of its material plus 1, or 0, also for one of the
 /// materials behind the first 65,535. Bytes, so that they fill gaps next to other states.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub(crate) struct Within([u8; 2 * ABSORPTION as usize]);
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Within(AbsorptionOnly<[u8; 2]>);
+
+impl Default for Within {
+    #[inline(always)]
+    fn default() -> Self {
+        Self::of(0)
+    }
+}
 
 impl Within {
     #[inline(always)]
-    fn of(number: u32) -> Self {
-        let mut own = Self::default();
-        let number = u16::try_from(number).unwrap_or(0);
-        for (own, byte) in own.0.iter_mut().zip(number.to_le_bytes()) {
-            *own = byte;
-        }
-        own
+    fn of(number: u16) -> Self {
+        Self(AbsorptionOnly::of(number.to_le_bytes()))
     }
 
     /// The glass that fills the place.
     #[inline(always)]
     fn medium<'s>(self, scene: &'s Scene<'s>) -> Option<&'s Material> {
-        let mut bytes = [0; 2];
-        for (byte, own) in bytes.iter_mut().zip(self.0) {
-            *byte = own;
-        }
-        let number = u16::from_le_bytes(bytes).checked_sub(1)?;
+        let number = u16::from_le_bytes(*self.0.get()?).checked_sub(1)?;
         scene.materials().get(usize::from(number))
     }
 
@@ -148,7 +146,8 @@ impl Within {
         if !is_glass || scene.place_among_media(object).is_some() {
             return self;
         }
-        let own = Self::of(scene.material_number(object).wrapping_add(1));
+        let number = scene.material_number(object).wrapping_add(1);
+        let own = Self::of(u16::try_from(number).unwrap_or(0));
         match enters {
             true => own,
             false if self == own => Self::default(),
@@ -170,6 +169,7 @@ fn left<N: Number>(ray: &Ray<N>, hit: &Hit<N>, material: &Material) -> Color<N> 
 
 /// The part of light that remains after a length of glass.
 pub(super) fn absorb<N: Number>(material: &Material, length: N) -> Color<N> {
-    let coefficients = material.absorption;
-    Color(coefficients.map(|coefficient| length.exp_neg(coefficient)))
+    let [red, green, blue] = material.absorption;
+    let left = |coefficient: u32| length.exp_neg(coefficient);
+    Color([left(red), left(green), left(blue)])
 }

@@ -22,6 +22,7 @@ use crate::ray::Ray;
 use crate::scene::textures::Footprint;
 use crate::shade::effect::{Effect, Tracer};
 use crate::shade::surface::Surface;
+use crate::target::TextureLevelsOnly;
 
 pub(crate) struct TextureLevels;
 
@@ -74,24 +75,41 @@ fn log2_of_ratio<N: Number>(ratio: N) -> i32 {
 
 /// The total length of the rays that led to a hit. It is the binary logarithm of that length in 2^-13 units, plus 1; 0
 /// before the first ray. Bytes, so that they fill gaps next to other states.
-#[derive(Clone, Copy, Debug, Default)]
-pub(crate) struct PathLength([u8; 2]);
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct PathLength(TextureLevelsOnly<[u8; 2]>);
+
+impl Default for PathLength {
+    #[inline(always)]
+    fn default() -> Self {
+        Self::of(0)
+    }
+}
 
 impl PathLength {
+    #[inline(always)]
+    fn of(number: u16) -> Self {
+        Self(TextureLevelsOnly::of(number.to_le_bytes()))
+    }
+
+    #[inline(always)]
+    fn number(self) -> u16 {
+        self.0.get().map_or(0, |bytes| u16::from_le_bytes(*bytes))
+    }
+
     /// Returns the sum with a length, given its logarithm.
     #[inline(always)]
     fn longer_by(self, log2_steps: i32) -> Self {
-        let longer = match u16::from_le_bytes(self.0).checked_sub(1) {
+        let longer = match self.number().checked_sub(1) {
             Some(length) => log2_of_sum(length.into(), log2_steps),
             None => log2_steps,
         };
         // Less than 2^65 steps, far below the limit.
-        Self((longer.max(0) as u16).wrapping_add(1).to_le_bytes())
+        Self::of((longer.max(0) as u16).wrapping_add(1))
     }
 
     #[inline(always)]
     fn log2_units(self) -> i32 {
-        i32::from(u16::from_le_bytes(self.0))
+        i32::from(self.number())
             .wrapping_sub(1)
             .wrapping_sub(log2_of_power(13))
     }
