@@ -1,6 +1,6 @@
 //! Queries of many rays and points, spread over threads.
 
-use crate::rays::{Rays, Ready};
+use crate::rays::{EXACT, Rays, Ready};
 use crate::threads::in_pool;
 use gridel_core::accel::DynAccel;
 use gridel_core::format::limits::MAX_STACK_DEPTH;
@@ -233,7 +233,9 @@ fn bare<N: Number>(
 ) -> Found {
     let error = || {
         let whole = hit.hit(scene, ray);
-        whole.map_or(0.0, |whole| whole.error.length_to_f64())
+        let error = whole.map_or(0.0, |whole| whole.error.length_to_f64());
+        // No hit of a ray that is valid is lost for a t that is rounded more than its format rounds.
+        error.max(EXACT)
     };
     let Ok(t) = scale.multiple(N::far_to_f64(hit.t), error) else {
         return Closest::REJECTED;

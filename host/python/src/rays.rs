@@ -273,7 +273,7 @@ const REACH: [f64; 2] = [1.0 / (1_u64 << 32) as f64, (1_u64 << 17) as f64];
 
 /// The largest error of a t that counts as exact, in units: at most 2^-12 of the lattice's step, to which the scene was
 /// rounded.
-const EXACT: f64 = 1.0 / (1_u64 << 20) as f64;
+pub const EXACT: f64 = 1.0 / (1_u64 << 20) as f64;
 
 /// Makes a ray ready for the core, from however far away. Its t are numbers of double precision, or it is none.
 #[inline(always)]

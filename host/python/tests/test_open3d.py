@@ -317,3 +317,48 @@ def test_cameras_of_wrong_shapes_are_rejected():
         pinhole(np.eye(3), np.eye(4)[:3], 4, 3)
     with pytest.raises(TypeError):
         pinhole(np.eye(3), np.eye(4), 4.7, 3)
+
+
+def test_nothing_is_met_beyond_single_precision():
+    scene = RaycastingScene()
+    scene.add_triangles(TETRAHEDRON, SIDES)
+    # Of 3.4e38, the greatest number, the second hit alone is beyond.
+    rays = np.array([[0.1, 0.2, -1, 0, 0, length] for length in (1.0, 1e-38, 4e-39, 1e-39)], dtype=np.float32)
+    counts = scene.count_intersections(rays)
+    assert counts.tolist() == [2, 2, 1, 0]
+    assert np.diff(scene.list_intersections(rays)["ray_splits"].astype(int)).tolist() == counts.tolist()
+    assert np.isfinite(scene.cast_rays(rays)["t_hit"]).tolist() == (counts > 0).tolist()
+    for tfar in (float("inf"), 3.4e38):
+        assert scene.test_occlusions(rays, tfar=tfar).tolist() == (counts > 0).tolist()
+
+
+def test_copies_of_subclasses_keep_their_class_and_attributes():
+    class Named(RaycastingScene):
+        pass
+
+    scene = Named()
+    scene.name = "tetrahedron"
+    scene.add_triangles(TETRAHEDRON, SIDES)
+    other = copy.copy(scene)
+    assert type(other) is Named and other.name == "tetrahedron"
+    assert other.count_intersections([[0.1, 0.2, -1, 0, 0, 1]]).tolist() == [2]
+
+
+def test_numbers_of_samples_are_integers():
+    scene = RaycastingScene()
+    scene.add_triangles(TETRAHEDRON, SIDES)
+    for wrong in (1.0, 1.5, None, "1"):
+        with pytest.raises(TypeError, match="nsamples"):
+            scene.compute_occupancy([[0.1, 0.1, 0.1]], nsamples=wrong)
+    with pytest.raises(ValueError, match="odd"):
+        scene.compute_occupancy([[0.1, 0.1, 0.1]], nsamples=2)
+
+
+def test_arrays_take_devices_by_name_and_dimensions_in_a_list():
+    array = gridel.open3d.Array.__new__(gridel.open3d.Array, (2, 3))
+    array[...] = [[1, 2, 3], [4, 5, 6]]
+    assert array.to(device=None, dtype=np.float32).dtype == np.float32
+    assert array.to(device="CPU:0") is array
+    assert array.sum([0]).tolist() == [5, 7, 9] and array.max([0, 1]) == 6
+    with pytest.raises(TypeError, match="a dtype, a device or both"):
+        array.to()

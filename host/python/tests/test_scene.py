@@ -294,6 +294,17 @@ def test_rays_whose_t_leaves_double_precision_are_invalid_everywhere(cube, forma
     assert every.ray.tolist() == [2, 2] and np.isfinite(every.t).all()
 
 
+@pytest.mark.parametrize("format", ["fixed", "f32", "f64"])
+@pytest.mark.parametrize("length", [6e307, 1e308, 1.7e308])
+def test_hits_whose_t_is_rounded_to_a_denormal_number_are_kept(cube, format, length):
+    rays = [[0.3, 0.6, -2, 0, 0, length]]
+    expected = [2 / length, 3 / length]
+    assert np.isclose(cube.cast(rays, format=format).t, expected[0], rtol=1e-6, atol=1e-323).all()
+    assert cube.any(rays, format=format).tolist() == [True]
+    assert cube.count(rays, format=format).tolist() == [2]
+    assert np.isclose(cube.all(rays, format=format).t, expected, rtol=1e-6, atol=1e-323).all()
+
+
 def test_misaligned_arrays_are_copied(cube):
     rays = np.array([[0.3, 0.6, -2, 0, 0, 1]])
     memory = np.zeros(rays.nbytes + 1, dtype=np.uint8)

@@ -334,3 +334,14 @@ def test_mesh_is_taken_by_both_of_its_names(ball):
     for wrong in ({}, {"mesh": ball, "geometry": ball}):
         with pytest.raises(TypeError, match="one mesh, as geometry or as mesh"):
             gridel.trimesh.RayMeshIntersector(**wrong)
+
+
+def test_copies_of_subclasses_keep_their_class_and_attributes(ball):
+    class Named(gridel.trimesh.RayMeshIntersector):
+        pass
+
+    mine = Named(ball)
+    mine.name = "ball"
+    for other in (copy.copy(mine), copy.deepcopy(mine)):
+        assert type(other) is Named and other.name == "ball"
+        assert other.contains_points([[0, 0, 0]]).tolist() == [True]

@@ -36,8 +36,9 @@ def _over_dimensions(name: str, says: str) -> Any:
     def method(
         self: "Array", axis: Any = None, *args: Any, dim: Any = None, keepdim: bool = False, **kwargs: Any
     ) -> "Array":
-        if dim is not None:
-            axis = dim if np.ndim(dim) == 0 or name.startswith("arg") else tuple(dim)
+        axis = axis if dim is None else dim
+        if axis is not None:
+            axis = axis if np.ndim(axis) == 0 or name.startswith("arg") else tuple(axis)
             axis = axis[0] if isinstance(axis, (list, tuple)) and len(axis) == 1 else axis
         if keepdim:
             kwargs["keepdims"] = True
@@ -132,8 +133,12 @@ class Array(np.ndarray):
         """Returns whether the array is in C order."""
         return self.flags.c_contiguous
 
-    def to(self, dtype: Any, copy: bool = False) -> "Array":
-        """Converts to a type of NumPy's or Open3D's. A device of Open3D's in its place changes nothing."""
+    def to(self, dtype: Any = None, copy: bool = False, *, device: Any = None) -> "Array":
+        """Converts to a type of NumPy's or Open3D's. A device of Open3D's in its place, or beside it, changes nothing."""
+        if dtype is None:
+            if device is None:
+                raise TypeError("to takes a dtype, a device or both")
+            return self.copy() if copy else self
         if not _is_tensor(dtype):
             return self.astype(dtype, copy=copy)
         if type(dtype).__name__ == "Device":
@@ -180,10 +185,18 @@ def _between(limit: float, toward: float) -> float:
     """The farthest number that is the limit in single precision, on the side where hits are."""
     with np.errstate(over="ignore"):
         single = np.float32(limit)
+        beyond = np.nextafter(single, np.float32(toward))
     if not np.isfinite(single) or single == 0.0:
         return float(single)
-    beyond = np.nextafter(single, np.float32(toward))
     return float(single) + 0.5 * (float(beyond) - float(single)) if np.isfinite(beyond) else float(single)
+
+
+def _limited(rays: np.ndarray, tmin: float, tmax: float) -> np.ndarray:
+    """Rays (..., 6) with limits: (..., 8)."""
+    limited = np.empty(rays.shape[:-1] + (8,))
+    limited[..., 0:3], limited[..., 4:7] = rays[..., 0:3], rays[..., 3:6]
+    limited[..., 3], limited[..., 7] = tmin, tmax
+    return limited
 
 
 class RaycastingScene:
@@ -223,6 +236,8 @@ class RaycastingScene:
         if mesh is not None:
             try:
                 vertex_positions, triangle_indices = mesh.vertex.positions, mesh.triangle.indices
+            except KeyError as key:
+                raise ValueError(f"mesh has no vertex positions or no triangle indices: {key.args[0]}") from None
             except AttributeError:
                 kind = f"{type(mesh).__module__}.{type(mesh).__qualname__}"
                 raise TypeError(
@@ -248,6 +263,17 @@ class RaycastingScene:
     @staticmethod
     def _rays(rays: Any) -> np.ndarray:
         return _rows(_array(rays), (6,), "rays")
+
+    def _may_leave_single_precision(self, rays: np.ndarray) -> bool:
+        """Whether a hit of any ray (..., 6) can have a t beyond single precision."""
+        if rays.size == 0:
+            return False
+        rays = rays if rays.dtype.kind == "f" else rays.astype(np.float64)
+        directions = rays[..., 3:6].reshape(-1, 3)
+        shortest = np.sqrt(float(np.einsum("ij,ij->i", directions, directions).min()))
+        farthest = max(float(rays.max()), -float(rays.min()), *np.abs(self.scene.bounds).ravel().tolist())
+        # Not a number where a ray is not of numbers.
+        return not 4.0 * farthest < shortest * float(np.finfo(np.float32).max)
 
     def _identify(self, objects: np.ndarray, primitives: np.ndarray) -> np.ndarray:
         """The numbers of triangles in their own meshes."""
@@ -295,11 +321,11 @@ class RaycastingScene:
         threads = _nthreads(nthreads)
         if self.scene is None:
             return _like(rays, np.zeros(array.shape[:-1], dtype=bool))
+        if tfar == float("inf") and self._may_leave_single_precision(array):
+            # Beyond it nothing is met.
+            tfar = float(np.finfo(np.float32).max)
         if tnear != 0.0 or tfar != float("inf"):
-            limited = np.empty(array.shape[:-1] + (8,))
-            limited[..., 0:3], limited[..., 4:7] = array[..., 0:3], array[..., 3:6]
-            limited[..., 3], limited[..., 7] = _between(tnear, -np.inf), _between(tfar, np.inf)
-            array = limited
+            array = _limited(array, _between(tnear, -np.inf), _between(tfar, np.inf))
         return _like(rays, self.scene.any(array, threads=threads))
 
     def count_intersections(self, rays: Any, nthreads: int = 0) -> Any:
@@ -307,6 +333,9 @@ class RaycastingScene:
         array, threads = self._rays(rays), _nthreads(nthreads)
         if self.scene is None:
             return _like(rays, np.zeros(array.shape[:-1], dtype=np.int32))
+        if self._may_leave_single_precision(array):
+            # Beyond it nothing is met.
+            array = _limited(array, 0.0, float(np.finfo(np.float32).max))
         counts = self.scene.count(array, format="f32", threads=threads)
         return _like(rays, counts.astype(np.int32))
 
@@ -349,6 +378,10 @@ class RaycastingScene:
         ray is enough: ``nsamples``, an odd number, changes nothing.
         Points with nan or infinity are outside.
         """
+        try:
+            nsamples = operator.index(nsamples)
+        except TypeError:
+            raise TypeError(f"nsamples is {nsamples!r}; it must be an integer") from None
         if nsamples < 1 or nsamples % 2 == 0:
             raise ValueError(f"nsamples is {nsamples}; it must be odd and at least 1")
         points, threads = _rows(_array(query_points), (3,), "query_points"), _nthreads(nthreads)
@@ -361,7 +394,7 @@ class RaycastingScene:
         return {**self.__dict__, "_scene": None}
 
     def __copy__(self) -> "RaycastingScene":
-        other = RaycastingScene()
+        other = type(self).__new__(type(self))
         # Meshes do not change, nor does what was compiled of them; the list does.
         other.__dict__.update(self.__dict__, _meshes=list(self._meshes))
         return other

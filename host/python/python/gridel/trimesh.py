@@ -190,6 +190,8 @@ class RayMeshIntersector:
         return {**self.__dict__, "_compiled": None}
 
     def __copy__(self, *_: Any) -> "RayMeshIntersector":
-        return RayMeshIntersector(self.mesh, self._scale_to_box, threads=self.threads)
+        other = type(self).__new__(type(self))
+        other.__dict__.update(self.__getstate__())
+        return other
 
     __deepcopy__ = __copy__
