@@ -318,6 +318,11 @@ pub struct RenderSettings {
     pub tone_mapping: ToneMapping,
 }
 
+impl RenderSettings {
+    /// How many times as wide as high a picture can be.
+    pub const MAX_ASPECT: u32 = 64;
+}
+
 impl Default for RenderSettings {
     fn default() -> Self {
         Self {

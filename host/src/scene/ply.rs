@@ -128,6 +128,21 @@ fn attributes(path: &Path, vertices: &[Vertex], warnings: &mut Warnings) -> Attr
         }
         return Attributes::default();
     }
+    for (sentence, is_so) in [
+        (
+            "colors of vertices are limited to 0 to 1 (of whole numbers: 0 to 255, or 65,535), their range",
+            (|vertex| vertex.color.iter().any(|it| !(0.0..=1.0).contains(it)))
+                as fn(&Vertex) -> bool,
+        ),
+        ("the alpha of colors of vertices is ignored", |vertex| {
+            vertex.alpha < 1.0
+        }),
+    ] {
+        let count = vertices.iter().filter(|vertex| is_so(vertex)).count();
+        if count > 0 {
+            warnings.add_times(SourceSpan::of(path), count, sentence);
+        }
+    }
     let linear = |channel: f64| linear_of_srgb(channel.clamp(0.0, 1.0));
     let colors = vertices.iter().map(|vertex| vertex.color.map(linear));
     Attributes {
@@ -264,6 +279,8 @@ struct Vertex {
     normal: [f64; 3],
     /// In sRGB, 0 to 1.
     color: [f64; 3],
+    /// 0 to 1.
+    alpha: f64,
 }
 
 impl PropertyAccess for Vertex {
@@ -272,23 +289,24 @@ impl PropertyAccess for Vertex {
             position: [f64::NAN; 3],
             normal: [f64::NAN; 3],
             color: [f64::NAN; 3],
+            alpha: 1.0,
         }
     }
 
     fn set_property(&mut self, name: &str, property: Property) -> PropertyAccessResult {
-        let component = match name {
-            "x" => &mut self.position[0],
-            "y" => &mut self.position[1],
-            "z" => &mut self.position[2],
-            "nx" => &mut self.normal[0],
-            "ny" => &mut self.normal[1],
-            "nz" => &mut self.normal[2],
-            "red" | "diffuse_red" => &mut self.color[0],
-            "green" | "diffuse_green" => &mut self.color[1],
-            "blue" | "diffuse_blue" => &mut self.color[2],
+        let (component, is_color) = match name {
+            "x" => (&mut self.position[0], false),
+            "y" => (&mut self.position[1], false),
+            "z" => (&mut self.position[2], false),
+            "nx" => (&mut self.normal[0], false),
+            "ny" => (&mut self.normal[1], false),
+            "nz" => (&mut self.normal[2], false),
+            "red" | "diffuse_red" | "r" => (&mut self.color[0], true),
+            "green" | "diffuse_green" | "g" => (&mut self.color[1], true),
+            "blue" | "diffuse_blue" | "b" => (&mut self.color[2], true),
+            "alpha" | "diffuse_alpha" | "a" => (&mut self.alpha, true),
             _ => return PropertyAccessResult::Ignored,
         };
-        let is_color = !name.starts_with('n') && name.len() > 1;
         // What white is: no program writes more than a byte's numbers in longer signed types.
         let most = match property {
             Property::Float(_) | Property::Double(_) => 1.0,

@@ -5,14 +5,14 @@
 
 use super::buffers::Buffers;
 use super::curve::{Curve, seconds, tick};
-use super::place::transform;
+use super::place::{parts, transform};
 use crate::scene::{
     Choice, Interpolation, Key, SceneError, SourceSpan, TICKS_PER_SECOND, Track, TrackTarget,
 };
 use crate::table::{printable, shortened};
-use glam::{DAffine3, DMat3, DMat4, DQuat, DVec3};
+use glam::{DAffine3, DMat3, DMat4, DQuat, DVec3, DVec4};
 use gltf::animation::Property;
-use gltf::{Animation, Document};
+use gltf::{Animation, Document, Node};
 use std::collections::{BTreeSet, HashMap};
 use std::path::Path;
 
@@ -37,14 +37,21 @@ struct NodeCurves {
     weights: bool,
 }
 
+/// A node at rest.
+struct Rest {
+    matrix: DMat4,
+    /// Translation, rotation and scale.
+    parts: [DVec4; 3],
+}
+
 /// The animation that is read, by the nodes that it moves.
 #[derive(Default)]
 pub(super) struct Motion {
     nodes: HashMap<usize, NodeCurves>,
     /// The node above each node.
     parents: Vec<Option<usize>>,
-    /// The transform of each node in the one above, at rest.
-    rest: Vec<DMat4>,
+    /// Each node in the one above, at rest.
+    rest: Vec<Rest>,
     /// How many samples were taken of all curves.
     samples: usize,
     /// The least samples per second of a curve, if any was sampled.
@@ -111,7 +118,7 @@ impl Motion {
     ) -> Result<Self, SceneError> {
         let mut motion = Self {
             parents: vec![None; document.nodes().len()],
-            rest: document.nodes().map(|node| transform(&node)).collect(),
+            rest: document.nodes().map(|node| Rest::of(&node)).collect(),
             ..Self::default()
         };
         for node in document.nodes() {
@@ -190,23 +197,25 @@ impl Motion {
         self.parents[node]
     }
 
+    /// Returns translation, rotation and scale of a node in the one above it.
+    fn local_parts(&self, node: usize, seconds: f64) -> (DVec3, DQuat, DVec3) {
+        let curves = self.curves(node).unwrap_or_default();
+        let properties = [Property::Translation, Property::Rotation, Property::Scale];
+        let [translation, rotation, scale] = [0, 1, 2].map(|part: usize| match curves[part] {
+            Some(curve) => DVec4::from_array(curve.at(seconds, properties[part])),
+            None => self.rest[node].parts[part],
+        });
+        let rotation = DQuat::from_vec4(rotation).normalize();
+        (translation.truncate(), rotation, scale.truncate())
+    }
+
     /// Returns the transform of a node in the one above it.
     fn local(&self, node: usize, seconds: f64) -> DMat4 {
-        let rest = self.rest[node];
-        let Some(moves) = self.nodes.get(&node) else {
-            return rest;
-        };
-        let (scale, rotation, translation) = rest.to_scale_rotation_translation();
-        let at = |curve: &Option<Curve>, property| {
-            curve.as_ref().map(|curve| curve.at(seconds, property))
-        };
-        let vector = |[x, y, z, _]: [f64; 4]| DVec3::new(x, y, z);
-        DMat4::from_scale_rotation_translation(
-            at(&moves.scale, Property::Scale).map_or(scale, vector),
-            at(&moves.rotation, Property::Rotation)
-                .map_or(rotation, |it| DQuat::from_array(it).normalize()),
-            at(&moves.translation, Property::Translation).map_or(translation, vector),
-        )
+        if !self.moves_itself(node) {
+            return self.rest[node].matrix;
+        }
+        let (translation, rotation, scale) = self.local_parts(node, seconds);
+        DMat4::from_scale_rotation_translation(scale, rotation, translation)
     }
 
     /// Returns the transform of a node in the scene.
@@ -215,10 +224,16 @@ impl Motion {
         locals.fold(DMat4::IDENTITY, |world, local| local * world)
     }
 
-    /// Where a node stands that does not move itself.
-    fn above(&self, node: usize) -> DMat4 {
+    /// The transform in the scene of what is above a node.
+    fn above(&self, node: usize, seconds: f64) -> DMat4 {
         let parent = self.parents[node];
-        parent.map_or(DMat4::IDENTITY, |parent| self.world(parent, 0.0))
+        parent.map_or(DMat4::IDENTITY, |parent| self.world(parent, seconds))
+    }
+
+    /// The rotation of a camera at a node, whose own scale does not count.
+    fn camera_rotation(&self, node: usize, seconds: f64) -> DQuat {
+        let (_, rotation, _) = self.local_parts(node, seconds);
+        turned(&(self.above(node, seconds) * DMat4::from_quat(rotation)))
     }
 
     /// The times at which a node is sampled.
@@ -277,13 +292,13 @@ impl Motion {
             own
         } else {
             let times = self.sample_times(node)?;
-            let worlds: Vec<_> = times.iter().map(|&it| (it, self.world(node, it))).collect();
-            let eye = |&(seconds, world): &(f64, DMat4)| {
+            let eye = |&seconds: &f64| {
+                let world = self.world(node, seconds);
                 Key::of_vector(seconds, world.transform_point3(DVec3::ZERO))
             };
-            let rotation = |(seconds, world): &(f64, DMat4)| Key {
-                seconds: *seconds,
-                value: turned(world).to_array(),
+            let rotation = |&seconds: &f64| Key {
+                seconds,
+                value: self.camera_rotation(node, seconds).to_array(),
                 ..Key::default()
             };
             let linear = |keys| Curve {
@@ -291,8 +306,8 @@ impl Motion {
                 keys,
             };
             [
-                linear(worlds.iter().map(eye).collect()),
-                linear(worlds.iter().map(rotation).collect()),
+                linear(times.iter().map(eye).collect()),
+                linear(times.iter().map(rotation).collect()),
             ]
         };
         Ok(vec![
@@ -307,7 +322,7 @@ impl Motion {
             return None;
         }
         let moves = self.nodes.get(&node)?;
-        let above = DAffine3::from_mat4(self.above(node));
+        let above = DAffine3::from_mat4(self.above(node, 0.0));
         let world = self.world(node, 0.0);
         let still = |value: [f64; 4]| Curve {
             interpolation: Interpolation::Step,
@@ -329,7 +344,7 @@ impl Motion {
                 let above = rotation_of(above.matrix3)?;
                 curve.map(|value| (above * DQuat::from_array(value)).to_array())
             }
-            None => still(turned(&world).to_array()),
+            None => still(self.camera_rotation(node, 0.0).to_array()),
         };
         Some([eye, rotation])
     }
@@ -353,9 +368,10 @@ impl Motion {
         if rotation.interpolation != Interpolation::Step || !self.moves_alone(node) {
             return None;
         }
-        let above = self.above(node);
+        let above = self.above(node, 0.0);
+        let (_, _, scale) = self.local_parts(node, 0.0);
         Some(rotation.map(|value| {
-            let forward = DQuat::from_array(value) * -DVec3::Z;
+            let forward = DQuat::from_array(value) * (scale * -DVec3::Z);
             let [x, y, z] = above.transform_vector3(forward).to_array();
             [x, y, z, 0.0]
         }))
@@ -405,6 +421,22 @@ impl Motion {
             keys: curve.keys,
             place: place.clone(),
         }))
+    }
+}
+
+impl Rest {
+    fn of(node: &Node<'_>) -> Self {
+        let matrix = transform(node);
+        // A matrix that is sheared or flat has none. That it moves is more than glTF allows.
+        let parts = parts(node).unwrap_or_else(|| {
+            let (scale, rotation, translation) = matrix.to_scale_rotation_translation();
+            let rotation = match rotation.is_finite() {
+                true => rotation,
+                false => DQuat::IDENTITY,
+            };
+            [translation.extend(0.0), rotation.into(), scale.extend(0.0)]
+        });
+        Self { matrix, parts }
     }
 }
 

@@ -110,10 +110,27 @@ impl Curve {
         curve
     }
 
-    /// Moves keys to the nearest tick, so that a sample there does not see what was before it. Keys that share a tick
-    /// keep their times, which errors show.
+    /// Moves keys to the nearest tick, so that a sample there does not see what was before it. Of two keys that share a
+    /// tick, with which programs write a jump, one moves to the tick beside it. Where it has a key, they keep their
+    /// times, which errors show.
     pub(super) fn round_times(&mut self) {
-        let ticks: Vec<i64> = self.keys.iter().map(|key| tick(key.seconds)).collect();
+        let mut ticks: Vec<i64> = self.keys.iter().map(|key| tick(key.seconds)).collect();
+        for second in 1..ticks.len() {
+            let first = second - 1;
+            let shared = ticks[first];
+            if ticks[second] != shared {
+                continue;
+            }
+            let before = first.checked_sub(1).and_then(|it| ticks.get(it));
+            let is_free_before = before.is_none_or(|&tick| tick < shared - 1);
+            let is_free_behind = ticks.get(second + 1).is_none_or(|&tick| tick > shared + 1);
+            let off = |key: usize| self.keys[key].seconds - seconds(shared);
+            match -off(first) > off(second) {
+                true if is_free_before && shared > 0 => ticks[first] -= 1,
+                false if is_free_behind => ticks[second] += 1,
+                _ => {}
+            }
+        }
         for (number, key) in self.keys.iter_mut().enumerate() {
             let neighbors = [number.checked_sub(1), Some(number + 1)];
             let neighbors = neighbors.into_iter().flatten();

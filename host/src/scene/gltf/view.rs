@@ -6,9 +6,12 @@
 
 use super::animation::Motion;
 use super::middle::middle;
-use crate::scene::{Camera, Color, Light, LightForm, Scene, SourceSpan, Spot, Track};
+use super::place::parts;
+use crate::scene::{
+    Camera, Color, Light, LightForm, RenderSettings, Scene, SourceSpan, Spot, Track,
+};
 use crate::table::{printable, shortened};
-use glam::{DMat4, DVec3};
+use glam::{DMat4, DVec3, DVec4};
 use gltf::Node;
 use gltf::camera::Projection;
 use gltf::khr_lights_punctual::{Kind, Light as Punctual};
@@ -69,8 +72,13 @@ impl View {
             return;
         }
         let eye = world.transform_point3(DVec3::ZERO);
-        let ahead = world.transform_vector3(-DVec3::Z).try_normalize();
-        let up = world.transform_vector3(DVec3::Y);
+        // Without its own scale, of which only the signs change a direction.
+        let [_, _, scale] = parts(node).unwrap_or([DVec4::ONE; 3]);
+        let ahead = world.transform_vector3(-DVec3::Z * 1_f64.copysign(scale.z));
+        let (ahead, up) = (
+            ahead.try_normalize(),
+            world.transform_vector3(DVec3::Y * 1_f64.copysign(scale.y)),
+        );
         let fov_degrees = f64::from(perspective.yfov()).to_degrees();
         let ahead = ahead.filter(|ahead| ahead.cross(up).length() > 1e-6 * up.length());
         let target = ahead.map(|ahead| eye + ahead * eye.abs().max_element().max(1.0));
@@ -248,8 +256,17 @@ impl View {
         }
         scene.camera = self.camera;
         if let Some(aspect) = self.aspect.filter(|aspect| *aspect > 0.0) {
-            let width = f64::from(scene.render.height) * aspect;
-            scene.render.width = width.round().clamp(1.0, 65_535.0) as u32;
+            let height = scene.render.height;
+            let width = (f64::from(height) * aspect).round();
+            let widest = f64::from(RenderSettings::MAX_ASPECT * height);
+            if width > widest {
+                let sentence = format!(
+                    "the camera's picture is {} times as wide as high, which is the limit, not {aspect:.0} times",
+                    RenderSettings::MAX_ASPECT
+                );
+                warn(&sentence);
+            }
+            scene.render.width = width.clamp(1.0, widest) as u32;
         }
         let needs_middle =
             |lamp: &Lamp| matches!(lamp.light, Light::Point { .. }) && lamp.intensity > 0.0;

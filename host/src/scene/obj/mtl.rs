@@ -85,10 +85,10 @@ pub(super) fn read(
             "Kd" => material.diffuse = reader.color(number, warnings)?,
             "Ks" => material.specular = reader.color(number, warnings)?,
             "Tf" => material.filter = reader.color(number, warnings)?,
-            "Ns" => material.exponent = Some(reader.number()?),
+            "Ns" => material.exponent = Some(reader.number_in([0.0, 1024.0], number, warnings)?),
             "Ni" => material.density = Some(reader.number()?),
-            "d" => material.dissolve = Some(reader.number()?.clamp(0.0, 1.0)),
-            "Tr" => material.transparency = Some(reader.number()?.clamp(0.0, 1.0)),
+            "d" => material.dissolve = Some(reader.number_in([0.0, 1.0], number, warnings)?),
+            "Tr" => material.transparency = Some(reader.number_in([0.0, 1.0], number, warnings)?),
             "illum" => material.illumination = Some(reader.number()?.clamp(0.0, 255.0) as u32),
             "Ke" => {
                 material.emission = reader
@@ -240,6 +240,21 @@ impl Reader<'_> {
                 "write a number",
             )),
         }
+    }
+
+    /// Reads a number, and limits it to a range with a warning.
+    fn number_in(
+        &self,
+        [least, most]: [f64; 2],
+        line: usize,
+        warnings: &mut Warnings,
+    ) -> Result<f64, SceneError> {
+        let number = self.number()?;
+        if !(least..=most).contains(&number) {
+            let sentence = format!("{} is limited to the range {least} to {most}", self.keyword);
+            warnings.add(self.source, line, sentence);
+        }
+        Ok(number.clamp(least, most))
     }
 
     /// Reads a texture: options, then the name of a file, which may contain spaces.

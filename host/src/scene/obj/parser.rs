@@ -167,6 +167,15 @@ impl<'a> Parser<'a> {
                     .number(word, "what follows the coordinates of a vertex")?,
             );
         }
+        if !matches!(rest.len(), 0 | 1 | 3) {
+            let sentence = match rest.len() {
+                2 => "2 numbers behind the coordinates of a vertex are ignored; a color has 3",
+                _ => {
+                    "of more than 3 numbers behind the coordinates of a vertex, the last 3 are taken as its color"
+                }
+            };
+            warnings.add(self.source, number, sentence);
+        }
         let count = self.parsed.vertices.len();
         if let [.., red, green, blue] = rest[..] {
             if count > 0 && self.parsed.colors.is_empty() {

@@ -357,7 +357,12 @@ fn colors_of_vertices_are_taken_from_srgb() {
         [[1.0, 0.0, half], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]]
     );
     let limited = "t.obj:2: a color of a vertex is limited to 0 to 1, its range";
-    assert_eq!(imported.warnings, [limited]);
+    let many = "t.obj:3: of more than 3 numbers behind the coordinates of a vertex, the last 3 are taken as its color";
+    assert_eq!(imported.warnings, [limited, many]);
+    let two = read("v 0 0 0 1 1\nv 1 0 0 1\nv 0 1 0\nf 1 2 3\n").unwrap();
+    let ignored =
+        "t.obj:1: 2 numbers behind the coordinates of a vertex are ignored; a color has 3";
+    assert_eq!(two.warnings, [ignored]);
 }
 
 mod materials;

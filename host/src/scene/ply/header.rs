@@ -121,7 +121,8 @@ pub(super) fn check(path: &Path, element: &ElementDef, bytes: usize) -> Result<(
             (
                 "vertex",
                 "x" | "y" | "z" | "nx" | "ny" | "nz" | "red" | "green" | "blue" | "diffuse_red"
-                | "diffuse_green" | "diffuse_blue",
+                | "diffuse_green" | "diffuse_blue" | "r" | "g" | "b" | "alpha" | "diffuse_alpha"
+                | "a",
                 PropertyType::List(..),
             ) => "a number",
             ("face" | "tristrips", "vertex_index" | "vertex_indices", found) => match found {
@@ -171,6 +172,9 @@ const IGNORED: [(&[&str], &str, &str); 1] = [(
         "diffuse_red",
         "diffuse_green",
         "diffuse_blue",
+        "r",
+        "g",
+        "b",
     ],
     "color",
     "the surface has one color",

@@ -403,6 +403,26 @@ fn colors_of_vertices_are_taken_from_srgb() {
         assert_eq!(*colors, expected, "{kind}");
         assert_eq!(imported.warnings, [] as [&str; 0]);
     }
+    // By their short names; out of range, or with an alpha.
+    let properties = |kind: &str| {
+        let names = ["r", "g", "b", "a"].map(|name| format!("property {kind} {name}\n"));
+        with_properties(&names.concat(), "").replace("comment TextureFile a.png\n", "")
+    };
+    let rows = "0 0 0 128 0 0 1\n1 0 0 0 1 0 1\n0 1 0 0 0 -1 0.5\n3 0 1 2\n";
+    let imported = read((properties("float") + rows).as_bytes()).unwrap();
+    let colors = &imported.scene.objects[0].attributes.colors;
+    assert_eq!(*colors, [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0; 3]]);
+    let [range, alpha] = &imported.warnings[..] else {
+        panic!("{:?}", imported.warnings)
+    };
+    assert!(
+        range.contains("colors of vertices are limited") && range.contains("2"),
+        "{range}"
+    );
+    assert!(
+        alpha.contains("the alpha of colors of vertices is ignored"),
+        "{alpha}"
+    );
     // Those between black and white, too.
     let text = with_properties(
         "property uchar red\nproperty uchar green\nproperty uchar blue\n",

@@ -145,7 +145,7 @@ pub(super) fn lost(source: &Source, item: &Item, what: &str) -> SceneError {
         &item.span,
         format!("a {what} of this import cannot follow the transform of the import"),
         format!(
-            "use smaller translations and scales nearer to 1, or give this scene its own {what}"
+            "scale it alike along all axes, without a mirror and near to 1, move it less far, or give this scene its own {what}"
         ),
     )
 }

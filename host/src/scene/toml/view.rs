@@ -7,8 +7,6 @@ use gridel_core::format::limits::{MAX_BOUNCES, MAX_RAY_DEPTH, MAX_SAMPLES};
 
 /// The largest width and height of a picture.
 const MAX_SIDE: u32 = 65_535;
-/// How many times as wide as high a picture can be.
-const MAX_ASPECT: u32 = 64;
 
 /// Reads the camera and its lens.
 pub(super) fn camera(table: Value<'_>) -> Result<(Camera, Option<Lens>), SceneError> {
@@ -98,10 +96,11 @@ pub(super) fn render(table: Value<'_>) -> Result<RenderSettings, SceneError> {
     let side = |value: Value<'_>| value.integer_in(1..=MAX_SIDE);
     let width = fields.or("width", default.width, side)?;
     let height = fields.or("height", default.height, side)?;
-    if width > MAX_ASPECT * height {
+    if width > RenderSettings::MAX_ASPECT * height {
         return Err(table.error(
             format!(
-                "a picture of {width} by {height} is more than {MAX_ASPECT} times as wide as high"
+                "a picture of {width} by {height} is more than {} times as wide as high",
+                RenderSettings::MAX_ASPECT
             ),
             "write a smaller `width` or a larger `height`",
         ));

@@ -59,6 +59,19 @@ fn materials() {
 }
 
 #[test]
+fn numbers_out_of_range_are_limited_with_a_warning() {
+    let (limited, warnings) = material("newmtl a\nKs 1 1 1\nillum 2\nNs 2000\nd 2\nTr -0.5\n");
+    assert_eq!(limited.shininess, 1024);
+    assert_eq!(limited.transmit, [0.0; 3]);
+    let expected = [
+        "t.mtl:4: Ns is limited to the range 0 to 1024",
+        "t.mtl:5: d is limited to the range 0 to 1",
+        "t.mtl:6: Tr is limited to the range 0 to 1",
+    ];
+    assert_eq!(warnings, expected);
+}
+
+#[test]
 fn material_faults_name_their_own_file() {
     let fault = |text: &str| {
         let source = Source::from_bytes(Path::new("t.mtl"), text.into());
