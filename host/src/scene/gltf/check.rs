@@ -1,7 +1,8 @@
 //! Checks of a whole glTF file, whether its parts are drawn or not.
 
+use super::Importer;
 use super::buffers::MOST;
-use super::{Importer, place};
+use super::place::place_of;
 use crate::scene::SceneError;
 use gltf::{Accessor, Document, Node, Semantic};
 use std::collections::HashMap;
@@ -70,7 +71,7 @@ impl Importer<'_> {
                     }
                 };
                 if let Some(highest) = highest {
-                    self.check_corner(&place(&mesh, &part), highest, positions.count())?;
+                    self.check_corner(&place_of(&mesh, &part), highest, positions.count())?;
                 }
             }
         }

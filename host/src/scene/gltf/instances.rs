@@ -1,6 +1,7 @@
 //! Meshes that several nodes place: parts and instances, where that saves enough.
 
-use super::place::mesh_name;
+use super::morph::weights;
+use super::place::{mesh_name, place_of};
 use super::shared::{Placed, triangle_count};
 use super::{Importer, Named};
 use crate::scene::size::Size;
@@ -20,9 +21,11 @@ impl Importer<'_> {
         let joint = self.joint_of.get(&node.index()).copied();
         let joint = joint.filter(|_| node.skin().is_none());
         let part = match (placement, joint) {
-            (Some(_), _) => self.shared_part(&mesh)?,
+            (Some(_), _) if node.weights().is_none() => self.shared_part(node, &mesh)?,
+            // A shape of its own.
+            (Some(_), _) => self.part(node, &mesh, &DMat4::IDENTITY)?,
             // Mirrored or scaled unevenly: a part that stands where it is.
-            (None, Some(_)) => self.part(&mesh, world)?,
+            (None, Some(_)) => self.part(node, &mesh, world)?,
             (None, None) => return Ok(false),
         };
         if let Some(part) = part {
@@ -39,20 +42,33 @@ impl Importer<'_> {
         Ok(true)
     }
 
-    /// The part of a mesh that several nodes can place; `None` for a mesh without triangles.
-    fn shared_part(&mut self, mesh: &Mesh<'_>) -> Result<Option<usize>, SceneError> {
+    /// The part of a node's mesh that several nodes can place; `None` for a mesh without triangles.
+    fn shared_part(
+        &mut self,
+        node: &Node<'_>,
+        mesh: &Mesh<'_>,
+    ) -> Result<Option<usize>, SceneError> {
         if let Some(&part) = self.shared.parts.get(&mesh.index()) {
             return Ok(part);
         }
-        let part = self.part(mesh, &DMat4::IDENTITY)?;
+        let part = self.part(node, mesh, &DMat4::IDENTITY)?;
         self.shared.parts.insert(mesh.index(), part);
         Ok(part)
     }
 
-    /// Makes a part of a mesh.
-    fn part(&mut self, mesh: &Mesh<'_>, world: &DMat4) -> Result<Option<usize>, SceneError> {
+    /// Makes a part of a node's mesh.
+    fn part(
+        &mut self,
+        node: &Node<'_>,
+        mesh: &Mesh<'_>,
+        world: &DMat4,
+    ) -> Result<Option<usize>, SceneError> {
         let name = mesh_name(mesh);
-        let named = Named { mesh, name: &name };
+        let named = Named {
+            mesh,
+            weights: weights(node, mesh),
+            name: &name,
+        };
         let objects = self.objects(&named, world)?;
         let part = (!objects.is_empty()).then_some(self.scene.parts.len());
         if part.is_some() {
@@ -74,7 +90,8 @@ impl Importer<'_> {
                 continue;
             };
             let name = node.name().or(mesh.name()).map_or(0, str::len);
-            let is_instance = self.shared.placements.contains_key(&node.index());
+            let is_instance =
+                self.shared.placements.contains_key(&node.index()) && node.weights().is_none();
             if is_instance && parts.insert(mesh.index(), ()).is_some() {
                 size = size.plus(Size {
                     objects: 1,
@@ -98,7 +115,7 @@ impl Importer<'_> {
                     names: name as u64,
                     triangles: triangles.max((vertices / 3) as u64),
                 });
-                self.check_size(size, node, || super::place(&mesh, &part))?;
+                self.check_size(size, node, || place_of(&mesh, &part))?;
             }
         }
         Ok(())

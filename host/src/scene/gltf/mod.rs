@@ -3,7 +3,7 @@
 //!
 //! Each set of triangles of each node becomes an object, in the order of the nodes. A mesh that several
 //! nodes share is a [part](super::Part), or is copied where that costs little. Animations of cameras, of lights and of
-//! nodes with meshes become tracks. Skins and morph targets are ignored: such meshes keep their shape at rest. The
+//! nodes with meshes become tracks. Morph targets give a mesh the shape at rest. Skins are ignored. The
 //! textures of the base color and the normal map are drawn; a warning names other textures. Images that nothing draws
 //! are not read.
 
@@ -18,6 +18,7 @@ mod instances;
 mod joints;
 mod material;
 mod middle;
+mod morph;
 mod normal_transforms;
 mod normals;
 mod place;
@@ -35,12 +36,13 @@ use crate::table::shortened;
 use animation::Motion;
 use buffers::{Buffers, MOST};
 use glam::{DMat4, DVec3};
-use gltf::mesh::Mode;
+use gltf::mesh::{Mode, MorphTarget};
 use gltf::scene::Transform;
-use gltf::{Document, Node, Primitive, Semantic};
+use gltf::{Document, Node, Semantic};
 use gridel_core::Up;
+use morph::Weighted;
 use normal_transforms::NormalTransforms;
-use place::transform;
+use place::{place_of, transform};
 use shared::Shared;
 use std::collections::HashMap;
 use std::path::Path;
@@ -140,9 +142,10 @@ fn read(input: Input<'_>) -> Result<Imported, SceneError> {
     })
 }
 
-/// A mesh, and the name of its objects.
+/// A mesh, the weights of its morph targets, and the name of its objects.
 struct Named<'m> {
     mesh: &'m gltf::Mesh<'m>,
+    weights: &'m [f32],
     name: &'m str,
 }
 
@@ -350,6 +353,7 @@ impl Importer<'_> {
         let name = name.map_or_else(|| format!("node {}", node.index()), str::to_owned);
         let named = Named {
             mesh: &mesh,
+            weights: morph::weights(node, &mesh),
             name: &name,
         };
         let objects = self.objects(&named, world)?;
@@ -359,7 +363,11 @@ impl Importer<'_> {
 
     /// The objects of a mesh, in this place.
     fn objects(&mut self, named: &Named<'_>, world: &DMat4) -> Result<Vec<Object>, SceneError> {
-        let Named { mesh, name } = *named;
+        let Named {
+            mesh,
+            weights,
+            name,
+        } = *named;
         let parts = mesh.primitives().len();
         let mut objects = Vec::with_capacity(parts);
         for part in mesh.primitives() {
@@ -371,8 +379,16 @@ impl Importer<'_> {
                 ));
                 continue;
             }
-            let place = place(mesh, &part);
-            let Some((shape, normals, attributes)) = self.mesh(&place, &part, world)? else {
+            let place = place_of(mesh, &part);
+            let Some((shape, normals, attributes)) = self.mesh(
+                &place,
+                Weighted {
+                    part: &part,
+                    weights,
+                },
+                world,
+            )?
+            else {
                 continue;
             };
             let name = match parts {
@@ -396,18 +412,16 @@ impl Importer<'_> {
     fn mesh(
         &mut self,
         place: &str,
-        part: &Primitive<'_>,
+        weighted: Weighted<'_>,
         world: &DMat4,
     ) -> Result<Option<(Shape, Normals, Attributes)>, SceneError> {
+        let part = weighted.part;
         if !matches!(
             part.mode(),
             Mode::Triangles | Mode::TriangleStrip | Mode::TriangleFan
         ) {
             self.warn("points and lines are not drawn");
             return Ok(None);
-        }
-        if part.morph_targets().len() > 0 {
-            self.warn("morph targets are ignored; their meshes keep the shape without them");
         }
         // Without positions the file is not valid.
         let Some(positions) = part.get(&Semantic::Positions) else {
@@ -439,20 +453,19 @@ impl Importer<'_> {
         if triangles.is_empty() {
             return Ok(None);
         }
-        let placed = |position: &[f32; 3]| {
-            world.transform_point3(DVec3::from_array(position.map(f64::from)))
-        };
-        let vertices: Vec<DVec3> = vertices.iter().map(placed).collect();
+        let precise = |position: [f32; 3]| DVec3::from_array(position.map(f64::from));
+        let mut vertices: Vec<DVec3> = vertices.into_iter().map(precise).collect();
+        self.morph(place, weighted, &mut vertices, MorphTarget::positions)?;
+        for vertex in &mut vertices {
+            *vertex = world.transform_point3(*vertex);
+        }
         if let Some(number) = vertices.iter().position(|vertex| !vertex.is_finite()) {
             return Err(self.error(
                 format!("vertex {number} (from 0) of {place} is not finite"),
                 "export the file again, or repair the vertex",
             ));
         }
-        let normals = match part.get(&Semantic::Normals) {
-            Some(accessor) => self.normals(place, &accessor, world, (&vertices, &triangles))?,
-            None => Normals::default(),
-        };
+        let normals = self.normals(place, weighted, world, (&vertices, &triangles))?;
         let attributes = self.attributes(place, part, (vertices.len(), &triangles))?;
         let shape = Shape::Mesh {
             vertices,
@@ -460,11 +473,6 @@ impl Importer<'_> {
         };
         Ok(Some((shape, normals, attributes)))
     }
-}
-
-/// Returns the name of a part of a mesh in messages.
-fn place(mesh: &gltf::Mesh<'_>, part: &Primitive<'_>) -> String {
-    format!("mesh {}, primitive {}", mesh.index(), part.index())
 }
 
 /// Returns the triangles of the corners, counter-clockwise in front.

@@ -1,21 +1,26 @@
 //! Normals of meshes.
 
 use super::Importer;
+use super::morph::Weighted;
 use crate::scene::normals::cofactors;
 use crate::scene::{Normals, SceneError};
 use glam::{DMat3, DMat4, DVec3};
-use gltf::Accessor;
+use gltf::Semantic;
+use gltf::mesh::MorphTarget;
 
 impl Importer<'_> {
     /// The normals of a mesh that is in its place.
     pub(super) fn normals(
         &self,
         place: &str,
-        accessor: &Accessor<'_>,
+        weighted: Weighted<'_>,
         world: &DMat4,
         mesh: (&[DVec3], &[[u32; 3]]),
     ) -> Result<Normals, SceneError> {
-        let normals = self.buffers.vectors(accessor, "normals")?;
+        let Some(accessor) = weighted.part.get(&Semantic::Normals) else {
+            return Ok(Normals::default());
+        };
+        let normals = self.buffers.vectors(&accessor, "normals")?;
         let (vertices, triangles) = mesh;
         if normals.len() != vertices.len() {
             return Err(self.error(
@@ -27,9 +32,13 @@ impl Importer<'_> {
                 "export the file again",
             ));
         }
+        let precise = |normal: [f32; 3]| DVec3::from_array(normal.map(f64::from));
+        let mut normals: Vec<DVec3> = normals.into_iter().map(precise).collect();
+        self.morph(place, weighted, &mut normals, MorphTarget::normals)?;
         let (turn, _) = cofactors(DMat3::from_mat4(*world));
-        let turned = |normal: [f32; 3]| turn * DVec3::from_array(normal.map(f64::from));
-        let normals = normals.into_iter().map(turned).collect();
+        for normal in &mut normals {
+            *normal = turn * *normal;
+        }
         Ok(Normals::given(normals, triangles.to_vec(), mesh))
     }
 }

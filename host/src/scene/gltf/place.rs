@@ -2,7 +2,7 @@
 
 use glam::{DMat4, DQuat, DVec3, DVec4};
 use gltf::scene::Transform;
-use gltf::{Mesh, Node};
+use gltf::{Mesh, Node, Primitive};
 
 /// Returns the transform of a node in its parent, computed in double precision.
 pub(super) fn transform(node: &Node<'_>) -> DMat4 {
@@ -53,4 +53,9 @@ pub(super) fn parts(node: &Node<'_>) -> Option<[DVec4; 3]> {
 pub(super) fn mesh_name(mesh: &Mesh<'_>) -> String {
     let name = mesh.name().map(str::to_owned);
     name.unwrap_or_else(|| format!("mesh {}", mesh.index()))
+}
+
+/// The name of a part of a mesh in messages.
+pub(super) fn place_of(mesh: &Mesh<'_>, part: &Primitive<'_>) -> String {
+    format!("mesh {}, primitive {}", mesh.index(), part.index())
 }

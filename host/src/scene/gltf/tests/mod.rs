@@ -6,6 +6,7 @@ mod geometry;
 mod instances;
 mod invalid;
 mod joints;
+mod morph;
 
 use super::*;
 use crate::scene::test_scenes::{self, load, load_allowing_outside, mesh};
