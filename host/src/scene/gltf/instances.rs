@@ -1,7 +1,6 @@
 //! Meshes that several nodes place: parts and instances, where that saves enough.
 
-use super::morph::weights;
-use super::place::{mesh_name, place_of};
+use super::place::{mesh_name, place_of, weights};
 use super::shared::{Placed, triangle_count};
 use super::{Importer, Named};
 use crate::scene::size::Size;

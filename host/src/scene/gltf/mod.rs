@@ -40,9 +40,8 @@ use gltf::mesh::{Mode, MorphTarget};
 use gltf::scene::Transform;
 use gltf::{Document, Node, Semantic};
 use gridel_core::Up;
-use morph::Weighted;
 use normal_transforms::NormalTransforms;
-use place::{place_of, transform};
+use place::{Weighted, place_of, transform, weights};
 use shared::Shared;
 use std::collections::HashMap;
 use std::path::Path;
@@ -353,7 +352,7 @@ impl Importer<'_> {
         let name = name.map_or_else(|| format!("node {}", node.index()), str::to_owned);
         let named = Named {
             mesh: &mesh,
-            weights: morph::weights(node, &mesh),
+            weights: weights(node, &mesh),
             name: &name,
         };
         let objects = self.objects(&named, world)?;

@@ -3,26 +3,14 @@
 //! The weights are those of the node, or else of the mesh. An animation does not change them.
 
 use super::Importer;
+use super::place::Weighted;
 use crate::scene::SceneError;
 use glam::DVec3;
+use gltf::Accessor;
 use gltf::mesh::MorphTarget;
-use gltf::{Accessor, Mesh, Node, Primitive};
-
-/// A part of a mesh, and the weights of its morph targets.
-#[derive(Clone, Copy)]
-pub(super) struct Weighted<'p> {
-    pub(super) part: &'p Primitive<'p>,
-    pub(super) weights: &'p [f32],
-}
 
 /// What a morph target changes.
 pub(super) type Changed<'t> = fn(&MorphTarget<'t>) -> Option<Accessor<'t>>;
-
-/// The weights of a node's mesh.
-pub(super) fn weights<'n>(node: &Node<'n>, mesh: &Mesh<'n>) -> &'n [f32] {
-    let own = node.weights().or(mesh.weights());
-    own.unwrap_or_default()
-}
 
 impl Importer<'_> {
     /// Adds the differences of a part's morph targets to positions or normals, times their weights.

@@ -1,7 +1,7 @@
 //! Normals of meshes.
 
 use super::Importer;
-use super::morph::Weighted;
+use super::place::Weighted;
 use crate::scene::normals::cofactors;
 use crate::scene::{Normals, SceneError};
 use glam::{DMat3, DMat4, DVec3};

@@ -1,4 +1,4 @@
-//! Where nodes stand.
+//! Where nodes stand, and the meshes that they place.
 
 use glam::{DMat4, DQuat, DVec3, DVec4};
 use gltf::scene::Transform;
@@ -58,4 +58,17 @@ pub(super) fn mesh_name(mesh: &Mesh<'_>) -> String {
 /// The name of a part of a mesh in messages.
 pub(super) fn place_of(mesh: &Mesh<'_>, part: &Primitive<'_>) -> String {
     format!("mesh {}, primitive {}", mesh.index(), part.index())
+}
+
+/// A part of a mesh, and the weights of its morph targets.
+#[derive(Clone, Copy)]
+pub(super) struct Weighted<'p> {
+    pub(super) part: &'p Primitive<'p>,
+    pub(super) weights: &'p [f32],
+}
+
+/// The weights of a node's mesh.
+pub(super) fn weights<'n>(node: &Node<'n>, mesh: &Mesh<'n>) -> &'n [f32] {
+    let own = node.weights().or(mesh.weights());
+    own.unwrap_or_default()
 }
