@@ -35,7 +35,7 @@ use super::{
 use crate::table::shortened;
 use animation::Motion;
 use buffers::{Buffers, MOST};
-use glam::{DMat4, DVec3};
+use glam::DMat4;
 use gltf::mesh::{Mode, MorphTarget};
 use gltf::scene::Transform;
 use gltf::{Document, Node, Semantic};
@@ -452,9 +452,7 @@ impl Importer<'_> {
         if triangles.is_empty() {
             return Ok(None);
         }
-        let precise = |position: [f32; 3]| DVec3::from_array(position.map(f64::from));
-        let mut vertices: Vec<DVec3> = vertices.into_iter().map(precise).collect();
-        self.morph(place, weighted, &mut vertices, MorphTarget::positions)?;
+        let mut vertices = self.morph(place, weighted, &vertices, MorphTarget::positions)?;
         for vertex in &mut vertices {
             *vertex = world.transform_point3(*vertex);
         }

@@ -13,14 +13,16 @@ use gltf::mesh::MorphTarget;
 pub(super) type Changed<'t> = fn(&MorphTarget<'t>) -> Option<Accessor<'t>>;
 
 impl Importer<'_> {
-    /// Adds the differences of a part's morph targets to positions or normals, times their weights.
+    /// Returns positions or normals with the differences of a part's morph targets, times their weights.
     pub(super) fn morph<'p>(
         &self,
         place: &str,
         weighted: Weighted<'p>,
-        vectors: &mut [DVec3],
+        vectors: &[[f32; 3]],
         changed: Changed<'p>,
-    ) -> Result<(), SceneError> {
+    ) -> Result<Vec<DVec3>, SceneError> {
+        let precise = |vector: [f32; 3]| DVec3::from_array(vector.map(f64::from));
+        let mut morphed: Vec<_> = vectors.iter().copied().map(precise).collect();
         let targets = weighted.part.morph_targets().zip(weighted.weights);
         for (number, (target, &weight)) in targets.enumerate() {
             let Some(accessor) = changed(&target).filter(|_| weight != 0.0) else {
@@ -39,10 +41,10 @@ impl Importer<'_> {
                     "export the file again",
                 ));
             }
-            for (vector, difference) in vectors.iter_mut().zip(differences) {
-                *vector += f64::from(weight) * DVec3::from_array(difference.map(f64::from));
+            for (vector, difference) in morphed.iter_mut().zip(differences) {
+                *vector += f64::from(weight) * precise(difference);
             }
         }
-        Ok(())
+        Ok(morphed)
     }
 }

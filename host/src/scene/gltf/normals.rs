@@ -32,9 +32,7 @@ impl Importer<'_> {
                 "export the file again",
             ));
         }
-        let precise = |normal: [f32; 3]| DVec3::from_array(normal.map(f64::from));
-        let mut normals: Vec<DVec3> = normals.into_iter().map(precise).collect();
-        self.morph(place, weighted, &mut normals, MorphTarget::normals)?;
+        let mut normals = self.morph(place, weighted, &normals, MorphTarget::normals)?;
         let (turn, _) = cofactors(DMat3::from_mat4(*world));
         for normal in &mut normals {
             *normal = turn * *normal;

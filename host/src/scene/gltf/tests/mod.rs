@@ -7,6 +7,7 @@ mod instances;
 mod invalid;
 mod joints;
 mod morph;
+mod scales;
 
 use super::*;
 use crate::scene::test_scenes::{self, load, load_allowing_outside, mesh};
@@ -15,6 +16,7 @@ use crate::scene::{
 };
 use base64::Engine as _;
 use base64::engine::general_purpose::STANDARD;
+use glam::DVec3;
 use serde_json::{Value, json};
 
 /// Bytes of a unit square in the plane z = 0 and of two triangles of it.
