@@ -32,7 +32,7 @@ use std::ops::{Deref, DerefMut};
 /// assert_ne!(moved.triangle(0), scene.triangle(0));
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
-pub type HeapDeformation<V> = DeformationIn<V, Grown<V>, Grown<Pair>>;
+pub type HeapDeformation<V> = DeformationIn<V, Grown<V>, Grown<Pair>, Grown<[i16; 2]>>;
 
 /// Records on the heap, as many as are needed.
 #[derive(Clone, Debug)]

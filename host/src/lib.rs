@@ -63,6 +63,7 @@ pub mod layer;
 mod live;
 pub mod measure;
 pub mod merge;
+pub mod morphed;
 pub mod npy;
 mod observed;
 pub mod openexr;

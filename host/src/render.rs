@@ -114,7 +114,7 @@ pub fn render(
 ///
 /// let tracks = Tracks::from_bytes(blob.bytes())?;
 /// // The first tenth of a second, in four steps.
-/// let states = exposed(0, tracks.ticks_per_second() / 10, 4).map(|time| State::at(&scene, &tracks, time));
+/// let states = exposed(0, tracks.ticks_per_second() / 10, 4).map(|time| State::at(&blob, &scene, &tracks, time));
 /// let states = states.collect::<Result<Vec<_>, _>>()?;
 /// let moments = states.iter().map(|state| state.apply(&scene));
 /// let moments = moments.collect::<Result<Vec<_>, _>>()?;

@@ -1,5 +1,7 @@
-//! Camera, lights, materials and instances of a blob at a time, as its tracks say.
+//! Camera, lights, materials, meshes and instances of a blob at a time, as its tracks say.
 
+use crate::blob::Blob;
+use crate::morphed::{MorphError, morphed};
 use bytemuck::Zeroable;
 use gridel_core::format::instance::Instance;
 use gridel_core::format::record::{Light, Material, Pair, View};
@@ -21,7 +23,7 @@ use gridel_core::{BlobError, Motion, PosesView, Scene, Tracks};
 /// let scene = blob.scene()?;
 /// let tracks = Tracks::from_bytes(blob.bytes())?;
 /// // Seen from the side, after a quarter of a turn.
-/// let state = State::at(&scene, &tracks, ticks(&tracks, 1.0))?;
+/// let state = State::at(&blob, &scene, &tracks, ticks(&tracks, 1.0))?;
 /// let seen = state.apply(&scene)?;
 /// assert!(seen.view().eye[0] > 0 && seen.view().eye[2] == 0);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
@@ -33,6 +35,8 @@ pub struct State {
     pub materials: Vec<Material>,
     /// `None` where no instance hangs on a joint.
     pub poses: Option<Poses>,
+    /// The blob with its meshes at the weights of their morph targets; `None` where they are at rest.
+    pub morphed: Option<Blob>,
 }
 
 /// Instances where joints have moved them.
@@ -108,18 +112,26 @@ pub enum StateError {
     /// An instance cannot be where it is led at this time, in seconds.
     #[error("at {seconds} s an instance cannot be placed: {source}")]
     Instances { seconds: f64, source: BlobError },
+    /// A mesh cannot have the weights of this time, in seconds.
+    #[error("at {seconds} s a mesh cannot take its shape: {source}")]
+    Mesh { seconds: f64, source: MorphError },
     /// The tracks are of another blob.
     #[error(transparent)]
     Blob(#[from] BlobError),
 }
 
 impl State {
-    /// The state of a scene at a time, in ticks of its tracks.
+    /// The state of a blob's scene at a time, in ticks of its tracks.
     ///
     /// # Errors
-    /// If the camera would have no direction or would look along up, or if an instance leaves the scene's box. Also if
-    /// the tracks are not those of the scene's blob.
-    pub fn at(scene: &Scene<'_>, tracks: &Tracks<'_>, time: i32) -> Result<Self, StateError> {
+    /// If the camera would have no direction or would look along up, an instance leaves the scene's box, or the corners
+    /// of a triangle come to lie on a line. Also if scene or tracks are those of another blob.
+    pub fn at(
+        blob: &Blob,
+        scene: &Scene<'_>,
+        tracks: &Tracks<'_>,
+        time: i32,
+    ) -> Result<Self, StateError> {
         let seconds = f64::from(time) / f64::from(tracks.ticks_per_second());
         let camera = tracks
             .camera_at(time)
@@ -131,19 +143,31 @@ impl State {
         tracks.materials_at(scene, time, &mut materials)?;
         let poses = Poses::at(scene, tracks, time)
             .map_err(|source| StateError::Instances { seconds, source })?;
+        let mut weights = tracks.weights_at_rest().to_vec();
+        tracks.weights_at(time, &mut weights)?;
+        let morphed = match weights == tracks.weights_at_rest() {
+            true => None,
+            false => morphed(blob, scene, &weights)
+                .map_err(|source| StateError::Mesh { seconds, source })?,
+        };
         Ok(Self {
             view,
             lights,
             materials,
             poses,
+            morphed,
         })
     }
 
-    /// The scene in this state.
+    /// The scene in this state. Where meshes have moved, it is that of another blob.
     ///
     /// # Errors
     /// If a value is out of its range, which that of a track never is.
     pub fn apply<'a>(&'a self, scene: &Scene<'a>) -> Result<Scene<'a>, BlobError> {
+        let scene = match &self.morphed {
+            Some(blob) => blob.scene()?,
+            None => *scene,
+        };
         let scene = scene.with_view(&self.view)?.with_lights(&self.lights)?;
         let scene = scene.with_materials(&self.materials)?;
         match &self.poses {

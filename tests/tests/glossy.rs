@@ -398,6 +398,7 @@ fn rough_mirrors_with_their_own_normals_lose_no_rays() {
         let normals = Normals {
             vectors: vec![DVec3::new(sine, cosine, 0.0)],
             triangles: vec![[0; 3]],
+            changes: Vec::new(),
         };
         let mut mesh = scenes::of([Shape::Mesh {
             vertices: vertices.to_vec(),

@@ -32,7 +32,7 @@ fn blurred(blob: &Blob, job: &Job, open: u32, moments: u16) -> Vec<[u16; 3]> {
     let scene = blob.scene().expect("a scene");
     let tracks = Tracks::from_bytes(blob.bytes()).expect("tracks");
     let states: Vec<_> = exposed(0, open, moments)
-        .map(|time| State::at(&scene, &tracks, time).expect("a state"))
+        .map(|time| State::at(blob, &scene, &tracks, time).expect("a state"))
         .collect();
     let scenes: Vec<_> = states
         .iter()

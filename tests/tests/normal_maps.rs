@@ -68,6 +68,7 @@ fn square(lies: Lies, scale: f64, bilinear: bool, to_light: DVec3) -> scene::Sce
         colors: Vec::new(),
         coordinates: CORNERS.map(at).to_vec(),
         triangles: TRIANGLES.to_vec(),
+        displacements: Vec::new(),
     };
     scene.materials = vec![Material {
         diffuse: Diffuse::Plain([1.0; 3]),
@@ -233,6 +234,7 @@ fn make_smooth(scene: &mut scene::Scene) {
             .map(|[x, y]| DVec3::new(0.4 * x, 0.4 * y, 1.0).normalize())
             .to_vec(),
         triangles: TRIANGLES.to_vec(),
+        changes: Vec::new(),
     };
 }
 

@@ -52,6 +52,7 @@ fn floor(factor: f64) -> (Shape, Attributes) {
         colors: Vec::new(),
         coordinates: CORNERS.map(at).to_vec(),
         triangles: TRIANGLES.to_vec(),
+        displacements: Vec::new(),
     };
     (mesh, attributes)
 }

@@ -40,6 +40,25 @@ pub enum DeformError {
         /// Its number in the order of the scene file.
         primitive: u32,
     },
+    /// The blob has more normals that morph targets change than the deformation can hold.
+    Normals {
+        /// Normals of the blob.
+        found: usize,
+        /// Normals that the deformation can hold.
+        most: usize,
+    },
+    /// There are more or fewer weights than morph targets.
+    Weights {
+        /// Weights that were given.
+        found: usize,
+        /// Morph targets of the scene.
+        expected: usize,
+    },
+    /// The weight of a morph target is beyond ±64.
+    Weight {
+        /// The number of the morph target.
+        number: usize,
+    },
     /// Vertices moved since the boxes were computed.
     NotRefitted,
 }
@@ -73,6 +92,18 @@ impl fmt::Display for DeformError {
             Self::Collapsed { primitive } => write!(
                 f,
                 "the corners of triangle {primitive} lie on a line: move one of them aside"
+            ),
+            Self::Normals { found, most } => write!(
+                f,
+                "morph targets change {found} normals, and the deformation has room for {most}"
+            ),
+            Self::Weights { found, expected } => write!(
+                f,
+                "there are {found} weights, and the scene has {expected} morph targets: give one for each"
+            ),
+            Self::Weight { number } => write!(
+                f,
+                "the weight of morph target {number} is beyond ±64, which are 2^30: give it 24 fraction bits"
             ),
             Self::NotRefitted => {
                 f.write_str("vertices moved since the boxes were computed: call `refit`")

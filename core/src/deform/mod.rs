@@ -19,8 +19,10 @@
 
 mod error;
 mod fit;
+mod morph;
 
 pub use error::DeformError;
+pub use morph::Morph;
 
 use crate::format::Structure;
 use crate::format::record::Pair;
@@ -35,7 +37,7 @@ use heapless::Vec;
 /// `V` is [`Vertex16`](crate::format::record::Vertex16) for a blob of at most 16 lattice bits, and
 /// [`Vertex24`](crate::format::record::Vertex24) for others. [`Requirements`](crate::Requirements) states `VERTICES`
 /// and `PAIRS` of a blob, so the size is known at compile time. It is 6 or 12 bytes per vertex, 32 bytes per pair, and
-/// a few words.
+/// a few words. Where [morph targets](Morph) change normals, `NORMALS` is the number of normals, 4 bytes each.
 ///
 /// ```
 /// use gridel_core::format::record::Vertex24;
@@ -62,28 +64,34 @@ use heapless::Vec;
 /// // Queries and pictures of `moved` see the mesh there.
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
-pub type Deformation<V, const VERTICES: usize, const PAIRS: usize> =
-    DeformationIn<V, Vec<V, VERTICES>, Vec<Pair, PAIRS>>;
+pub type Deformation<V, const VERTICES: usize, const PAIRS: usize, const NORMALS: usize = 0> =
+    DeformationIn<V, Vec<V, VERTICES>, Vec<Pair, PAIRS>, Vec<[i16; 2], NORMALS>>;
 
 /// A [`Deformation`] in memory of any sort. On hosts it grows with the scene.
 #[derive(Clone, Debug)]
-pub struct DeformationIn<V, A, B> {
+pub struct DeformationIn<V, A, B, C> {
     vertices: A,
     pairs: B,
+    /// Empty unless morph targets change them.
+    normals: C,
     /// The checksum of the blob that it was made of.
     blob: u32,
     /// True if the boxes are those of the vertices.
     refitted: bool,
+    /// True if the mesh is shaded by normals of vertices.
+    keeps_normals: bool,
     vertex: PhantomData<V>,
 }
 
-impl<V, A: Default, B: Default> Default for DeformationIn<V, A, B> {
+impl<V, A: Default, B: Default, C: Default> Default for DeformationIn<V, A, B, C> {
     fn default() -> Self {
         Self {
             vertices: A::default(),
             pairs: B::default(),
+            normals: C::default(),
             blob: 0,
             refitted: false,
+            keeps_normals: false,
             vertex: PhantomData,
         }
     }
@@ -109,15 +117,19 @@ impl<T: Copy, const MOST: usize> Memory<T> for Vec<T, MOST> {
     }
 }
 
-impl<V, const VERTICES: usize, const PAIRS: usize> Deformation<V, VERTICES, PAIRS> {
+impl<V, const VERTICES: usize, const PAIRS: usize, const NORMALS: usize>
+    Deformation<V, VERTICES, PAIRS, NORMALS>
+{
     /// A deformation without a scene, for a `static`: [`reset`](DeformationIn::reset) makes it the deformation of a
     /// scene.
     pub const fn new() -> Self {
         Self {
             vertices: Vec::new(),
             pairs: Vec::new(),
+            normals: Vec::new(),
             blob: 0,
             refitted: false,
+            keeps_normals: false,
             vertex: PhantomData,
         }
     }
@@ -139,7 +151,7 @@ impl<V, const VERTICES: usize, const PAIRS: usize> Deformation<V, VERTICES, PAIR
 /// The structures that a deforming scene can hold.
 pub const STRUCTURES: [Structure; 2] = [Structure::List, Structure::Bvh];
 
-impl<V: Vertex, A: Memory<V>, B: Memory<Pair>> DeformationIn<V, A, B> {
+impl<V: Vertex, A: Memory<V>, B: Memory<Pair>, C: Memory<[i16; 2]>> DeformationIn<V, A, B, C> {
     /// Copies vertices and boxes of a scene, or of a part, and replaces the present ones.
     ///
     /// # Errors
@@ -167,6 +179,7 @@ impl<V: Vertex, A: Memory<V>, B: Memory<Pair>> DeformationIn<V, A, B> {
             });
         }
         self.blob = scene.header().checksum;
+        self.keeps_normals = false;
         self.refitted = true;
         Ok(())
     }
@@ -180,8 +193,14 @@ impl<V: Vertex, A: Memory<V>, B: Memory<Pair>> DeformationIn<V, A, B> {
     /// those of [`Vertex24`](crate::format::record::Vertex24) 1/256 unit. The order is the blob's own;
     /// [`Scene::stored_vertices`] returns their places at rest. Call [`refit`](Self::refit) afterwards.
     pub fn vertices_mut(&mut self) -> &mut [V] {
-        self.refitted = false;
+        (self.refitted, self.keeps_normals) = (false, false);
         &mut self.vertices
+    }
+
+    /// The normals that morph targets have changed, as the blob [stores](crate::geometry::smooth) them; none where they
+    /// change none.
+    pub fn normals(&self) -> &[[i16; 2]] {
+        &self.normals
     }
 
     /// The pairs of the hierarchy, with the boxes of the pose that was refitted last.
@@ -214,7 +233,7 @@ impl<V: Vertex, A: Memory<V>, B: Memory<Pair>> DeformationIn<V, A, B> {
             return Err(DeformError::NoVertex { vertex });
         };
         *held = V::from_steps(steps);
-        self.refitted = false;
+        (self.refitted, self.keeps_normals) = (false, false);
         Ok(())
     }
 
@@ -262,23 +281,33 @@ impl<'a> Scene<'a> {
 
     /// Returns the scene with the vertices and boxes of a deformation in place of the blob's own. Costs nothing per ray.
     ///
-    /// Triangles are shaded flat, because the normals of a blob are those at rest.
+    /// Triangles are shaded flat, because the normals of a blob are those at rest. After
+    /// [`morph`](DeformationIn::morph) they are shaded by the normals that it makes.
     ///
     /// A part is deformed likewise: pass it to [`Parts::with_part`](crate::Parts::with_part).
     ///
     /// # Errors
     /// If the deformation was made of another scene, or vertices moved since it was refitted.
-    pub fn with_deformation<V: Vertex, A: Memory<V>, B: Memory<Pair>>(
+    pub fn with_deformation<V: Vertex, A, B, C>(
         &self,
-        deformation: &'a DeformationIn<V, A, B>,
-    ) -> Result<Self, DeformError> {
+        deformation: &'a DeformationIn<V, A, B, C>,
+    ) -> Result<Self, DeformError>
+    where
+        A: Memory<V>,
+        B: Memory<Pair>,
+        C: Memory<[i16; 2]>,
+    {
         deformation.check_scene(self)?;
         if !deformation.refitted {
             return Err(DeformError::NotRefitted);
         }
         let mut scene = *self;
         scene.space.shapes.vertices.replace(&deformation.vertices);
-        scene.space.shapes.drop_normals();
+        if !deformation.keeps_normals {
+            scene.space.shapes.drop_normals();
+        } else if !deformation.normals.is_empty() {
+            scene.space.shapes.replace_normals(&deformation.normals);
+        }
         scene.structures.replace_pairs(&deformation.pairs);
         Ok(scene)
     }

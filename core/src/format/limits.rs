@@ -48,6 +48,12 @@ pub const MAX_INSTANCE_LEVELS: usize = 24;
 /// The least and the greatest scale of a joint, with 24 fraction bits: 1/16384 and 64.
 pub const SCALES: [i32; 2] = [1 << 10, 1 << 30];
 
+/// The greatest magnitude of the weight of a morph target, with 24 fraction bits: 64.
+pub const LARGEST_WEIGHT: i32 = 1 << 30;
+
+/// The greatest magnitude of a vertex' displacement by a morph target, in steps of its storage.
+pub const LARGEST_DISPLACEMENT: i32 = 1 << 28;
+
 /// The powers of two by which an instance scales from scene units to units of its part.
 pub const INSTANCE_EXPONENT: [i64; 2] = [-4, 18];
 

@@ -147,7 +147,7 @@ texts! {
         FirstTime => "first time",
         LastTime => "last time",
         TrackTarget => "target",
-        TrackIndex => "number of a light, material or joint",
+        TrackIndex => "number of a light, material, joint or morph target",
         Interpolation => "interpolation",
         Keys => "number of keys",
         KeyTime => "time of a key",
@@ -158,6 +158,10 @@ texts! {
         Scale => "scale",
         Joint => "joint",
         RotationAngle => "angle to the next rotation",
+        // Morph targets.
+        Weight => "weight",
+        MorphTarget => "number of a morph target",
+        Displacement => "displacement",
         // Parts and instances.
         Start => "start",
         Length => "length",
@@ -227,6 +231,8 @@ texts! {
         JointOrder => "it hangs on itself or on a joint behind it",
         WrongLight => "its light is of the other kind, which has no such property",
         ZeroRotation => "its rotation has length 0",
+        // Morph targets.
+        DisplacementOrder => "it does not follow the one before it in the order of vertices and morph targets",
         // Parts and instances.
         NotRotation => "its matrix is not a rotation times a factor from 1/2 to 1",
         OtherStructures => "its structures are not those of the scene",

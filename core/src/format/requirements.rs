@@ -44,6 +44,10 @@ pub struct Requirements {
     pub vertices: usize,
     /// Pairs of the structure [`Bvh`](crate::accel), for a [`Deformation`](crate::deform::Deformation).
     pub pairs: usize,
+    /// Normals of vertices that morph targets change, for a [`Deformation`](crate::deform::Deformation).
+    pub moving_normals: usize,
+    /// Morph targets, for [`Tracks::weights_at`](crate::Tracks::weights_at).
+    pub morph_targets: usize,
     structures: u32,
     /// A bit for each [`SectionKind`] of which there are records.
     sections: u128,
@@ -112,6 +116,8 @@ impl Requirements {
             height: 0,
             vertices: 0,
             pairs: 0,
+            moving_normals: 0,
+            morph_targets: 0,
             structures: proved!(word(blob, offset_of!(Header, structures))),
             sections: 0,
             clusters_alone: false,
@@ -120,7 +126,7 @@ impl Requirements {
             display_values: false,
         };
         let sections = proved!(half(blob, offset_of!(Header, section_count))) as usize;
-        let mut places = [0; 2];
+        let (mut places, mut normals) = ([0; 2], 0);
         let mut index = 0;
         while index < sections {
             let entry = size_of::<Header>() + index * size_of::<SectionEntry>();
@@ -143,6 +149,13 @@ impl Requirements {
                 demand.vertices = count as usize;
             } else if kind == SectionKind::Pairs as u16 {
                 demand.pairs = count as usize;
+            } else if kind == SectionKind::Normals as u16 {
+                normals = count as usize;
+            } else if kind == SectionKind::NormalChanges as u16 {
+                // The normals come before.
+                demand.moving_normals = normals;
+            } else if kind == SectionKind::MorphWeights as u16 {
+                demand.morph_targets = count as usize;
             } else if kind == SectionKind::Triangles as u16 {
                 demand.wide_indices = stride > size_of::<[u16; 3]>();
             } else if kind == SectionKind::Parts as u16 {

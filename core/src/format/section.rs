@@ -261,6 +261,19 @@ macro_rules! sections {
             /// The numbers of the materials with a priority, from the highest on: at most 8, each one of glass. Absent where
             /// there are none.
             Media = 99, "media", [u32], "medium" of "";
+            /// For each morph target of the scene, its weight at rest, 24 fraction bits: in the blob, and again in every
+            /// part with displacements.
+            MorphWeights = 100, "morph-weights", [i32], "morph target" of "";
+            /// For each [displacement](crate::deform::Morph) of a vertex by a morph target, the vertex. Vertices ascend, and
+            /// for each vertex the morph targets.
+            MorphVertices = 101, "morph-vertices", [u8, u16, [u8; 3], u32], "displacement" of "morph-vertices";
+            /// For each displacement, its morph target.
+            MorphNumbers = 102, "morph-numbers", [u8, u16, [u8; 3], u32], "displacement" of "morph-numbers";
+            /// How far each vertex is displaced by a weight of 1, in steps of its storage: units for 16 bits, else 1/256 unit.
+            Displacements = 103, "displacements", [[i16; 3], [i32; 3]], "displacement" of "";
+            /// For each displacement, by how much a weight of 1 changes the vertex' [normal](crate::geometry::smooth) on its
+            /// octahedron, halved. Absent where normals do not change.
+            NormalChanges = 104, "normal-changes", [[i16; 3]], "change" of "normals";
             $(
                 #[doc = concat!(
                     "[`", stringify!($record), "`](crate::geometry::", stringify!($module),

@@ -4,7 +4,7 @@
 //! number of words per key follows from the target and its interpolation: see [`Track::words`].
 
 use crate::format::layout::records;
-use crate::format::limits::{FIELD_OF_VIEW, SCALES};
+use crate::format::limits::{FIELD_OF_VIEW, LARGEST_WEIGHT, SCALES};
 use crate::format::reason::Field;
 use bytemuck::{Pod, Zeroable};
 
@@ -32,7 +32,7 @@ records! {
         pub target: u16,
         /// How it moves from key to key: an [`Interpolation`].
         pub interpolation: u16,
-        /// The number of the light, material or joint; 0 for the camera.
+        /// The number of the light, material, joint or morph target; 0 for the camera.
         pub index: u32,
         /// Number of keys.
         #[valid(Keys: 1..=u32::MAX as i64)]
@@ -109,6 +109,8 @@ pub enum ValueKind {
     Shift,
     /// A scale with 24 fraction bits: see [`Motion::SCALES`](crate::Motion::SCALES).
     Scale,
+    /// The weight of a morph target, with 24 fraction bits.
+    Weight,
     /// Red, green and blue radiance, 20 fraction bits.
     Radiance,
     /// Red, green and blue ratios, 30 fraction bits.
@@ -119,7 +121,7 @@ impl ValueKind {
     /// Numbers that are interpolated.
     pub const fn components(self) -> usize {
         match self {
-            Self::FieldOfView | Self::Turns | Self::Scale => 1,
+            Self::FieldOfView | Self::Turns | Self::Scale | Self::Weight => 1,
             Self::Rotation => 4,
             _ => 3,
         }
@@ -133,6 +135,7 @@ impl ValueKind {
             Self::UnitDirection | Self::Rotation => [-RATIO, RATIO],
             Self::FieldOfView => FIELD_OF_VIEW,
             Self::Scale => SCALES,
+            Self::Weight => [-LARGEST_WEIGHT, LARGEST_WEIGHT],
             Self::Radiance => [0, i32::MAX],
             Self::Ratios => [0, RATIO],
         }
@@ -153,6 +156,7 @@ impl ValueKind {
         match self {
             Self::Position | Self::Shift => Field::Coordinate,
             Self::Scale => Field::Scale,
+            Self::Weight => Field::Weight,
             Self::Direction | Self::UnitDirection => Field::Direction,
             Self::FieldOfView => Field::FieldOfView,
             Self::Rotation | Self::Turns => Field::Rotation,
@@ -174,7 +178,8 @@ macro_rules! targets {
             /// All of them, by their number in the blob.
             pub const ALL: [Self; [$($number),*].len()] = [$(Self::$target),*];
 
-            /// Whose property it is, and its name; the camera is one, lights, materials and joints have numbers.
+            /// Whose property it is, and its name; the camera is one, lights, materials, joints and morph
+            /// targets have numbers.
             pub const fn name(self) -> &'static str {
                 match self {
                     $(Self::$target => $name,)*
@@ -226,6 +231,8 @@ targets! {
     JointShift = 15, "joint.shift", Shift;
     /// How much larger what hangs on a joint is than at rest.
     JointScale = 16, "joint.scale", Scale;
+    /// How much of a morph target meshes have.
+    MorphWeight = 17, "morph.weight", Weight;
 }
 
 impl TrackTarget {
@@ -246,7 +253,7 @@ impl TrackTarget {
 
     /// Returns true if it is a property of a joint.
     pub const fn is_of_joint(self) -> bool {
-        self as u16 >= Self::JointRotation as u16
+        self as u16 >= Self::JointRotation as u16 && (self as u16) < Self::MorphWeight as u16
     }
 }
 

@@ -402,6 +402,11 @@ impl<'a> Shapes<'a> {
         self.normals = SmoothOnly::new(Default::default);
     }
 
+    /// Replaces the normals by others.
+    pub(crate) fn replace_normals(&mut self, others: &'a [[i16; 2]]) {
+        self.normals = SmoothOnly::new(|| others);
+    }
+
     /// The normals of the first vertices; none in builds without the code for them.
     pub(crate) fn normals(&self) -> &'a [[i16; 2]] {
         self.normals.get().copied().unwrap_or_default()

@@ -69,6 +69,38 @@ fn unfold([x, y]: [i16; 2]) -> [i16; 3] {
     [x as i16, y as i16, z as i16]
 }
 
+/// Returns a stored normal after a change on its octahedron, halves with 24 fraction bits. It stays where the change
+/// leaves no direction.
+pub(crate) fn changed(stored: [i16; 2], change: [i64; 3]) -> [i16; 2] {
+    let mut halves = change.into_iter();
+    let sum = unfold(stored).map(|x| {
+        let half = halves.next().unwrap_or_default();
+        // At most 2^40.
+        let change = half.saturating_add(1 << 22) >> 23;
+        change.wrapping_add(x.into())
+    });
+    let all = sum.iter().fold(0, |all, x| all | x.unsigned_abs());
+    // Magnitudes of 16 bits, whose products with the largest have 31.
+    let down = 48_u32.saturating_sub(all.leading_zeros());
+    let [x, y, z] = sum.map(|x| (x >> down) as i32);
+    let size = [x, y, z].map(i32::unsigned_abs);
+    let [across, up, along] = size;
+    let length = across.wrapping_add(up).wrapping_add(along);
+    let largest = u32::from(LARGEST.unsigned_abs());
+    let part = |x: u32| {
+        let rounded = x.wrapping_mul(largest).wrapping_add(length / 2);
+        rounded.checked_div(length).map(|it| it as i16)
+    };
+    let (Some(mut across), Some(mut up)) = (part(across), part(up)) else {
+        return stored;
+    };
+    if z < 0 {
+        (across, up) = (LARGEST.wrapping_sub(up), LARGEST.wrapping_sub(across));
+    }
+    let with_sign = |size: i16, of: i32| if of < 0 { size.wrapping_neg() } else { size };
+    [with_sign(across, x), with_sign(up, y)]
+}
+
 /// The normal of length 1 of a stored one.
 #[inline(always)]
 pub(crate) fn decode<N: Arithmetic>(stored: [i16; 2]) -> [N; 3] {

@@ -22,7 +22,12 @@ pub(super) fn check(
     for (index, track) in records.tracks.iter().enumerate() {
         let section = SectionKind::Tracks;
         let at = At { section, index };
-        let target = check_track(at, track, lights, [materials, records.joints.len()])?;
+        let counts = Counts {
+            materials,
+            joints: records.joints.len(),
+            morph_targets: records.weights.len(),
+        };
+        let target = check_track(at, track, lights, counts)?;
         at.ensure(last < Some((target, track.index)), Reason::TrackOrder)?;
         last = Some((target, track.index));
         if target.is_of_camera() {
@@ -92,12 +97,20 @@ fn is_whole(camera: u32) -> bool {
     [0, aimed, aimed | bit(CameraOrbit), turned].contains(&camera)
 }
 
+/// The numbers of what tracks can move, lights aside.
+#[derive(Clone, Copy)]
+struct Counts {
+    materials: usize,
+    joints: usize,
+    morph_targets: usize,
+}
+
 /// Proves the numbers in a track; returns its target.
 fn check_track(
     at: At,
     track: &Track,
     lights: &[Light],
-    [materials, joints]: [usize; 2],
+    counts: Counts,
 ) -> Result<TrackTarget, BlobError> {
     let out_of_range = |field, found: u16, count: usize| {
         let range = [0, count as i64 - 1];
@@ -118,9 +131,11 @@ fn check_track(
     let count = if target.is_of_camera() {
         1
     } else if target.is_of_material() {
-        materials
+        counts.materials
     } else if target.is_of_joint() {
-        joints
+        counts.joints
+    } else if target == TrackTarget::MorphWeight {
+        counts.morph_targets
     } else {
         lights.len()
     };

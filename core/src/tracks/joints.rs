@@ -1,6 +1,6 @@
 //! Joints: instances at a time.
 
-use crate::format::track::{Joint, Track, TrackTarget};
+use crate::format::track::{Joint, TrackTarget};
 use crate::format::{BlobError, SectionKind};
 use crate::scene::{Motion, PosesView, Position, Scene};
 use crate::tracks::Tracks;
@@ -113,29 +113,16 @@ impl<'a> Tracks<'a> {
     fn own_motion(&self, number: u32, joint: &Joint, time: i32) -> Motion {
         let pivot = Position(joint.pivot);
         let mut own = Motion::REST;
-        if let Some([scale]) = self.of_joint(TrackTarget::JointScale, number, time) {
+        if let Some([scale]) = self.numbered(TrackTarget::JointScale, number, time) {
             own = Motion::scale(pivot, scale);
         }
-        if let Some(rotation) = self.of_joint(TrackTarget::JointRotation, number, time) {
+        if let Some(rotation) = self.numbered(TrackTarget::JointRotation, number, time) {
             let turn = Motion::rotation(pivot, rotation);
             own = turn.map_or(own, |turn| own.then(&turn));
         }
-        if let Some(shift) = self.of_joint(TrackTarget::JointShift, number, time) {
+        if let Some(shift) = self.numbered(TrackTarget::JointShift, number, time) {
             own = own.then(&Motion::shift(shift));
         }
         own
-    }
-
-    fn of_joint<const N: usize>(
-        &self,
-        target: TrackTarget,
-        number: u32,
-        time: i32,
-    ) -> Option<[i32; N]> {
-        let key = |track: &Track| (track.target, track.index);
-        let searched = (target as u16, number);
-        let index = self.0.tracks.binary_search_by_key(&searched, key).ok()?;
-        let track = self.0.tracks.get(index)?;
-        Some(self.sample(track, target.kind(), time)?.value())
     }
 }

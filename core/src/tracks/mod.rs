@@ -1,10 +1,11 @@
-//! Tracks: changes of the camera, lights, materials and instances of a blob with time.
+//! Tracks: changes of the camera, lights, materials, instances and meshes of a blob with time.
 //!
 //! A blob can hold tracks, each of which gives a property values at certain times. [`Tracks`] reads them in place, and
 //! computes the state at any time in integers: the same on every machine and in every number format. A changed scene
 //! borrows the state in the same way as a program's own values. See [`Scene::with_view`](crate::Scene::with_view),
 //! [`with_lights`](crate::Scene::with_lights), [`with_materials`](crate::Scene::with_materials) and
-//! [`with_poses`](crate::Scene::with_poses).
+//! [`with_poses`](crate::Scene::with_poses); weights of morph targets are for
+//! [`Deformation::morph`](crate::deform::DeformationIn::morph).
 
 mod check;
 mod interpolate;
@@ -61,8 +62,8 @@ impl<'a> Tracks<'a> {
     /// Checks the tracks of a blob and returns them. A blob without tracks is valid; the result is then empty.
     ///
     /// Proves that tracks use all keys and words in their order, that times ascend, and that every value is in its
-    /// range. Proves also that lights, materials and joints exist, and that joints hang on those before them. A moving
-    /// camera has all tracks that it needs. Costs time linear in the number of keys.
+    /// range. Proves also that lights, materials, joints and morph targets exist, and that joints hang on those before
+    /// them. A moving camera has all tracks that it needs. Costs time linear in the number of keys.
     ///
     /// # Errors
     /// If a proof fails, or the header or the section table is invalid.
@@ -86,6 +87,7 @@ impl<'a> Tracks<'a> {
             words: sections.records(SectionKind::TrackWords)?,
             joints: sections.records(SectionKind::Joints)?,
             instance_joints: sections.records(SectionKind::InstanceJoints)?,
+            weights: sections.records(SectionKind::MorphWeights)?,
         };
         let lights: &[Light] = sections.records(SectionKind::Lights)?;
         let materials: &[Material] = sections.records(SectionKind::Materials)?;

@@ -12,4 +12,6 @@ pub(super) struct Records<'a> {
     pub(super) joints: &'a [Joint],
     /// For each instance, the joint on which it hangs.
     pub(super) instance_joints: &'a [u32],
+    /// The weights of morph targets at rest.
+    pub(super) weights: &'a [i32],
 }

@@ -1,7 +1,7 @@
-//! Camera, lights and materials at a time.
+//! Camera, lights, materials and weights of morph targets at a time.
 
 use crate::format::record::{Light, Material};
-use crate::format::track::TrackTarget;
+use crate::format::track::{Track, TrackTarget};
 use crate::format::{BlobError, SectionKind};
 use crate::number::{Angle, Fixed, Scalar, Vectors};
 use crate::render::{Camera, CameraError};
@@ -35,6 +35,20 @@ impl Tracks<'_> {
             None => eye,
         };
         Camera::look_at(eye, target, up, field_of_view).map(Some)
+    }
+
+    /// The value of the track that moves a numbered thing.
+    pub(super) fn numbered<const N: usize>(
+        &self,
+        target: TrackTarget,
+        number: u32,
+        time: i32,
+    ) -> Option<[i32; N]> {
+        let key = |track: &Track| (track.target, track.index);
+        let searched = (target as u16, number);
+        let index = self.0.tracks.binary_search_by_key(&searched, key).ok()?;
+        let track = self.0.tracks.get(index)?;
+        Some(self.sample(track, target.kind(), time)?.value())
     }
 
     fn camera<const N: usize>(&self, target: TrackTarget, time: i32) -> Option<[i32; N]> {
@@ -128,6 +142,26 @@ impl Tracks<'_> {
             }
         }
         Ok(())
+    }
+
+    /// Writes the weights of all morph targets at a time, with 24 fraction bits, for
+    /// [`Deformation::morph`](crate::deform::DeformationIn::morph). Those without a track keep their weights at rest.
+    ///
+    /// # Errors
+    /// If there are more or fewer weights than morph targets.
+    pub fn weights_at(&self, time: i32, weights: &mut [i32]) -> Result<(), BlobError> {
+        copy(SectionKind::MorphWeights, self.0.weights, weights)?;
+        for (weight, number) in weights.iter_mut().zip(0..) {
+            if let Some([moved]) = self.numbered(TrackTarget::MorphWeight, number, time) {
+                *weight = moved;
+            }
+        }
+        Ok(())
+    }
+
+    /// The weights of morph targets at rest.
+    pub fn weights_at_rest(&self) -> &[i32] {
+        self.0.weights
     }
 }
 

@@ -7,7 +7,7 @@ use super::report::{Evidence, Figure, Finding, Key, Outcome, Record, ReferencePi
 use crate::blob::{Blob, is_blob};
 use crate::compile::{self, Options};
 use crate::explained;
-use crate::measure::Rendered;
+use crate::measure::{Deforming, Rendered};
 use crate::picture::hash;
 use crate::scene::{self, ImportOptions, Posed};
 use crate::state::{State, ticks};
@@ -74,7 +74,7 @@ impl Run<'_> {
         let blob = self.blob()?;
         let invalid = |error| format!("{}: {error}", check.scene.path.display());
         let scene = blob.scene().map_err(invalid)?;
-        let state = self.state(&scene, blob.bytes())?;
+        let state = self.state(&blob, &scene)?;
         let shown = match &state {
             Some(state) => state.apply(&scene).map_err(|error| error.to_string())?,
             None => scene,
@@ -109,19 +109,20 @@ impl Run<'_> {
     }
 
     /// The state of the scene at the check's time.
-    fn state(&self, scene: &Scene<'_>, blob: &[u8]) -> Result<Option<State>, String> {
+    fn state(&self, blob: &Blob, scene: &Scene<'_>) -> Result<Option<State>, String> {
         let Some(seconds) = self.check.time else {
             return Ok(None);
         };
         let path = self.check.scene.path.display();
-        let tracks = Tracks::from_bytes(blob).map_err(|error| format!("{path}: {error}"))?;
+        let tracks =
+            Tracks::from_bytes(blob.bytes()).map_err(|error| format!("{path}: {error}"))?;
         if tracks.is_empty() && matches!(self.posed, Some(Posed::AtTime | Posed::Always)) {
             return Ok(None);
         }
         if tracks.is_empty() {
             return Err(format!("{path}: nothing moves, so there is no `time`"));
         }
-        let state = State::at(scene, &tracks, ticks(&tracks, seconds));
+        let state = State::at(blob, scene, &tracks, ticks(&tracks, seconds));
         state.map(Some).map_err(|error| format!("{path}: {error}"))
     }
 
@@ -174,6 +175,8 @@ impl Run<'_> {
         let mut options = Options::default();
         if let Some(structure) = check.accel {
             options.structures = vec![structure];
+        } else if !scene.morph_targets.is_empty() {
+            options.structures = Deforming::STRUCTURES.to_vec();
         }
         options.lattice_bits = check.lattice_bits.unwrap_or(options.lattice_bits);
         let compiled = compile::compile(&scene, &options)

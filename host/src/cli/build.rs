@@ -10,7 +10,7 @@ use super::input::is_standard;
 use super::output::{
     Content, check_extension, check_writable, json, print_about, reject_same, write_files,
 };
-use super::source::Source;
+use super::source::{Compiling, Source};
 use clap::Args;
 use gridel_core::{Format, Scene, Structure};
 use gridel_host::blob::is_blob;
@@ -46,13 +46,8 @@ pub struct Arguments {
     output: PathBuf,
 
     /// Acceleration structure of the blob; give it again for each further one. Every blob has the
-    /// list
-    #[arg(
-        long,
-        value_name = "NAME",
-        value_parser = arguments::structure(),
-        default_value = Structure::DualSplit.name()
-    )]
+    /// list [default: dual-split, or bvh where vertices move by --room or morph targets]
+    #[arg(long, value_name = "NAME", value_parser = arguments::structure())]
     accel: Vec<Structure>,
 
     /// Largest number of primitives per leaf, 1 to 31; more means fewer nodes and slower rays
@@ -173,10 +168,12 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
             emit::is_module,
         )?;
     }
-    let accel = &arguments.accel;
+    let usual = compile::Options::default().structures;
+    let chosen = !arguments.accel.is_empty();
+    let accel = if chosen { &arguments.accel } else { &usual };
     check_hierarchy("--leaf-size", arguments.leaf_size.is_some(), accel)?;
     check_hierarchy("--builder", arguments.builder.is_some(), accel)?;
-    check_room(arguments.scene_options.geometry.room, accel)?;
+    check_room(arguments.scene_options.geometry.room, &arguments.accel)?;
     let compiling = arguments.structure_options.apply(compile::Options {
         structures: accel.clone(),
         leaf_size: arguments.leaf_size.map_or(0, usize::from),
@@ -188,6 +185,10 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         ..compile::Options::default()
     })?;
     let scene_options = arguments.target.with_target(&arguments.scene_options)?;
+    let compiling = Compiling {
+        options: compiling,
+        chosen,
+    };
     let source = Source::compile(&arguments.scene, &scene_options, compiling)?;
     source.reject_lost([&arguments.output])?;
     if let Some(folder) = &arguments.emit_rust {

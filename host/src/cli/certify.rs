@@ -4,7 +4,7 @@ use super::arguments::{self, GeometryOptions, PictureOptions, distinct, quoted};
 use super::failure::Failure;
 use super::output::{print, print_json_warned, warn, write_files};
 use super::progress::Progress;
-use super::source::Source;
+use super::source::{Compiling, Source};
 use clap::Args;
 use gridel_core::format::checksum;
 use gridel_core::{Format, Settings, Structure};
@@ -103,6 +103,10 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         ..compile::Options::default()
     };
     let options = arguments.geometry.clone().into();
+    let compiling = Compiling {
+        options: compiling,
+        chosen: false,
+    };
     let source = Source::open(input, &options, None, compiling)?;
     let scene = source.scene()?;
     let structure = source.structure(&scene, None)?;

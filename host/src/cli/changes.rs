@@ -6,6 +6,7 @@ use glam::DVec3;
 use gridel_core::format::light_form::LightForm;
 use gridel_core::format::record::{self, View};
 use gridel_core::{BlobError, Scene};
+use gridel_host::blob::Blob;
 use gridel_host::compile::{self, CompileError};
 use gridel_host::scene::{Light, ToneMapping};
 use gridel_host::state::Poses;
@@ -18,6 +19,8 @@ pub struct Changes {
     pub materials: Option<Vec<record::Material>>,
     /// Instances that joints have moved.
     pub poses: Option<Poses>,
+    /// The blob with meshes that morph targets have moved.
+    pub morphed: Option<Blob>,
     /// In ticks.
     pub time: Option<i32>,
 }
@@ -35,6 +38,10 @@ impl Changes {
 
     /// The scene with these changes, or why they do not fit it.
     pub fn of_scene<'a>(&'a self, scene: &Scene<'a>) -> Result<Scene<'a>, BlobError> {
+        let scene = match &self.morphed {
+            Some(blob) => blob.scene()?,
+            None => *scene,
+        };
         let changed = scene.with_view(&self.view)?.with_lights(&self.lights)?;
         let changed = match &self.materials {
             Some(materials) => changed.with_materials(materials)?,
@@ -101,6 +108,7 @@ impl Changes {
         Ok(Self {
             materials: None,
             poses: None,
+            morphed: None,
             time: None,
             view,
             lights: lights.map_err(|error| Failure::Usage(miette::Report::new(error)))?,

@@ -8,7 +8,7 @@ use super::arguments::{SceneOptions, TargetOptions};
 use super::effects::CalledFor;
 use super::failure::Failure;
 use super::output::{print, print_json_warned};
-use super::source::Source;
+use super::source::{Compiling, Source};
 use clap::Args;
 use glam::DVec3;
 use gridel_core::{Format, Kind, Scene, Structure};
@@ -160,6 +160,10 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         ..compile::Options::default()
     };
     let scene_options = arguments.target.with_target(&arguments.scene_options)?;
+    let compiling = Compiling {
+        options: compiling,
+        chosen: false,
+    };
     let source = Source::open(&arguments.input, &scene_options, None, compiling)?;
     let scene = source.scene()?;
     let target = arguments.target.target();

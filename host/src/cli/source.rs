@@ -51,6 +51,13 @@ pub struct Source {
     made_by: Option<(scene::ImportOptions, compile::Options)>,
 }
 
+/// What a scene file is compiled for.
+pub struct Compiling {
+    pub options: compile::Options,
+    /// True if the user chose the structures. Otherwise a scene with morph targets gets those that can be refitted.
+    pub chosen: bool,
+}
+
 impl Source {
     /// Reads a blob, or compiles a scene file for the requested structure, or else for `usual`.
     pub fn to_trace(
@@ -75,12 +82,17 @@ impl Source {
             quality: with.quality.unwrap_or_default(),
             ..compile::Options::default()
         };
+        let chosen = with.accel.is_some();
         let input = Input::open(path)?;
         let quality = with.quality.map(|_| "--quality");
         if quality.is_some() && !input.is_blob()? {
             check_quality(with.quality, &compiling.structures)?;
         }
         let other = options.geometry.given().or(quality);
+        let compiling = Compiling {
+            options: compiling,
+            chosen,
+        };
         let mut source = Self::read(input, options, other, compiling)?;
         if source.report.is_none() && options.given_for_pictures().is_some() {
             let changes = Changes::of(&source.scene()?, options)?;
@@ -104,7 +116,7 @@ impl Source {
         path: &Path,
         options: &SceneOptions,
         other: Option<&'static str>,
-        compiling: compile::Options,
+        compiling: Compiling,
     ) -> Result<Self, Failure> {
         Self::read(
             Input::open(path)?,
@@ -119,7 +131,7 @@ impl Source {
         input: Input,
         options: &SceneOptions,
         for_scenes: Option<&'static str>,
-        compiling: compile::Options,
+        compiling: Compiling,
     ) -> Result<Self, Failure> {
         if !input.is_blob()? {
             return Self::build(input, options, compiling);
@@ -154,7 +166,7 @@ impl Source {
     pub fn compile(
         path: &Path,
         options: &SceneOptions,
-        compiling: compile::Options,
+        compiling: Compiling,
     ) -> Result<Self, Failure> {
         Self::build(Input::open(path)?, options, compiling)
     }
@@ -162,7 +174,10 @@ impl Source {
     fn build(
         input: Input,
         options: &SceneOptions,
-        mut compiling: compile::Options,
+        Compiling {
+            options: mut compiling,
+            chosen,
+        }: Compiling,
     ) -> Result<Self, Failure> {
         let (imported, has_tracks) = import_from(&input, options)?;
         if let Some(bits) = options.geometry.lattice_bits {
@@ -170,10 +185,11 @@ impl Source {
         }
         if let Some(room) = options.geometry.room {
             compiling.room = room;
-            // Of all structures only these can be refitted.
-            if room > 0.0 {
-                compiling.structures = Deforming::STRUCTURES.to_vec();
-            }
+        }
+        // Of all structures only these can be refitted.
+        let morphs = !chosen && !imported.scene.morph_targets.is_empty();
+        if morphs || compiling.room > 0.0 {
+            compiling.structures = Deforming::STRUCTURES.to_vec();
         }
         compiling.texture_bytes = options.geometry.texture_bytes.or(compiling.texture_bytes);
         let progress = Progress::unknown("compiling");
@@ -284,7 +300,7 @@ impl Source {
         time: i32,
     ) -> Result<Changes, Failure> {
         let at = || {
-            let state = State::at(scene, tracks, time)?;
+            let state = State::at(&self.blob, scene, tracks, time)?;
             state.apply(scene)?;
             Ok(state)
         };
@@ -299,12 +315,14 @@ impl Source {
                 lights: state.lights.clone(),
                 materials: None,
                 poses: None,
+                morphed: None,
                 time: None,
             },
         };
         Ok(Changes {
             materials: Some(state.materials),
             poses: state.poses,
+            morphed: state.morphed,
             time: Some(time),
             ..changes
         })

@@ -4,7 +4,7 @@ use super::arguments::{self, GeometryOptions, check_quality, distinct, quoted};
 use super::failure::Failure;
 use super::output::{print, print_json_warned};
 use super::progress::Progress;
-use super::source::Source;
+use super::source::{Compiling, Source};
 use clap::Args;
 use gridel_core::Structure;
 use gridel_host::compile::{self, Quality};
@@ -74,6 +74,10 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let accel = (!arguments.accel.is_empty()).then_some("--accel");
     let other = accel.or(arguments.quality.map(|_| "--quality"));
     let options = arguments.geometry.clone().into();
+    let compiling = Compiling {
+        options: compiling,
+        chosen: true,
+    };
     let source = Source::open(input, &options, other, compiling)?;
     let scene = source.scene()?;
     let progress = Progress::steps("verifying", steps(arguments.rays));

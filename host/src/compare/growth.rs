@@ -145,6 +145,7 @@ fn part(scene: &Scene, primitives: &[Part]) -> Scene {
         parts: Vec::new(),
         instances: Vec::new(),
         joints: Vec::new(),
+        morph_targets: scene.morph_targets.clone(),
         ..*scene
     }
 }

@@ -48,6 +48,12 @@ pub enum CompileError {
         pieces: usize,
         most: usize,
     },
+    #[error("the morph target {target} has a weight at rest, or a range of weights, beyond ±64")]
+    #[diagnostic(help("use smaller weights, and larger displacements"))]
+    Weight { target: String },
+    #[error("the morph target {target} displaces a vertex by more than {most:.3e} scene units")]
+    #[diagnostic(help("use smaller displacements, and larger weights"))]
+    Displacement { target: String, most: f64 },
     #[error("{object} has texture coordinates of {most} repetitions of its texture or more")]
     #[diagnostic(help(
         "move the coordinates towards 0, or let the texture's `scale` make them smaller"

@@ -2,12 +2,13 @@
 
 use super::error::CompileError;
 use super::instance_tree::{Tree, build};
+use super::morph;
 use super::reach::Reach;
 use super::requirements::Requirements;
 use super::section::{Section, section};
 use super::sizes::Sizes;
 use crate::blob::Blob;
-use crate::scene::{Image, Instance, Material, Object, Part, Scene, Texture};
+use crate::scene::{Image, Instance, Material, MorphTarget, Object, Part, Scene, Texture};
 use crate::shape::{Lattice, exp2};
 use crate::table::printable;
 use glam::DVec3;
@@ -84,11 +85,12 @@ impl Parts {
             }
         }
         let mut parts = Self::default();
+        let targets = morph::with_tracks(scene);
         let mut primitives = 0_u32;
         parts.first_primitive.push(0);
         for part in &scene.parts {
             let (blob, displacement) =
-                compile(&alone(part, scene)?).map_err(|error| match error {
+                compile(&alone(part, scene, &targets)?).map_err(|error| match error {
                     CompileError::TooFar { .. } => CompileError::FarPart {
                         part: printable(&part.name),
                         source: error.into(),
@@ -294,7 +296,7 @@ impl Placed {
 }
 
 /// A scene of a part's objects, in which all have one material and light comes from everywhere.
-fn alone(part: &Part, scene: &Scene) -> Result<Scene, CompileError> {
+fn alone(part: &Part, scene: &Scene, morph_targets: &[MorphTarget]) -> Result<Scene, CompileError> {
     let unbounded = part.objects.iter().find(|it| !it.shape.is_bounded());
     if let Some(object) = unbounded {
         return Err(CompileError::UnboundedPart {
@@ -323,6 +325,7 @@ fn alone(part: &Part, scene: &Scene) -> Result<Scene, CompileError> {
         ambient: [1.0; 3],
         materials,
         objects: part.objects.iter().map(plain).collect(),
+        morph_targets: morph_targets.to_vec(),
         ..Scene::default()
     })
 }

@@ -14,12 +14,14 @@ mod estimate;
 mod extent;
 mod flattened;
 mod framing;
+mod hierarchies;
 mod hierarchy;
 mod instance_tree;
 mod instances;
 mod joints;
 mod lattice;
 mod layout;
+mod morph;
 mod names;
 mod octree;
 mod options;
@@ -73,17 +75,17 @@ use candidates::target::Targets;
 use context::BuildContext;
 use extent::Shapes;
 use glam::DVec3;
+use gridel_core::Structure;
 use gridel_core::format::Leaf;
 use gridel_core::format::record::{Gridels, UnitBox};
-use gridel_core::{Kind, Structure};
-use hierarchy::{Node, Primitive, Splits};
+use hierarchies::Hierarchies;
+use hierarchy::{Primitive, Splits};
 use instances::{Parts, Placed, Role};
-use pairs::Flat;
+use morph::MorphRoom;
 use primitives::Primitives;
 use shading::ShadingData;
 use sizes::Sizes;
 use std::time::{Duration, Instant};
-use wide::Wide;
 
 /// A blob, and a report about its compilation.
 #[derive(Clone, Debug)]
@@ -142,11 +144,16 @@ pub fn compile_with_progress(
 ) -> Result<Compiled, CompileError> {
     check(scene, options)?;
     let scene = &*scene.with_emitters();
+    let has_targets = !scene.morph_targets.is_empty();
+    let still =
+        (has_targets && !morph::can_move(&options.structures)).then(|| morph::at_rest(scene));
+    let scene = still.as_ref().unwrap_or(scene);
     let (parts, reports) = compile_parts(scene, options, on_progress)?;
     let (mut compiled, _) = compile_as(Role::Whole(&parts), scene, options, on_progress)?;
     reports
         .iter()
         .for_each(|part| compiled.report.add_part(part));
+    compiled.report.keeps_rest = still.is_some();
     Ok(compiled)
 }
 
@@ -186,7 +193,9 @@ fn compile_as(
     on_progress: OnProgress<'_>,
 ) -> Result<(Compiled, Sizes), CompileError> {
     let shapes = Shapes::of(scene);
+    let morph_room = MorphRoom::of(scene);
     let mut extent = room::widened(shapes.extent(), options.room);
+    extent = morph_room.widened(extent, options.lattice_bits);
     if let Role::Whole(parts) = role {
         extent = parts.reach.around(extent, options.lattice_bits);
     }
@@ -208,6 +217,7 @@ fn compile_as(
         wide,
     } = Hierarchies::build(scene, &snapped, &structures, options)?;
     let own = room::around(&order, options.room / lattice.unit());
+    let own = morph_room.around(own, &lattice);
     let mut bounds = placed.around(own).unwrap_or(UnitBox([[0; 2]; 3]));
     if let Role::Whole(parts) = role {
         bounds = parts.reach.box_around(bounds, &lattice);
@@ -287,6 +297,7 @@ fn compile_as(
         setup,
         tables,
         still_lights: still_lights(scene, options.room),
+        keeps_rest: false,
         names,
     };
     Ok((Compiled { blob, report }, sizes))
@@ -294,9 +305,10 @@ fn compile_as(
 
 /// The first mesh with room for its vertices whose surface is a light as well.
 fn still_lights(scene: &Scene, room: f64) -> Option<String> {
-    let mut objects = scene.objects.iter().filter(|_| room > 0.0);
+    let mut objects = scene.objects.iter();
     let found = objects.find(|it| {
-        matches!(it.shape, Shape::Mesh { .. }) && scene.materials[it.material].is_sampled
+        let moves = room > 0.0 || !it.attributes.displacements.is_empty();
+        moves && matches!(it.shape, Shape::Mesh { .. }) && scene.materials[it.material].is_sampled
     });
     found.map(|it| it.name.clone())
 }
@@ -389,76 +401,6 @@ fn held(asked: &[Structure]) -> Vec<Structure> {
     structures.sort();
     structures.dedup();
     structures
-}
-
-/// The input of the layout of structures.
-struct Hierarchies {
-    /// Shared by all structures that need one.
-    root: Option<Node>,
-    /// Primitives in the order of its leaves.
-    order: Vec<Primitive>,
-    flat: Flat,
-    wide: Wide,
-}
-
-impl Hierarchies {
-    fn build(
-        scene: &Scene,
-        snapped: &Primitives,
-        structures: &[Structure],
-        options: &Options,
-    ) -> Result<Self, CompileError> {
-        let mut order: Vec<Primitive> = snapped.boxes();
-        let mut root = if structures.iter().copied().any(structures::takes_hierarchy) {
-            builder::build(
-                options.builder,
-                &mut order,
-                options.leaf_size.min(LARGEST_LEAF),
-                |primitive| snapped.groups(scene, primitive),
-            )
-        } else {
-            None
-        };
-        // First, because it decides which child is the first.
-        let dual = match &mut root {
-            Some(root) if structures.contains(&Structure::DualSplit) => dual_split::lay_out(root),
-            _ => Vec::new(),
-        };
-        // The eight-wide hierarchy holds triangles and spheres itself; alone it needs no slots of them.
-        let has_wide = structures.contains(&Structure::Wide);
-        // The attributes of vertices are found by slots.
-        let wide_alone = has_wide
-            && snapped.corners.is_empty()
-            && structures
-                .iter()
-                .all(|it| [Structure::Wide, Structure::List].contains(it));
-        let mut flat = match &root {
-            Some(root) => pairs::flatten(root, &order),
-            None if wide_alone => Flat::default(),
-            None => Flat::in_file_order(&order),
-        };
-        flat.dual = dual;
-        let wide = if has_wide {
-            let shared = (!wide_alone).then_some(&flat);
-            Wide::build(snapped, &order, options.quality, shared)?
-        } else {
-            Wide::default()
-        };
-        if wide_alone {
-            flat.slots.clone_from(&wide.slots);
-        }
-        // Shapes without a box are in no structure, and stay in the order of the scene file.
-        for kind in Kind::ALL.into_iter().filter(|kind| !kind.is_bounded()) {
-            let count = snapped.numbers[kind as usize].len() as u32;
-            flat.slots[kind as usize] = (0..count).collect();
-        }
-        Ok(Self {
-            root,
-            order,
-            flat,
-            wide,
-        })
-    }
 }
 
 /// Counts the size of a scene's cylinder cube, with a number of gridels per side (1 to 64); instances are flattened.

@@ -4,6 +4,7 @@ use super::CompileError;
 use super::cuts::{self, Sliver};
 use super::flattened::{self, is_degenerate};
 use super::hierarchy::Primitive;
+use super::morph::{Motions, with_tracks};
 use super::records::{Added, Records};
 use super::requirements::Requirements;
 use super::vertices::{Corner, Corners, MOST_COORDINATE, Vertices, corner_at};
@@ -16,6 +17,7 @@ use gridel_core::format::record::UnitBox;
 use gridel_core::geometry::Geometry;
 use gridel_core::{Effects, Kind};
 use serde::{Serialize, Serializer};
+use std::collections::HashMap;
 
 /// Most primitives in a blob.
 const MOST: usize = 1 << 24;
@@ -31,6 +33,8 @@ pub struct Primitives {
     pub vertices: Vec<[i32; 3]>,
     /// The attributes of each vertex other than its position; empty where no vertex has any.
     pub corners: Vec<Corner>,
+    /// The motions of vertices by morph targets.
+    pub motions: Motions,
     /// Objects whose vertices require effects, by name.
     pub requirements: Requirements,
     pub triangles: Vec<[u32; 3]>,
@@ -52,6 +56,8 @@ pub struct Primitives {
     pub far_moved: LeftOut,
     /// Triangles that are no longer triangles on the lattice.
     slivers: Vec<Sliver>,
+    /// The motions of slivers' corners, by their places.
+    sliver_motions: HashMap<[i32; 3], u32>,
     /// A primitive reaches beyond the lattice, because it had to be moved that far.
     pub needs_room: bool,
     /// Whether closed meshes may lie in one plane.
@@ -129,8 +135,11 @@ impl Primitives {
             let places = triangle.map(|vertex| distinct.get(vertex).0);
             let corners = triangle.map(|vertex| distinct.get(vertex).1);
             for piece in cuts.pieces(places) {
-                let piece =
-                    piece.map(|place| distinct.number(place, corner_at(place, places, corners)));
+                let piece = piece.map(|place| {
+                    let motion = self.sliver_motions.get(&place).copied();
+                    let corner = corner_at((place, motion.unwrap_or(0)), places, corners);
+                    distinct.number(place, corner)
+                });
                 self.triangles.push(piece);
                 self.numbers[Kind::Triangle as usize].push(number);
             }
@@ -208,14 +217,18 @@ impl Primitives {
                 let texture = scene.materials[object.material].placing();
                 let attributes = object.attributes.placed_on(texture);
                 let all = Corners::of(&object.normals, &attributes, scene.display_values);
-                let all = all.ok_or_else(|| CompileError::TextureCoordinates {
+                let mut all = all.ok_or_else(|| CompileError::TextureCoordinates {
                     object: format!("{} ({})", printable(&object.name), object.place),
                     most: MOST_COORDINATE,
                 })?;
+                let targets = with_tracks(scene);
+                all.motions = self.motions.of(object, triangles, lattice, &targets)?;
+                let all = all;
                 let mut is_smooth = false;
                 for (number, triangle) in triangles.iter().enumerate() {
                     let corners = triangle.map(|vertex| snapped[vertex as usize]);
-                    if is_degenerate(corners) {
+                    let found = all.of_triangle(number, *triangle);
+                    if is_degenerate(corners) && !opens(corners, found) {
                         let [a, b, c] = triangle.map(|vertex| vertices[vertex as usize]);
                         let name = format!(
                             "{} ({}, triangle {number})",
@@ -228,6 +241,9 @@ impl Primitives {
                             self.collapsed.add(name);
                         }
                         self.slivers.push(corners);
+                        let moving = corners.into_iter().zip(found).filter(|it| it.1.motion > 0);
+                        self.sliver_motions
+                            .extend(moving.map(|(place, corner)| (place, corner.motion)));
                         self.leave_out();
                     } else {
                         let displacement = triangle
@@ -244,7 +260,6 @@ impl Primitives {
                                 })
                             })
                         } else {
-                            let found = all.of_triangle(number, *triangle);
                             is_smooth |= found[0].normal.is_some();
                             [0, 1, 2].map(|k: usize| distinct.number(corners[k], found[k]))
                         };
@@ -261,7 +276,11 @@ impl Primitives {
                         self.requirements.add(effect, name, &object.place);
                     }
                 }
-                if !self.flat_meshes && flattened::is_flattened((vertices, &snapped), triangles) {
+                let is_still = all.motions.is_empty();
+                if !self.flat_meshes
+                    && is_still
+                    && flattened::is_flattened((vertices, &snapped), triangles)
+                {
                     return Err(CompileError::Flattened {
                         object: format!("{} ({})", printable(&object.name), object.place),
                         step: lattice.step(),
@@ -322,6 +341,14 @@ impl Primitives {
         self.displacements.push(0.0);
         self.total += 1;
     }
+}
+
+/// Whether corners of a triangle that are at one place at rest move apart, so that it has an area then.
+fn opens(places: [[i32; 3]; 3], corners: [Corner; 3]) -> bool {
+    let mut pairs = [(0, 1), (1, 2), (2, 0)].into_iter();
+    pairs.any(|(one, other)| {
+        places[one] == places[other] && corners[one].motion != corners[other].motion
+    })
 }
 
 /// The least `f32` that is no less.

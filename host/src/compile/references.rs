@@ -2,16 +2,35 @@
 //! programs can.
 
 use super::error::CompileError;
-use crate::scene::{Attributes, Normals, Object, Scene, Shape};
+use crate::scene::{
+    Attributes, LARGEST_WEIGHT, MorphTarget, Normals, Object, Scene, Shape, TrackTarget,
+};
 use crate::table::printable;
+use glam::DVec3;
 
 /// Checks materials of objects, corners of meshes, and what tracks move. (`joints` checks joints.)
 pub fn check(scene: &Scene) -> Result<(), CompileError> {
     for object in scene.all_objects() {
-        if let Some(lost) = lost(object, scene.materials.len()) {
+        if let Some(lost) = lost(object, scene) {
             return Err(CompileError::Reference {
                 object: printable(&object.name),
                 lost,
+            });
+        }
+    }
+    for MorphTarget {
+        name,
+        weight,
+        range,
+        ..
+    } in &scene.morph_targets
+    {
+        if ![*weight, range[0], range[1]]
+            .iter()
+            .all(|it| it.abs() <= LARGEST_WEIGHT)
+        {
+            return Err(CompileError::Weight {
+                target: printable(name),
             });
         }
     }
@@ -21,6 +40,8 @@ pub fn check(scene: &Scene) -> Result<(), CompileError> {
             ("material", scene.materials.len())
         } else if target.is_of_light() {
             ("light", scene.lights.len())
+        } else if target == TrackTarget::MorphWeight {
+            ("morph target", scene.morph_targets.len())
         } else {
             ("", usize::MAX)
         };
@@ -42,8 +63,8 @@ pub fn check(scene: &Scene) -> Result<(), CompileError> {
 }
 
 /// What an object names that the scene lacks.
-fn lost(object: &Object, materials: usize) -> Option<&'static str> {
-    if object.material >= materials {
+fn lost(object: &Object, scene: &Scene) -> Option<&'static str> {
+    if object.material >= scene.materials.len() {
         return Some("a material");
     }
     let Shape::Mesh {
@@ -56,11 +77,13 @@ fn lost(object: &Object, materials: usize) -> Option<&'static str> {
     let Normals {
         vectors,
         triangles: normals,
+        changes,
     } = &object.normals;
     let Attributes {
         colors,
         coordinates,
         triangles: placed,
+        displacements,
     } = &object.attributes;
     let of_all = |of: &[[u32; 3]]| of.is_empty() || of.len() == triangles.len();
     if !holds(vertices.len(), triangles, None) {
@@ -71,9 +94,23 @@ fn lost(object: &Object, materials: usize) -> Option<&'static str> {
         Some("the color of a vertex")
     } else if !of_all(placed) || !holds(coordinates.len(), placed, Some(Attributes::NONE)) {
         Some("texture coordinates")
+    } else if !displacements
+        .iter()
+        .all(|it| is_whole((it.target, &it.vectors), vertices.len(), scene))
+        || !changes
+            .iter()
+            .all(|it| is_whole((it.target, &it.vectors), vectors.len(), scene))
+    {
+        Some("a finite displacement of a vertex, or a morph target")
     } else {
         None
     }
+}
+
+/// Whether a morph target of the scene changes so many vectors.
+fn is_whole((target, changes): (usize, &[DVec3]), count: usize, scene: &Scene) -> bool {
+    let finite = changes.iter().all(|it| it.is_finite());
+    target < scene.morph_targets.len() && changes.len() == count && finite
 }
 
 /// Whether a list is long enough for all corners but those of triangles that have none.
@@ -128,6 +165,7 @@ mod tests {
         let short = Normals {
             vectors: vec![DVec3::X],
             triangles: vec![[0, 0, 1]],
+            changes: Vec::new(),
         };
         assert!(named(&|it| it.normals = short.clone()).contains("a normal"));
         let colors = vec![[1.0; 3]; 2];

@@ -48,6 +48,8 @@ pub struct Report {
     pub tables: Vec<TableStats>,
     /// A mesh whose vertices can move, and which glows: its lights stay.
     pub still_lights: Option<String>,
+    /// True if meshes have morph targets and stay as they are at rest, because a structure cannot be refitted.
+    pub keeps_rest: bool,
     /// The names in the blob; `None` if they are not requested, or there are none.
     pub names: Option<KeptNames>,
 }

@@ -230,7 +230,11 @@ fn keys(track: &Track, header: &Header) -> Result<Vec<(i32, Vec<i32>)>, CompileE
         for (group, is_value) in groups.into_iter().zip([false, true, false]) {
             for word in &group.unwrap_or_default()[..group.map_or(0, |_| components)] {
                 let rounded = word.round();
-                if rounded.is_nan() || rounded.abs() > f64::from(i32::MAX) {
+                let most = match kind {
+                    ValueKind::Weight if is_value => kind.range()[1],
+                    _ => i32::MAX,
+                };
+                if rounded.is_nan() || rounded.abs() > f64::from(most) {
                     let (cause, remedy) = too_large(kind, is_value);
                     let cause = format!("at {} s {cause}", key.seconds);
                     return Err(fault(track, cause, remedy));
@@ -254,6 +258,7 @@ fn too_large(kind: ValueKind, is_value: bool) -> (&'static str, &'static str) {
             "the tangent is too large for the time to the next key",
             "use a smaller tangent, or more keys",
         ),
+        (ValueKind::Weight, _) => ("a weight is beyond ±64", "use smaller weights"),
         (ValueKind::Position, _) => (
             "it leads beyond the range of scene coordinates",
             "use smaller values, or move them nearer to the scene",
@@ -323,7 +328,7 @@ impl Scale {
                 offset: DVec3::ZERO,
                 factor: exp2(-header.coordinate_exponent()),
             },
-            ValueKind::Scale => Self::Linear {
+            ValueKind::Scale | ValueKind::Weight => Self::Linear {
                 offset: DVec3::ZERO,
                 factor: exp2(24),
             },

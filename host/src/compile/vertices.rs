@@ -21,6 +21,8 @@ pub struct Corner {
     pub color: Option<[u8; 4]>,
     /// Texture coordinates with 20 fraction bits.
     pub coordinates: Option<[i32; 2]>,
+    /// Its [motion](super::morph::Motions); 0 for one that stays.
+    pub motion: u32,
 }
 
 impl Corner {
@@ -28,6 +30,7 @@ impl Corner {
         normal: None,
         color: None,
         coordinates: None,
+        motion: 0,
     };
 
     /// Returns the rank. The first vertices of a blob have the lowest rank.
@@ -90,6 +93,8 @@ pub struct Corners {
     colors: Vec<[u8; 4]>,
     /// For each triangle.
     coordinates: Vec<Option<[[i32; 2]; 3]>>,
+    /// For each triangle.
+    pub motions: Vec<[u32; 3]>,
 }
 
 /// How far texture coordinates reach, so that the difference of two has 32 bits: 1024 repetitions.
@@ -116,12 +121,14 @@ impl Corners {
             normals: stored(normals),
             colors: attributes.colors.iter().map(color).collect(),
             coordinates: attributes.triangles.iter().map(of_triangle).collect(),
+            motions: Vec::new(),
         })
     }
 
     /// Returns whether no corner has attributes.
     pub fn is_plain(&self) -> bool {
-        self.normals.is_empty() && self.colors.is_empty() && self.coordinates.is_empty()
+        let is_plain = self.normals.is_empty() && self.colors.is_empty();
+        is_plain && self.coordinates.is_empty() && self.motions.is_empty()
     }
 
     /// Returns whether vertices have colors.
@@ -137,6 +144,7 @@ impl Corners {
             normal: normals.map(|it| it[k]),
             color: self.colors.get(vertices[k] as usize).copied(),
             coordinates: coordinates.map(|it| it[k]),
+            motion: self.motions.get(number).map_or(0, |it| it[k]),
         })
     }
 }
@@ -155,8 +163,12 @@ fn stored(normals: &Normals) -> Vec<Option<[Stored; 3]>> {
         .collect()
 }
 
-/// Returns the attributes of a point on an edge of a triangle, or at a corner.
-pub fn corner_at(point: Place, places: [Place; 3], corners: [Corner; 3]) -> Corner {
+/// Returns the attributes of a point on an edge of a triangle, or at a corner. On an edge it has this motion.
+pub fn corner_at(
+    (point, motion): (Place, u32),
+    places: [Place; 3],
+    corners: [Corner; 3],
+) -> Corner {
     if let Some(corner) = places.iter().position(|it| *it == point) {
         return corners[corner];
     }
@@ -195,6 +207,7 @@ pub fn corner_at(point: Place, places: [Place; 3], corners: [Corner; 3]) -> Corn
         coordinates: coordinates.map(|(from, to)| {
             [0, 1].map(|k: usize| mixed(from[k].into(), to[k].into()).round() as i32)
         }),
+        motion,
     }
 }
 
@@ -231,14 +244,14 @@ mod tests {
             ..Corner::default()
         };
         let all = normals.map(|it| smooth(Some(it)));
-        let found = |point| decoded(corner_at(point, corners, all).normal.unwrap());
+        let found = |point| decoded(corner_at((point, 0), corners, all).normal.unwrap());
         for (corner, vector) in corners.into_iter().zip(vectors) {
             assert!((found(corner) - vector).length() < 1e-4);
         }
         let halfway = unit(DVec3::new(0.3, 0.0, 0.9));
         assert!((found([512, 0, 0]) - halfway).length() < 1e-4);
         let flat = [Some(normals[0]), None, Some(normals[1])].map(smooth);
-        assert_eq!(corner_at([512, 0, 0], corners, flat).normal, None);
+        assert_eq!(corner_at(([512, 0, 0], 0), corners, flat).normal, None);
     }
 
     #[test]
@@ -248,18 +261,22 @@ mod tests {
             normal: None,
             color: Some(color),
             coordinates,
+            motion: 0,
         };
         let corners = [
             corner([0, 0, 0, 255], Some([0, 0])),
             corner([255, 0, 0, 255], Some([1 << 20, -4])),
             corner([0, 255, 0, 255], None),
         ];
-        assert_eq!(corner_at([1024, 0, 0], places, corners), corners[1]);
-        let halfway = corner_at([512, 0, 0], places, corners);
+        assert_eq!(corner_at(([1024, 0, 0], 0), places, corners), corners[1]);
+        let halfway = corner_at(([512, 0, 0], 0), places, corners);
         // The root of half the light.
         let half = corner([180, 0, 0, 255], Some([1 << 19, -2]));
         assert_eq!(halfway, half);
-        assert_eq!(corner_at([0, 512, 0], places, corners).coordinates, None);
+        assert_eq!(
+            corner_at(([0, 512, 0], 0), places, corners).coordinates,
+            None
+        );
     }
 
     #[test]

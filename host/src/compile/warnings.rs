@@ -90,6 +90,12 @@ impl Report {
                     printable(name)
                 )
             }),
+            self.keeps_rest.then(|| {
+                String::from(
+                    "meshes with morph targets keep their shape at rest: of all structures only bvh can be refitted, and \
+                     others are built; choose `--accel bvh` alone",
+                )
+            }),
             self.names_changed(),
         ];
         all.into_iter().flatten().collect()

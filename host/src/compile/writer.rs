@@ -4,6 +4,7 @@ use super::CompileError;
 use super::context::BuildContext;
 use super::instances::Role;
 use super::layout::Layout;
+use super::morph;
 use super::names::{KeptNames, Names};
 use super::pairs::Flat;
 use super::primitives::Primitives;
@@ -124,6 +125,11 @@ pub fn parts(context: &BuildContext<'_>, layouts: Vec<Layout>) -> Parts {
         sections.push(indices(SectionKind::Order, &order, 2));
     }
     sections.extend(geometry(lattice, primitives, flat));
+    let moves = |it: &Section| it.kind == SectionKind::Displacements;
+    let is_whole = matches!(context.role, Role::Whole(_));
+    if is_whole || sections.iter().any(moves) {
+        sections.push(morph::weights(scene));
+    }
     if uses_leaves {
         sections.push(section(SectionKind::Leaves, &flat.leaves));
     }
@@ -227,7 +233,12 @@ fn geometry(lattice: &Lattice, primitives: &Primitives, flat: &Flat) -> Vec<Sect
     } else {
         section(SectionKind::Triangles, &triangles)
     };
+    let moving = number.iter().zip(0..).filter_map(|(&number, vertex)| {
+        let motion = corner(vertex)?.motion;
+        (number != u32::MAX && motion > 0).then_some((number, motion))
+    });
     let mut sections = vec![vertex_section, triangle_section];
+    sections.extend(primitives.motions.sections(moving));
     sections.extend(carried(&corners));
     sections.extend(primitives.records.sections(lattice.bits, &flat.slots));
     sections

@@ -108,14 +108,15 @@ fn is_wider(scene: &Scene<'_>) -> bool {
     all.is_some_and(|all| all != *scene.bounds())
 }
 
-/// Bytes of a deformation where a machine word has `word` bytes: two arrays with a length each, and two words.
+/// Bytes of a deformation where a machine word has `word` bytes: two arrays with a length each, a word and two
+/// marks.
 fn bytes<V>(word: usize, vertices: usize, pairs: usize) -> usize {
     let array = |count: usize, record: usize, alignment: usize| {
         (count * record + word).next_multiple_of(alignment.max(word))
     };
     let vertices = array(vertices, size_of::<V>(), align_of::<V>());
     let pairs = array(pairs, size_of::<Pair>(), align_of::<Pair>());
-    (vertices + pairs + size_of::<u32>() + size_of::<bool>()).next_multiple_of(word)
+    (vertices + pairs + size_of::<u32>() + 2 * size_of::<bool>()).next_multiple_of(word)
 }
 
 #[cfg(test)]

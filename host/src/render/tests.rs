@@ -181,6 +181,7 @@ fn light_behind_a_sheet_does_not_leak_through() {
             .map(|x| DVec3::new(x, 0.0, 1.0).normalize())
             .to_vec(),
         triangles: vec![[0, 1, 1], [0, 1, 0]],
+        changes: Vec::new(),
     };
     for (z, is_lit) in [(-0.5, false), (0.5, true)] {
         scene.lights = vec![Light::Directional {

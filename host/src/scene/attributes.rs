@@ -1,10 +1,11 @@
-//! Attributes of meshes other than shape and normals: colors of vertices, and texture coordinates.
+//! Attributes of meshes other than shape and normals: colors of vertices, texture coordinates, and displacements.
 
 use super::normals::cofactors;
 use super::texture::Texture;
-use glam::{DAffine3, DVec2};
+use glam::{DAffine3, DVec2, DVec3};
+use gridel_core::format::limits;
 
-/// Colors of vertices, and texture coordinates of corners; empty for a mesh that has neither.
+/// Colors and displacements of vertices, and texture coordinates of corners; empty for a mesh that has none.
 ///
 /// ```
 /// use gridel_host::scene::Attributes;
@@ -20,6 +21,21 @@ pub struct Attributes {
     /// For each triangle which of the coordinates its corners have; [`Attributes::NONE`] for none. As many as the mesh
     /// has, or none.
     pub triangles: Vec<[u32; 3]>,
+    /// How morph targets displace vertices, at most once for each target.
+    pub displacements: Vec<Displacements>,
+}
+
+/// The greatest magnitude of the weight of a morph target.
+pub const LARGEST_WEIGHT: f64 = (limits::LARGEST_WEIGHT >> 24) as f64;
+
+/// How a morph target displaces the vertices of a mesh.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Displacements {
+    /// Index into [`Scene::morph_targets`](crate::scene::Scene::morph_targets).
+    pub target: usize,
+    /// For each vertex, by how much it is displaced with a weight of 1. The mesh has its vertices where they are with the
+    /// target's weight at rest.
+    pub vectors: Vec<DVec3>,
 }
 
 impl Attributes {
@@ -28,13 +44,17 @@ impl Attributes {
 
     /// Returns whether there is nothing.
     pub fn is_empty(&self) -> bool {
-        self.colors.is_empty() && self.triangles.is_empty()
+        self.colors.is_empty() && self.triangles.is_empty() && self.displacements.is_empty()
     }
 
     /// The attributes after a transform of the mesh: triangles that are mirrored are wound the other way round.
     #[must_use]
     pub(crate) fn transformed(&self, by: &DAffine3) -> Self {
         let mut transformed = self.clone();
+        let moved = &mut transformed.displacements;
+        for vector in moved.iter_mut().flat_map(|it| &mut it.vectors) {
+            *vector = by.transform_vector3(*vector);
+        }
         if !self.triangles.is_empty() && cofactors(by.matrix3).1 {
             for [_, b, c] in &mut transformed.triangles {
                 std::mem::swap(b, c);
@@ -49,6 +69,7 @@ impl Attributes {
         let Some(texture) = texture else {
             return Self {
                 colors: self.colors.clone(),
+                displacements: self.displacements.clone(),
                 ..Self::default()
             };
         };

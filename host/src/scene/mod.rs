@@ -49,7 +49,7 @@ mod without;
 mod words;
 
 pub use crate::shape::Shape;
-pub use attributes::Attributes;
+pub use attributes::{Attributes, Displacements, LARGEST_WEIGHT};
 pub use emitters::MOST_FACES;
 pub use environment::{Environment, Panorama, Sky, Sun};
 pub use error::SceneError;
@@ -60,10 +60,10 @@ pub(crate) use joint::JointTracks;
 pub use joint::{LARGEST_SCALE, LEAST_SCALE};
 pub use light_form::{LightForm, LightShape, Spot};
 pub use model::{
-    Alpha, Camera, Color, Diffuse, Instance, Joint, Lens, Light, Material, Object, Part,
-    RenderSettings, Scene, ToneMapping,
+    Alpha, Camera, Color, Diffuse, Instance, Joint, Lens, Light, Material, MorphTarget, Object,
+    Part, RenderSettings, Scene, ToneMapping,
 };
-pub use normals::{Normals, NormalsChoice};
+pub use normals::{NormalChanges, Normals, NormalsChoice};
 pub use options::{
     Choice, ImportOptions, Imported, Instances, MoleculeOptions, MoleculeStyle, Posed,
 };

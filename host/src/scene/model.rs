@@ -54,9 +54,11 @@ pub struct Scene {
     pub instances: Vec<Instance>,
     /// The joints that move instances.
     pub joints: Vec<Joint>,
+    /// The morph targets of meshes.
+    pub morph_targets: Vec<MorphTarget>,
     /// A box that the lattice also covers, for instances that programs place.
     pub room: Option<[DVec3; 2]>,
-    /// How camera, lights, materials and joints change with time, at most one track for each property.
+    /// How camera, lights, materials, joints and weights of morph targets change with time, at most one track for each property.
     pub tracks: Vec<Track>,
     /// Defaults for rendering that the scene file states.
     pub render: RenderSettings,
@@ -295,6 +297,20 @@ pub struct Joint {
     pub place: SourceSpan,
 }
 
+/// A shape that meshes take on by a weight: they displace their vertices by
+/// [so much](crate::scene::Displacements), times the weight.
+#[derive(Clone, Debug, PartialEq)]
+pub struct MorphTarget {
+    pub name: String,
+    /// The weight at rest.
+    pub weight: f64,
+    /// The weights that programs can give it, from the least to the greatest. Those at rest and of its track come in
+    /// addition.
+    pub range: [f64; 2],
+    /// Its place in the scene file, for messages.
+    pub place: SourceSpan,
+}
+
 /// Rendering defaults; the command line overrides them.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RenderSettings {
@@ -381,6 +397,16 @@ impl Default for Material {
 }
 
 impl Object {
+    /// Counts the morph targets of an import from another one on.
+    pub(super) fn count_targets_from(&mut self, first: usize) {
+        for displaced in &mut self.attributes.displacements {
+            displaced.target += first;
+        }
+        for changed in &mut self.normals.changes {
+            changed.target += first;
+        }
+    }
+
     /// Chooses the normals of a mesh.
     pub(crate) fn shade(&mut self, choice: NormalsChoice) {
         match (choice, &self.shape) {
@@ -393,6 +419,8 @@ impl Object {
                 },
             ) => {
                 self.normals = Normals::computed(vertices, triangles, degrees);
+                let displacements = &self.attributes.displacements;
+                self.normals.turn_with((vertices, triangles), displacements);
             }
             _ => self.normals = Normals::default(),
         }
@@ -451,6 +479,7 @@ impl Default for Scene {
             parts: Vec::new(),
             instances: Vec::new(),
             joints: Vec::new(),
+            morph_targets: Vec::new(),
             room: None,
             tracks: Vec::new(),
             render: RenderSettings::default(),

@@ -1,8 +1,9 @@
 //! Normals that a mesh is shaded with: those of its file, or computed from its faces.
 
+use super::attributes::Displacements;
 use crate::shape::transform::to_size_one;
 use crate::shape::unit;
-use glam::{DAffine3, DMat3, DVec3};
+use glam::{DAffine3, DMat3, DQuat, DVec3};
 use std::collections::HashMap;
 
 /// The normals that a mesh is shaded with, for each corner of each triangle; empty for those of its faces.
@@ -23,6 +24,17 @@ pub struct Normals {
     /// For each triangle, which of the vectors its corners have; [`Normals::FLAT`] for one that is flat. As many as the
     /// mesh has, or none.
     pub triangles: Vec<[u32; 3]>,
+    /// How morph targets change the vectors, at most once for each target.
+    pub changes: Vec<NormalChanges>,
+}
+
+/// How a morph target changes normals.
+#[derive(Clone, Debug, PartialEq)]
+pub struct NormalChanges {
+    /// Index into [`Scene::morph_targets`](crate::scene::Scene::morph_targets).
+    pub target: usize,
+    /// For each normal, what a weight that is greater by 1 adds to it.
+    pub vectors: Vec<DVec3>,
 }
 
 /// Which normals meshes are shaded with.
@@ -142,14 +154,81 @@ impl Normals {
         let corners = corners
             .map(|it| if lost(&it) { Self::FLAT } else { it })
             .collect();
-        Self::unless_flat(turned, corners)
+        let mut all = Self::unless_flat(turned, corners);
+        if !all.is_flat() {
+            let change = |(normal, change): (&DVec3, &DVec3)| {
+                let length = (cofactors * *normal).length();
+                match length > 0.0 {
+                    true => cofactors * *change / length,
+                    false => DVec3::ZERO,
+                }
+            };
+            let changes = self.changes.iter().map(|it| NormalChanges {
+                target: it.target,
+                vectors: self.vectors.iter().zip(&it.vectors).map(change).collect(),
+            });
+            all.changes = changes.collect();
+        }
+        all
+    }
+
+    /// Computes how the normals change where vertices are displaced: they turn with the mean of the faces around.
+    pub(super) fn turn_with(
+        &mut self,
+        (vertices, triangles): (&[DVec3], &[[u32; 3]]),
+        displacements: &[Displacements],
+    ) {
+        if self.is_flat() || displacements.is_empty() {
+            return;
+        }
+        let rest = self.means(vertices, triangles);
+        let changes = displacements
+            .iter()
+            .map(|Displacements { target, vectors }| {
+                let displaced: Vec<_> =
+                    vertices.iter().zip(vectors).map(|(a, b)| *a + *b).collect();
+                let means = self.means(&displaced, triangles);
+                let turned = |(number, normal): (usize, &DVec3)| {
+                    let [from, to] = [rest[number], means[number]];
+                    let has_both = from != DVec3::ZERO && to != DVec3::ZERO;
+                    let turned = has_both.then(|| DQuat::from_rotation_arc(from, to) * *normal);
+                    turned.map_or(DVec3::ZERO, |turned| turned - *normal)
+                };
+                NormalChanges {
+                    target: *target,
+                    vectors: self.vectors.iter().enumerate().map(turned).collect(),
+                }
+            });
+        let changes: Vec<_> = changes.collect();
+        let known = |it: &NormalChanges| self.changes.iter().any(|own| own.target == it.target);
+        let missing: Vec<_> = changes.into_iter().filter(|it| !known(it)).collect();
+        self.changes.extend(missing);
+    }
+
+    /// For each normal, the mean of the faces that have it, weighted by their angles; zero where there is none.
+    fn means(&self, vertices: &[DVec3], triangles: &[[u32; 3]]) -> Vec<DVec3> {
+        let mut sums = vec![DVec3::ZERO; self.vectors.len()];
+        for (normals, triangle) in self.triangles.iter().zip(triangles) {
+            let face = face_normal(vertices, triangle);
+            for (place, &normal) in normals.iter().enumerate() {
+                let at = |k: usize| vertices[triangle[(place + k) % 3] as usize];
+                if let Some(sum) = sums.get_mut(normal as usize) {
+                    *sum += face * angle(at(1) - at(0), at(2) - at(0));
+                }
+            }
+        }
+        sums.into_iter().map(length_one).collect()
     }
 
     fn unless_flat(vectors: Vec<DVec3>, triangles: Vec<[u32; 3]>) -> Self {
         if triangles.iter().all(|it| *it == Self::FLAT) {
             return Self::default();
         }
-        Self { vectors, triangles }
+        Self {
+            vectors,
+            triangles,
+            changes: Vec::new(),
+        }
     }
 }
 

@@ -1,4 +1,4 @@
-//! Tracks: how the camera, lights, materials and joints of a scene change with time.
+//! Tracks: how the camera, lights, materials, joints and morph targets of a scene change with time.
 
 use super::source_span::SourceSpan;
 use glam::{DQuat, DVec3, DVec4};
@@ -16,7 +16,7 @@ pub const TICKS_PER_SECOND: u32 = 48_000;
 #[derive(Clone, Debug, PartialEq)]
 pub struct Track {
     pub target: TrackTarget,
-    /// The number of the light, material or joint; 0 for the camera.
+    /// The number of the light, material, joint or morph target; 0 for the camera.
     pub index: usize,
     pub interpolation: Interpolation,
     /// At least one, by rising times.

@@ -46,8 +46,8 @@ fn largest_error(scene: &SceneFile, until: f64) -> f64 {
     for step in 0..=100 {
         let seconds = f64::from(step) * until / 100.0;
         let time = ticks(&tracks, seconds);
-        let state =
-            State::at(&loaded, &tracks, time).unwrap_or_else(|error| panic!("{error}: {scene:?}"));
+        let state = State::at(&blob, &loaded, &tracks, time)
+            .unwrap_or_else(|error| panic!("{error}: {scene:?}"));
         let posed = state.apply(&loaded).expect("in range");
         let seconds = f64::from(time) / f64::from(TICKS_PER_SECOND);
         let expected = scene.instances_at(seconds);
@@ -117,7 +117,12 @@ fn scene_without_joints_has_no_poses() {
     let loaded = blob.scene().expect("valid");
     let tracks = Tracks::from_bytes(blob.bytes()).expect("valid");
     assert!(tracks.joints().is_empty());
-    assert_eq!(State::at(&loaded, &tracks, 0).expect("a state").poses, None);
+    assert_eq!(
+        State::at(&blob, &loaded, &tracks, 0)
+            .expect("a state")
+            .poses,
+        None
+    );
 }
 
 #[test]
@@ -128,7 +133,7 @@ fn poses_of_another_scene_are_rejected() {
     let [one, other] =
         [one, other].map(|it| compile(&it, &Options::default()).expect("compiles").blob);
     let tracks = Tracks::from_bytes(other.bytes()).expect("valid");
-    let state = State::at(&other.scene().expect("valid"), &tracks, 0).expect("a state");
+    let state = State::at(&other, &other.scene().expect("valid"), &tracks, 0).expect("a state");
     let poses = state.poses.expect("two instances");
     assert!(poses.apply(&one.scene().expect("valid")).is_err());
 }

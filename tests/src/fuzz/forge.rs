@@ -8,6 +8,7 @@ use crate::random::Random;
 use gridel_core::format::record::Header;
 use gridel_core::format::{BlobError, Field, Location, SectionKind};
 use gridel_core::{Scene, Structure};
+use gridel_host::blob::Blob;
 use std::mem::offset_of;
 
 impl Parts {
@@ -226,7 +227,7 @@ impl Forger {
 
     /// Makes a forgery, and passes it on if it loads. The header's limits are corrected if they
     /// alone were wrong.
-    pub fn forge(&mut self, use_scene: impl FnOnce(&Scene<'_>, &[u8])) {
+    pub fn forge(&mut self, use_scene: impl FnOnce(&Scene<'_>, &Blob)) {
         let random = &mut self.random;
         let mut parts = self.bases[random.below(self.bases.len())].parts.clone();
         for _ in 0..=[0, 0, 0, 1, 1, 2, 4][random.below(7)] {
@@ -238,7 +239,7 @@ impl Forger {
             match blob.scene() {
                 Ok(scene) => {
                     self.loaded += 1;
-                    use_scene(&scene, blob.bytes());
+                    use_scene(&scene, &blob);
                     return;
                 }
                 Err(BlobError::OutOfRange {

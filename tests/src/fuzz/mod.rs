@@ -30,7 +30,7 @@ pub fn blob(data: &[u8]) {
     let blob = sealed(data);
     if let Ok(scene) = blob.scene() {
         agree(&scene, &some_rays(&scene, 3));
-        moves(&scene, blob.bytes());
+        moves(&scene, &blob);
     }
 }
 
@@ -111,8 +111,8 @@ fn agree_in<N: Number>(scene: &Scene<'_>, rays: &[UnitRay]) {
 ///
 /// # Panics
 /// If a state is rejected.
-pub fn moves(scene: &Scene<'_>, blob: &[u8]) -> bool {
-    let tracks = match Tracks::from_bytes(blob) {
+pub fn moves(scene: &Scene<'_>, blob: &Blob) -> bool {
+    let tracks = match Tracks::from_bytes(blob.bytes()) {
         Ok(tracks) => tracks,
         Err(error) => {
             speaks(&error);
@@ -129,9 +129,11 @@ pub fn moves(scene: &Scene<'_>, blob: &[u8]) -> bool {
         last,
         i32::MAX,
     ] {
-        match State::at(scene, &tracks, time) {
+        match State::at(blob, scene, &tracks, time) {
             Ok(state) => drop(state.apply(scene).expect("a state in range")),
-            Err(StateError::Camera { .. } | StateError::Instances { .. }) => {}
+            Err(
+                StateError::Camera { .. } | StateError::Instances { .. } | StateError::Mesh { .. },
+            ) => {}
             Err(StateError::Blob(error)) => panic!("{error}"),
         }
     }

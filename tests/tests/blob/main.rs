@@ -51,6 +51,7 @@ fn small_scene() -> gridel_host::scene::Scene {
             .map(DVec2::from_array)
             .to_vec(),
         triangles: vec![[0, 1, 2], [1, 3, 2]],
+        displacements: Vec::new(),
     };
     mesh.material = 2;
     let torus = Shape::Torus(Torus {
@@ -186,7 +187,7 @@ impl Fate {
             Ok(scene) => {
                 self.accepted += 1;
                 works(&scene, rays_each);
-                moves(&scene, blob.bytes());
+                moves(&scene, blob);
             }
             Err(error) => {
                 self.rejected += 1;

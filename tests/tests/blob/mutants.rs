@@ -86,7 +86,7 @@ fn holds(structures: &[Structure]) {
             if let Err(panic) = catch_unwind(agrees) {
                 let folder = std::env::temp_dir();
                 let path = folder.join(format!("forged-{number}.gridel"));
-                std::fs::write(&path, blob).expect("the forgery is kept");
+                std::fs::write(&path, blob.bytes()).expect("the forgery is kept");
                 eprintln!("forgery {number}: {}", path.display());
                 resume_unwind(panic);
             }
@@ -162,7 +162,7 @@ fn forged_tracks_are_rejected_or_harmless() {
             ..Options::default()
         };
         let blob = compile(&scene, &options).expect("compiles").blob;
-        assert!(moves(&blob.scene().expect("a scene"), blob.bytes()));
+        assert!(moves(&blob.scene().expect("a scene"), &blob));
         let mut base = Base::of(blob.bytes());
         // Without names, most forgeries are of tracks.
         base.remove(&[SectionKind::NameStarts, SectionKind::NameText]);

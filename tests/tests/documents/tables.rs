@@ -128,6 +128,7 @@ fn bent_sheet() -> scene::Object {
             colors: vec![[0.5; 3]; 4],
             coordinates: vec![DVec2::ZERO, DVec2::X, DVec2::Y],
             triangles: vec![[0, 1, 2]; 2],
+            displacements: Vec::new(),
         },
         shape: Shape::Mesh {
             vertices,

@@ -69,6 +69,7 @@ fn coordinates() -> Attributes {
         colors: Vec::new(),
         coordinates: SQUARE.map(|[.., u, v]| DVec2::new(u, v)).to_vec(),
         triangles: TRIANGLES.to_vec(),
+        displacements: Vec::new(),
     }
 }
 

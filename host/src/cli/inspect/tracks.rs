@@ -20,7 +20,7 @@ pub struct TrackList {
 #[derive(Serialize)]
 pub struct TrackLine {
     target: &'static str,
-    /// The number of the light, material or joint; 0 for the camera.
+    /// The number of the light, material, joint or morph target; 0 for the camera.
     index: u32,
     interpolation: &'static str,
     keys: u32,
@@ -65,7 +65,7 @@ impl TrackLine {
         } = self;
         let keys = counted(*keys as usize, "key");
         match target.split_once('.') {
-            Some((owner @ ("light" | "material" | "joint"), property)) => {
+            Some((owner @ ("light" | "material" | "joint" | "morph"), property)) => {
                 format!("{owner} {index}, {property}: {keys}, {interpolation}")
             }
             _ => format!("{target}: {keys}, {interpolation}"),

@@ -1,4 +1,4 @@
-//! The animations of a glTF file: tracks of its camera and its lights.
+//! The animations of a glTF file: tracks of its camera and its lights, and curves of its other nodes.
 //!
 //! A node's own translation and rotation keep their keys. Where nodes above it move as well, or tracks do not have such
 //! an interpolation, they are sampled [`RATE`] times per second and at their keys.
@@ -34,7 +34,8 @@ struct NodeCurves {
     translation: Option<Curve>,
     rotation: Option<Curve>,
     scale: Option<Curve>,
-    weights: bool,
+    /// One for each morph target.
+    weights: Option<Vec<Curve>>,
 }
 
 /// A node at rest.
@@ -130,16 +131,13 @@ impl Motion {
         for (number, channel) in channels.enumerate() {
             let target = channel.target();
             let moves = motion.nodes.entry(target.node().index()).or_default();
-            let curve = match target.property() {
-                Property::MorphTargetWeights => {
-                    moves.weights = true;
-                    continue;
-                }
-                Property::Translation => &mut moves.translation,
-                Property::Rotation => &mut moves.rotation,
-                Property::Scale => &mut moves.scale,
+            let property = target.property();
+            let curve = match property {
+                Property::MorphTargetWeights => None,
+                Property::Translation => Some(&mut moves.translation),
+                Property::Rotation => Some(&mut moves.rotation),
+                Property::Scale => Some(&mut moves.scale),
             };
-            let mut found = Curve::read(&channel, buffers)?;
             let error = |cause: &str| {
                 SceneError::new(
                     path,
@@ -151,9 +149,18 @@ impl Motion {
                     "export the animation again",
                 )
             };
-            found.check(target.property()).map_err(error)?;
-            found.round_times();
-            *curve = Some(found);
+            let mut found = match curve {
+                Some(_) => vec![Curve::read(&channel, buffers)?],
+                None => Curve::weights(&channel, targets_of(&target.node()), buffers)?,
+            };
+            for curve in &mut found {
+                curve.check(property).map_err(error)?;
+                curve.round_times();
+            }
+            match curve {
+                Some(curve) => *curve = found.pop(),
+                None => moves.weights = Some(found),
+            }
         }
         Ok(motion)
     }
@@ -163,9 +170,9 @@ impl Motion {
         self.nodes.is_empty()
     }
 
-    /// Returns whether the weights of a node's morph targets change.
-    pub(super) fn has_weights(&self, node: usize) -> bool {
-        self.nodes.get(&node).is_some_and(|moves| moves.weights)
+    /// The weights of a node's morph targets, if they change.
+    pub(super) fn weights(&self, node: usize) -> Option<&[Curve]> {
+        self.nodes.get(&node)?.weights.as_deref()
     }
 
     /// Returns whether a node, or one above it, moves.
@@ -438,6 +445,12 @@ impl Rest {
         });
         Self { matrix, parts }
     }
+}
+
+/// How many morph targets the mesh of a node has.
+fn targets_of(node: &Node<'_>) -> usize {
+    let parts = node.mesh().into_iter().flat_map(|mesh| mesh.primitives());
+    parts.map(|it| it.morph_targets().len()).max().unwrap_or(0)
 }
 
 /// The time of a node's first key.

@@ -31,15 +31,8 @@ impl Curve {
                     .collect()
             }
         };
-        let interpolation = match sampler.interpolation() {
-            gltf::animation::Interpolation::Step => Interpolation::Step,
-            gltf::animation::Interpolation::Linear => Interpolation::Linear,
-            gltf::animation::Interpolation::CubicSpline => Interpolation::Cubic,
-        };
-        let each = match interpolation {
-            Interpolation::Cubic => 3,
-            _ => 1,
-        };
+        let interpolation = interpolation(&sampler);
+        let each = values_of_key(interpolation);
         let keys = if values.len() == each * times.len() {
             let key = |([seconds], values): (&[f64; 1], &[[f64; 4]])| match *values {
                 [entering, value, leaving] => Key {
@@ -66,6 +59,49 @@ impl Curve {
             interpolation,
             keys,
         })
+    }
+
+    /// Reads the weights of so many morph targets; without keys if the counts do not fit.
+    pub(super) fn weights(
+        channel: &gltf::animation::Channel<'_>,
+        targets: usize,
+        buffers: &Buffers<'_>,
+    ) -> Result<Vec<Self>, SceneError> {
+        let sampler = channel.sampler();
+        let times = buffers.numbers::<1>(&sampler.input())?;
+        let values = buffers.numbers::<1>(&sampler.output())?;
+        let interpolation = interpolation(&sampler);
+        let each = values_of_key(interpolation);
+        let fits = values.len() == targets * each * times.len();
+        let key = |target: usize, number: usize| {
+            // The values of all targets, between their changes where there are some.
+            let value = |group: usize| {
+                let [weight] = values[(number * each + group) * targets + target];
+                [weight, 0.0, 0.0, 0.0]
+            };
+            let [seconds] = times[number];
+            match interpolation {
+                Interpolation::Cubic => Key {
+                    seconds,
+                    entering: value(0),
+                    value: value(1),
+                    leaving: value(2),
+                },
+                _ => Key {
+                    seconds,
+                    value: value(0),
+                    ..Key::default()
+                },
+            }
+        };
+        let curve = |target: usize| Self {
+            interpolation,
+            keys: match fits {
+                true => (0..times.len()).map(|number| key(target, number)).collect(),
+                false => Vec::new(),
+            },
+        };
+        Ok((0..targets).map(curve).collect())
     }
 
     /// Returns the keys with each value, and each change of it, mapped linearly.
@@ -170,6 +206,23 @@ impl Curve {
     pub(super) fn at(&self, seconds: f64, property: Property) -> [f64; 4] {
         let turns = property == Property::Rotation;
         interpolate(self.interpolation, &self.keys, turns, seconds)
+    }
+}
+
+/// The interpolation of a sampler.
+fn interpolation(sampler: &gltf::animation::Sampler<'_>) -> Interpolation {
+    match sampler.interpolation() {
+        gltf::animation::Interpolation::Step => Interpolation::Step,
+        gltf::animation::Interpolation::Linear => Interpolation::Linear,
+        gltf::animation::Interpolation::CubicSpline => Interpolation::Cubic,
+    }
+}
+
+/// How many values a key has: a spline's has a change before and behind it.
+fn values_of_key(interpolation: Interpolation) -> usize {
+    match interpolation {
+        Interpolation::Cubic => 3,
+        _ => 1,
     }
 }
 

@@ -20,7 +20,7 @@ impl Importer<'_> {
         let joint = self.joint_of.get(&node.index()).copied();
         let joint = joint.filter(|_| node.skin().is_none());
         let part = match (placement, joint) {
-            (Some(_), _) if node.weights().is_none() => self.shared_part(node, &mesh)?,
+            (Some(_), _) if !self.has_own_shape(node) => self.shared_part(node, &mesh)?,
             // A shape of its own.
             (Some(_), _) => self.part(node, &mesh, &DMat4::IDENTITY)?,
             // Mirrored or scaled unevenly: a part that stands where it is.
@@ -39,6 +39,11 @@ impl Importer<'_> {
             });
         }
         Ok(true)
+    }
+
+    /// Returns whether a node gives its mesh a shape of its own.
+    fn has_own_shape(&self, node: &Node<'_>) -> bool {
+        node.weights().is_some() || self.motion.weights(node.index()).is_some()
     }
 
     /// The part of a node's mesh that several nodes can place; `None` for a mesh without triangles.
@@ -66,6 +71,7 @@ impl Importer<'_> {
         let named = Named {
             mesh,
             weights: weights(node, mesh),
+            moving: self.moving_targets(node, mesh)?,
             name: &name,
         };
         let objects = self.objects(&named, world)?;
@@ -90,7 +96,7 @@ impl Importer<'_> {
             };
             let name = node.name().or(mesh.name()).map_or(0, str::len);
             let is_instance =
-                self.shared.placements.contains_key(&node.index()) && node.weights().is_none();
+                self.shared.placements.contains_key(&node.index()) && !self.has_own_shape(node);
             if is_instance && parts.insert(mesh.index(), ()).is_some() {
                 size = size.plus(Size {
                     objects: 1,

@@ -3,7 +3,8 @@
 //!
 //! Each set of triangles of each node becomes an object, in the order of the nodes. A mesh that several
 //! nodes share is a [part](super::Part), or is copied where that costs little. Animations of cameras, of lights and of
-//! nodes with meshes become tracks. Morph targets give a mesh the shape at rest. Skins are ignored. The
+//! nodes with meshes become tracks. Morph targets whose weights an animation moves are kept; others give a mesh its
+//! shape at rest. Skins are ignored. The
 //! textures of the base color and the normal map are drawn; a warning names other textures. Images that nothing draws
 //! are not read.
 
@@ -42,7 +43,7 @@ use gltf::{Document, Node, Semantic};
 use gridel_core::Up;
 use normal_transforms::NormalTransforms;
 use place::{Weighted, place_of, transform, weights};
-use shared::Shared;
+use shared::{Shared, triangles};
 use std::collections::HashMap;
 use std::path::Path;
 use std::sync::Arc;
@@ -98,6 +99,7 @@ fn read(input: Input<'_>) -> Result<Imported, SceneError> {
         motion: Motion::default(),
         vertices: 0,
         triangles: 0,
+        displaced: 0,
         shared: Shared::default(),
         joint_of: HashMap::new(),
         scales: Vec::new(),
@@ -141,10 +143,12 @@ fn read(input: Input<'_>) -> Result<Imported, SceneError> {
     })
 }
 
-/// A mesh, the weights of its morph targets, and the name of its objects.
+/// A mesh, the weights of its morph targets at rest, which of the scene's morph targets is its first if they move, and
+/// the name of its objects.
 struct Named<'m> {
     mesh: &'m gltf::Mesh<'m>,
     weights: &'m [f32],
+    moving: Option<usize>,
     name: &'m str,
 }
 
@@ -164,6 +168,8 @@ struct Importer<'a> {
     motion: Motion,
     vertices: usize,
     triangles: usize,
+    /// Displacements of vertices by morph targets.
+    displaced: usize,
     shared: Shared,
     /// The joint that moves a node.
     joint_of: HashMap<usize, usize>,
@@ -238,7 +244,7 @@ impl Importer<'_> {
         let bends = |node: &Node<'_>| {
             let joints = node.skin().into_iter().flat_map(|skin| skin.joints());
             let mut joints = joints.map(|joint| joint.index());
-            self.motion.has_weights(node.index()) || joints.any(|joint| self.motion.moves(joint))
+            joints.any(|joint| self.motion.moves(joint))
         };
         let bent = document
             .nodes()
@@ -248,13 +254,9 @@ impl Importer<'_> {
             let name = node.name().map_or(String::new(), |name| {
                 format!(" {name:?}", name = shortened(name))
             });
-            let by = match self.motion.has_weights(node.index()) {
-                true => "morph targets",
-                false => "a skin",
-            };
             return Err(self.error(
                 format!(
-                    "the animation bends node {}{name} by {by}, which is not supported",
+                    "the animation bends node {}{name} by a skin, which is not supported",
                     node.index()
                 ),
                 "choose another `--animation`, or bake the mesh without it",
@@ -262,7 +264,7 @@ impl Importer<'_> {
         }
         self.warn_of(
             bent.len(),
-            "a mesh that the animation bends keeps its shape at rest; skins and morph targets do not move",
+            "a mesh that the animation bends keeps its shape at rest; skins do not move",
         );
         Ok(())
     }
@@ -353,6 +355,7 @@ impl Importer<'_> {
         let named = Named {
             mesh: &mesh,
             weights: weights(node, &mesh),
+            moving: self.moving_targets(node, &mesh)?,
             name: &name,
         };
         let objects = self.objects(&named, world)?;
@@ -365,6 +368,7 @@ impl Importer<'_> {
         let Named {
             mesh,
             weights,
+            moving,
             name,
         } = *named;
         let parts = mesh.primitives().len();
@@ -384,6 +388,7 @@ impl Importer<'_> {
                 Weighted {
                     part: &part,
                     weights,
+                    moving,
                 },
                 world,
             )?
@@ -462,33 +467,16 @@ impl Importer<'_> {
                 "export the file again, or repair the vertex",
             ));
         }
-        let normals = self.normals(place, weighted, world, (&vertices, &triangles))?;
-        let attributes = self.attributes(place, part, (vertices.len(), &triangles))?;
+        let mut normals = self.normals(place, weighted, world, (&vertices, &triangles))?;
+        let mut attributes = self.attributes(place, part, (vertices.len(), &triangles))?;
+        attributes.displacements = self.displacements(place, weighted, world, vertices.len())?;
+        self.change_normals(place, weighted, world, &triangles, &mut normals)?;
+        normals.turn_with((&vertices, &triangles), &attributes.displacements);
         let shape = Shape::Mesh {
             vertices,
             triangles,
         };
         Ok(Some((shape, normals, attributes)))
-    }
-}
-
-/// Returns the triangles of the corners, counter-clockwise in front.
-fn triangles(mode: Mode, corners: &[u32], mirrored: bool) -> Vec<[u32; 3]> {
-    let turned = |[a, b, c]: [u32; 3], turn: bool| if turn { [a, c, b] } else { [a, b, c] };
-    match (mode, corners) {
-        (Mode::TriangleStrip, _) => corners
-            .windows(3)
-            .enumerate()
-            .map(|(number, c)| turned([c[0], c[1], c[2]], mirrored != (number % 2 == 1)))
-            .collect(),
-        (Mode::TriangleFan, [hub, rim @ ..]) => rim
-            .windows(2)
-            .map(|c| turned([*hub, c[0], c[1]], mirrored))
-            .collect(),
-        _ => corners
-            .chunks_exact(3)
-            .map(|c| turned([c[0], c[1], c[2]], mirrored))
-            .collect(),
     }
 }
 

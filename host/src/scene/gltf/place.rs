@@ -60,11 +60,13 @@ pub(super) fn place_of(mesh: &Mesh<'_>, part: &Primitive<'_>) -> String {
     format!("mesh {}, primitive {}", mesh.index(), part.index())
 }
 
-/// A part of a mesh, and the weights of its morph targets.
+/// A part of a mesh, the weights of its morph targets at rest, and which of the scene's morph targets is its first if
+/// they move.
 #[derive(Clone, Copy)]
 pub(super) struct Weighted<'p> {
     pub(super) part: &'p Primitive<'p>,
     pub(super) weights: &'p [f32],
+    pub(super) moving: Option<usize>,
 }
 
 /// The weights of a node's mesh.

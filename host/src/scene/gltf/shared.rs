@@ -1,4 +1,4 @@
-//! Which meshes become parts.
+//! Which meshes become parts, and their triangles.
 
 use crate::scene::Placement;
 use glam::{DMat3, DMat4};
@@ -67,4 +67,24 @@ pub(super) fn triangle_count(part: &Primitive<'_>) -> u64 {
         _ => 0,
     };
     count as u64
+}
+
+/// Returns the triangles of the corners, counter-clockwise in front.
+pub(super) fn triangles(mode: Mode, corners: &[u32], mirrored: bool) -> Vec<[u32; 3]> {
+    let turned = |[a, b, c]: [u32; 3], turn: bool| if turn { [a, c, b] } else { [a, b, c] };
+    match (mode, corners) {
+        (Mode::TriangleStrip, _) => corners
+            .windows(3)
+            .enumerate()
+            .map(|(number, c)| turned([c[0], c[1], c[2]], mirrored != (number % 2 == 1)))
+            .collect(),
+        (Mode::TriangleFan, [hub, rim @ ..]) => rim
+            .windows(2)
+            .map(|c| turned([*hub, c[0], c[1]], mirrored))
+            .collect(),
+        _ => corners
+            .chunks_exact(3)
+            .map(|c| turned([c[0], c[1], c[2]], mirrored))
+            .collect(),
+    }
 }

@@ -6,6 +6,7 @@ use super::imported_track::{ImportPlace, lost, with_imported};
 use super::item::{Content, Item};
 use super::joint::{self, Joints};
 use super::material::Palette;
+use super::morph::{self, Morphs};
 use super::object::Reader;
 use super::part;
 use super::place::Placer;
@@ -35,6 +36,7 @@ const KEYS: &[&str] = &[
     "instance",
     "joint",
     "room",
+    "morph",
     "track",
 ];
 
@@ -68,12 +70,14 @@ pub(super) fn read(input: Input<'_>, imports: &mut Imports) -> Result<Scene, Sce
         Palette::read(tables, &mut images)
     })?;
 
+    let mut morphs = root.or("morph", Morphs::default(), morph::read)?;
     let mut reader = Reader {
         source: &source,
         imports,
         molecule: choices.molecule,
         assembly: choices.assembly,
         palette: &mut palette,
+        morphs: &mut morphs,
     };
     let groups = root.or("group", BTreeMap::new(), |tables| reader.groups(tables))?;
     let items = root.or("object", Vec::new(), |list| reader.items(list))?;
@@ -139,10 +143,13 @@ pub(super) fn read(input: Input<'_>, imports: &mut Imports) -> Result<Scene, Sce
         light_names: &scene.light_names,
         palette: &palette,
         joints: &joints,
+        morphs: &morphs,
     };
     imported_tracks.extend(placed.tracks);
+    imported_tracks.extend(morphs.tracks.iter().cloned());
     scene.tracks = with_imported(targets.resolve(tracks)?, imported_tracks);
     scene.materials = palette.into_materials();
+    scene.morph_targets = morphs.targets;
     imports.warnings.extend(moving_nothing(&scene));
     Ok(scene)
 }
@@ -165,6 +172,7 @@ impl Given {
         let Content::Import {
             scene: import,
             materials,
+            ..
         } = &item.content
         else {
             return Ok(Vec::new());

@@ -25,8 +25,12 @@ impl ImportPlace<'_> {
         import: &Scene,
     ) -> Result<Vec<Track>, SceneError> {
         let mut tracks = Vec::new();
-        // Those of joints come along with the instances.
-        for track in import.tracks.iter().filter(|it| !it.target.is_of_joint()) {
+        // Those of joints come along with the instances, and those of morph targets with these.
+        let own = import
+            .tracks
+            .iter()
+            .filter(|it| !it.target.is_of_joint() && it.target != TrackTarget::MorphWeight);
+        for track in own {
             let (index, what) = if track.target.is_of_camera() {
                 (self.camera.then_some(0), "camera")
             } else if track.target.is_of_material() {

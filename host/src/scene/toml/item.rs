@@ -25,10 +25,11 @@ pub(super) enum Content {
     Group(Vec<Item>),
     /// The group of this name.
     Instance(Name),
-    /// Another scene file, and which of our materials each of its materials is.
+    /// Another scene file, which of our materials each of its materials is, and which of our morph targets is its first.
     Import {
         scene: Rc<Scene>,
         materials: Vec<usize>,
+        morphs: usize,
     },
 }
 

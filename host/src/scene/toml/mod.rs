@@ -10,6 +10,7 @@ mod item;
 mod joint;
 mod light;
 mod material;
+mod morph;
 mod object;
 mod part;
 mod place;

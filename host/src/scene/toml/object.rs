@@ -4,11 +4,14 @@ use super::census::{MAX_NESTING, too_deep};
 use super::import::{Done, Imports, Molecules};
 use super::item::{Content, Group, Item};
 use super::material::Palette;
+use super::morph::Morphs;
 use super::source::Source;
 use super::value::{Fields, Value};
 use super::{shape, transform};
 use crate::scene::importer::stem;
-use crate::scene::{Attributes, MoleculeOptions, MoleculeStyle, Scene, SceneError, Shape, Track};
+use crate::scene::{
+    Attributes, MoleculeOptions, MoleculeStyle, Scene, SceneError, Shape, Track, TrackTarget,
+};
 use std::collections::BTreeMap;
 use std::path::Path;
 use std::rc::Rc;
@@ -28,6 +31,8 @@ pub(super) struct Reader<'r> {
     pub(super) assembly: Option<&'r str>,
     /// Takes in the materials of imports.
     pub(super) palette: &'r mut Palette,
+    /// Takes in the morph targets of imports.
+    pub(super) morphs: &'r mut Morphs,
 }
 
 impl Reader<'_> {
@@ -99,12 +104,14 @@ impl Reader<'_> {
             None if kind == "import" => stem(Path::new(fields.require("file")?.filled()?)),
             None => format!("{kind} {number}"),
         };
-        let content = match kind {
+        let mut content = match kind {
             "group" => Content::Group(self.members(&fields, "group")?),
             "instance" => Content::Instance(fields.require("group")?.name()?),
             "import" => {
                 let scene = self.import(&fields)?;
-                let seen = |track: &Track| !track.target.is_of_joint();
+                let seen = |track: &Track| {
+                    !track.target.is_of_joint() && track.target != TrackTarget::MorphWeight
+                };
                 if self.imports.nesting > 0 && scene.tracks.iter().any(seen) {
                     let place = self.source.place(&fields.span);
                     self.imports.warnings.push(format!(
@@ -118,14 +125,22 @@ impl Reader<'_> {
                     Some(_) => Vec::new(),
                     None => scene.materials.iter().map(adopt).collect(),
                 };
-                Content::Import { scene, materials }
+                let morphs = self.morphs.adopt(&scene);
+                Content::Import {
+                    scene,
+                    materials,
+                    morphs,
+                }
             }
             _ => Content::Shape(shape::read(kind, &fields)?),
         };
-        let attributes = match &content {
-            Content::Shape(shape) => shape::attributes(shape, &fields)?,
-            _ => Attributes::default(),
-        };
+        let mut attributes = Attributes::default();
+        if let Content::Shape(shape) = &mut content {
+            attributes = shape::attributes(shape, &fields)?;
+            if let Some(table) = fields.get("morph") {
+                self.morphs.displace(table, shape, &mut attributes)?;
+            }
+        }
         let transform = transform::read(&fields)?;
         Ok(Item {
             name,

@@ -15,6 +15,9 @@ use crate::table::shortened;
 use glam::DAffine3;
 use std::collections::{BTreeMap, HashMap};
 
+/// An import, its materials here, its smoothing angle, and its first morph target here.
+type ImportKey = (*const Scene, Vec<usize>, Option<u64>, usize);
+
 /// Flattens the tree of items, which must have passed the census, into objects.
 pub(super) struct Placer<'p> {
     source: &'p Source,
@@ -23,8 +26,8 @@ pub(super) struct Placer<'p> {
     placed: Placed,
     /// True if the objects are those of a part, which holds no instances.
     in_part: bool,
-    /// The first part of each import that has some. The key is the import, its materials here, and its smoothing angle.
-    imported: HashMap<(*const Scene, Vec<usize>, Option<u64>), usize>,
+    /// The first part of each import that has some.
+    imported: HashMap<ImportKey, usize>,
     /// Counted again, because boxes that are turned become twelve triangles.
     primitives: u64,
     size: Size,
@@ -176,7 +179,9 @@ impl<'p> Placer<'p> {
                     let group = census::find(self.groups, self.source, name)?;
                     self.items(&group.items, inside)?;
                 }
-                Content::Import { scene, materials } => {
+                Content::Import {
+                    scene, materials, ..
+                } => {
                     // Only the import's own `material` overrides what its objects have.
                     let materials = match (&item.material, material) {
                         (Some(_), Some(material)) => vec![material; scene.materials.len()],
@@ -214,6 +219,7 @@ impl<'p> Placer<'p> {
             Some(degrees) => placed.shade(NormalsChoice::Smooth(degrees)),
             None => placed.normals = object.normals.transformed(&site.transform),
         }
+        placed.count_targets_from(first_morph(item));
         Ok(placed)
     }
 
@@ -234,7 +240,12 @@ impl<'p> Placer<'p> {
             return self.flattened(item, site, scene, &materials);
         };
         let smooth = item.smooth.map(f64::to_bits);
-        let key = (std::ptr::from_ref(scene), materials, smooth);
+        let key = (
+            std::ptr::from_ref(scene),
+            materials,
+            smooth,
+            first_morph(item),
+        );
         let first = match self.imported.get(&key) {
             Some(&first) => first,
             None => {
@@ -373,5 +384,13 @@ impl<'p> Placer<'p> {
         self.size = self.size.plus(Size::of(&shape, name.len()));
         census::check_size(self.source, item, self.size)?;
         Ok(shape)
+    }
+}
+
+/// The number here of the first morph target of an import.
+fn first_morph(item: &Item) -> usize {
+    match item.content {
+        Content::Import { morphs, .. } => morphs,
+        _ => 0,
     }
 }

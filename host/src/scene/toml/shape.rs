@@ -13,8 +13,15 @@ const _: () = assert!(MAX_CORNERS <= MAX_CONCAVE);
 /// Returns the keys of a kind of shape, without those of every object.
 pub(super) fn keys(kind: &str) -> &'static [&'static str] {
     match kind {
-        "triangle" => &["vertices", "colors", "coordinates"],
-        "mesh" => &["vertices", "faces", "smooth", "colors", "coordinates"],
+        "triangle" => &["vertices", "colors", "coordinates", "morph"],
+        "mesh" => &[
+            "vertices",
+            "faces",
+            "smooth",
+            "colors",
+            "coordinates",
+            "morph",
+        ],
         _ => Shape::kinds()
             .find(|(name, _)| *name == kind)
             .map_or(&[], |(_, keys)| keys),

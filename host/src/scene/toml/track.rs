@@ -1,8 +1,9 @@
-//! The `[[track]]` tables: values of the camera, of lights, materials and joints at some times.
+//! The `[[track]]` tables: values of the camera, of lights, materials, joints and morph targets at some times.
 
 use super::hinge;
 use super::joint::Joints;
 use super::material::Palette;
+use super::morph::{self, Morphs};
 use super::source::{Name, Source, Span, nearest};
 use super::transform;
 use super::value::{Fields, Value};
@@ -55,7 +56,9 @@ const JOINT: [(&str, TrackTarget); 3] = [
     ("scale", TrackTarget::JointScale),
 ];
 
-/// A track whose light, material or joint is not looked up yet.
+const MORPH: [(&str, TrackTarget); 1] = [("weight", TrackTarget::MorphWeight)];
+
+/// A track whose light, material, joint or morph target is not looked up yet.
 pub(super) struct Unresolved {
     owner: Owner,
     /// The target's text and place.
@@ -69,6 +72,7 @@ enum Owner {
     Light(String),
     Material(String),
     Joint(String),
+    Morph(String),
 }
 
 /// Reads the tables.
@@ -152,8 +156,8 @@ fn fields_error(fields: &Fields<'_>, cause: String, remedy: &str) -> SceneError 
 
 /// Parses a target: its owner, its name, and the property.
 fn parse(target: Value<'_>) -> Result<(Owner, &'static str, TrackTarget), SceneError> {
-    const EXAMPLES: &str = "write a property of the camera, a light, a material or a joint, such as \"camera.eye\", \
-         \"light.0.color\", \"material.glass.transmit\" or \"joint.elbow.rotation\"";
+    const EXAMPLES: &str = "write a property of the camera, a light, a material, a joint or a morph target, such as \"camera.eye\", \
+         \"light.0.color\", \"material.glass.transmit\", \"joint.elbow.rotation\" or \"morph.smile.weight\"";
     let text = target.filled()?;
     let Some((owner, rest)) = text.split_once('.') else {
         return Err(target.error(
@@ -198,6 +202,7 @@ fn parse(target: Value<'_>) -> Result<(Owner, &'static str, TrackTarget), SceneE
             named(&MATERIAL).map(|(owner, name, moved)| (Owner::Material(owner), name, moved))
         }
         "joint" => named(&JOINT).map(|(owner, name, moved)| (Owner::Joint(owner), name, moved)),
+        "morph" => named(&MORPH).map(|(owner, name, moved)| (Owner::Morph(owner), name, moved)),
         _ => Err(target.error(
             format!(
                 "`target` is {text:?}, and nothing called {owner:?} moves",
@@ -238,6 +243,7 @@ fn keys(fields: &Fields<'_>, target: TrackTarget) -> Result<Vec<Key>, SceneError
         (ValueKind::Rotation, _) if !hinge => {
             "`values = [[0, 0, 0], [0, 90, 0]]`, one for each time"
         }
+        (ValueKind::Weight, _) => "`values = [0, 1]`, one for each time",
         (ValueKind::Scale, _) => "`values = [1, 1.5]`, one for each time",
         (ValueKind::Rotation, _) | (_, 1) => "`values = [0, 360]`, one for each time",
         _ => "`values = [[0, 3, 8], [4, 3, 4]]`, one for each time",
@@ -261,6 +267,7 @@ fn keys(fields: &Fields<'_>, target: TrackTarget) -> Result<Vec<Key>, SceneError
             ValueKind::FieldOfView => DVec3::X * field_of_view(value)?,
             ValueKind::Turns | ValueKind::Rotation => DVec3::X * value.number()?,
             ValueKind::Scale => DVec3::X * scale(value)?,
+            ValueKind::Weight => DVec3::X * morph::weight(value)?,
             ValueKind::Radiance => DVec3::from_array(value.radiance()?),
             ValueKind::Ratios => DVec3::from_array(value.reflectance()?),
             ValueKind::Position | ValueKind::Shift => value.vector()?,
@@ -329,7 +336,7 @@ fn smooth_tangents(keys: &mut [Key]) {
     }
 }
 
-/// The lights, materials and joints of a scene, to look tracks' targets up.
+/// The lights, materials, joints and morph targets of a scene, to look tracks' targets up.
 pub(super) struct Targets<'t> {
     pub(super) source: &'t Source,
     pub(super) lights: &'t [Light],
@@ -337,10 +344,11 @@ pub(super) struct Targets<'t> {
     pub(super) light_forms: &'t [Option<LightForm>],
     pub(super) palette: &'t Palette,
     pub(super) joints: &'t Joints,
+    pub(super) morphs: &'t Morphs,
 }
 
 impl Targets<'_> {
-    /// Looks up lights, materials and joints.
+    /// Looks up lights, materials, joints and morph targets.
     pub(super) fn resolve(&self, tracks: Vec<Unresolved>) -> Result<Vec<Track>, SceneError> {
         let mut resolved: Vec<Track> = Vec::new();
         let mut known = HashMap::new();
@@ -403,6 +411,10 @@ impl Targets<'_> {
             }
             Owner::Joint(name) => self.joints.number(name).map_err(|remedy| {
                 let cause = format!("there is no joint {name:?}", name = shortened(name));
+                self.source.error(&target.span, cause, remedy)
+            }),
+            Owner::Morph(name) => self.morphs.number(name).map_err(|remedy| {
+                let cause = format!("there is no morph target {name:?}", name = shortened(name));
                 self.source.error(&target.span, cause, remedy)
             }),
             Owner::Material(name) => {

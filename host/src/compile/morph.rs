@@ -1,0 +1,310 @@
+//! Morph targets: how far they move vertices, and their sections.
+
+use super::error::CompileError;
+use super::section::{Section, indices, section};
+use crate::scene::{
+    Attributes, Displacements, LARGEST_WEIGHT, MorphTarget, Normals, Object, Scene, Shape,
+    TrackTarget,
+};
+use crate::shape::Lattice;
+use crate::table::printable;
+use glam::DVec3;
+use gridel_core::format::SectionKind;
+use gridel_core::format::limits;
+use gridel_core::format::record::UnitBox;
+use gridel_core::{Structure, deform};
+use std::borrow::Cow;
+use std::collections::HashMap;
+
+/// Fraction bits of weights.
+const WEIGHT_BITS: u32 = 24;
+
+/// By what part of its size the room of vertices is widened.
+const MARGIN: f64 = 1.0 / 4096.0;
+
+/// By how many units it is widened at least.
+const MARGIN_UNITS: f64 = 8.0;
+
+/// Returns whether a scene can have morph targets through these structures.
+pub fn can_move(structures: &[Structure]) -> bool {
+    structures.iter().all(|it| deform::STRUCTURES.contains(it))
+}
+
+/// Returns the scene with all meshes as they are at rest.
+pub fn at_rest(scene: &Scene) -> Scene {
+    let mut still = scene.clone();
+    let in_parts = still.parts.iter_mut().flat_map(|it| &mut it.objects);
+    for object in still.objects.iter_mut().chain(in_parts) {
+        object.attributes.displacements.clear();
+        object.normals.changes.clear();
+    }
+    still.morph_targets.clear();
+    still
+        .tracks
+        .retain(|it| it.target != TrackTarget::MorphWeight);
+    still
+}
+
+/// Returns the morph targets of a scene, each with a range that holds all weights of its track as well.
+pub fn with_tracks(scene: &Scene) -> Cow<'_, [MorphTarget]> {
+    let tracks = scene.tracks.iter();
+    let mut tracks = tracks
+        .filter(|it| it.target == TrackTarget::MorphWeight)
+        .peekable();
+    if tracks.peek().is_none() {
+        return Cow::Borrowed(&scene.morph_targets);
+    }
+    let mut targets = scene.morph_targets.clone();
+    for track in tracks {
+        let [low, high] = &mut targets[track.index].range;
+        for point in track.control_points() {
+            let weight = point.x.clamp(-LARGEST_WEIGHT, LARGEST_WEIGHT);
+            (*low, *high) = (low.min(weight), high.max(weight));
+        }
+    }
+    Cow::Owned(targets)
+}
+
+/// The room of the vertices that morph targets move.
+#[derive(Debug)]
+pub struct MorphRoom {
+    /// Without a margin; `None` if nothing moves.
+    bounds: Option<[DVec3; 2]>,
+    /// How far rounding can move a vertex, in steps of the storage.
+    rounding: f64,
+}
+
+impl MorphRoom {
+    /// The room of a scene's own meshes.
+    pub fn of(scene: &Scene) -> Self {
+        let targets = with_tracks(scene);
+        let ways: Vec<[f64; 2]> = targets.iter().map(way).collect();
+        let largest = |[low, high]: &[f64; 2]| high.max(-low);
+        let boxes = scene.objects.iter().filter_map(|it| around(it, &ways));
+        Self {
+            bounds: boxes.reduce(|a, b| [a[0].min(b[0]), a[1].max(b[1])]),
+            rounding: 1.0 + ways.iter().map(largest).sum::<f64>() / 2.0,
+        }
+    }
+
+    /// The box around an extent and this, for a lattice of so many bits.
+    pub fn widened(&self, extent: (DVec3, DVec3), bits: u8) -> (DVec3, DVec3) {
+        let Some([low, high]) = self.bounds else {
+            return extent;
+        };
+        let whole = [low.min(extent.0), high.max(extent.1)];
+        // An extent without a lattice is reported later.
+        let unit = Lattice::around(whole, bits, 0).map_or(0.0, |it| it.unit());
+        let [low, high] = self.with_margin(unit).unwrap_or(whole);
+        (low.min(extent.0), high.max(extent.1))
+    }
+
+    /// The box on a lattice with such units.
+    fn with_margin(&self, unit: f64) -> Option<[DVec3; 2]> {
+        self.bounds.map(|[low, high]| {
+            let part = (high - low).max_element() * MARGIN;
+            let margin = part.max((MARGIN_UNITS + self.rounding) * unit);
+            [low - margin, high + margin]
+        })
+    }
+
+    /// The box around a box and this, on a lattice; the box itself if nothing moves.
+    pub fn around(&self, own: Option<UnitBox>, lattice: &Lattice) -> Option<UnitBox> {
+        let Some([low, high]) = self.with_margin(lattice.unit()) else {
+            return own;
+        };
+        let units = |place: DVec3| (place - lattice.origin) / lattice.unit();
+        // The casts saturate; -32768 is reserved.
+        let (low, high) = (units(low).floor().to_array(), units(high).ceil().to_array());
+        let side = |axis: usize| [(low[axis] as i16).max(-i16::MAX), high[axis] as i16];
+        let room = UnitBox([side(0), side(1), side(2)]);
+        Some(own.map_or(room, |own| own.union(&room)))
+    }
+}
+
+/// The least and the greatest difference of a weight from that at rest.
+fn way(target: &MorphTarget) -> [f64; 2] {
+    let [low, high] = target.range.map(|it| it - target.weight);
+    [low.min(high).min(0.0), high.max(low).max(0.0)]
+}
+
+/// The box of all places of an object's vertices; `None` if they do not move.
+fn around(object: &Object, ways: &[[f64; 2]]) -> Option<[DVec3; 2]> {
+    let Shape::Mesh { vertices, .. } = &object.shape else {
+        return None;
+    };
+    let displacements = &object.attributes.displacements;
+    if displacements.is_empty() {
+        return None;
+    }
+    let mut corners = [DVec3::INFINITY, DVec3::NEG_INFINITY];
+    for (number, &vertex) in vertices.iter().enumerate() {
+        let (mut low, mut high) = (vertex, vertex);
+        for Displacements { target, vectors } in displacements {
+            let [least, greatest] = ways[*target].map(|way| vectors[number] * way);
+            low += least.min(greatest);
+            high += least.max(greatest);
+        }
+        corners = [corners[0].min(low), corners[1].max(high)];
+    }
+    (corners[0].x <= corners[1].x).then_some(corners)
+}
+
+/// What a morph target does to a vertex: its number, the displacement in steps of the storage, and the change of the
+/// normal on its octahedron, halved.
+type Step = (u32, [i32; 3], [i16; 3]);
+
+/// The different motions of vertices.
+#[derive(Debug)]
+pub struct Motions {
+    numbers: HashMap<Vec<Step>, u32>,
+    /// The first is that of vertices that stay.
+    all: Vec<Vec<Step>>,
+}
+
+impl Default for Motions {
+    fn default() -> Self {
+        Self {
+            numbers: HashMap::from([(Vec::new(), 0)]),
+            all: vec![Vec::new()],
+        }
+    }
+}
+
+impl Motions {
+    /// Returns the motions of the corners of a mesh's triangles; none where nothing moves.
+    pub fn of(
+        &mut self,
+        object: &Object,
+        triangles: &[[u32; 3]],
+        lattice: &Lattice,
+        targets: &[MorphTarget],
+    ) -> Result<Vec<[u32; 3]>, CompileError> {
+        let Attributes { displacements, .. } = &object.attributes;
+        if displacements.is_empty() {
+            return Ok(Vec::new());
+        }
+        let normals = &object.normals;
+        // By vertex and normal.
+        let mut known: HashMap<[u32; 2], u32> = HashMap::new();
+        let mut motions = Vec::with_capacity(triangles.len());
+        for (number, triangle) in triangles.iter().enumerate() {
+            let corners = normals.triangles.get(number).unwrap_or(&Normals::FLAT);
+            let mut motion = [0; 3];
+            for (place, motion) in motion.iter_mut().enumerate() {
+                let [vertex, normal] = [triangle[place], corners[place]];
+                *motion = match known.get(&[vertex, normal]) {
+                    Some(motion) => *motion,
+                    None => {
+                        let mut steps = displaced(displacements, vertex, lattice, targets)?;
+                        for (target, change) in changed(normals, normal) {
+                            match steps.iter_mut().find(|it| it.0 == target) {
+                                Some(step) => step.2 = change,
+                                None => steps.push((target, [0; 3], change)),
+                            }
+                        }
+                        let motion = self.number(steps);
+                        known.insert([vertex, normal], motion);
+                        motion
+                    }
+                };
+            }
+            motions.push(motion);
+        }
+        Ok(motions)
+    }
+
+    /// The number of a motion.
+    fn number(&mut self, mut steps: Vec<Step>) -> u32 {
+        steps.sort_unstable();
+        let next = self.all.len() as u32;
+        *self.numbers.entry(steps).or_insert_with_key(|steps| {
+            self.all.push(steps.clone());
+            next
+        })
+    }
+
+    /// The sections of vertices, given the number in the blob and the motion of each.
+    pub fn sections(&self, moving: impl Iterator<Item = (u32, u32)>) -> Vec<Section> {
+        let steps = moving.flat_map(|(vertex, motion)| {
+            let steps = self.all[motion as usize].iter();
+            steps.map(move |&step| (vertex, step))
+        });
+        let mut steps: Vec<(u32, Step)> = steps.collect();
+        steps.sort_unstable();
+        if steps.is_empty() {
+            return Vec::new();
+        }
+        let vertices: Vec<u32> = steps.iter().map(|it| it.0).collect();
+        let targets: Vec<u32> = steps.iter().map(|it| it.1.0).collect();
+        let long: Vec<[i32; 3]> = steps.iter().map(|it| it.1.1).collect();
+        let normals: Vec<[i16; 3]> = steps.iter().map(|it| it.1.2).collect();
+        let short = |step: &[i32; 3]| {
+            let [x, y, z] = step.map(i16::try_from);
+            Some([x.ok()?, y.ok()?, z.ok()?])
+        };
+        let narrow: Option<Vec<[i16; 3]>> = long.iter().map(short).collect();
+        let mut sections = vec![
+            indices(SectionKind::MorphVertices, &vertices, 1),
+            indices(SectionKind::MorphNumbers, &targets, 1),
+            match narrow {
+                Some(narrow) => section(SectionKind::Displacements, &narrow),
+                None => section(SectionKind::Displacements, &long),
+            },
+        ];
+        if normals.iter().any(|it| *it != [0; 3]) {
+            sections.push(section(SectionKind::NormalChanges, &normals));
+        }
+        sections
+    }
+}
+
+/// How morph targets displace a vertex.
+fn displaced(
+    displacements: &[Displacements],
+    vertex: u32,
+    lattice: &Lattice,
+    targets: &[MorphTarget],
+) -> Result<Vec<Step>, CompileError> {
+    let steps_of_unit = if lattice.bits <= 16 { 1.0 } else { 256.0 };
+    let factor = steps_of_unit / lattice.unit();
+    let most = f64::from(limits::LARGEST_DISPLACEMENT);
+    let mut steps = Vec::new();
+    for Displacements { target, vectors } in displacements {
+        let step = (vectors[vertex as usize] * factor).round();
+        if step.is_nan() || step.abs().max_element() > most {
+            return Err(CompileError::Displacement {
+                target: printable(&targets[*target].name),
+                most: most / factor,
+            });
+        }
+        if step != DVec3::ZERO {
+            steps.push((*target as u32, step.to_array().map(|it| it as i32), [0; 3]));
+        }
+    }
+    Ok(steps)
+}
+
+/// How morph targets change a normal on its octahedron, halved; one that would leave the range is shortened.
+fn changed(normals: &Normals, number: u32) -> impl Iterator<Item = (u32, [i16; 3])> {
+    let most = f64::from(i16::MAX);
+    let normal = normals.vectors.get(number as usize);
+    normal.into_iter().flat_map(move |normal| {
+        let factor = most / 2.0 / normal.abs().element_sum();
+        normals.changes.iter().filter_map(move |it| {
+            let change = it.vectors[number as usize] * factor;
+            let beyond = (change.abs().max_element() / most).max(1.0);
+            let change = (change / beyond).round().to_array().map(|it| it as i16);
+            (change != [0; 3]).then_some((it.target as u32, change))
+        })
+    })
+}
+
+/// The section of the weights at rest.
+pub fn weights(scene: &Scene) -> Section {
+    let weights = scene.morph_targets.iter();
+    let weights: Vec<i32> = weights
+        .map(|it| (it.weight * f64::from(1 << WEIGHT_BITS)).round() as i32)
+        .collect();
+    section(SectionKind::MorphWeights, &weights)
+}
