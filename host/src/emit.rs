@@ -3,7 +3,7 @@
 
 use crate::measure::Deforming;
 use crate::measure::board::Board;
-use gridel_core::{Format, Prevalidated, Scene, Structure};
+use gridel_core::{Format, Prevalidated, Scene, Structure, Tracks};
 use std::fs::File;
 use std::io::{self, Read};
 use std::path::Path;
@@ -30,10 +30,10 @@ pub fn is_module(path: &Path) -> io::Result<bool> {
 #[derive(Clone, Copy, Debug)]
 pub struct Emitted<'s> {
     pub scene: &'s Scene<'s>,
+    /// The bytes of its blob.
+    pub blob: &'s [u8],
     pub structure: Structure,
     pub format: Format,
-    /// Joints on which instances hang.
-    pub joints: usize,
     /// Bytes that the blob may take, and the board whose they are.
     pub budget: Option<(u64, &'static Board)>,
 }
@@ -60,7 +60,7 @@ impl Emitted<'_> {
     ///     scene: &scene,
     ///     structure: Structure::DualSplit,
     ///     format: Format::Fixed,
-    ///     joints: 0,
+    ///     blob: blob.bytes(),
     ///     budget: None,
     /// };
     /// assert!(emitted.features().contains(&"sphere"));
@@ -84,9 +84,12 @@ impl Emitted<'_> {
             .into_iter()
             .all(|it| Prevalidated::STRUCTURES.contains(&it));
         let (parts, effects) = (scene.parts().len(), scene.effects_with_parts());
+        // They were checked with the scene.
+        let tracks = Tracks::from_bytes(self.blob).ok();
+        let joints = tracks.map_or(0, |tracks| tracks.joints().len());
         let with_parts = LOAD_WITH_PARTS
             .replace("INSTANCES_COUNT", &scene.instances().len().to_string())
-            .replace("JOINTS_COUNT", &self.joints.to_string());
+            .replace("JOINTS_COUNT", &joints.to_string());
         let load = match parts {
             0 if is_prevalidated => LOAD_PREVALIDATED,
             0 => LOAD_CHECKED,
@@ -210,21 +213,31 @@ fn scene_unit(exponent: i32) -> String {
 }
 
 impl Emitted<'_> {
-    /// The type of the scene's own deforming mesh; nothing where vertices have no room to move.
+    /// How many morph targets the scene has, and the type of its own deforming mesh; nothing where no vertex moves.
     fn mesh(&self) -> String {
-        let Some(mesh) = Deforming::of_scene(self.scene) else {
-            return String::new();
+        let tracks = Tracks::from_bytes(self.blob).ok();
+        let targets = tracks.map_or(0, |tracks| tracks.weights_at_rest().len());
+        let weights = match targets {
+            0 => String::new(),
+            targets => format!(
+                "/// Morph targets, each with a weight.\n\
+                 #[allow(dead_code)]\n\
+                 pub const MORPH_TARGETS: usize = {targets};\n\n"
+            ),
+        };
+        let Some(mesh) = Deforming::of_scene(self.scene, self.blob) else {
+            return weights;
         };
         let vertex = match self.scene.header().storage_bits {
             16 => "Vertex16",
             _ => "Vertex24",
         };
         format!(
-            "/// Vertices and boxes of the mesh in RAM, exactly large enough: {} bytes.\n\
+            "{weights}/// Vertices and boxes of the mesh in RAM, exactly large enough: {} bytes.\n\
              #[allow(dead_code)]\n\
              pub type Mesh = gridel_core::Deformation<\n    \
-             gridel_core::format::record::{vertex},\n    {},\n    {},\n>;\n\n",
-            mesh.bytes, mesh.vertices, mesh.pairs
+             gridel_core::format::record::{vertex},\n    {},\n    {},\n    {},\n>;\n\n",
+            mesh.bytes, mesh.vertices, mesh.pairs, mesh.normals
         )
     }
 }

@@ -13,7 +13,7 @@
 //! | render a blob on all cores | [`render`], then [`picture`] to encode what comes out |
 //! | change the camera and the lights of a blob | [`scene::Camera::in_blob`], [`scene::Light::in_blob`] |
 //! | know a scene at a time of its tracks | [`state`] |
-//! | move the vertices of a mesh | [`deformation`] |
+//! | move the vertices of a mesh | [`deformation`], [`morphed`] |
 //! | compare structures on a scene | [`compare`] |
 //! | put parts of a picture together, and pictures into an animation | [`merge`], [`animation`] |
 //! | trace rays of one's own | [`trace`], and [`npy`] for NumPy's files |

@@ -161,6 +161,11 @@ impl<'a> Morph<'a> {
         self.displacements.len() == 0
     }
 
+    /// Returns true if morph targets change normals, so that a deformation needs room for these.
+    pub fn changes_normals(&self) -> bool {
+        !self.normals.is_empty()
+    }
+
     /// Moves vertices and normals, which are at rest, to their places.
     fn place<V: Vertex>(
         &self,

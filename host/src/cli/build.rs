@@ -231,7 +231,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
             scene: moving.as_ref().unwrap_or(&scene),
             structure: source.structure(&scene, None)?,
             format,
-            joints: source.joints(),
+            blob: source.blob.bytes(),
             budget: room,
         };
         let is_new = !folder.exists();

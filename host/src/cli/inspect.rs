@@ -175,7 +175,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         parts: PartLine::all(&scene, source.blob.bytes()),
         tracks: TrackList::of(source.blob.bytes()),
         joints: JointLine::all(&scene, source.blob.bytes()),
-        deforming: Deforming::all(&scene),
+        deforming: Deforming::all(&scene, source.blob.bytes()),
         names: NameLists {
             instances: source.names(&scene).instances,
             ..Names::of_blob(&scene, source.blob.bytes())

@@ -287,11 +287,6 @@ impl Source {
         Failure::failed(format!("{}: {error}", self.input.path().display()), remedy)
     }
 
-    /// Joints on which instances of the blob hang.
-    pub fn joints(&self) -> usize {
-        Tracks::from_bytes(self.blob.bytes()).map_or(0, |tracks| tracks.joints().len())
-    }
-
     /// Returns the changes of a scene at a time of its tracks. Given options take precedence over the tracks.
     pub fn changes_at(
         &self,

@@ -1,8 +1,9 @@
 //! The memory of deforming meshes.
 
 use crate::table::grouped;
-use gridel_core::deform;
+use gridel_core::deform::{self, Morph};
 use gridel_core::format::record::{Pair, UnitBox, Vertex16, Vertex24};
+use gridel_core::scene::part_blobs;
 use gridel_core::{Kind, Scene, Structure};
 use serde::Serialize;
 use std::fmt;
@@ -14,6 +15,8 @@ pub struct Deforming {
     pub part: Option<usize>,
     pub vertices: usize,
     pub pairs: usize,
+    /// Normals that morph targets change.
+    pub normals: usize,
     /// Bytes of a [`Deformation`](gridel_core::Deformation) on boards, where a machine word has 32 bits.
     pub bytes: usize,
 }
@@ -22,7 +25,7 @@ impl Deforming {
     /// The structures that a deforming scene can hold.
     pub const STRUCTURES: [Structure; 2] = deform::STRUCTURES;
 
-    /// The meshes of a blob that were built with room to move.
+    /// The meshes of a blob that were built with room to move, or with morph targets.
     ///
     /// ```
     /// # let file = "[[object]]\nkind = 'mesh'\nvertices = [[0, 0, 0], [1, 0, 0], [0, 1, 0]]\nfaces = [[0, 1, 2]]";
@@ -37,39 +40,48 @@ impl Deforming {
     ///     ..Options::default()
     /// };
     /// let blob = compile(&imported.scene, &options)?.blob;
-    /// let deforming = Deforming::all(&blob.scene()?);
+    /// let deforming = Deforming::all(&blob.scene()?, blob.bytes());
     /// assert_eq!(deforming[0].vertices, 3);
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
-    pub fn all(scene: &Scene<'_>) -> Vec<Self> {
-        let parts = scene.parts().iter().enumerate();
-        let parts = parts.map(|(part, scene)| (Some(part), scene));
-        std::iter::once((None, scene))
+    pub fn all(scene: &Scene<'_>, blob: &[u8]) -> Vec<Self> {
+        let blobs = part_blobs(blob).into_iter().flatten();
+        let parts = scene.parts().iter().zip(blobs).enumerate();
+        let parts = parts.map(|(part, (scene, blob))| (Some(part), scene, blob));
+        std::iter::once((None, scene, blob))
             .chain(parts)
-            .filter_map(|(part, scene)| Self::of(part, scene))
+            .filter_map(|(part, scene, blob)| Self::of(part, scene, blob))
             .collect()
     }
 
     /// The mesh of a scene's own objects.
-    pub fn of_scene(scene: &Scene<'_>) -> Option<Self> {
-        Self::of(None, scene)
+    pub fn of_scene(scene: &Scene<'_>, blob: &[u8]) -> Option<Self> {
+        Self::of(None, scene, blob)
     }
 
-    fn of(part: Option<usize>, scene: &Scene<'_>) -> Option<Self> {
+    fn of(part: Option<usize>, scene: &Scene<'_>, blob: &[u8]) -> Option<Self> {
+        // It was checked with the scene's tracks.
+        let morph = Morph::from_bytes(blob).ok()?;
         let mut held = Structure::ALL.into_iter().filter(|it| scene.holds(*it));
         let can_refit = held.all(|it| Self::STRUCTURES.contains(&it));
-        if !can_refit || scene.count(Kind::Triangle) == 0 || !has_room(scene) {
+        let moves = has_room(scene) || !morph.is_empty();
+        if !can_refit || scene.count(Kind::Triangle) == 0 || !moves {
             return None;
         }
         let (vertices, pairs) = (scene.vertices(), scene.pairs());
+        let normals = match morph.changes_normals() {
+            true => scene.normals(),
+            false => 0,
+        };
         let bytes = match scene.header().storage_bits {
-            16 => bytes::<Vertex16>(4, vertices, pairs),
-            _ => bytes::<Vertex24>(4, vertices, pairs),
+            16 => bytes::<Vertex16>(4, [vertices, pairs, normals]),
+            _ => bytes::<Vertex24>(4, [vertices, pairs, normals]),
         };
         Some(Self {
             part,
             vertices,
             pairs,
+            normals,
             bytes,
         })
     }
@@ -80,9 +92,13 @@ impl fmt::Display for Deforming {
         if let Some(part) = self.part {
             write!(f, "part {part}: ")?;
         }
+        let normals = match self.normals {
+            0 => String::new(),
+            normals => format!(" and {} normals", grouped(normals)),
+        };
         write!(
             f,
-            "{} vertices and {} pairs, {} bytes of RAM; vertices move within the bounds",
+            "{} vertices, {} pairs{normals}, {} bytes of RAM; vertices move within the bounds",
             grouped(self.vertices),
             grouped(self.pairs),
             grouped(self.bytes)
@@ -108,15 +124,16 @@ fn is_wider(scene: &Scene<'_>) -> bool {
     all.is_some_and(|all| all != *scene.bounds())
 }
 
-/// Bytes of a deformation where a machine word has `word` bytes: two arrays with a length each, a word and two
-/// marks.
-fn bytes<V>(word: usize, vertices: usize, pairs: usize) -> usize {
+/// Bytes of a deformation where a machine word has `word` bytes, given how many vertices, pairs and normals it
+/// has: an array with a length for each, a word and two marks.
+fn bytes<V>(word: usize, [vertices, pairs, normals]: [usize; 3]) -> usize {
     let array = |count: usize, record: usize, alignment: usize| {
         (count * record + word).next_multiple_of(alignment.max(word))
     };
     let vertices = array(vertices, size_of::<V>(), align_of::<V>());
     let pairs = array(pairs, size_of::<Pair>(), align_of::<Pair>());
-    (vertices + pairs + size_of::<u32>() + 2 * size_of::<bool>()).next_multiple_of(word)
+    let normals = array(normals, size_of::<[i16; 2]>(), align_of::<i16>());
+    (vertices + pairs + normals + size_of::<u32>() + 2 * size_of::<bool>()).next_multiple_of(word)
 }
 
 #[cfg(test)]
@@ -128,14 +145,17 @@ mod tests {
     fn sizes_are_the_compilers() {
         let word = size_of::<usize>();
         assert_eq!(
-            bytes::<Vertex16>(word, 101, 7),
+            bytes::<Vertex16>(word, [101, 7, 0]),
             size_of::<Deformation<Vertex16, 101, 7>>()
         );
         assert_eq!(
-            bytes::<Vertex24>(word, 502, 255),
-            size_of::<Deformation<Vertex24, 502, 255>>()
+            bytes::<Vertex24>(word, [502, 255, 301]),
+            size_of::<Deformation<Vertex24, 502, 255, 301>>()
         );
         // As on the boards of the tests.
-        assert_eq!(bytes::<Vertex24>(4, 502, 255), 12 * 502 + 32 * 255 + 16);
+        assert_eq!(
+            bytes::<Vertex24>(4, [502, 255, 0]),
+            12 * 502 + 32 * 255 + 20
+        );
     }
 }

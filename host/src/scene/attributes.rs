@@ -1,9 +1,9 @@
 //! Attributes of meshes other than shape and normals: colors of vertices, texture coordinates, and displacements.
 
+use super::morph::Displacements;
 use super::normals::cofactors;
 use super::texture::Texture;
-use glam::{DAffine3, DVec2, DVec3};
-use gridel_core::format::limits;
+use glam::{DAffine3, DVec2};
 
 /// Colors and displacements of vertices, and texture coordinates of corners; empty for a mesh that has none.
 ///
@@ -23,19 +23,6 @@ pub struct Attributes {
     pub triangles: Vec<[u32; 3]>,
     /// How morph targets displace vertices, at most once for each target.
     pub displacements: Vec<Displacements>,
-}
-
-/// The greatest magnitude of the weight of a morph target.
-pub const LARGEST_WEIGHT: f64 = (limits::LARGEST_WEIGHT >> 24) as f64;
-
-/// How a morph target displaces the vertices of a mesh.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Displacements {
-    /// Index into [`Scene::morph_targets`](crate::scene::Scene::morph_targets).
-    pub target: usize,
-    /// For each vertex, by how much it is displaced with a weight of 1. The mesh has its vertices where they are with the
-    /// target's weight at rest.
-    pub vectors: Vec<DVec3>,
 }
 
 impl Attributes {

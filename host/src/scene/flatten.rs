@@ -133,7 +133,11 @@ impl Weight {
 
     fn add(&mut self, object: &Object) {
         self.primitives = self.primitives.saturating_add(primitives(&object.shape));
-        self.size = self.size.plus(Size::of(&object.shape, object.name.len()));
+        self.size = self.size.plus(Size::of(
+            &object.shape,
+            object.name.len(),
+            &object.attributes,
+        ));
     }
 
     fn check(&self, instance: &Instance) -> Result<(), SceneError> {

@@ -27,6 +27,7 @@ mod light_form;
 mod long_words;
 mod model;
 pub(crate) mod molecule;
+mod morph;
 mod normals;
 mod options;
 pub(crate) mod palette;
@@ -49,7 +50,7 @@ mod without;
 mod words;
 
 pub use crate::shape::Shape;
-pub use attributes::{Attributes, Displacements, LARGEST_WEIGHT};
+pub use attributes::Attributes;
 pub use emitters::MOST_FACES;
 pub use environment::{Environment, Panorama, Sky, Sun};
 pub use error::SceneError;
@@ -63,7 +64,8 @@ pub use model::{
     Alpha, Camera, Color, Diffuse, Instance, Joint, Lens, Light, Material, MorphTarget, Object,
     Part, RenderSettings, Scene, ToneMapping,
 };
-pub use normals::{NormalChanges, Normals, NormalsChoice};
+pub use morph::{Displacements, LARGEST_WEIGHT, NormalChanges};
+pub use normals::{Normals, NormalsChoice};
 pub use options::{
     Choice, ImportOptions, Imported, Instances, MoleculeOptions, MoleculeStyle, Posed,
 };

@@ -407,8 +407,8 @@ impl Object {
         }
     }
 
-    /// Chooses the normals of a mesh.
-    pub(crate) fn shade(&mut self, choice: NormalsChoice) {
+    /// Chooses the normals of a mesh. Computed ones turn with the faces that morph targets move.
+    pub fn shade(&mut self, choice: NormalsChoice) {
         match (choice, &self.shape) {
             (NormalsChoice::File, _) => {}
             (
@@ -418,9 +418,10 @@ impl Object {
                     triangles,
                 },
             ) => {
-                self.normals = Normals::computed(vertices, triangles, degrees);
+                let mesh = (&vertices[..], &triangles[..]);
                 let displacements = &self.attributes.displacements;
-                self.normals.turn_with((vertices, triangles), displacements);
+                self.normals = Normals::computed_for(mesh, degrees, !displacements.is_empty());
+                self.normals.turn_with(mesh, displacements);
             }
             _ => self.normals = Normals::default(),
         }

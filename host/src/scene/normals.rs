@@ -1,6 +1,6 @@
 //! Normals that a mesh is shaded with: those of its file, or computed from its faces.
 
-use super::attributes::Displacements;
+use super::morph::{Displacements, NormalChanges};
 use crate::shape::transform::to_size_one;
 use crate::shape::unit;
 use glam::{DAffine3, DMat3, DQuat, DVec3};
@@ -26,15 +26,6 @@ pub struct Normals {
     pub triangles: Vec<[u32; 3]>,
     /// How morph targets change the vectors, at most once for each target.
     pub changes: Vec<NormalChanges>,
-}
-
-/// How a morph target changes normals.
-#[derive(Clone, Debug, PartialEq)]
-pub struct NormalChanges {
-    /// Index into [`Scene::morph_targets`](crate::scene::Scene::morph_targets).
-    pub target: usize,
-    /// For each normal, what a weight that is greater by 1 adds to it.
-    pub vectors: Vec<DVec3>,
 }
 
 /// Which normals meshes are shaded with.
@@ -65,8 +56,18 @@ impl Normals {
     /// is zero or not finite, or all are those of its face.
     pub fn given(
         vectors: Vec<DVec3>,
+        corners: Vec<[u32; 3]>,
+        mesh: (&[DVec3], &[[u32; 3]]),
+    ) -> Self {
+        Self::kept(vectors, corners, mesh, false)
+    }
+
+    /// As [`given`](Self::given); a mesh that `moves` keeps normals that are those of the face at rest.
+    pub(super) fn kept(
+        vectors: Vec<DVec3>,
         mut corners: Vec<[u32; 3]>,
         (vertices, triangles): (&[DVec3], &[[u32; 3]]),
+        moves: bool,
     ) -> Self {
         let mut vectors: Vec<DVec3> = vectors.into_iter().map(length_one).collect();
         let (count, mut opposite) = (vectors.len(), HashMap::new());
@@ -74,7 +75,7 @@ impl Normals {
             let found = normals.map(|it| vectors.get(it as usize).copied().unwrap_or(DVec3::ZERO));
             let face = face_normal(vertices, triangle);
             let are = |normal: DVec3| found.iter().all(|it| (*it - normal).length() <= SAME);
-            let is_face = are(face) || are(-face);
+            let is_face = !moves && (are(face) || are(-face));
             if is_face || found.contains(&DVec3::ZERO) || face == DVec3::ZERO {
                 *normals = Self::FLAT;
             } else if found.iter().all(|it| it.dot(face) < 0.0) {
@@ -95,6 +96,15 @@ impl Normals {
     /// vertex is the mean of such faces, weighted by their angles there. Vertices are the same where their coordinates
     /// are.
     pub fn computed(vertices: &[DVec3], triangles: &[[u32; 3]], degrees: f64) -> Self {
+        Self::computed_for((vertices, triangles), degrees, false)
+    }
+
+    /// As [`computed`](Self::computed), for a mesh that may move.
+    pub(super) fn computed_for(
+        (vertices, triangles): (&[DVec3], &[[u32; 3]]),
+        degrees: f64,
+        moves: bool,
+    ) -> Self {
         let places = same_places(vertices);
         let faces: Vec<DVec3> = triangles
             .iter()
@@ -133,7 +143,7 @@ impl Normals {
                 numbers[group]
             }));
         }
-        Self::given(vectors, corners, (vertices, triangles))
+        Self::kept(vectors, corners, (vertices, triangles), moves)
     }
 
     /// The normals after a transform of the mesh.

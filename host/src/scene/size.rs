@@ -1,7 +1,7 @@
 //! Computes the memory that a scene takes before it is made. A few lines of a file can describe more objects than any
 //! machine holds.
 
-use super::Shape;
+use super::{Attributes, Shape};
 use crate::table::grouped;
 
 /// The most bytes that a scene may take until its blob is made. That is room for as many triangles as a blob holds, and
@@ -18,6 +18,8 @@ const OBJECT: u64 = 512;
 /// Bytes that a triangle takes, with its share of the vertices; measured likewise, with the
 /// structure `wide`.
 const TRIANGLE: u64 = 224;
+/// Displacements of vertices by morph targets that take as many bytes, with their motions and records.
+const DISPLACED: usize = 2;
 /// The number of copies of a name: in the scene, and for messages.
 const NAMES: u64 = 2;
 
@@ -45,8 +47,10 @@ pub(super) struct Size {
 }
 
 impl Size {
-    /// One object; `name` is the length of its name.
-    pub(super) fn of(shape: &Shape, name: usize) -> Self {
+    /// One object; `name` is the length of its name. Displacements of a few vertices weigh as a triangle.
+    pub(super) fn of(shape: &Shape, name: usize, attributes: &Attributes) -> Self {
+        let displaced = attributes.displacements.iter().map(|it| it.vectors.len());
+        let displaced = displaced.sum::<usize>().div_ceil(DISPLACED) as u64;
         let triangles = match shape {
             Shape::Mesh { .. } => primitives(shape),
             _ => 0,
@@ -54,7 +58,7 @@ impl Size {
         Self {
             objects: 1,
             names: name as u64,
-            triangles,
+            triangles: triangles + displaced,
         }
     }
 

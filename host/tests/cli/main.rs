@@ -18,6 +18,7 @@ mod linear;
 mod live;
 mod memory_report;
 mod merge;
+mod morph;
 mod names;
 mod options;
 mod pipe;

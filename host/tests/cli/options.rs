@@ -221,6 +221,8 @@ fn scenes_with_room_are_compiled_for_bvh() {
     folder.done(&with_room(&[
         "build", "a.toml", "-o", "a.gridel", "--accel", "bvh",
     ]));
+    folder.done(&with_room(&["build", "a.toml", "-o", "c.gridel"]));
+    assert!(folder.read("c.gridel") == folder.read("a.gridel"));
     let of_scene = folder.json(&with_room(&["inspect", "a.toml"]));
     let of_blob = folder.json(&["inspect", "a.gridel"]);
     for key in ["contents", "memory_map"] {
@@ -230,7 +232,7 @@ fn scenes_with_room_are_compiled_for_bvh() {
         );
     }
     for start in [
-        &["build", "a.toml", "-o", "b.gridel"][..],
+        &["build", "a.toml", "-o", "b.gridel", "--accel", "wide"][..],
         &["render", "a.toml", "-o", "b.png", "--accel", "wide"],
     ] {
         folder.fails(

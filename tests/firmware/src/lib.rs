@@ -13,6 +13,7 @@
 //! | `orbit` | turns a camera around the scene in 64 frames |
 //! | `arm` | bends the joints of an arm of instances, and casts rays from its hand |
 //! | `deform` | moves the vertices of a mesh, refits its boxes and casts rays, and counts what that costs |
+//! | `morph` | moves a mesh by the weights of its morph targets and casts rays, and counts what that costs |
 //! | `example` | the README's example |
 //!
 //! The first five run in QEMU, or in Node, and print what they measured, a line each: a name and

@@ -60,7 +60,7 @@ fn a_mesh_deforms(board: &'static Board, format: Format, compiled: &Compiled, tr
         _ => on_the_host::<Vertex24>(compiled, format),
     };
     assert_eq!(found, hosts, "{build}");
-    let [told] = Deforming::all(&scene)[..] else {
+    let [told] = Deforming::all(&scene, compiled.blob.bytes())[..] else {
         panic!("{build}: the scene has no room")
     };
     assert_eq!(report["deformation-bytes"], told.bytes as u64, "{build}");

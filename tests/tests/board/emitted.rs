@@ -40,7 +40,7 @@ fn emitted_modules_run_or_do_not_compile() {
         scene: &view,
         structure: Structure::DualSplit,
         format: Format::Fixed,
-        joints: 0,
+        blob: scene.blob.bytes(),
         budget: Some((96 * 1024, discovery)),
     };
     let build = Build::new(discovery, Format::Fixed, Structure::DualSplit, &scene);
@@ -94,7 +94,7 @@ fn prevalidated_blob_loads_in_constant_time(name: &str, scene: &Compiled) {
         scene: &scene.blob.scene().expect("the compiler's own blob"),
         structure: Structure::DualSplit,
         format: Format::Fixed,
-        joints: 0,
+        blob: scene.blob.bytes(),
         budget: None,
     };
     let folder = build.folder("emitted");

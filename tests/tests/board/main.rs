@@ -22,6 +22,7 @@ mod finder;
 mod firmware;
 mod folders;
 mod live;
+mod morph;
 #[path = "../../firmware/src/orbit.rs"]
 mod orbit;
 mod parts;
@@ -65,6 +66,7 @@ fn main() {
     c_library::plan(&mut plan);
     live::plan(&mut plan);
     deform::plan(&mut plan);
+    morph::plan(&mut plan);
     structures::plan(&mut plan);
     plan.test("memory_maps_are_the_boards")
         .run(memory_maps_are_the_boards);

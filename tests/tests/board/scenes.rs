@@ -8,8 +8,9 @@ use gridel_host::compile::{self, Options};
 use gridel_host::render::{Job, render_moments};
 use gridel_host::sample;
 use gridel_host::scene::{
-    self, Attributes, Camera, Instance, Light, Material, Normals, Object, Part, Placement, Scene,
-    Shape, SourceSpan,
+    self, Attributes, Camera, Displacements, Instance, Interpolation, Key, Light, Material,
+    MorphTarget, Normals, NormalsChoice, Object, Part, Placement, Scene, Shape, SourceSpan, Track,
+    TrackTarget,
 };
 use gridel_host::shape::Sphere;
 use gridel_tests::random::Random;
@@ -136,6 +137,48 @@ pub fn deforming_torus(rings: u32, around: u32, lattice_bits: u8) -> Compiled {
         "torus-16"
     };
     compile_with(name, torus_mesh_scene([rings, around]), [64, 64], options)
+}
+
+/// A smooth torus of 2 times these numbers of triangles with two morph targets: it lifts on one side, and swells.
+pub fn morphing_torus(rings: u32, around: u32, lattice_bits: u8) -> Compiled {
+    let mut scene = torus_mesh_scene([rings, around]);
+    let object = &mut scene.objects[0];
+    let Shape::Mesh { vertices, .. } = &object.shape else {
+        panic!("a mesh");
+    };
+    let lift = vertices.iter().map(|it| DVec3::Z * it.x.max(0.0) * 0.5);
+    let swell = vertices.iter().map(|it| *it * 0.3 + DVec3::Z * it.z);
+    let displacements = [lift.collect(), swell.collect()].into_iter().enumerate();
+    object.attributes.displacements = displacements
+        .map(|(target, vectors)| Displacements { target, vectors })
+        .collect();
+    object.shade(NormalsChoice::Smooth(60.0));
+    for (index, weights) in [[0.0, 1.0, 0.25], [0.5, 0.0, 1.0]].into_iter().enumerate() {
+        scene.morph_targets.push(MorphTarget {
+            name: String::from("target"),
+            weight: weights[0],
+            range: [0.0, 1.0],
+            place: SourceSpan::default(),
+        });
+        let key = |(seconds, weight): (f64, f64)| Key {
+            seconds,
+            value: [weight, 0.0, 0.0, 0.0],
+            ..Key::default()
+        };
+        scene.tracks.push(Track {
+            target: TrackTarget::MorphWeight,
+            index,
+            interpolation: [Interpolation::Linear, Interpolation::Cubic][index],
+            keys: [0.0, 1.0, 2.0].into_iter().zip(weights).map(key).collect(),
+            place: SourceSpan::default(),
+        });
+    }
+    let options = Options {
+        structures: vec![Structure::Bvh],
+        lattice_bits,
+        ..Options::default()
+    };
+    compile_with("morphing-torus", scene, [64, 64], options)
 }
 
 /// A torus of so many rings, and so many vertices around each of them.

@@ -1,6 +1,7 @@
 //! Deforming meshes. Hits are those of brute force and of a blob that is compiled with the moved vertices. Closed
 //! meshes stay closed, and invalid poses are rejected.
 
+mod morph;
 mod parts;
 
 use glam::DVec3;
@@ -192,15 +193,15 @@ fn moved_meshes_of_24_bits_hit_as_fresh_ones() {
     moves_give_the_hits_of_a_fresh_blob::<Vertex24>(24);
 }
 
-/// Rays from the middle to every vertex and to places on every edge hit, through both structures.
-fn no_leaks<N: Number>(moved: &Loaded<'_>, triangles: &[[[i32; 3]; 3]]) {
+/// Rays from a place within to every vertex and to places on every edge hit, through both structures.
+fn no_leaks<N: Number>(moved: &Loaded<'_>, triangles: &[[[i32; 3]; 3]], from: [f64; 3]) {
     for (number, corners) in triangles.iter().enumerate() {
         for side in 0..3 {
             let (a, b) = (corners[side], corners[(side + 1) % 3]);
             for part in [0.0, 0.25, 1.0 / 3.0, 0.5] {
-                let to =
-                    [0, 1, 2].map(|k| (f64::from(a[k]) + part * f64::from(b[k] - a[k])) / 256.0);
-                let ray = UnitRay::new([0.25, -0.5, 0.125], to).ready::<N>(moved);
+                let to = [0, 1, 2]
+                    .map(|k| (f64::from(a[k]) + part * f64::from(b[k] - a[k])) / 256.0 - from[k]);
+                let ray = UnitRay::new(from, to).ready::<N>(moved);
                 let ray = ray.expect("a ray");
                 for structure in [Structure::Bvh, Structure::List] {
                     if structure == Structure::List && number % 64 != 0 {
@@ -255,7 +256,7 @@ fn closed_meshes_stay_closed<V: Vertex>(lattice_bits: u8) {
         deformation.refit(&scene).expect("a pose");
         let moved = scene.with_deformation(&deformation).expect("a scene");
         let triangles = moved_triangles(&scene, deformation.vertices());
-        every_format!(no_leaks(&moved, &triangles));
+        every_format!(no_leaks(&moved, &triangles, [0.25, -0.5, 0.125]));
     }
 }
 

@@ -85,6 +85,7 @@ fn scene_page_lists_exactly_the_keys_of_tables() {
         ("Parts", "[[part]]\nunknown = 1"),
         ("Instances", "[[instance]]\nunknown = 1"),
         ("Joints", "[[joint]]\nunknown = 1"),
+        ("Morph targets", "[morph.a]\nunknown = 1"),
         (
             "Rotations",
             "[[object]]\nkind = \"sphere\"\ncenter = [0, 0, 0]\nradius = 1\n\

@@ -113,7 +113,35 @@ fn blobs() -> Vec<Vec<u8>> {
     scene.render.bounces = 1;
     let compiled = compile(&scene, &options).expect("compiles");
     blobs.push(compiled.blob.bytes().to_vec());
+    blobs.push(bending_sheet());
     blobs
+}
+
+/// The sheet with a morph target, in the structure that can follow.
+fn bending_sheet() -> Vec<u8> {
+    let mut sheet = bent_sheet();
+    sheet.attributes.displacements = vec![scene::Displacements {
+        target: 0,
+        vectors: vec![DVec3::ZERO, DVec3::Y, DVec3::X, DVec3::ZERO],
+    }];
+    sheet.shade(scene::NormalsChoice::Smooth(120.0));
+    let scene = scene::Scene {
+        materials: vec![scene::Material::default()],
+        objects: vec![sheet],
+        morph_targets: vec![scene::MorphTarget {
+            name: String::from("bend"),
+            weight: 0.0,
+            range: [0.0, 1.0],
+            place: scene::SourceSpan::default(),
+        }],
+        ..scene::Scene::default()
+    };
+    let options = Options {
+        structures: vec![Structure::Bvh],
+        ..Options::default()
+    };
+    let compiled = compile(&scene, &options).expect("compiles");
+    compiled.blob.bytes().to_vec()
 }
 
 /// Two triangles with smooth normals.

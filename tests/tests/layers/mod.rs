@@ -28,7 +28,7 @@ const HOST: Layers = Layers {
     order: &[
         "output simd srgb explained table blob observed picture_rays shape deformation",
         "scene sample compile",
-        "live state render trace npy picture layer openexr animation merge resolution report",
+        "live morphed state render trace npy picture layer openexr animation merge resolution report",
         "measure emit",
         "certify accuracy compare verify explain view check",
         "cli main",

@@ -23,6 +23,7 @@ fn value<const N: usize>(
         first_word: 0,
     }];
     let all = Tracks(Records {
+        weights: &[],
         joints: &[],
         instance_joints: &[],
         timeline: Timeline {

@@ -64,7 +64,7 @@ fn unevenness(samples: u16, moments: u16) -> Option<String> {
     ))
 }
 
-/// The most bytes that instances of all moments take.
+/// The most bytes that instances and meshes of all moments take.
 const MOST_BYTES: usize = 1 << 30;
 
 impl ShutterOptions {
@@ -113,12 +113,16 @@ pub fn changes(
     let Some(Exposure { open, moments }) = exposure else {
         return Ok(vec![source.changes_at(scene, tracks, time)?]);
     };
-    let bytes = size_of_val(scene.instances()) * usize::from(moments);
+    // Where meshes morph, each moment has a blob of its own.
+    let meshes = match tracks.weights_at_rest() {
+        [] => 0,
+        _ => source.blob.bytes().len(),
+    };
+    let bytes = (size_of_val(scene.instances()) + meshes) * usize::from(moments);
     if bytes > MOST_BYTES {
         return Err(Failure::usage(
             format!(
-                "{} at {} do not fit in memory at once",
-                counted(scene.instances().len(), "instance"),
+                "instances and meshes that move do not fit in memory at {} at once",
                 counted(moments.into(), "moment")
             ),
             format!(

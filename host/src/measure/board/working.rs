@@ -67,12 +67,18 @@ pub(super) fn rows(programs: &Programs, scene: &Scene<'_>, blob: &[u8]) -> Vec<W
             bytes,
         ));
     }
-    for mesh in Deforming::all(scene) {
+    for mesh in Deforming::all(scene, blob) {
         let what = format!(
             "deforming mesh, {} vertices and {} pairs",
             mesh.vertices, mesh.pairs
         );
         rows.push(row(what, Some(mesh.bytes as u64)));
+    }
+    // They were checked with the scene.
+    let targets = Tracks::from_bytes(blob).map_or(0, |tracks| tracks.weights_at_rest().len());
+    if targets > 0 {
+        let what = format!("weights of {}", counted(targets, "morph target"));
+        rows.push(row(what, Some((targets * size_of::<i32>()) as u64)));
     }
     let moving = moving(scene, blob).into_iter();
     rows.extend(moving.map(|(what, bytes)| row(what, Some(bytes))));

@@ -37,6 +37,7 @@ impl Importer<'_> {
         for normal in &mut normals {
             *normal = turn * *normal;
         }
-        Ok(Normals::given(normals, triangles.to_vec(), mesh))
+        let moves = weighted.moving.is_some();
+        Ok(Normals::kept(normals, triangles.to_vec(), mesh, moves))
     }
 }

@@ -105,7 +105,7 @@ impl<'c> Census<'c> {
             let cost = match &item.content {
                 Content::Shape(shape) => Cost {
                     primitives: primitives(shape),
-                    size: Size::of(shape, item.name.len()),
+                    size: Size::of(shape, item.name.len(), &item.attributes),
                     nesting: 0,
                 },
                 // An import is weighed as at least 1, so that nothing can be repeated for free.
@@ -231,7 +231,8 @@ pub(super) fn find<'g>(
 }
 
 fn imported_size(scene: &Scene) -> Size {
-    let objects = objects_of(scene).map(|it| Size::of(&it.shape, it.name.len()));
+    let objects = objects_of(scene);
+    let objects = objects.map(|it| Size::of(&it.shape, it.name.len(), &it.attributes));
     let instances = scene.instances.iter().map(|it| Size {
         objects: 1,
         names: it.name.len() as u64,

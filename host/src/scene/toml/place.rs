@@ -7,8 +7,8 @@ use super::material::Palette;
 use super::source::Source;
 use crate::scene::size::{MOST_PRIMITIVES, Size, primitives};
 use crate::scene::{
-    Instance, Joint, Normals, NormalsChoice, Object, Part, Placement, Scene, SceneError, Shape,
-    Track,
+    Attributes, Instance, Joint, Normals, NormalsChoice, Object, Part, Placement, Scene,
+    SceneError, Shape, Track,
 };
 use crate::shape::transform::OUT_OF_RANGE;
 use crate::table::shortened;
@@ -158,7 +158,7 @@ impl<'p> Placer<'p> {
             };
             match &item.content {
                 Content::Shape(shape) => {
-                    let shape = self.shape(item, &transform, &name, shape)?;
+                    let shape = self.shape(item, &transform, &name, (shape, &item.attributes))?;
                     let material = material.unwrap_or_else(|| self.palette.fallback());
                     let place = self.source.place(&item.span);
                     let mut object = Object {
@@ -208,7 +208,12 @@ impl<'p> Placer<'p> {
     ) -> Result<Object, SceneError> {
         let name = format!("{}{}", site.path, object.name);
         let mut placed = Object {
-            shape: self.shape(item, &site.transform, &name, &object.shape)?,
+            shape: self.shape(
+                item,
+                &site.transform,
+                &name,
+                (&object.shape, &object.attributes),
+            )?,
             name,
             material: materials[object.material],
             normals: Normals::default(),
@@ -357,7 +362,7 @@ impl<'p> Placer<'p> {
         item: &Item,
         transform: &DAffine3,
         name: &str,
-        shape: &Shape,
+        (shape, attributes): (&Shape, &Attributes),
     ) -> Result<Shape, SceneError> {
         if self.in_part && !shape.is_bounded() {
             return Err(self.source.error(
@@ -381,7 +386,8 @@ impl<'p> Placer<'p> {
         if self.primitives > MOST_PRIMITIVES {
             return Err(census::too_many(self.source, item));
         }
-        self.size = self.size.plus(Size::of(&shape, name.len()));
+        let size = Size::of(&shape, name.len(), attributes);
+        self.size = self.size.plus(size);
         census::check_size(self.source, item, self.size)?;
         Ok(shape)
     }

@@ -37,6 +37,10 @@ fn of(blob: &[u8]) -> Result<String, BlobError> {
          pub const VERTICES: usize = {};\n\
          /// Pairs of the hierarchy of boxes.\n\
          pub const PAIRS: usize = {};\n\
+         /// Normals that morph targets change.\n\
+         pub const MOVING_NORMALS: usize = {};\n\
+         /// Morph targets of the scene.\n\
+         pub const MORPH_TARGETS: usize = {};\n\
          /// Parts of the scene.\n\
          pub const PARTS: usize = {};\n\
          /// Instances of the scene.\n\
@@ -50,6 +54,8 @@ fn of(blob: &[u8]) -> Result<String, BlobError> {
         scene.view().width,
         requirements.vertices,
         requirements.pairs,
+        requirements.moving_normals,
+        requirements.morph_targets,
         parts.len(),
         scene.instances().len(),
         tracks.joints().len(),

@@ -4,6 +4,7 @@
 mod header;
 mod hierarchies;
 mod instances;
+mod morph;
 mod records;
 mod tables;
 mod tracks;
@@ -20,6 +21,7 @@ use gridel_tests::fuzz::{Base, speaks};
 use header::{headers, names, prevalidated, section_tables};
 use hierarchies::{deep_hierarchy, hierarchies, wide_hierarchies};
 use instances::{instances, joints};
+use morph::morph;
 use records::{
     environments, lens_and_bounces, light_forms, media, primitives, rough, shading_data, textures,
 };
@@ -168,6 +170,7 @@ fn every_field_and_reason_is_named_by_the_error_of_a_forged_blob() {
         turned_camera(),
         instances(),
         joints(),
+        morph(),
     ];
     let failures: Vec<&String> = all.iter().flat_map(|errors| &errors.failures).collect();
     assert!(failures.is_empty(), "{failures:#?}");

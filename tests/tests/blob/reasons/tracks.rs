@@ -61,7 +61,7 @@ pub(super) fn tracks() -> Errors {
     }
     let forgeries: [TrackForgery; 9] = [
         (TrackTarget::CameraEye, Field::TrackTarget, &|it| {
-            it.target = 17
+            it.target = 18
         }),
         (TrackTarget::CameraUp, Field::Interpolation, &|it| {
             it.interpolation = 3

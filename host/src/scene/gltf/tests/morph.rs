@@ -1,6 +1,7 @@
-//! The shapes that morph targets give to meshes.
+//! The shapes that morph targets give to meshes, at rest and with time.
 
 use super::*;
+use crate::scene::TrackTarget;
 
 /// The document with two morph targets of the square, whose vertices have normals along z. The first moves the second
 /// vertex by (2, 0, 0), the others not; the second moves all by (0, 0, 1) and leans their normals by (1, 0, 0).
@@ -128,4 +129,165 @@ fn targets_of_another_length_are_rejected() {
         error.cause.contains("4 vertices, and its morph target 0 3"),
         "{error}"
     );
+}
+
+/// The document, whose animation moves the weights of its two morph targets by these numbers at 0 s and 1 s.
+fn animated(values: &[f32], interpolation: &str) -> Value {
+    let mut document = morphed();
+    let numbers = [&[0.0_f32, 1.0], values].concat();
+    let bytes: Vec<u8> = numbers.iter().flat_map(|it| it.to_le_bytes()).collect();
+    let data = STANDARD.encode(&bytes);
+    let uri = format!("data:application/octet-stream;base64,{data}");
+    push(
+        &mut document,
+        "buffers",
+        json!({"byteLength": bytes.len(), "uri": uri}),
+    );
+    for (start, count) in [(0, 2), (8, values.len())] {
+        let view = json!({"buffer": 2, "byteOffset": start, "byteLength": 4 * count});
+        push(&mut document, "bufferViews", view);
+        let view = document["bufferViews"].as_array().unwrap().len() - 1;
+        let accessor = json!({"bufferView": view, "componentType": 5126, "count": count,
+            "type": "SCALAR", "min": [0], "max": [1]});
+        push(&mut document, "accessors", accessor);
+    }
+    document["animations"] = json!([{
+        "name": "wave",
+        "samplers": [{"input": 5, "output": 6, "interpolation": interpolation}],
+        "channels": [{"sampler": 0, "target": {"node": 0, "path": "weights"}}],
+    }]);
+    document
+}
+
+#[test]
+fn animated_weights_become_tracks_of_morph_targets() {
+    let mut document = animated(&[0.0, 0.25, 1.0, -0.5], "LINEAR");
+    document["nodes"][0]["weights"] = json!([0.5, 0.0]);
+    document["nodes"][0]["scale"] = json!([1, 1, 3]);
+    let choice = Choice {
+        animation: Some(String::from("wave")),
+        ..Choice::default()
+    };
+    let imported = chosen(&document, choice).unwrap();
+    assert_eq!(imported.warnings, [] as [&str; 0]);
+    let scene = imported.scene;
+    let weights = scene.morph_targets.iter().map(|it| it.weight);
+    assert_eq!(weights.collect::<Vec<_>>(), [0.5, 0.0]);
+    let tracks: Vec<_> = scene
+        .tracks
+        .iter()
+        .map(|track| {
+            let values = track.keys.iter().map(|key| (key.seconds, key.value[0]));
+            (track.target, track.index, values.collect::<Vec<_>>())
+        })
+        .collect();
+    let target = TrackTarget::MorphWeight;
+    assert_eq!(
+        tracks,
+        [
+            (target, 0, vec![(0.0, 0.0), (1.0, 1.0)]),
+            (target, 1, vec![(0.0, 0.25), (1.0, -0.5)])
+        ]
+    );
+    let object = &scene.objects[0];
+    let [first, second] = &object.attributes.displacements[..] else {
+        panic!("{:?}", object.attributes)
+    };
+    assert_eq!((first.target, second.target), (0, 1));
+    // As the node scales them; vertices are those at rest.
+    assert_eq!(first.vectors[1], DVec3::X * 2.0);
+    assert_eq!(second.vectors, [DVec3::Z * 3.0; 4]);
+    assert_eq!(mesh(object).0[1].x, 2.0);
+    // The file's own change of normals, and that of the faces, which stay in their plane.
+    let changes = &object.normals.changes;
+    assert_eq!(changes.len(), 2, "{changes:?}");
+    for change in changes {
+        let expected = [DVec3::ZERO, DVec3::X * 3.0][change.target];
+        assert!(
+            change
+                .vectors
+                .iter()
+                .all(|it| it.distance(expected) < 1e-12),
+            "{changes:?}"
+        );
+    }
+}
+
+#[test]
+fn splines_of_weights_have_changes_for_each_target() {
+    let values = [1.0, 2.0, 3.0, 4.0, 5.0, 6.0].map(|it| it / 8.0);
+    let both = [values, values.map(|it| -it)].concat();
+    let scene = scene(&animated(&both, "CUBICSPLINE"));
+    let [first, second] = &scene.tracks[..] else {
+        panic!("{:?}", scene.tracks)
+    };
+    let key = |track: &crate::scene::Track| {
+        let key = track.keys[0];
+        [key.entering, key.value, key.leaving].map(|it| it[0] * 8.0)
+    };
+    assert_eq!(key(first), [1.0, 3.0, 5.0]);
+    assert_eq!(key(second), [2.0, 4.0, 6.0]);
+}
+
+#[test]
+fn weights_of_another_count_are_rejected() {
+    let cause = cause(&animated(&[0.0, 0.25, 1.0], "LINEAR"));
+    assert!(
+        cause.contains("channel 0 of node 0: it has no keys, or not a value for each"),
+        "{cause}"
+    );
+}
+
+/// Two nodes with one mesh, of which one is animated and moves: they share nothing.
+#[test]
+fn animated_nodes_have_parts_of_their_own() {
+    let mut document = animated(&[0.0, 0.25, 1.0, -0.5], "STEP");
+    push(
+        &mut document,
+        "nodes",
+        json!({"mesh": 0, "translation": [0, 0, 2]}),
+    );
+    document["scenes"][0]["nodes"] = json!([0, 1, 2]);
+    let still = scene(&document);
+    assert_eq!((still.objects.len(), still.parts.len()), (2, 0));
+    let moves = |object: &Object| !object.attributes.displacements.is_empty();
+    assert_eq!(
+        [0, 1].map(|it: usize| moves(&still.objects[it])),
+        [true, false]
+    );
+    // A node that moves as well is an instance of a part that morphs.
+    let vectors: Vec<u8> = [[0.0_f32; 3], [0.0, 4.0, 0.0]]
+        .concat()
+        .iter()
+        .flat_map(|it| it.to_le_bytes())
+        .collect();
+    let uri = format!(
+        "data:application/octet-stream;base64,{}",
+        STANDARD.encode(&vectors)
+    );
+    push(
+        &mut document,
+        "buffers",
+        json!({"byteLength": 24, "uri": uri}),
+    );
+    push(
+        &mut document,
+        "bufferViews",
+        json!({"buffer": 3, "byteLength": 24}),
+    );
+    let view = document["bufferViews"].as_array().unwrap().len() - 1;
+    let accessor = json!({"bufferView": view, "componentType": 5126, "count": 2, "type": "VEC3"});
+    push(&mut document, "accessors", accessor);
+    let animation = &mut document["animations"][0];
+    push(animation, "samplers", json!({"input": 5, "output": 7}));
+    push(
+        animation,
+        "channels",
+        json!({"sampler": 1, "target": {"node": 0, "path": "translation"}}),
+    );
+    let moving = scene(&document);
+    assert_eq!((moving.objects.len(), moving.parts.len()), (1, 1));
+    assert!(moves(&moving.parts[0].objects[0]) && !moves(&moving.objects[0]));
+    assert!(moving.instances[0].joint.is_some());
+    assert_eq!((moving.morph_targets.len(), moving.tracks.len()), (2, 3));
 }

@@ -5,6 +5,7 @@ mod fixtures;
 mod hostile;
 mod imports;
 mod joints;
+mod morph;
 mod objects;
 mod parts;
 mod textures;
