@@ -198,10 +198,7 @@ impl Motions {
                     None => {
                         let mut steps = displaced(displacements, vertex, lattice, targets)?;
                         for (target, change) in changed(normals, normal) {
-                            match steps.iter_mut().find(|it| it.0 == target) {
-                                Some(step) => step.2 = change,
-                                None => steps.push((target, [0; 3], change)),
-                            }
+                            step_of(&mut steps, target).2 = change;
                         }
                         let motion = self.number(steps);
                         known.insert([vertex, normal], motion);
@@ -215,8 +212,7 @@ impl Motions {
     }
 
     /// The number of a motion.
-    fn number(&mut self, mut steps: Vec<Step>) -> u32 {
-        steps.sort_unstable();
+    fn number(&mut self, steps: Vec<Step>) -> u32 {
         let next = self.all.len() as u32;
         *self.numbers.entry(steps).or_insert_with_key(|steps| {
             self.all.push(steps.clone());
@@ -224,21 +220,21 @@ impl Motions {
         })
     }
 
-    /// The sections of vertices, given the number in the blob and the motion of each.
-    pub fn sections(&self, moving: impl Iterator<Item = (u32, u32)>) -> Vec<Section> {
-        let steps = moving.flat_map(|(vertex, motion)| {
-            let steps = self.all[motion as usize].iter();
-            steps.map(move |&step| (vertex, step))
-        });
-        let mut steps: Vec<(u32, Step)> = steps.collect();
-        steps.sort_unstable();
-        if steps.is_empty() {
+    /// The sections of vertices, given the motion of each.
+    pub fn sections(&self, motions: &[u32]) -> Vec<Section> {
+        let (mut vertices, mut targets) = (Vec::new(), Vec::new());
+        let (mut long, mut normals) = (Vec::new(), Vec::new());
+        for (&motion, vertex) in motions.iter().zip(0..) {
+            for &(target, step, normal) in &self.all[motion as usize] {
+                vertices.push(vertex);
+                targets.push(target);
+                long.push(step);
+                normals.push(normal);
+            }
+        }
+        if vertices.is_empty() {
             return Vec::new();
         }
-        let vertices: Vec<u32> = steps.iter().map(|it| it.0).collect();
-        let targets: Vec<u32> = steps.iter().map(|it| it.1.0).collect();
-        let long: Vec<[i32; 3]> = steps.iter().map(|it| it.1.1).collect();
-        let normals: Vec<[i16; 3]> = steps.iter().map(|it| it.1.2).collect();
         let short = |step: &[i32; 3]| {
             let [x, y, z] = step.map(i16::try_from);
             Some([x.ok()?, y.ok()?, z.ok()?])
@@ -257,6 +253,15 @@ impl Motions {
         }
         sections
     }
+}
+
+/// What a morph target does, among steps in the order of morph targets.
+fn step_of(steps: &mut Vec<Step>, target: u32) -> &mut Step {
+    let place = steps.partition_point(|it| it.0 < target);
+    if steps.get(place).is_none_or(|it| it.0 != target) {
+        steps.insert(place, (target, [0; 3], [0; 3]));
+    }
+    &mut steps[place]
 }
 
 /// How morph targets displace a vertex.
@@ -279,7 +284,8 @@ fn displaced(
             });
         }
         if step != DVec3::ZERO {
-            steps.push((*target as u32, step.to_array().map(|it| it as i32), [0; 3]));
+            let step = step.to_array().map(|it| it as i32);
+            step_of(&mut steps, *target as u32).1 = step;
         }
     }
     Ok(steps)

@@ -233,12 +233,14 @@ fn geometry(lattice: &Lattice, primitives: &Primitives, flat: &Flat) -> Vec<Sect
     } else {
         section(SectionKind::Triangles, &triangles)
     };
-    let moving = number.iter().zip(0..).filter_map(|(&number, vertex)| {
-        let motion = corner(vertex)?.motion;
-        (number != u32::MAX && motion > 0).then_some((number, motion))
-    });
+    let mut motions = vec![0; vertices.len()];
+    for (&number, corner) in number.iter().zip(&primitives.corners) {
+        if number != u32::MAX {
+            motions[number as usize] = corner.motion;
+        }
+    }
     let mut sections = vec![vertex_section, triangle_section];
-    sections.extend(primitives.motions.sections(moving));
+    sections.extend(primitives.motions.sections(&motions));
     sections.extend(carried(&corners));
     sections.extend(primitives.records.sections(lattice.bits, &flat.slots));
     sections

@@ -4,7 +4,8 @@ use crate::loaded::Loaded;
 use crate::problem::Problem;
 use gridel_core::Rgb888;
 use gridel_core::render::{Block, CoarseToFine, Pixel};
-use gridel_host::view::{Drawn, Shot, draw};
+use gridel_host::view::{Drawn, Shot};
+use gridel_web_draw::draw;
 
 /// A worker's share of a picture.
 pub struct Drawing {
@@ -34,12 +35,12 @@ impl Drawing {
     /// Draws some more pixels: four words for each; none when all are drawn.
     pub fn step(&mut self, loaded: &Loaded, blocks: usize) -> Result<Vec<u8>, Problem> {
         let mut words: Vec<u32> = Vec::with_capacity(4 * blocks);
-        let put = |block: Block, drawn: Drawn| {
+        let mut put = |block: Block, drawn: Drawn| {
             self.is_seen |= block.width.max(block.height) < COARSEST;
             words.extend(packed(block, &drawn));
         };
-        let blocks = self.blocks.by_ref().take(blocks);
-        draw(loaded.scene()?, &self.shot, blocks, put)
+        let mut blocks = self.blocks.by_ref().take(blocks);
+        draw(loaded.scene()?, &self.shot, &mut blocks, &mut put)
             .map_err(|error| Problem::new(error, "choose other settings, or another structure"))?;
         Ok(bytemuck::cast_slice(&words).to_vec())
     }
