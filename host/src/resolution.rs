@@ -94,7 +94,7 @@ impl Content {
                 }
                 let (around, smallest) = &mut found[object];
                 *around = around.with(extent);
-                *smallest = match (*smallest, solid.feature()) {
+                *smallest = match (*smallest, solid.feature().filter(|it| *it > 0.0)) {
                     (Some(a), Some(b)) => Some(a.min(b)),
                     (a, b) => a.or(b),
                 };

@@ -105,7 +105,7 @@ pub fn run(arguments: &Arguments, memory: &PeakAlloc) -> Result<(), Failure> {
         texture_bytes: arguments.scene_options.geometry.texture_bytes,
         ..default.compiling
     })?;
-    let imported = import(
+    let mut imported = import(
         path,
         &arguments
             .target_point
@@ -114,6 +114,11 @@ pub fn run(arguments: &Arguments, memory: &PeakAlloc) -> Result<(), Failure> {
     )?;
     if let Some(folder) = &arguments.plot {
         std::fs::create_dir_all(folder).map_err(|error| Failure::writing(folder, &error))?;
+    }
+    if !imported.scene.morph_targets.is_empty() {
+        let sentence = "meshes with morph targets are compared as they are at rest";
+        warn_of_file(path, vec![sentence.into()], &mut imported.warnings);
+        imported.scene = compile::at_rest(&imported.scene).into_owned();
     }
     let options = Options {
         structures,

@@ -394,17 +394,23 @@ impl Source {
                 let name = name.map_or(String::new(), |name| format!(" `{}`", printable(name)));
                 format!(" in instance {number}{name}")
             });
+            let remedy = match &it.resolved_by[..] {
+                [] => String::from("make it larger, or leave out what makes the scene so large"),
+                formats => format!(
+                    "render it with `--format {}`",
+                    formats.join("` or `--format ")
+                ),
+            };
             let bounds = it.formats.iter().map(|coarse| {
                 let bound = significant(coarse.bound);
                 format!("{} there ({bound} scene units)", coarse.format)
             });
             warn(format!(
                 "{file}: object {}{name}{instance}: its smallest feature, {} scene units, is less than {FACTOR} \
-                 error bounds of {}: contact shadows may be lost; render it with `--format {}`",
+                 error bounds of {}: contact shadows may be lost; {remedy}",
                 it.object,
                 significant(it.feature),
                 bounds.collect::<Vec<_>>().join(" and of "),
-                it.resolved_by.join("` or `--format "),
             ));
         }
         if found.len() > NAMED {

@@ -24,14 +24,13 @@ pub use growth::{Growth, Step, growth, growth_steps};
 pub use judge::Mismatch;
 pub use options::{CompareError, Options};
 
-use crate::compile::{self, Builder, CompileError, Compiled, compile};
+use crate::compile::{self, Builder, CompileError, Compiled, at_rest, compile};
 use crate::measure::rays::{self, Amount, Question, Questions};
 use crate::measure::{InstanceCount, board_memory, primitives};
 use crate::picture_rays::PictureRays;
 use crate::scene;
 use gridel_core::{Effects, Fixed, Format, Number, Scene, Settings, Structure};
 use options::Contender;
-use std::borrow::Cow;
 use std::time::Duration;
 
 /// Compares structures on a scene. Calls `progress` with a description of each step.
@@ -61,7 +60,8 @@ pub fn compare(
     options: &Options<'_>,
     progress: &dyn Fn(&str),
 ) -> Result<Comparison, CompareError> {
-    let mut scene = Cow::Borrowed(scene);
+    // Few structures can follow morph targets.
+    let mut scene = at_rest(scene);
     if scene.camera.is_none() {
         // A supplied camera shows the scene in a picture of this shape.
         let render = &mut scene.to_mut().render;

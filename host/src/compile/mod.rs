@@ -53,6 +53,7 @@ pub use candidates::lists::Figures;
 pub use error::CompileError;
 pub use framing::{BACKGROUND, framing};
 pub use lattice::BITS as LATTICE_BITS;
+pub use morph::at_rest;
 pub use names::{KeptNames, Names};
 pub use options::{LARGEST_LEAF, OnProgress, Options};
 pub use primitives::LeftOut;
@@ -145,9 +146,8 @@ pub fn compile_with_progress(
     check(scene, options)?;
     let scene = &*scene.with_emitters();
     let has_targets = !scene.morph_targets.is_empty();
-    let still =
-        (has_targets && !morph::can_move(&options.structures)).then(|| morph::at_rest(scene));
-    let scene = still.as_ref().unwrap_or(scene);
+    let still = (has_targets && !morph::can_move(&options.structures)).then(|| at_rest(scene));
+    let scene = still.as_deref().unwrap_or(scene);
     let (parts, reports) = compile_parts(scene, options, on_progress)?;
     let (mut compiled, _) = compile_as(Role::Whole(&parts), scene, options, on_progress)?;
     reports

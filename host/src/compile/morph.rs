@@ -30,8 +30,20 @@ pub fn can_move(structures: &[Structure]) -> bool {
     structures.iter().all(|it| deform::STRUCTURES.contains(it))
 }
 
-/// Returns the scene with all meshes as they are at rest.
-pub fn at_rest(scene: &Scene) -> Scene {
+/// Returns the scene with all meshes as they are at rest, and without morph targets.
+///
+/// ```
+/// # let file = "[morph.up]\n[[object]]\nkind = 'triangle'\nvertices = [[0, 0, 0], [1, 0, 0], [0, 1, 0]]\n\
+/// #     morph = { up = [[0, 0, 0], [0, 0, 0], [0, 0, 1]] }";
+/// # let imported = gridel_host::scene::read("flag.toml".as_ref(), file.into(), &Default::default())?;
+/// let still = gridel_host::compile::at_rest(&imported.scene);
+/// assert!(still.morph_targets.is_empty());
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+pub fn at_rest(scene: &Scene) -> Cow<'_, Scene> {
+    if scene.morph_targets.is_empty() {
+        return Cow::Borrowed(scene);
+    }
     let mut still = scene.clone();
     let in_parts = still.parts.iter_mut().flat_map(|it| &mut it.objects);
     for object in still.objects.iter_mut().chain(in_parts) {
@@ -42,7 +54,7 @@ pub fn at_rest(scene: &Scene) -> Scene {
     still
         .tracks
         .retain(|it| it.target != TrackTarget::MorphWeight);
-    still
+    Cow::Owned(still)
 }
 
 /// Returns the morph targets of a scene, each with a range that holds all weights of its track as well.
@@ -181,10 +193,10 @@ impl Motions {
         targets: &[MorphTarget],
     ) -> Result<Vec<[u32; 3]>, CompileError> {
         let Attributes { displacements, .. } = &object.attributes;
-        if displacements.is_empty() {
+        let normals = &object.normals;
+        if displacements.is_empty() && normals.changes.is_empty() {
             return Ok(Vec::new());
         }
-        let normals = &object.normals;
         // By vertex and normal.
         let mut known: HashMap<[u32; 2], u32> = HashMap::new();
         let mut motions = Vec::with_capacity(triangles.len());

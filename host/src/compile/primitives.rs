@@ -225,16 +225,16 @@ impl Primitives {
                 all.motions = self.motions.of(object, triangles, lattice, &targets)?;
                 let all = all;
                 let mut is_smooth = false;
+                let name_of = |number: usize| {
+                    let name = printable(&object.name);
+                    format!("{name} ({}, triangle {number})", object.place)
+                };
                 for (number, triangle) in triangles.iter().enumerate() {
                     let corners = triangle.map(|vertex| snapped[vertex as usize]);
                     let found = all.of_triangle(number, *triangle);
                     if is_degenerate(corners) && !opens(corners, found) {
                         let [a, b, c] = triangle.map(|vertex| vertices[vertex as usize]);
-                        let name = format!(
-                            "{} ({}, triangle {number})",
-                            printable(&object.name),
-                            object.place
-                        );
+                        let name = name_of(number);
                         if (b - a).cross(c - a) == DVec3::ZERO {
                             self.without_area.add(name);
                         } else {
@@ -246,6 +246,10 @@ impl Primitives {
                             .extend(moving.map(|(place, corner)| (place, corner.motion)));
                         self.leave_out();
                     } else {
+                        let [a, b, c] = triangle.map(|vertex| vertices[vertex as usize]);
+                        if is_degenerate(corners) && (b - a).cross(c - a) != DVec3::ZERO {
+                            self.collapsed.add(name_of(number));
+                        }
                         let displacement = triangle
                             .map(|vertex| {
                                 let given = lattice.in_fine(vertices[vertex as usize]);

@@ -1,6 +1,6 @@
 //! Tracks as records: times in ticks, values as integers.
 
-mod field_of_view;
+mod splines;
 
 use super::CompileError;
 use super::camera::angle;
@@ -27,7 +27,7 @@ pub fn sections(
     // What is supplied has the times of others, and is not to blame for them.
     for track in &all {
         times(track)?;
-        if let Some(cause) = field_of_view::blind(track) {
+        if let Some(cause) = splines::beyond(track) {
             let remedy = "use smaller tangents, more keys, or linear interpolation";
             return Err(fault(track, cause, remedy));
         }
@@ -170,10 +170,15 @@ pub fn places(tracks: &[Track], camera: &Camera) -> Vec<DVec3> {
 
 /// An error of a track.
 fn fault(track: &Track, cause: String, remedy: &'static str) -> CompileError {
+    // A file without lines has many.
+    let number = match track.target.is_of_camera() {
+        true => String::new(),
+        false => format!("number {}: ", track.index),
+    };
     CompileError::Track {
         place: track.place.clone(),
         target: track.target.name(),
-        cause,
+        cause: number + &cause,
         remedy,
     }
 }

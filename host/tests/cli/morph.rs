@@ -67,6 +67,15 @@ fn queries_see_the_moved_mesh() {
     assert!(!hit(&["--time", "2"]).is_null());
 }
 
+/// Few structures can follow, so all are compared at rest.
+#[test]
+fn comparisons_are_of_meshes_at_rest() {
+    let folder = folder();
+    let compared = folder.json(&["compare", "a.toml", "--size", "16x12", "--repeat", "1"]);
+    let warnings = compared["warnings"].to_string();
+    assert!(warnings.contains("as they are at rest"), "{compared}");
+}
+
 #[test]
 fn structures_that_keep_meshes_at_rest_are_warned_of() {
     let folder = folder();

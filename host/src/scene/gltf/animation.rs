@@ -53,6 +53,8 @@ pub(super) struct Motion {
     parents: Vec<Option<usize>>,
     /// Each node in the one above, at rest.
     rest: Vec<Rest>,
+    /// Channels that are not read, and why.
+    pub(super) left_out: Vec<String>,
     /// How many samples were taken of all curves.
     samples: usize,
     /// The least samples per second of a curve, if any was sampled.
@@ -157,9 +159,23 @@ impl Motion {
                 curve.check(property).map_err(error)?;
                 curve.round_times();
             }
-            match curve {
-                Some(curve) => *curve = found.pop(),
-                None => moves.weights = Some(found),
+            let node = target.node().index();
+            if curve.is_none() && found.is_empty() {
+                let sentence = format!(
+                    "the animation moves weights of node {node}, whose mesh has no morph targets"
+                );
+                motion.left_out.push(sentence);
+                continue;
+            }
+            let twice = match curve {
+                Some(curve) => std::mem::replace(curve, found.pop()).is_some(),
+                None => moves.weights.replace(found).is_some(),
+            };
+            if twice {
+                let sentence = format!(
+                    "the animation has two channels for one property of node {node}, of which the last is read"
+                );
+                motion.left_out.push(sentence);
             }
         }
         Ok(motion)

@@ -99,7 +99,16 @@ impl<'a> Buffers<'a> {
         }
     }
 
-    /// Reads the times or values of an animation: floats, or for rotations integers that mean -1 to 1 or 0 to 1.
+    /// Reads the times of an animation.
+    pub(super) fn times(&self, accessor: &Accessor<'_>) -> Result<Vec<[f64; 1]>, SceneError> {
+        if accessor.data_type() != DataType::F32 {
+            let cause = format!("is to hold times and holds {:?}", accessor.data_type());
+            return Err(self.error(accessor, cause));
+        }
+        self.numbers(accessor)
+    }
+
+    /// Reads the values of an animation: floats, or for rotations and weights integers that mean -1 to 1 or 0 to 1.
     pub(super) fn numbers<const N: usize>(
         &self,
         accessor: &Accessor<'_>,
@@ -120,7 +129,7 @@ impl<'a> Buffers<'a> {
             DataType::U32 => |_, _| f64::NAN,
         };
         let floats = accessor.data_type() == DataType::F32;
-        if accessor.dimensions() != dimensions || !(floats || N == 4 && accessor.normalized()) {
+        if accessor.dimensions() != dimensions || !(floats || N != 3 && accessor.normalized()) {
             return Err(self.error(
                 accessor,
                 format!(

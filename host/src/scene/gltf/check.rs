@@ -5,7 +5,7 @@ use super::buffers::MOST;
 use super::place::place_of;
 use crate::scene::SceneError;
 use gltf::{Accessor, Document, Node, Semantic};
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 
 /// Most elements of all accessors together: some for each vertex and triangle.
 const MOST_ELEMENTS: usize = 16 * MOST;
@@ -75,6 +75,7 @@ impl Importer<'_> {
                 }
             }
         }
+        self.check_targets(document);
         let parts = document.meshes().flat_map(|mesh| mesh.primitives());
         let uses = parts.flat_map(|part| {
             let attributes = part.attributes();
@@ -83,16 +84,59 @@ impl Importer<'_> {
                 .collect::<Vec<_>>()
         });
         let uses: HashMap<usize, Semantic> = uses.collect();
+        let parts = document.meshes().flat_map(|mesh| mesh.primitives());
+        let changes = parts.flat_map(|part| {
+            let targets = part.morph_targets().filter_map(|it| it.normals());
+            targets.map(|it| it.index()).collect::<Vec<_>>()
+        });
+        let changes: HashSet<usize> = changes.collect();
         for accessor in document.accessors().filter(stored) {
             if let Some(element) = self.buffers.first_not_finite(&accessor)? {
                 let index = accessor.index();
-                let follows = without_number(uses.get(&index));
+                let follows = match changes.contains(&index) {
+                    true => "such a change of a normal is left out",
+                    false => without_number(uses.get(&index)),
+                };
                 self.warn(format!(
                     "element {element} of accessor {index} is not a finite number; {follows}"
                 ));
             }
         }
         Ok(())
+    }
+
+    /// Warns of morph targets and weights that do not belong together.
+    fn check_targets(&mut self, document: &Document) {
+        for mesh in document.meshes() {
+            let counts = mesh.primitives().map(|it| it.morph_targets().len());
+            let (least, most) = counts.fold((usize::MAX, 0), |(least, most), count| {
+                (least.min(count), most.max(count))
+            });
+            let number = mesh.index();
+            if least < most {
+                self.warn(format!(
+                    "the primitives of mesh {number} have {least} to {most} morph targets; some have fewer than others"
+                ));
+            }
+            let weights = mesh.weights().map(<[f32]>::len);
+            if let Some(found) = weights.filter(|found| *found != most) {
+                self.warn(format!(
+                    "mesh {number} has {most} morph targets and {found} weights; missing weights are 0, others are left out"
+                ));
+            }
+            let nodes = document.nodes();
+            let of_mesh = |node: &Node<'_>| node.mesh().is_some_and(|it| it.index() == number);
+            for node in nodes.filter(of_mesh) {
+                let weights = node.weights().map(<[f32]>::len);
+                if let Some(found) = weights.filter(|found| *found != most) {
+                    self.warn(format!(
+                        "mesh {number} has {most} morph targets and node {} {found} weights; missing weights are 0, others \
+                         are left out",
+                        node.index()
+                    ));
+                }
+            }
+        }
     }
 
     pub(super) fn check_corner(

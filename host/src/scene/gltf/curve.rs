@@ -20,7 +20,7 @@ impl Curve {
         buffers: &Buffers<'_>,
     ) -> Result<Self, SceneError> {
         let sampler = channel.sampler();
-        let times = buffers.numbers::<1>(&sampler.input())?;
+        let times = buffers.times(&sampler.input())?;
         let values: Vec<[f64; 4]> = match channel.target().property() {
             Property::Rotation => buffers.numbers::<4>(&sampler.output())?,
             _ => {
@@ -68,7 +68,7 @@ impl Curve {
         buffers: &Buffers<'_>,
     ) -> Result<Vec<Self>, SceneError> {
         let sampler = channel.sampler();
-        let times = buffers.numbers::<1>(&sampler.input())?;
+        let times = buffers.times(&sampler.input())?;
         let values = buffers.numbers::<1>(&sampler.output())?;
         let interpolation = interpolation(&sampler);
         let each = values_of_key(interpolation);

@@ -45,7 +45,34 @@ pub(super) fn read(
     let document = Document::from_json_without_validation(root);
     let blob = container.binary.map(<[u8]>::to_vec);
     let transforms = normal_transforms::read(path, container.text)?;
+    warn_of_targets(path, container.text, warnings);
     Ok((document, blob, transforms))
+}
+
+/// Warns of attributes of morph targets that the crate leaves out, given the JSON text of a file, which is valid.
+fn warn_of_targets(path: &Path, text: &[u8], warnings: &mut Warnings) {
+    let has = |word: &str| text.windows(word.len()).any(|part| part == word.as_bytes());
+    // Few files have both, so that few are read twice.
+    if !has("\"targets\"") || !has("COLOR_") && !has("TEXCOORD_") {
+        return;
+    }
+    let Ok(document) = gltf::json::deserialize::from_slice::<Value>(text) else {
+        return;
+    };
+    fn all<'v>(value: &'v Value, key: &str) -> impl Iterator<Item = &'v Value> + use<'v> {
+        value[key].as_array().into_iter().flatten()
+    }
+    let parts = all(&document, "meshes").flat_map(|mesh| all(mesh, "primitives"));
+    let targets = parts.flat_map(|part| all(part, "targets"));
+    let attributes = targets
+        .filter_map(Value::as_object)
+        .flat_map(|it| it.keys());
+    let ignored = attributes.filter(|it| it.starts_with("COLOR_") || it.starts_with("TEXCOORD_"));
+    let count = ignored.count();
+    if count > 0 {
+        let sentence = "colors and texture coordinates of morph targets are ignored";
+        warnings.add_times(SourceSpan::of(path), count, sentence);
+    }
 }
 
 fn parse(

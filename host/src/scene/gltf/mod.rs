@@ -235,6 +235,9 @@ impl Importer<'_> {
         let chosen = animation::choose(self.path, document, choice)?;
         let animation = chosen.as_ref().map(|chosen| &chosen.animation);
         self.motion = Motion::read(self.path, document, animation, &self.buffers)?;
+        for sentence in std::mem::take(&mut self.motion.left_out) {
+            self.warn(sentence);
+        }
         let Some(chosen) = chosen.filter(|_| !self.motion.is_empty()) else {
             return Ok(());
         };

@@ -151,6 +151,7 @@ pub(super) fn read(input: Input<'_>, imports: &mut Imports) -> Result<Scene, Sce
     scene.materials = palette.into_materials();
     scene.morph_targets = morphs.targets;
     imports.warnings.extend(moving_nothing(&scene));
+    imports.warnings.extend(morph::unused(&scene));
     Ok(scene)
 }
 

@@ -8,7 +8,7 @@ use crate::scene::{
 };
 use crate::table::shortened;
 use glam::DVec3;
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 
 const KEYS: &[&str] = &["weight", "range"];
 
@@ -41,6 +41,14 @@ pub(super) fn read(tables: Value<'_>) -> Result<Morphs, SceneError> {
             }
             Ok(ends.to_array())
         })?;
+        if name.text.is_empty() {
+            let cause = "the name of this morph target is empty";
+            return Err(table.source.error(
+                &name.span,
+                cause,
+                "give it a name, such as `[morph.smile]`",
+            ));
+        }
         let target = MorphTarget {
             weight: fields.or("weight", 0.0, weight)?,
             range,
@@ -64,6 +72,27 @@ pub(super) fn weight(value: Value<'_>) -> Result<f64, SceneError> {
         ));
     }
     Ok(weight)
+}
+
+/// Warnings about morph targets that no mesh has.
+pub(super) fn unused(scene: &Scene) -> Vec<String> {
+    let objects = scene.all_objects();
+    let used: HashSet<usize> = objects
+        .flat_map(|object| {
+            let displaced = object.attributes.displacements.iter().map(|it| it.target);
+            displaced.chain(object.normals.changes.iter().map(|it| it.target))
+        })
+        .collect();
+    let all = scene.morph_targets.iter().enumerate();
+    all.filter(|(number, _)| !used.contains(number))
+        .map(|(_, target)| {
+            let name = shortened(&target.name);
+            format!(
+                "{}: no mesh has the morph target {name:?}, so it moves nothing",
+                target.place
+            )
+        })
+        .collect()
 }
 
 impl Morphs {

@@ -115,7 +115,7 @@ fn triangle(fields: &Fields<'_>) -> Result<Shape, SceneError> {
             "`vertices = [[0, 0, 0], [1, 0, 0], [0, 1, 0]]`",
         ));
     }
-    if !polygon::has_area(&vertices) {
+    if !polygon::has_area(&vertices) && fields.get("morph").is_none() {
         return Err(value.error(
             "the triangle has no area: its vertices lie on one line",
             "move one of the vertices off that line",
@@ -137,6 +137,11 @@ fn mesh(fields: &Fields<'_>) -> Result<Shape, SceneError> {
             .iter()
             .map(|&corner| vertices[corner as usize])
             .collect();
+        // What has an area at other weights has none here, perhaps.
+        if let ([a, b, c], Some(_)) = (&corners[..], fields.get("morph")) {
+            triangles.push([*a, *b, *c]);
+            continue;
+        }
         if !polygon::has_area(&points) {
             return Err(face.error(
                 "this face has no area",

@@ -291,3 +291,85 @@ fn animated_nodes_have_parts_of_their_own() {
     assert!(moving.instances[0].joint.is_some());
     assert_eq!((moving.morph_targets.len(), moving.tracks.len()), (2, 3));
 }
+
+/// A target of normals alone turns them, and moves no vertex.
+#[test]
+fn targets_of_normals_alone_change_normals() {
+    let mut document = animated(&[0.0, 0.0, 0.0, 1.0], "LINEAR");
+    document["meshes"][0]["primitives"][0]["targets"] = json!([{}, {"NORMAL": 4}]);
+    let scene = scene(&document);
+    let object = &scene.objects[0];
+    assert!(object.attributes.displacements.is_empty());
+    let [change] = &object.normals.changes[..] else {
+        panic!("{:?}", object.normals)
+    };
+    assert_eq!((change.target, change.vectors[0]), (1, DVec3::X));
+    let options = crate::compile::Options {
+        structures: vec![gridel_core::Structure::Bvh],
+        ..crate::compile::Options::default()
+    };
+    let blob = crate::compile::compile(&scene, &options).unwrap().blob;
+    let loaded = blob.scene().unwrap();
+    let turned = crate::morphed::morphed(&blob, &loaded, &[0, 1 << 24])
+        .unwrap()
+        .unwrap();
+    let turned = turned.scene().unwrap().corner_normals(0).unwrap();
+    // Halfway from z to x.
+    assert_eq!(turned, [[16384, 0]; 3]);
+    assert_eq!(loaded.corner_normals(0).unwrap(), [[0; 2]; 3]);
+}
+
+#[test]
+fn weights_can_be_integers() {
+    let mut document = animated(&[0.0, 0.0, 0.0, 0.0], "LINEAR");
+    let data = STANDARD.encode([0_u8, 255, 51, 102]);
+    let uri = format!("data:application/octet-stream;base64,{data}");
+    push(
+        &mut document,
+        "buffers",
+        json!({"byteLength": 4, "uri": uri}),
+    );
+    push(
+        &mut document,
+        "bufferViews",
+        json!({"buffer": 3, "byteLength": 4}),
+    );
+    let view = document["bufferViews"].as_array().unwrap().len() - 1;
+    document["accessors"][6] = json!({"bufferView": view, "componentType": 5121,
+        "normalized": true, "count": 4, "type": "SCALAR"});
+    let scene = scene(&document);
+    let values = |track: usize| [0, 1].map(|key: usize| scene.tracks[track].keys[key].value[0]);
+    assert_eq!([values(0), values(1)], [[0.0, 0.2], [1.0, 0.4]]);
+    // Times are floats.
+    document["animations"][0]["samplers"][0]["input"] = json!(6);
+    assert!(cause(&document).contains("is to hold times"));
+}
+
+#[test]
+fn counts_that_differ_and_what_is_left_out_are_warned_of() {
+    let mut document = animated(&[0.0, 0.25, 1.0, -0.5], "LINEAR");
+    document["meshes"][0]["weights"] = json!([0.0, 0.0, 1.0]);
+    document["nodes"][0]["weights"] = json!([0.5]);
+    let part = document["meshes"][0]["primitives"][0].clone();
+    push(&mut document["meshes"][0], "primitives", part);
+    let targets = &mut document["meshes"][0]["primitives"][1]["targets"];
+    *targets = json!([{"POSITION": 2, "COLOR_0": 2}]);
+    let channel = document["animations"][0]["channels"][0].clone();
+    push(&mut document["animations"][0], "channels", channel);
+    let said = warnings(&document).join("\n");
+    for words in [
+        "the primitives of mesh 0 have 1 to 2 morph targets",
+        "mesh 0 has 2 morph targets and 3 weights",
+        "mesh 0 has 2 morph targets and node 0 1 weights",
+        "two channels for one property of node 0",
+        "colors and texture coordinates of morph targets are ignored",
+    ] {
+        assert!(said.contains(words), "{words}: {said}");
+    }
+    document["meshes"][0]["primitives"] = json!([{"attributes": {"POSITION": 0}, "indices": 1}]);
+    let said = warnings(&document).join("\n");
+    assert!(
+        said.contains("moves weights of node 0, whose mesh has no morph targets"),
+        "{said}"
+    );
+}

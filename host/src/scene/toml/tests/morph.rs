@@ -1,6 +1,6 @@
 //! Morph targets: what meshes have by them, and the tracks of their weights.
 
-use super::{load_in, scene};
+use super::{load, load_in, scene};
 use crate::scene::{Object, Scene, Shape, TrackTarget};
 use glam::DVec3;
 
@@ -58,20 +58,20 @@ fn imports_bring_their_morph_targets() {
     std::fs::write(folder.path().join("inner.toml"), inner).unwrap();
     let import = "kind = 'import'\nfile = 'inner.toml'\n";
     let text = format!(
-        "[morph.own]\n[[object]]\n{import}[[object]]\n{import}scale = 2\n\
+        "[[object]]\n{import}[[object]]\n{import}scale = 2\n\
          [[part]]\nname = 'p'\n[[part.object]]\n{import}[[instance]]\npart = 'p'\n"
     );
     let imported = load_in(folder.path(), &text).unwrap();
     assert_eq!(imported.warnings, [] as [&str; 0]);
     let scene = imported.scene;
     let names = scene.morph_targets.iter().map(|it| it.name.as_str());
-    assert_eq!(names.collect::<Vec<_>>(), ["own", "up", "up", "up"]);
+    assert_eq!(names.collect::<Vec<_>>(), ["up", "up", "up"]);
     let tracks = scene.tracks.iter().map(|it| it.index);
-    assert_eq!(tracks.collect::<Vec<_>>(), [1, 2, 3]);
-    assert_eq!(displaced(&scene, 0), [(1, DVec3::Z * 2.0)]);
-    assert_eq!(displaced(&scene, 1), [(2, DVec3::Z * 4.0)]);
+    assert_eq!(tracks.collect::<Vec<_>>(), [0, 1, 2]);
+    assert_eq!(displaced(&scene, 0), [(0, DVec3::Z * 2.0)]);
+    assert_eq!(displaced(&scene, 1), [(1, DVec3::Z * 4.0)]);
     let part = &scene.parts[0].objects[0].attributes.displacements;
-    assert_eq!(part[0].target, 3);
+    assert_eq!(part[0].target, 2);
 }
 
 /// Computed normals turn with the faces: the second vertex is lifted until the triangles lie in one plane.
@@ -90,4 +90,34 @@ fn smooth_normals_turn_with_the_faces() {
         let turned = *normal + *change;
         assert!(turned.distance(DVec3::Z) < 1e-9, "{normals:?}");
     }
+}
+
+#[test]
+fn morph_targets_that_no_mesh_has_are_warned_of() {
+    let imported = load(&format!(
+        "[morph.used]\n[morph.idle]\n\
+         [[object]]\n{TRIANGLE}morph = {{ used = [[0, 0, 0], [0, 0, 0], [0, 0, 2]] }}\n\
+         [[track]]\ntarget = 'morph.idle.weight'\ntimes = [0]\nvalues = [0]\n"
+    ))
+    .unwrap();
+    let [warning] = &imported.warnings[..] else {
+        panic!("{:?}", imported.warnings)
+    };
+    assert!(
+        warning.contains("toml:2: no mesh has the morph target \"idle\""),
+        "{warning}"
+    );
+}
+
+/// Triangles that have no area at rest, and one with another weight.
+#[test]
+fn faces_without_area_at_rest_can_open() {
+    let scene = scene(
+        "[morph.open]\n\
+         [[object]]\nkind = 'triangle'\nvertices = [[0, 0, 0], [0, 0, 0], [0, 1, 0]]\n\
+         morph = { open = [[0, 0, 0], [1, 0, 0], [0, 0, 0]] }\n\
+         [[object]]\nkind = 'mesh'\nvertices = [[0, 0, 0], [0, 0, 0], [0, 0, 0]]\nfaces = [[0, 1, 2]]\n\
+         morph = { open = [[0, 0, 0], [1, 0, 0], [0, 1, 0]] }\n",
+    );
+    assert_eq!(scene.objects.len(), 2);
 }

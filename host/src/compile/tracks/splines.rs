@@ -1,22 +1,28 @@
-//! Fields of view between keys.
+//! Values of splines between keys.
 
-use crate::scene::{Interpolation, Key, Track};
+use crate::scene::{Interpolation, Key, LARGEST_WEIGHT, Track};
 use gridel_core::format::track::ValueKind;
 
-/// Returns where a spline leads out of the range of fields of view, for an error. A device would limit it, and has no
-/// picture there.
-pub(super) fn blind(track: &Track) -> Option<String> {
-    let is_angle = track.target.kind() == ValueKind::FieldOfView;
-    if !is_angle || track.interpolation != Interpolation::Cubic {
+/// Returns where a spline leads out of the range of fields of view or weights, for an error. A device would limit it:
+/// there is no picture then, or another one.
+pub(super) fn beyond(track: &Track) -> Option<String> {
+    let kind = track.target.kind();
+    let is_limited = matches!(kind, ValueKind::FieldOfView | ValueKind::Weight);
+    if !is_limited || track.interpolation != Interpolation::Cubic {
         return None;
     }
     let pairs = track.keys.windows(2);
     let mut times = pairs.flat_map(|pair| turns(&pair[0], &pair[1]));
     times.find_map(|seconds| {
-        let [degrees, ..] = track.at(seconds);
-        (degrees <= 0.0 || degrees >= 180.0).then(|| {
+        let [value, ..] = track.at(seconds);
+        if kind == ValueKind::Weight {
+            return (value.abs() > LARGEST_WEIGHT).then(|| {
+                format!("at {seconds:.3} s the weight is {value:.3}; it must be from -64 to 64")
+            });
+        }
+        (value <= 0.0 || value >= 180.0).then(|| {
             format!(
-                "at {seconds:.3} s there is no picture, because the field of view is {degrees:.3} degrees; it must be \
+                "at {seconds:.3} s there is no picture, because the field of view is {value:.3} degrees; it must be \
                  above 0 and below 180"
             )
         })
@@ -69,6 +75,27 @@ mod tests {
                 .to_string()
                 .contains("is 190.000 degrees")
         );
+    }
+
+    #[test]
+    fn splines_that_lead_beyond_the_largest_weight_are_rejected() {
+        let compiled = |tangent: f64| {
+            let file = format!(
+                "[morph.a]\n[[object]]\nkind = 'triangle'\nvertices = [[0, 0, 0], [1, 0, 0], [0, 1, 0]]\n\
+                 morph = {{ a = [[0, 0, 0], [0, 0, 0], [0, 0, 1]] }}\n\
+                 [[track]]\ntarget = 'morph.a.weight'\ninterpolation = 'cubic'\n\
+                 times = [0, 1]\nvalues = [60, 60]\ntangents = [{tangent}, -{tangent}]"
+            );
+            let imported = read("a.toml".as_ref(), file.into(), &Default::default()).unwrap();
+            let options = Options {
+                structures: vec![gridel_core::Structure::Bvh],
+                ..Options::default()
+            };
+            compile(&imported.scene, &options).map(|_| ())
+        };
+        compiled(16.0).unwrap();
+        let error = compiled(60.0).unwrap_err().to_string();
+        assert!(error.contains("at 0.500 s the weight is 75.000"), "{error}");
     }
 
     #[test]
