@@ -21,7 +21,7 @@ const WEIGHT_BITS: u32 = 24;
 /// ```
 /// # static BLOB: &[u8] =
 /// #     gridel_core::include_blob!(concat!(env!("CARGO_MANIFEST_DIR"), "/../fixtures/blobs/bvh.gridel"));
-/// use gridel_core::deform::{DeformError, Morph};
+/// use gridel_core::deform::Morph;
 /// use gridel_core::format::record::Vertex24;
 /// use gridel_core::{Deformation, Scene, Tracks};
 ///
@@ -30,7 +30,7 @@ const WEIGHT_BITS: u32 = 24;
 /// /// The scene with its mesh as its tracks say.
 /// fn at<'a>(
 ///     scene: &Scene<'a>,
-///     [tracks, morph]: (&Tracks<'_>, &Morph<'_>),
+///     (tracks, morph): (&Tracks<'_>, &Morph<'_>),
 ///     time: i32,
 ///     mesh: &'a mut Mesh,
 /// ) -> Result<Scene<'a>, Box<dyn std::error::Error>> {
@@ -39,6 +39,9 @@ const WEIGHT_BITS: u32 = 24;
 ///     mesh.morph(scene, morph, &weights)?;
 ///     Ok(scene.with_deformation(mesh)?)
 /// }
+/// // This blob has no morph targets; one that has some is read likewise.
+/// let morph = Morph::from_bytes(BLOB)?;
+/// assert!(morph.is_empty() && morph.weights_at_rest().is_empty());
 /// # Ok::<(), gridel_core::BlobError>(())
 /// ```
 #[derive(Clone, Copy, Debug)]
