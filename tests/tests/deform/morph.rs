@@ -14,8 +14,8 @@ use gridel_host::compile::{Options, compile};
 use gridel_host::deformation::{self, HeapDeformation};
 use gridel_host::morphed::morphed;
 use gridel_host::scene::{
-    Displacements, Interpolation, Key, MorphTarget, NormalsChoice, Scene, Shape, SourceSpan, Track,
-    TrackTarget,
+    Displacements, Interpolation, Key, MorphTarget, NormalChanges, Normals, NormalsChoice, Scene,
+    Shape, SourceSpan, Track, TrackTarget,
 };
 use gridel_host::state::State;
 use gridel_tests::effort::part_of;
@@ -309,6 +309,32 @@ fn normals_turn_with_the_mesh() {
         small.morph(&scene, &morph, &[0]),
         Err(DeformError::Normals { found, most })
     );
+}
+
+/// No vertex moves.
+#[test]
+fn targets_of_normals_alone_turn_them() {
+    let mut file = scenes::of([Shape::Mesh {
+        vertices: vec![DVec3::ZERO, DVec3::X, DVec3::Y],
+        triangles: vec![[0, 1, 2]],
+    }]);
+    file.morph_targets = vec![target(0, 0.0, [0.0, 1.0])];
+    file.objects[0].normals = Normals {
+        vectors: vec![DVec3::Z; 3],
+        triangles: vec![[0, 1, 2]],
+        changes: vec![NormalChanges {
+            target: 0,
+            vectors: vec![DVec3::X; 3],
+        }],
+    };
+    let blob = built(&file, 24);
+    let scene = blob.scene().expect("a scene");
+    assert_eq!(scene.corner_normals(0), Some([[0; 2]; 3]));
+    let turned = morphed(&blob, &scene, &[1 << 24]).expect("a pose");
+    let turned = turned.expect("normals change");
+    // Halfway from z to x.
+    let turned = turned.scene().expect("a scene").corner_normals(0);
+    assert_eq!(turned, Some([[16384, 0]; 3]));
 }
 
 #[test]

@@ -304,19 +304,6 @@ fn targets_of_normals_alone_change_normals() {
         panic!("{:?}", object.normals)
     };
     assert_eq!((change.target, change.vectors[0]), (1, DVec3::X));
-    let options = crate::compile::Options {
-        structures: vec![gridel_core::Structure::Bvh],
-        ..crate::compile::Options::default()
-    };
-    let blob = crate::compile::compile(&scene, &options).unwrap().blob;
-    let loaded = blob.scene().unwrap();
-    let turned = crate::morphed::morphed(&blob, &loaded, &[0, 1 << 24])
-        .unwrap()
-        .unwrap();
-    let turned = turned.scene().unwrap().corner_normals(0).unwrap();
-    // Halfway from z to x.
-    assert_eq!(turned, [[16384, 0]; 3]);
-    assert_eq!(loaded.corner_normals(0).unwrap(), [[0; 2]; 3]);
 }
 
 #[test]
