@@ -3,7 +3,7 @@
 use crate::blob::{Blob, Buffer};
 use crate::deformation;
 use bytemuck::NoUninit;
-use gridel_core::deform::{DeformError, Morph};
+use gridel_core::deform::{DeformError, MorphTargets};
 use gridel_core::format::record::{Header, SectionEntry, Vertex16, Vertex24};
 use gridel_core::format::width::Vertex;
 use gridel_core::format::{SectionKind, checksum};
@@ -52,11 +52,10 @@ pub fn morphed(
 ) -> Result<Option<Blob>, MorphError> {
     let bytes = blob.bytes();
     let mut moved: Option<Buffer> = None;
-    let own = (*scene, 0..bytes.len());
-    let parts = scene.parts().iter().copied().zip(part_ranges(bytes)?);
-    for (scene, range) in parts.chain([own]) {
-        let morph = Morph::from_bytes(&bytes[range.clone()])?;
-        if morph.is_empty() {
+    let scenes = std::iter::once(scene).chain(scene.parts());
+    let meshes = scenes.zip(morph_targets(bytes)?).zip(blob_ranges(bytes)?);
+    for ((scene, targets), range) in meshes {
+        if targets.is_empty() {
             continue;
         }
         let moved = moved.get_or_insert_with(|| {
@@ -66,8 +65,8 @@ pub fn morphed(
         });
         let moved = &mut moved.bytes_mut()[range];
         match scene.header().storage_bits {
-            16 => write::<Vertex16>(&scene, &morph, weights, moved)?,
-            _ => write::<Vertex24>(&scene, &morph, weights, moved)?,
+            16 => write::<Vertex16>(scene, &targets, weights, moved)?,
+            _ => write::<Vertex24>(scene, &targets, weights, moved)?,
         }
         seal(moved);
     }
@@ -78,15 +77,39 @@ pub fn morphed(
     }))
 }
 
+/// Checks the morph targets of a blob and returns them: those of the scene's own meshes, then those of each part.
+///
+/// ```
+/// # let file = "[morph.up]\n[[object]]\nkind = 'triangle'\nvertices = [[0, 0, 0], [1, 0, 0], [0, 1, 0]]\n\
+/// #     morph = { up = [[0, 0, 0], [0, 0, 0], [0, 0, 1]] }";
+/// # let imported = gridel_host::scene::read("flag.toml".as_ref(), file.into(), &Default::default())?;
+/// use gridel_core::Structure;
+/// use gridel_host::compile::{Options, compile};
+/// use gridel_host::morphed::morph_targets;
+///
+/// let options = Options { structures: vec![Structure::Bvh], ..Options::default() };
+/// let blob = compile(&imported.scene, &options)?.blob;
+/// assert!(!morph_targets(blob.bytes())?[0].is_empty());
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+///
+/// # Errors
+/// If they are not valid.
+pub fn morph_targets(blob: &[u8]) -> Result<Vec<MorphTargets<'_>>, BlobError> {
+    let own = MorphTargets::from_bytes(blob)?;
+    let parts = gridel_core::scene::part_blobs(blob)?.map(|part| own.of_part(part));
+    std::iter::once(Ok(own)).chain(parts).collect()
+}
+
 /// Writes the moved vertices and normals of a blob, and its boxes.
 fn write<V: Vertex + NoUninit>(
     scene: &Scene<'_>,
-    morph: &Morph<'_>,
+    targets: &MorphTargets<'_>,
     weights: &[i32],
     blob: &mut [u8],
 ) -> Result<(), DeformError> {
     let mut mesh = deformation::of::<V>(scene)?;
-    mesh.morph(scene, morph, weights)?;
+    mesh.morph(scene, targets, weights)?;
     replace(blob, SectionKind::Vertices, mesh.vertices());
     replace(blob, SectionKind::Pairs, mesh.pairs());
     replace(blob, SectionKind::Normals, mesh.normals());
@@ -109,10 +132,11 @@ fn section(blob: &[u8], kind: SectionKind) -> Option<SectionEntry> {
     entries.iter().find(|it| it.kind == kind as u16).copied()
 }
 
-/// Where the blobs of parts lie in a valid blob.
-fn part_ranges(blob: &[u8]) -> Result<Vec<Range<usize>>, BlobError> {
+/// Where a valid blob lies, and those of its parts.
+fn blob_ranges(blob: &[u8]) -> Result<Vec<Range<usize>>, BlobError> {
     let start = blob.as_ptr() as usize;
     let parts = gridel_core::scene::part_blobs(blob)?;
+    let parts = std::iter::once(blob).chain(parts);
     Ok(parts
         .map(|part| {
             let from = part.as_ptr() as usize - start;

@@ -95,7 +95,8 @@ impl fmt::Display for DeformError {
             ),
             Self::Normals { found, most } => write!(
                 f,
-                "morph targets change {found} normals, and the deformation has room for {most}"
+                "morph targets change {found} normals, and the deformation has room for {most}: give it as many as \
+                 `Requirements` states"
             ),
             Self::Weights { found, expected } => write!(
                 f,

@@ -22,7 +22,7 @@ mod fit;
 mod morph;
 
 pub use error::DeformError;
-pub use morph::Morph;
+pub use morph::MorphTargets;
 
 use crate::format::Structure;
 use crate::format::record::Pair;
@@ -37,7 +37,7 @@ use heapless::Vec;
 /// `V` is [`Vertex16`](crate::format::record::Vertex16) for a blob of at most 16 lattice bits, and
 /// [`Vertex24`](crate::format::record::Vertex24) for others. [`Requirements`](crate::Requirements) states `VERTICES`
 /// and `PAIRS` of a blob, so the size is known at compile time. It is 6 or 12 bytes per vertex, 32 bytes per pair, and
-/// a few words. Where [morph targets](Morph) change normals, `NORMALS` is the number of normals, 4 bytes each.
+/// a few words. Where [morph targets](MorphTargets) change normals, `NORMALS` is the number of normals, 4 bytes each.
 ///
 /// ```
 /// use gridel_core::format::record::Vertex24;

@@ -16,12 +16,12 @@ use crate::scene::{Scene, header};
 /// Fraction bits of weights.
 const WEIGHT_BITS: u32 = 24;
 
-/// The morph targets of a blob, read in place: of its own meshes, or of a part's where the blob is a part.
+/// The morph targets of a scene's own meshes, or of a part's, read in place.
 ///
 /// ```
 /// # static BLOB: &[u8] =
 /// #     gridel_core::include_blob!(concat!(env!("CARGO_MANIFEST_DIR"), "/../fixtures/blobs/bvh.gridel"));
-/// use gridel_core::deform::Morph;
+/// use gridel_core::deform::MorphTargets;
 /// use gridel_core::format::record::Vertex24;
 /// use gridel_core::{Deformation, Scene, Tracks};
 ///
@@ -30,7 +30,7 @@ const WEIGHT_BITS: u32 = 24;
 /// /// The scene with its mesh as its tracks say.
 /// fn at<'a>(
 ///     scene: &Scene<'a>,
-///     (tracks, morph): (&Tracks<'_>, &Morph<'_>),
+///     (tracks, morph): (&Tracks<'_>, &MorphTargets<'_>),
 ///     time: i32,
 ///     mesh: &'a mut Mesh,
 /// ) -> Result<Scene<'a>, Box<dyn std::error::Error>> {
@@ -40,12 +40,12 @@ const WEIGHT_BITS: u32 = 24;
 ///     Ok(scene.with_deformation(mesh)?)
 /// }
 /// // This blob has no morph targets; one that has some is read likewise.
-/// let morph = Morph::from_bytes(BLOB)?;
+/// let morph = MorphTargets::from_bytes(BLOB)?;
 /// assert!(morph.is_empty() && morph.weights_at_rest().is_empty());
 /// # Ok::<(), gridel_core::BlobError>(())
 /// ```
 #[derive(Clone, Copy, Debug)]
-pub struct Morph<'a> {
+pub struct MorphTargets<'a> {
     /// The checksum of the blob.
     blob: u32,
     rest: &'a [i32],
@@ -79,11 +79,10 @@ impl Displacements<'_> {
     }
 }
 
-impl<'a> Morph<'a> {
-    /// Checks the morph targets of a blob and returns them. A blob without any is valid; nothing moves then.
+impl<'a> MorphTargets<'a> {
+    /// Checks the morph targets of a blob's own meshes and returns them. A blob without any is valid; nothing moves then.
     ///
-    /// [`part_blobs`](crate::scene::part_blobs) returns the blobs of parts. Costs time linear in the number of
-    /// displacements.
+    /// Costs time linear in the number of displacements.
     ///
     /// # Errors
     /// If a number is out of its range, vertices or their morph targets do not ascend, or the sections differ in length.
@@ -91,6 +90,27 @@ impl<'a> Morph<'a> {
     pub fn from_bytes(blob: &'a [u8]) -> Result<Self, BlobError> {
         let header = header(blob)?;
         let sections = Sections::read(blob, header.section_count)?;
+        let rest: &[i32] = sections.records(SectionKind::MorphWeights)?;
+        for (index, &weight) in rest.iter().enumerate() {
+            let section = SectionKind::MorphWeights;
+            let most = i64::from(LARGEST_WEIGHT);
+            At { section, index }.within(Field::Weight, weight.into(), -most, most)?;
+        }
+        Self::read(header.checksum, &sections, rest)
+    }
+
+    /// Checks the morph targets of a part's meshes and returns them, given the blob of the part: one of
+    /// [`part_blobs`](crate::scene::part_blobs). Their weights are those of the whole scene.
+    ///
+    /// # Errors
+    /// The errors of [`from_bytes`](Self::from_bytes).
+    pub fn of_part(&self, part: &'a [u8]) -> Result<Self, BlobError> {
+        let header = header(part)?;
+        let sections = Sections::read(part, header.section_count)?;
+        Self::read(header.checksum, &sections, self.rest)
+    }
+
+    fn read(blob: u32, sections: &Sections<'a>, rest: &'a [i32]) -> Result<Self, BlobError> {
         let section = SectionKind::Displacements;
         let displacements = if sections.get(section).stride == size_of::<[i16; 3]>() {
             Displacements::Short(sections.records(section)?)
@@ -98,10 +118,10 @@ impl<'a> Morph<'a> {
             Displacements::Long(sections.records(section)?)
         };
         let morph = Self {
-            blob: header.checksum,
-            rest: sections.records(SectionKind::MorphWeights)?,
-            vertices: Indices::read(&sections, SectionKind::MorphVertices)?,
-            numbers: Indices::read(&sections, SectionKind::MorphNumbers)?,
+            blob,
+            rest,
+            vertices: Indices::read(sections, SectionKind::MorphVertices)?,
+            numbers: Indices::read(sections, SectionKind::MorphNumbers)?,
             displacements,
             normals: sections.records(SectionKind::NormalChanges)?,
         };
@@ -110,11 +130,6 @@ impl<'a> Morph<'a> {
     }
 
     fn check(&self, vertices: usize) -> Result<(), BlobError> {
-        for (index, &weight) in self.rest.iter().enumerate() {
-            let section = SectionKind::MorphWeights;
-            let most = i64::from(LARGEST_WEIGHT);
-            At { section, index }.within(Field::Weight, weight.into(), -most, most)?;
-        }
         let expected = self.displacements.len();
         let normals = match self.normals {
             [] => expected,
@@ -153,8 +168,7 @@ impl<'a> Morph<'a> {
         Ok(())
     }
 
-    /// The weights at rest of all morph targets of the scene, with 24 fraction bits. Other blobs of the same scene have
-    /// the same.
+    /// The weights at rest of all morph targets of the scene, with 24 fraction bits.
     pub fn weights_at_rest(&self) -> &'a [i32] {
         self.rest
     }
@@ -240,7 +254,7 @@ impl<V: Vertex, A: Memory<V>, B: Memory<Pair>, C: Memory<[i16; 2]>> DeformationI
     pub fn morph(
         &mut self,
         scene: &Scene<'_>,
-        morph: &Morph<'_>,
+        morph: &MorphTargets<'_>,
         weights: &[i32],
     ) -> Result<(), DeformError> {
         self.refitted = false;

@@ -261,10 +261,9 @@ macro_rules! sections {
             /// The numbers of the materials with a priority, from the highest on: at most 8, each one of glass. Absent where
             /// there are none.
             Media = 99, "media", [u32], "medium" of "";
-            /// For each morph target of the scene, its weight at rest, 24 fraction bits: in the blob, and again in every
-            /// part with displacements.
+            /// For each morph target of the scene and its parts, its weight at rest, 24 fraction bits.
             MorphWeights = 100, "morph-weights", [i32], "morph target" of "";
-            /// For each [displacement](crate::deform::Morph) of a vertex by a morph target, the vertex. Vertices ascend, and
+            /// For each [displacement](crate::deform::MorphTargets) of a vertex by a morph target, the vertex. Vertices ascend, and
             /// for each vertex the morph targets.
             MorphVertices = 101, "morph-vertices", [u8, u16, [u8; 3], u32], "displacement" of "morph-vertices";
             /// For each displacement, its morph target.

@@ -15,6 +15,7 @@ use gridel_core::{BlobError, Effects, Format, Scene, Structure, Tracks};
 use gridel_host::blob::Blob;
 use gridel_host::compile::{self, Compiled, Names};
 use gridel_host::measure::Deforming;
+use gridel_host::morphed::morph_targets;
 use gridel_host::resolution::{FACTOR, Unresolved, unresolved};
 use gridel_host::scene::{self, Imported, Posed, SourceSpan, Track};
 use gridel_host::state::{self, State, StateError};
@@ -328,11 +329,12 @@ impl Source {
         self.changes.as_ref()?.time
     }
 
-    /// Returns the checked view of the blob with the changes. Its names and tracks are valid as well.
+    /// Returns the checked view of the blob with the changes. Its names, tracks and morph targets are valid as well.
     pub fn scene(&self) -> Result<Scene<'_>, Failure> {
         let checked = self.blob.scene().and_then(|scene| {
             gridel_core::Names::from_bytes(self.blob.bytes())?;
             Tracks::from_bytes(self.blob.bytes())?;
+            morph_targets(self.blob.bytes())?;
             match &self.changes {
                 Some(changes) => changes.of_scene(&scene),
                 None => Ok(scene),

@@ -82,7 +82,6 @@ use gridel_core::format::record::{Gridels, UnitBox};
 use hierarchies::Hierarchies;
 use hierarchy::{Primitive, Splits};
 use instances::{Parts, Placed, Role};
-use morph::MorphRoom;
 use primitives::Primitives;
 use shading::ShadingData;
 use sizes::Sizes;
@@ -193,11 +192,11 @@ fn compile_as(
     on_progress: OnProgress<'_>,
 ) -> Result<(Compiled, Sizes), CompileError> {
     let shapes = Shapes::of(scene);
-    let morph_room = MorphRoom::of(scene);
     let mut extent = room::widened(shapes.extent(), options.room);
-    extent = morph_room.widened(extent, options.lattice_bits);
+    let swept = morph::swept(scene);
+    extent = swept.extent(extent, options.lattice_bits);
     if let Role::Whole(parts) = role {
-        extent = parts.reach.around(extent, options.lattice_bits);
+        extent = parts.reach.swept.extent(extent, options.lattice_bits);
     }
     let (lattice, snapped, placed) = snap(role, scene, extent, options)?;
     let structures = held(&options.structures);
@@ -217,10 +216,13 @@ fn compile_as(
         wide,
     } = Hierarchies::build(scene, &snapped, &structures, options)?;
     let own = room::around(&order, options.room / lattice.unit());
-    let own = morph_room.around(own, &lattice);
+    let own = own.into_iter().chain(swept.on_lattice(&lattice));
+    let own = own.reduce(|a, b| a.union(&b));
     let mut bounds = placed.around(own).unwrap_or(UnitBox([[0; 2]; 3]));
     if let Role::Whole(parts) = role {
-        bounds = parts.reach.box_around(bounds, &lattice);
+        if let Some(swept) = parts.reach.swept.on_lattice(&lattice) {
+            bounds = bounds.union(&swept);
+        }
         // Where rays start in a part depends on its box, so that is the same through all structures.
         if structures.contains(&Structure::Octree) {
             let boxes: Vec<_> = order.iter().map(|primitive| primitive.bounds).collect();

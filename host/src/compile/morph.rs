@@ -1,6 +1,7 @@
 //! Morph targets: how far they move vertices, and their sections.
 
 use super::error::CompileError;
+use super::room::Swept;
 use super::section::{Section, indices, section};
 use crate::scene::{
     Attributes, Displacements, LARGEST_WEIGHT, MorphTarget, Normals, Object, Scene, Shape,
@@ -11,19 +12,12 @@ use crate::table::printable;
 use glam::DVec3;
 use gridel_core::format::SectionKind;
 use gridel_core::format::limits;
-use gridel_core::format::record::UnitBox;
 use gridel_core::{Structure, deform};
 use std::borrow::Cow;
 use std::collections::HashMap;
 
 /// Fraction bits of weights.
 const WEIGHT_BITS: u32 = 24;
-
-/// By what part of its size the room of vertices is widened.
-const MARGIN: f64 = 1.0 / 4096.0;
-
-/// By how many units it is widened at least.
-const MARGIN_UNITS: f64 = 8.0;
 
 /// Returns whether a scene can have morph targets through these structures.
 pub fn can_move(structures: &[Structure]) -> bool {
@@ -77,61 +71,19 @@ pub fn with_tracks(scene: &Scene) -> Cow<'_, [MorphTarget]> {
     Cow::Owned(targets)
 }
 
-/// The room of the vertices that morph targets move.
-#[derive(Debug)]
-pub struct MorphRoom {
-    /// Without a margin; `None` if nothing moves.
-    bounds: Option<[DVec3; 2]>,
-    /// How far rounding can move a vertex, in steps of the storage.
-    rounding: f64,
-}
-
-impl MorphRoom {
-    /// The room of a scene's own meshes.
-    pub fn of(scene: &Scene) -> Self {
-        let targets = with_tracks(scene);
-        let ways: Vec<[f64; 2]> = targets.iter().map(way).collect();
-        let largest = |[low, high]: &[f64; 2]| high.max(-low);
-        let boxes = scene.objects.iter().filter_map(|it| around(it, &ways));
-        Self {
-            bounds: boxes.reduce(|a, b| [a[0].min(b[0]), a[1].max(b[1])]),
-            rounding: 1.0 + ways.iter().map(largest).sum::<f64>() / 2.0,
-        }
-    }
-
-    /// The box around an extent and this, for a lattice of so many bits.
-    pub fn widened(&self, extent: (DVec3, DVec3), bits: u8) -> (DVec3, DVec3) {
-        let Some([low, high]) = self.bounds else {
-            return extent;
-        };
-        let whole = [low.min(extent.0), high.max(extent.1)];
-        // An extent without a lattice is reported later.
-        let unit = Lattice::around(whole, bits, 0).map_or(0.0, |it| it.unit());
-        let [low, high] = self.with_margin(unit).unwrap_or(whole);
-        (low.min(extent.0), high.max(extent.1))
-    }
-
-    /// The box on a lattice with such units.
-    fn with_margin(&self, unit: f64) -> Option<[DVec3; 2]> {
-        self.bounds.map(|[low, high]| {
-            let part = (high - low).max_element() * MARGIN;
-            let margin = part.max((MARGIN_UNITS + self.rounding) * unit);
-            [low - margin, high + margin]
-        })
-    }
-
-    /// The box around a box and this, on a lattice; the box itself if nothing moves.
-    pub fn around(&self, own: Option<UnitBox>, lattice: &Lattice) -> Option<UnitBox> {
-        let Some([low, high]) = self.with_margin(lattice.unit()) else {
-            return own;
-        };
-        let units = |place: DVec3| (place - lattice.origin) / lattice.unit();
-        // The casts saturate; -32768 is reserved.
-        let (low, high) = (units(low).floor().to_array(), units(high).ceil().to_array());
-        let side = |axis: usize| [(low[axis] as i16).max(-i16::MAX), high[axis] as i16];
-        let room = UnitBox([side(0), side(1), side(2)]);
-        Some(own.map_or(room, |own| own.union(&room)))
-    }
+/// The box that a scene's own meshes sweep by morph targets.
+pub fn swept(scene: &Scene) -> Swept {
+    let targets = with_tracks(scene);
+    let ways: Vec<[f64; 2]> = targets.iter().map(way).collect();
+    let largest = |[low, high]: &[f64; 2]| high.max(-low);
+    let boxes = scene.objects.iter().filter_map(|it| around(it, &ways));
+    let mut swept = Swept {
+        // Half a step for each displacement and for the sum; a step is a unit at most.
+        rounding: 1.0 + ways.iter().map(largest).sum::<f64>() / 2.0,
+        ..Swept::default()
+    };
+    boxes.for_each(|corners| swept.add(corners));
+    swept
 }
 
 /// The least and the greatest difference of a weight from that at rest.

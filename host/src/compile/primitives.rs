@@ -4,7 +4,7 @@ use super::CompileError;
 use super::cuts::{self, Sliver};
 use super::flattened::{self, is_degenerate};
 use super::hierarchy::Primitive;
-use super::morph::{Motions, with_tracks};
+use super::morph::Motions;
 use super::records::{Added, Records};
 use super::requirements::Requirements;
 use super::vertices::{Corner, Corners, MOST_COORDINATE, Vertices, corner_at};
@@ -221,8 +221,8 @@ impl Primitives {
                     object: format!("{} ({})", printable(&object.name), object.place),
                     most: MOST_COORDINATE,
                 })?;
-                let targets = with_tracks(scene);
-                all.motions = self.motions.of(object, triangles, lattice, &targets)?;
+                let targets = &scene.morph_targets;
+                all.motions = self.motions.of(object, triangles, lattice, targets)?;
                 let all = all;
                 let mut is_smooth = false;
                 let name_of = |number: usize| {

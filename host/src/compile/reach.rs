@@ -4,13 +4,12 @@
 //! Keys bound the values between them: those of a spline together with its Bézier control points. Rotations about one
 //! axis sweep a cylinder about it, others a sphere about the pivot.
 
+use super::room::{MARGIN, Swept};
 use crate::scene::{
     Interpolation, Joint, JointTracks, LARGEST_SCALE, LEAST_SCALE, Placement, ScaleRange, Scene,
     Track, control_points,
 };
-use crate::shape::Lattice;
 use glam::{DQuat, DVec3, DVec4};
-use gridel_core::format::record::UnitBox;
 
 /// Largest difference of the axes of rotations about one axis.
 const SAME_AXIS: f64 = 1e-6;
@@ -18,17 +17,11 @@ const SAME_AXIS: f64 = 1e-6;
 /// Bound of how far rounding takes the matrix and the scale of a joint off, in radians.
 const ROUNDING: f64 = 1.0 / (1 << 23) as f64;
 
-/// By what part of its size room is widened: a quarter for small rotations, the rest for the rounding of boxes.
-const MARGIN: f64 = 1.0 / 4096.0;
-
-/// By how many units room is widened at least: boxes of instances are up to five units larger than what they hold.
-const MARGIN_UNITS: f64 = 8.0;
-
 /// How far the instances of a scene move.
 #[derive(Debug, Default)]
 pub struct Reach {
-    /// The box around all that moves, and the room that the scene states; without a margin.
-    bounds: Option<[DVec3; 2]>,
+    /// What instances sweep, and the room that the scene states.
+    pub swept: Swept,
     /// For each instance, its least and its greatest scale relative to that at rest.
     pub scales: Vec<[f64; 2]>,
 }
@@ -40,9 +33,13 @@ impl Reach {
         let joints = scene.joints.iter().zip(&tracks);
         let ranges: Vec<Range> = joints.map(|(joint, it)| Range::of(joint, it)).collect();
         let mut reach = Self {
-            bounds: scene.room,
+            swept: Swept::default(),
             scales: Vec::with_capacity(scene.instances.len()),
         };
+        scene
+            .room
+            .into_iter()
+            .for_each(|room| reach.swept.add(room));
         let size = size_at_rest(scene, parts);
         for instance in &scene.instances {
             let mut scales = [1.0; 2];
@@ -56,47 +53,12 @@ impl Reach {
                     let [least, greatest] = ranges[joint].scale;
                     scales = [scales[0] * least, scales[1] * greatest];
                 }
-                let [low, high] = reach.bounds.unwrap_or(region.corners);
-                let [own_low, own_high] = region.corners;
-                reach.bounds = Some([low.min(own_low), high.max(own_high)]);
+                reach.swept.add(region.corners);
             }
             let limit = |scale: f64| scale.clamp(LEAST_SCALE, LARGEST_SCALE);
             reach.scales.push(scales.map(limit));
         }
         reach
-    }
-
-    /// The box around a scene's extent and this, for a lattice of so many bits.
-    pub fn around(&self, extent: (DVec3, DVec3), bits: u8) -> (DVec3, DVec3) {
-        let Some([low, high]) = self.bounds else {
-            return extent;
-        };
-        let whole = [low.min(extent.0), high.max(extent.1)];
-        // An extent without a lattice is reported later.
-        let unit = Lattice::around(whole, bits, 0).map_or(0.0, |it| it.unit());
-        let [low, high] = self.with_margin(unit).unwrap_or(whole);
-        (low.min(extent.0), high.max(extent.1))
-    }
-
-    /// The box on a lattice with such units.
-    fn with_margin(&self, unit: f64) -> Option<[DVec3; 2]> {
-        self.bounds.map(|[low, high]| {
-            let part = (high - low).max_element() * MARGIN;
-            let margin = DVec3::splat(part.max(MARGIN_UNITS * unit));
-            [low - margin, high + margin]
-        })
-    }
-
-    /// The box around a scene's box and this, on its lattice.
-    pub fn box_around(&self, own: UnitBox, lattice: &Lattice) -> UnitBox {
-        let Some([low, high]) = self.with_margin(lattice.unit()) else {
-            return own;
-        };
-        let units = |place: DVec3| (place - lattice.origin) / lattice.unit();
-        // The casts saturate.
-        let (low, high) = (units(low).floor().to_array(), units(high).ceil().to_array());
-        let side = |axis: usize| [(low[axis] as i16).max(-i16::MAX), high[axis] as i16];
-        own.union(&UnitBox([side(0), side(1), side(2)]))
     }
 }
 

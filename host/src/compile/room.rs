@@ -1,6 +1,7 @@
-//! The room of vertices that move: boxes are wider by it.
+//! The room of what moves: boxes are wider by it.
 
 use super::hierarchy::{Primitive, bounds};
+use crate::shape::Lattice;
 use glam::DVec3;
 use gridel_core::Kind;
 use gridel_core::format::record::UnitBox;
@@ -29,4 +30,58 @@ pub fn around(primitives: &[Primitive], room: f64) -> Option<UnitBox> {
         ]
     });
     Some(own.union(&UnitBox(wider)))
+}
+
+/// By what part of its size a swept box is widened: for small rotations and the rounding of boxes.
+pub const MARGIN: f64 = 1.0 / 4096.0;
+
+/// By how many units a swept box is widened at least: boxes of instances are up to five units larger than what they hold.
+const MARGIN_UNITS: f64 = 8.0;
+
+/// The box that something sweeps while it moves.
+#[derive(Debug, Default)]
+pub struct Swept {
+    /// Without a margin; `None` if nothing moves.
+    pub corners: Option<[DVec3; 2]>,
+    /// How many more units it is widened by, for the rounding of what moves.
+    pub rounding: f64,
+}
+
+impl Swept {
+    /// Adds a box, given its lowest and its highest corner.
+    pub fn add(&mut self, [low, high]: [DVec3; 2]) {
+        let [lowest, highest] = self.corners.unwrap_or([low, high]);
+        self.corners = Some([lowest.min(low), highest.max(high)]);
+    }
+
+    /// The box around an extent and this, for a lattice of so many bits.
+    pub fn extent(&self, extent: (DVec3, DVec3), bits: u8) -> (DVec3, DVec3) {
+        let Some([low, high]) = self.corners else {
+            return extent;
+        };
+        let whole = [low.min(extent.0), high.max(extent.1)];
+        // An extent without a lattice is reported later.
+        let unit = Lattice::around(whole, bits, 0).map_or(0.0, |it| it.unit());
+        let [low, high] = self.with_margin(unit).unwrap_or(whole);
+        (low.min(extent.0), high.max(extent.1))
+    }
+
+    /// The box on a lattice with such units.
+    pub fn with_margin(&self, unit: f64) -> Option<[DVec3; 2]> {
+        self.corners.map(|[low, high]| {
+            let part = (high - low).max_element() * MARGIN;
+            let margin = DVec3::splat(part.max((MARGIN_UNITS + self.rounding) * unit));
+            [low - margin, high + margin]
+        })
+    }
+
+    /// This box on a lattice; `None` if nothing moves.
+    pub fn on_lattice(&self, lattice: &Lattice) -> Option<UnitBox> {
+        let [low, high] = self.with_margin(lattice.unit())?;
+        let units = |place: DVec3| (place - lattice.origin) / lattice.unit();
+        // The casts saturate; -32768 is reserved.
+        let (low, high) = (units(low).floor().to_array(), units(high).ceil().to_array());
+        let side = |axis: usize| [(low[axis] as i16).max(-i16::MAX), high[axis] as i16];
+        Some(UnitBox([side(0), side(1), side(2)]))
+    }
 }

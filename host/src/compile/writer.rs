@@ -125,13 +125,11 @@ pub fn parts(context: &BuildContext<'_>, layouts: Vec<Layout>) -> Parts {
         sections.push(indices(SectionKind::Order, &order, 2));
     }
     sections.extend(geometry(lattice, primitives, flat));
-    let moves = |it: &Section| it.kind == SectionKind::Displacements;
-    let is_whole = matches!(context.role, Role::Whole(_));
-    if is_whole || sections.iter().any(moves) {
-        sections.push(morph::weights(scene));
-    }
     if uses_leaves {
         sections.push(section(SectionKind::Leaves, &flat.leaves));
+    }
+    if let Role::Whole(_) = context.role {
+        sections.push(morph::weights(scene));
     }
     let depths = layouts.iter().map(|layout| layout.stack_depth);
     let mut stack_depth = depths.max().unwrap_or(0) as u16;

@@ -1,9 +1,9 @@
 //! The memory of deforming meshes.
 
+use crate::morphed::morph_targets;
 use crate::table::grouped;
-use gridel_core::deform::{self, Morph};
+use gridel_core::deform::{self, MorphTargets};
 use gridel_core::format::record::{Pair, UnitBox, Vertex16, Vertex24};
-use gridel_core::scene::part_blobs;
 use gridel_core::{Kind, Scene, Structure};
 use serde::Serialize;
 use std::fmt;
@@ -45,31 +45,33 @@ impl Deforming {
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
     pub fn all(scene: &Scene<'_>, blob: &[u8]) -> Vec<Self> {
-        let blobs = part_blobs(blob).into_iter().flatten();
-        let parts = scene.parts().iter().zip(blobs).enumerate();
-        let parts = parts.map(|(part, (scene, blob))| (Some(part), scene, blob));
-        std::iter::once((None, scene, blob))
+        // They were checked with the scene.
+        let targets = morph_targets(blob).unwrap_or_default();
+        let parts = scene.parts().iter().enumerate();
+        let parts = parts.map(|(part, scene)| (Some(part), scene));
+        std::iter::once((None, scene))
             .chain(parts)
-            .filter_map(|(part, scene, blob)| Self::of(part, scene, blob))
+            .zip(&targets)
+            .filter_map(|((part, scene), targets)| Self::of(part, scene, targets))
             .collect()
     }
 
     /// The mesh of a scene's own objects.
     pub fn of_scene(scene: &Scene<'_>, blob: &[u8]) -> Option<Self> {
-        Self::of(None, scene, blob)
+        Self::all(scene, blob)
+            .into_iter()
+            .find(|it| it.part.is_none())
     }
 
-    fn of(part: Option<usize>, scene: &Scene<'_>, blob: &[u8]) -> Option<Self> {
-        // It was checked with the scene's tracks.
-        let morph = Morph::from_bytes(blob).ok()?;
+    fn of(part: Option<usize>, scene: &Scene<'_>, targets: &MorphTargets<'_>) -> Option<Self> {
         let mut held = Structure::ALL.into_iter().filter(|it| scene.holds(*it));
         let can_refit = held.all(|it| Self::STRUCTURES.contains(&it));
-        let moves = has_room(scene) || !morph.is_empty();
+        let moves = has_room(scene) || !targets.is_empty();
         if !can_refit || scene.count(Kind::Triangle) == 0 || !moves {
             return None;
         }
         let (vertices, pairs) = (scene.vertices(), scene.pairs());
-        let normals = match morph.changes_normals() {
+        let normals = match targets.changes_normals() {
             true => scene.normals(),
             false => 0,
         };

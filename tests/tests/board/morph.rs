@@ -6,7 +6,7 @@ use crate::firmware::{Build, board};
 use crate::plan::Plan;
 use crate::scenes::{self, Compiled};
 use crate::waves::{POSES, sum, sum_of_normals};
-use gridel_core::deform::Morph;
+use gridel_core::deform::MorphTargets;
 use gridel_core::format::record::{Vertex16, Vertex24};
 use gridel_core::format::width::Vertex;
 use gridel_core::{Bvh, Fixed, Format, Stack, Tracks};
@@ -76,7 +76,7 @@ fn on_the_host<V: Vertex>(compiled: &Compiled, format: Format) -> Vec<u64> {
     let (scene, blob) = (compiled.blob.scene(), compiled.blob.bytes());
     let scene = scene.expect("the compiler's own blob");
     let tracks = Tracks::from_bytes(blob).expect("tracks");
-    let morph = Morph::from_bytes(blob).expect("morph targets");
+    let morph = MorphTargets::from_bytes(blob).expect("morph targets");
     let mut mesh: HeapDeformation<V> = deformation::of(&scene).expect("a deformation");
     let (mut found, mut stack) = (Vec::new(), Stack::<48>::new());
     for number in 0..POSES {

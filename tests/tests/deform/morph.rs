@@ -3,7 +3,7 @@
 
 use super::{ball, moved_triangles, no_leaks, ray};
 use glam::DVec3;
-use gridel_core::deform::Morph;
+use gridel_core::deform::MorphTargets;
 use gridel_core::format::record::{Vertex16, Vertex24};
 use gridel_core::format::width::Vertex;
 use gridel_core::{
@@ -95,7 +95,7 @@ fn as_promised<V: Vertex>(lattice_bits: u8) {
     let file = shaken(&mut random);
     let blob = built(&file, lattice_bits);
     let scene = blob.scene().expect("a scene");
-    let morph = Morph::from_bytes(blob.bytes()).expect("morph targets");
+    let morph = MorphTargets::from_bytes(blob.bytes()).expect("morph targets");
     let rest: &[V] = scene.stored_vertices().expect("vertices");
     let step =
         f64::powi(2.0, scene.header().unit_exponent.into()) / f64::powi(2.0, V::STEP_BITS as i32);
@@ -187,7 +187,7 @@ fn weights_at_rest_leave_the_blob_as_it_is() {
     for lattice_bits in [11, 20] {
         let blob = built(&file, lattice_bits);
         let scene = blob.scene().expect("a scene");
-        let morph = Morph::from_bytes(blob.bytes()).expect("morph targets");
+        let morph = MorphTargets::from_bytes(blob.bytes()).expect("morph targets");
         let rest = morph.weights_at_rest().to_vec();
         assert_eq!(rest[1], -2 << 24);
         assert!(morphed(&blob, &scene, &rest).expect("at rest") == Some(blob.clone()));
@@ -268,7 +268,7 @@ fn normals_turn_with_the_mesh() {
     let scene = blob.scene().expect("a scene");
     let needs = Requirements::of(blob.bytes()).expect("a blob");
     assert_eq!((needs.morph_targets, needs.moving_normals), (1, 642));
-    let morph = Morph::from_bytes(blob.bytes()).expect("morph targets");
+    let morph = MorphTargets::from_bytes(blob.bytes()).expect("morph targets");
     assert!(morph.changes_normals());
     let mut mesh = Box::new(Deformation::<Vertex24, 642, 1300, 642>::of(&scene).expect("room"));
     for weight in [0.25, 0.5, 1.0] {
@@ -341,7 +341,7 @@ fn targets_of_normals_alone_turn_them() {
 fn invalid_weights_are_rejected() {
     let blob = built(&shaken(&mut Random(1)), 24);
     let scene = blob.scene().expect("a scene");
-    let morph = Morph::from_bytes(blob.bytes()).expect("morph targets");
+    let morph = MorphTargets::from_bytes(blob.bytes()).expect("morph targets");
     let mut mesh = Box::new(Deformation::<Vertex24, 642, 1300>::of(&scene).expect("room"));
     let (found, expected) = (2, 3);
     assert_eq!(
@@ -358,7 +358,7 @@ fn invalid_weights_are_rejected() {
         "a pose that failed"
     );
     let other = built(&shaken(&mut Random(2)), 24);
-    let other = Morph::from_bytes(other.bytes()).expect("morph targets");
+    let other = MorphTargets::from_bytes(other.bytes()).expect("morph targets");
     assert_eq!(
         mesh.morph(&scene, &other, &[0; 3]),
         Err(DeformError::OtherScene)
@@ -377,7 +377,7 @@ fn other_structures_keep_the_shape_at_rest() {
     assert!(compiled.report.keeps_rest);
     let warnings = compiled.report.warnings(24).join("\n");
     assert!(warnings.contains("keep their shape at rest"), "{warnings}");
-    let morph = Morph::from_bytes(compiled.blob.bytes()).expect("no morph targets");
+    let morph = MorphTargets::from_bytes(compiled.blob.bytes()).expect("no morph targets");
     assert!(morph.is_empty() && morph.weights_at_rest().is_empty());
     let mut still = file.clone();
     still.morph_targets.clear();

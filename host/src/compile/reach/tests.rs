@@ -10,7 +10,7 @@ fn reach_holds_random_chains_at_all_times() {
         let scene = chain(&mut random, true);
         let part = [DVec3::new(-1.0, -2.0, 0.5), DVec3::new(3.0, 0.0, 1.0)];
         let reach = Reach::of(&scene, &[part]);
-        let [low, high] = reach.with_margin(0.0).unwrap();
+        let [low, high] = reach.swept.with_margin(0.0).unwrap();
         let rest = scene.instances[0].placement;
         let mut taken = [DVec3::INFINITY, DVec3::NEG_INFINITY];
         for step in -1..=100 {
@@ -62,7 +62,7 @@ fn of_tracks(tracks: Vec<(TrackTarget, Vec<[f64; 4]>)>) -> [DVec3; 2] {
     };
     scene.tracks = tracks.into_iter().map(track).collect();
     let part = [DVec3::new(1.0, -0.25, -0.25), DVec3::new(2.0, 0.25, 0.25)];
-    Reach::of(&scene, &[part]).bounds.unwrap()
+    Reach::of(&scene, &[part]).swept.corners.unwrap()
 }
 
 #[test]
@@ -124,7 +124,7 @@ fn reach_holds_small_rotations_about_distant_pivots() {
                 place: SourceSpan::default(),
             }];
             let part = [-DVec3::ONE, DVec3::ONE];
-            let [low, high] = Reach::of(&scene, &[part]).bounds.unwrap();
+            let [low, high] = Reach::of(&scene, &[part]).swept.corners.unwrap();
             for step in 0..=10 {
                 let placement = scene.instances_at(f64::from(step) * 0.1)[0].placement;
                 for corner in part {
@@ -145,6 +145,8 @@ fn room_widens_a_scene_without_joints() {
         room: Some([DVec3::ZERO, DVec3::splat(8.0)]),
         ..Scene::default()
     };
-    let (low, high) = Reach::of(&scene, &[]).around((DVec3::splat(-1.0), DVec3::ONE), 24);
+    let (low, high) = Reach::of(&scene, &[])
+        .swept
+        .extent((DVec3::splat(-1.0), DVec3::ONE), 24);
     assert!(low == DVec3::splat(-1.0) && high.min_element() >= 8.0 && high.max_element() < 8.01);
 }

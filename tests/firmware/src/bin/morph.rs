@@ -2,7 +2,7 @@
 #![no_std]
 #![no_main]
 
-use gridel_core::deform::Morph;
+use gridel_core::deform::MorphTargets;
 use gridel_core::format::record;
 use gridel_core::{Deformation, Stack, Tracks};
 use gridel_firmware::casts::{Casts, RAYS};
@@ -44,7 +44,7 @@ fn run(Memory { stack, mesh }: &'static mut Memory) {
     let (mut tracks, mut morph) = (None, None);
     let read = meter.run(|| {
         tracks = Tracks::from_bytes(BLOB).ok();
-        morph = Morph::from_bytes(BLOB).ok();
+        morph = MorphTargets::from_bytes(BLOB).ok();
     });
     let (Some(tracks), Some(morph), Ok(())) = (tracks, morph, mesh.reset(&scene)) else {
         fail("the scene cannot morph")

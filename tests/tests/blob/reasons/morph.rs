@@ -5,7 +5,7 @@ use super::{Errors, alone};
 use bytemuck::Pod;
 use glam::DVec3;
 use gridel_core::Structure;
-use gridel_core::deform::Morph;
+use gridel_core::deform::MorphTargets;
 use gridel_core::format::{BlobError, Field, Reason, SectionKind};
 use gridel_host::scene::{
     Displacements, Interpolation, Key, MorphTarget, NormalChanges, Normals, Scene, Shape,
@@ -74,7 +74,7 @@ fn error_of(base: Base) -> BlobError {
     let blob = base.sealed();
     // Who leaves meshes at rest does not need morph targets.
     assert!(blob.scene().is_ok());
-    let error = Morph::from_bytes(blob.bytes()).err();
+    let error = MorphTargets::from_bytes(blob.bytes()).err();
     let error = error.unwrap_or(BlobError::Misaligned);
     speaks(&error);
     error
