@@ -82,9 +82,8 @@ pub(crate) fn changed(stored: [i16; 2], change: [i64; 3]) -> [i16; 2] {
     let all = sum.iter().fold(0, |all, x| all | x.unsigned_abs());
     // Magnitudes of 16 bits, whose products with the largest have 31.
     let down = 48_u32.saturating_sub(all.leading_zeros());
-    let [x, y, z] = sum.map(|x| (x >> down) as i32);
-    let size = [x, y, z].map(i32::unsigned_abs);
-    let [across, up, along] = size;
+    let [across, up, along] = sum.map(|x| (x.unsigned_abs() >> down) as u32);
+    let [x, y, z] = sum;
     let length = across.wrapping_add(up).wrapping_add(along);
     let largest = u32::from(LARGEST.unsigned_abs());
     let part = |x: u32| {
@@ -97,7 +96,7 @@ pub(crate) fn changed(stored: [i16; 2], change: [i64; 3]) -> [i16; 2] {
     if z < 0 {
         (across, up) = (LARGEST.wrapping_sub(up), LARGEST.wrapping_sub(across));
     }
-    let with_sign = |size: i16, of: i32| if of < 0 { size.wrapping_neg() } else { size };
+    let with_sign = |size: i16, of: i64| if of < 0 { size.wrapping_neg() } else { size };
     [with_sign(across, x), with_sign(up, y)]
 }
 

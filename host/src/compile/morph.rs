@@ -175,6 +175,18 @@ impl Motions {
         Ok(motions)
     }
 
+    /// Returns whether two vertices that are at one place at rest stay together.
+    pub fn stay_together(&self, one: u32, other: u32) -> bool {
+        let [one, other] = [one, other].map(|motion| {
+            let steps = self.all[motion as usize].iter();
+            // Others change normals alone.
+            steps
+                .filter(|step| step.1 != [0; 3])
+                .map(|step| (step.0, step.1))
+        });
+        one.eq(other)
+    }
+
     /// The number of a motion.
     fn number(&mut self, steps: Vec<Step>) -> u32 {
         let next = self.all.len() as u32;

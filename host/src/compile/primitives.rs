@@ -232,7 +232,7 @@ impl Primitives {
                 for (number, triangle) in triangles.iter().enumerate() {
                     let corners = triangle.map(|vertex| snapped[vertex as usize]);
                     let found = all.of_triangle(number, *triangle);
-                    if is_degenerate(corners) && !opens(corners, found) {
+                    if is_degenerate(corners) && !self.opens(corners, found) {
                         let [a, b, c] = triangle.map(|vertex| vertices[vertex as usize]);
                         let name = name_of(number);
                         if (b - a).cross(c - a) == DVec3::ZERO {
@@ -321,6 +321,15 @@ impl Primitives {
         self.check_count()
     }
 
+    /// Whether corners of a triangle that are at one place at rest move apart, so that it has an area then.
+    fn opens(&self, places: [[i32; 3]; 3], corners: [Corner; 3]) -> bool {
+        let mut pairs = [(0, 1), (1, 2), (2, 0)].into_iter();
+        pairs.any(|(one, other)| {
+            let [motion, other_motion] = [one, other].map(|corner| corners[corner].motion);
+            places[one] == places[other] && !self.motions.stay_together(motion, other_motion)
+        })
+    }
+
     fn check_count(&self) -> Result<(), CompileError> {
         if self.total as usize > MOST {
             let count = self.total as usize;
@@ -345,14 +354,6 @@ impl Primitives {
         self.displacements.push(0.0);
         self.total += 1;
     }
-}
-
-/// Whether corners of a triangle that are at one place at rest move apart, so that it has an area then.
-fn opens(places: [[i32; 3]; 3], corners: [Corner; 3]) -> bool {
-    let mut pairs = [(0, 1), (1, 2), (2, 0)].into_iter();
-    pairs.any(|(one, other)| {
-        places[one] == places[other] && corners[one].motion != corners[other].motion
-    })
 }
 
 /// The least `f32` that is no less.

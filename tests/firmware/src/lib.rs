@@ -30,6 +30,7 @@ pub mod board;
 pub mod casts;
 pub mod finder;
 pub mod measure;
+pub mod mesh;
 pub mod orbit;
 pub mod rays;
 pub mod report;

@@ -8,7 +8,7 @@ use crate::scenes::{self, Compiled};
 use crate::waves::{POSES, pose, sum};
 use gridel_core::format::record::{Vertex16, Vertex24};
 use gridel_core::format::width::Vertex;
-use gridel_core::{Bvh, Deformation, Fixed, Format, Stack, Structure};
+use gridel_core::{Bvh, Deformation, Fixed, Format, Scene, Stack, Structure};
 use gridel_host::measure::Deforming;
 use gridel_host::measure::board::Board;
 use std::collections::BTreeMap;
@@ -44,43 +44,81 @@ pub fn plan(plan: &mut Plan) {
 }
 
 fn a_mesh_deforms(board: &'static Board, format: Format, compiled: &Compiled, triangles: u64) {
-    let build = Build::new(board, format, Structure::Bvh, compiled);
-    let program = build.program("deform");
-    let (mut found, mut report) = (Vec::new(), BTreeMap::new());
-    for (name, value) in program.lines() {
-        if ["hits", "sum", "boxes"].contains(&&*name) {
-            found.push(value);
-        } else {
-            report.insert(name, value);
-        }
-    }
-    let scene = compiled.blob.scene().expect("the compiler's own blob");
-    let hosts = match scene.header().storage_bits {
-        16 => on_the_host::<Vertex16>(compiled, format),
+    let hosts = match compiled.blob.scene().map(|it| it.header().storage_bits) {
+        Ok(16) => on_the_host::<Vertex16>(compiled, format),
         _ => on_the_host::<Vertex24>(compiled, format),
     };
-    assert_eq!(found, hosts, "{build}");
-    let [told] = Deforming::all(&scene, compiled.blob.bytes())[..] else {
-        panic!("{build}: the scene has no room")
+    let moving = Moving {
+        program: "deform",
+        step: "refit",
+        most: REFIT,
     };
-    assert_eq!(report["deformation-bytes"], told.bytes as u64, "{build}");
-    let elf = program.elf();
-    let panicking = elf.functions(crate::elf::panics);
-    assert!(panicking.is_empty(), "{build} can panic: {panicking:#?}");
+    let report = moving.check((board, format), compiled, &hosts, triangles);
     let stack = report["refit-stack-bytes"];
-    assert!(stack <= STACK, "{build}: {stack} bytes of stack");
-    let instructions = report["refit-instructions"];
-    println!(
-        "{build}: {} instructions a triangle",
-        instructions / triangles
-    );
-    if board.core == "Cortex-M4F" {
-        let most = REFIT * triangles / 1000;
-        assert!(instructions <= most, "{build}: {instructions} instructions");
+    assert!(stack <= STACK, "{stack} bytes of stack");
+}
+
+/// A program that moves a mesh and casts rays at each pose.
+pub struct Moving {
+    pub program: &'static str,
+    /// What is measured of each pose.
+    pub step: &'static str,
+    /// Instructions of it at most, for 1,000 triangles on a Cortex-M4F.
+    pub most: u64,
+}
+
+impl Moving {
+    /// Runs the program: what it finds is the host's, and it takes the memory that is stated. Returns its figures.
+    pub fn check(
+        &self,
+        (board, format): (&'static Board, Format),
+        compiled: &Compiled,
+        hosts: &[u64],
+        triangles: u64,
+    ) -> BTreeMap<String, u64> {
+        let build = Build::new(board, format, Structure::Bvh, compiled);
+        let program = build.program(self.program);
+        let (mut found, mut report) = (Vec::new(), BTreeMap::new());
+        for (name, value) in program.lines() {
+            if ["hits", "sum", "boxes", "normals"].contains(&&*name) {
+                found.push(value);
+            } else {
+                report.insert(name, value);
+            }
+        }
+        assert_eq!(found, hosts, "{build}");
+        let scene = compiled.blob.scene().expect("the compiler's own blob");
+        let [told] = Deforming::all(&scene, compiled.blob.bytes())[..] else {
+            panic!("{build}: the scene has no room")
+        };
+        assert_eq!(report["deformation-bytes"], told.bytes as u64, "{build}");
+        let panicking = program.elf().functions(crate::elf::panics);
+        assert!(panicking.is_empty(), "{build} can panic: {panicking:#?}");
+        let instructions = report[&format!("{}-instructions", self.step)];
+        println!(
+            "{build}: {} instructions a triangle",
+            instructions / triangles
+        );
+        if board.core == "Cortex-M4F" {
+            let most = self.most * triangles / 1000;
+            assert!(instructions <= most, "{build}: {instructions} instructions");
+        }
+        let mut figures = Figures::new();
+        figures.add(&format!("{} {build}", self.program), &report);
+        figures.check();
+        report
     }
-    let mut figures = Figures::new();
-    figures.add(&format!("deform {build}"), &report);
-    figures.check();
+}
+
+/// What the programs cast, on the host.
+pub fn cast(format: Format, moved: &Scene<'_>) -> Casts {
+    let (mut casts, mut stack) = (Casts::default(), Stack::<48>::new());
+    match format {
+        Format::F32 => casts.run::<f32, Bvh>(moved, stack.as_view()),
+        Format::F64 => casts.run::<f64, Bvh>(moved, stack.as_view()),
+        Format::Fixed => casts.run::<Fixed, Bvh>(moved, stack.as_view()),
+    }
+    casts
 }
 
 /// Hits, their sum and that of the boxes at each pose.
@@ -89,17 +127,12 @@ fn on_the_host<V: Vertex>(compiled: &Compiled, format: Format) -> Vec<u64> {
     let mut mesh: Box<Deformation<V, 512, 1024>> =
         Box::new(Deformation::of(&scene).expect("a deformation"));
     let rest: &[V] = scene.stored_vertices().expect("vertices of this type");
-    let (mut found, mut stack) = (Vec::new(), Stack::<48>::new());
+    let mut found = Vec::new();
     for number in 0..POSES {
         pose(rest, mesh.vertices_mut(), number);
         mesh.refit(&scene).expect("a pose");
         let moved = scene.with_deformation(&mesh).expect("a scene");
-        let mut casts = Casts::default();
-        match format {
-            Format::F32 => casts.run::<f32, Bvh>(&moved, stack.as_view()),
-            Format::F64 => casts.run::<f64, Bvh>(&moved, stack.as_view()),
-            Format::Fixed => casts.run::<Fixed, Bvh>(&moved, stack.as_view()),
-        }
+        let casts = cast(format, &moved);
         let boxes = sum(mesh.pairs());
         found.extend([casts.hits, casts.sum, boxes].map(u64::from));
     }

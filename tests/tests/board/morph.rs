@@ -1,19 +1,16 @@
 //! Meshes that morph on boards: vertices, normals, boxes and hits are the host's, and a pose costs little.
 
-use crate::casts::Casts;
-use crate::figures::Figures;
-use crate::firmware::{Build, board};
+use crate::deform::{Moving, cast};
+use crate::firmware::board;
 use crate::plan::Plan;
 use crate::scenes::{self, Compiled};
 use crate::waves::{POSES, sum, sum_of_normals};
 use gridel_core::deform::MorphTargets;
 use gridel_core::format::record::{Vertex16, Vertex24};
 use gridel_core::format::width::Vertex;
-use gridel_core::{Bvh, Fixed, Format, Stack, Tracks};
+use gridel_core::{Format, Tracks};
 use gridel_host::deformation::{self, HeapDeformation};
-use gridel_host::measure::Deforming;
 use gridel_host::measure::board::Board;
-use std::collections::BTreeMap;
 
 /// Instructions of two morph targets, normals and boxes of 1,000 triangles at most, on a Cortex-M4F.
 const POSE: u64 = 600_000;
@@ -35,40 +32,16 @@ pub fn plan(plan: &mut Plan) {
 }
 
 fn a_mesh_morphs(board: &'static Board, format: Format, compiled: &Compiled, triangles: u64) {
-    let build = Build::new(board, format, gridel_core::Structure::Bvh, compiled);
-    let program = build.program("morph");
-    let (mut found, mut report) = (Vec::new(), BTreeMap::new());
-    for (name, value) in program.lines() {
-        if ["hits", "sum", "boxes", "normals"].contains(&&*name) {
-            found.push(value);
-        } else {
-            report.insert(name, value);
-        }
-    }
-    let scene = compiled.blob.scene().expect("the compiler's own blob");
-    let hosts = match scene.header().storage_bits {
-        16 => on_the_host::<Vertex16>(compiled, format),
+    let hosts = match compiled.blob.scene().map(|it| it.header().storage_bits) {
+        Ok(16) => on_the_host::<Vertex16>(compiled, format),
         _ => on_the_host::<Vertex24>(compiled, format),
     };
-    assert_eq!(found, hosts, "{build}");
-    let [told] = Deforming::all(&scene, compiled.blob.bytes())[..] else {
-        panic!("{build}: the scene does not morph")
+    let moving = Moving {
+        program: "morph",
+        step: "morph",
+        most: POSE,
     };
-    assert_eq!(report["deformation-bytes"], told.bytes as u64, "{build}");
-    let panicking = program.elf().functions(crate::elf::panics);
-    assert!(panicking.is_empty(), "{build} can panic: {panicking:#?}");
-    let instructions = report["morph-instructions"];
-    println!(
-        "{build}: {} instructions a triangle",
-        instructions / triangles
-    );
-    if board.core == "Cortex-M4F" {
-        let most = POSE * triangles / 1000;
-        assert!(instructions <= most, "{build}: {instructions} instructions");
-    }
-    let mut figures = Figures::new();
-    figures.add(&format!("morph {build}"), &report);
-    figures.check();
+    moving.check((board, format), compiled, &hosts, triangles);
 }
 
 /// Hits, their sum, and those of boxes and normals at each time.
@@ -78,19 +51,14 @@ fn on_the_host<V: Vertex>(compiled: &Compiled, format: Format) -> Vec<u64> {
     let tracks = Tracks::from_bytes(blob).expect("tracks");
     let morph = MorphTargets::from_bytes(blob).expect("morph targets");
     let mut mesh: HeapDeformation<V> = deformation::of(&scene).expect("a deformation");
-    let (mut found, mut stack) = (Vec::new(), Stack::<48>::new());
+    let mut found = Vec::new();
     for number in 0..POSES {
         let mut weights = vec![0; morph.weights_at_rest().len()];
         let time = tracks.frame_time(number, 4);
         tracks.weights_at(time, &mut weights).expect("weights");
         mesh.morph(&scene, &morph, &weights).expect("a pose");
         let moved = scene.with_deformation(&mesh).expect("a scene");
-        let mut casts = Casts::default();
-        match format {
-            Format::F32 => casts.run::<f32, Bvh>(&moved, stack.as_view()),
-            Format::F64 => casts.run::<f64, Bvh>(&moved, stack.as_view()),
-            Format::Fixed => casts.run::<Fixed, Bvh>(&moved, stack.as_view()),
-        }
+        let casts = cast(format, &moved);
         let (boxes, normals) = (sum(mesh.pairs()), sum_of_normals(mesh.normals()));
         found.extend([casts.hits, casts.sum, boxes, normals].map(u64::from));
     }

@@ -162,3 +162,39 @@ fn opposite_normals_cancel_out_and_are_no_normal() {
     );
     assert_eq!(flat.lift::<f64>([0.0; 3], [0.0, 0.0, 1.0]), [0.0; 3]);
 }
+
+/// Changes of all sizes, from less than a step to far beyond the octahedron.
+#[test]
+fn changed_normals_point_where_their_sum_does() {
+    // Pairs of different directions.
+    let changes = directions().skip(1000).step_by(2);
+    let mut turned = 0;
+    for (normal, change) in directions().step_by(2).zip(changes) {
+        let stored = encode(normal);
+        for size in [0.3, 40.0, 3000.0, 1e6, 3e11] {
+            let half = change.map(|x| (x * size * f64::from(1 << 24)) as i64);
+            let at_rest = unfold(stored).map(f64::from);
+            let sum = [0, 1, 2].map(|k| at_rest[k] + 2.0 * half[k] as f64 / f64::from(1 << 24));
+            let found = unfold(changed(stored, half)).map(f64::from);
+            let length = sum.iter().map(|x| x.abs()).sum::<f64>();
+            // Where nearly nothing is left, rounding decides.
+            if length > 64.0 {
+                let apart = angle(unit(found), unit(sum));
+                assert!(
+                    apart <= 2e-4 + 2.0 / length,
+                    "{apart}: {stored:?} and {half:?}"
+                );
+                turned += usize::from(apart < angle(unit(at_rest), unit(sum)));
+            }
+        }
+        for (far, end) in [
+            ([i64::MAX, 0, 0], [LARGEST, 0, 0]),
+            ([0, 0, i64::MIN], [0, 0, -LARGEST]),
+        ] {
+            assert_eq!(unfold(changed(stored, far)), end, "{stored:?}");
+        }
+        let away = unfold(stored).map(|x| i64::from(x) * -(1 << 23));
+        assert_eq!(changed(stored, away), stored, "nothing is left");
+    }
+    assert!(turned > 1000, "{turned} normals turned");
+}

@@ -3,34 +3,13 @@
 #![no_std]
 #![no_main]
 
-use gridel_core::format::record;
-use gridel_core::{Deformation, Stack};
 use gridel_firmware::casts::{Casts, RAYS};
 use gridel_firmware::measure::{Cost, Meter};
+use gridel_firmware::mesh::{Memory, Mesh};
 use gridel_firmware::program;
 use gridel_firmware::report::{cost, fail, line};
-use gridel_firmware::scene::{Accel, BLOB, Number, PAIRS, STACK_DEPTH, VERTICES, load};
+use gridel_firmware::scene::{Accel, BLOB, Number, load};
 use gridel_firmware::waves::{POSES, pose, sum};
-
-#[cfg(feature = "wide-lattice")]
-type Vertex = record::Vertex24;
-#[cfg(not(feature = "wide-lattice"))]
-type Vertex = record::Vertex16;
-type Mesh = Deformation<Vertex, VERTICES, PAIRS>;
-
-struct Memory {
-    stack: Stack<STACK_DEPTH>,
-    mesh: Mesh,
-}
-
-impl Memory {
-    const fn new() -> Self {
-        Self {
-            stack: Stack::new(),
-            mesh: Mesh::new(),
-        }
-    }
-}
 
 program!(run, Memory);
 

@@ -2,37 +2,15 @@
 #![no_std]
 #![no_main]
 
+use gridel_core::Tracks;
 use gridel_core::deform::MorphTargets;
-use gridel_core::format::record;
-use gridel_core::{Deformation, Stack, Tracks};
 use gridel_firmware::casts::{Casts, RAYS};
 use gridel_firmware::measure::{Cost, Meter};
+use gridel_firmware::mesh::{Memory, Mesh};
 use gridel_firmware::program;
 use gridel_firmware::report::{cost, fail, line};
-use gridel_firmware::scene::{
-    Accel, BLOB, MORPH_TARGETS, MOVING_NORMALS, Number, PAIRS, STACK_DEPTH, VERTICES, load,
-};
+use gridel_firmware::scene::{Accel, BLOB, MORPH_TARGETS, Number, load};
 use gridel_firmware::waves::{POSES, sum, sum_of_normals};
-
-#[cfg(feature = "wide-lattice")]
-type Vertex = record::Vertex24;
-#[cfg(not(feature = "wide-lattice"))]
-type Vertex = record::Vertex16;
-type Mesh = Deformation<Vertex, VERTICES, PAIRS, MOVING_NORMALS>;
-
-struct Memory {
-    stack: Stack<STACK_DEPTH>,
-    mesh: Mesh,
-}
-
-impl Memory {
-    const fn new() -> Self {
-        Self {
-            stack: Stack::new(),
-            mesh: Mesh::new(),
-        }
-    }
-}
 
 program!(run, Memory);
 

@@ -119,6 +119,16 @@ impl Errors {
     }
 }
 
+/// The error of what a picture at rest does not need, as `read` finds it.
+fn aside<T>(base: Base, read: impl FnOnce(&[u8]) -> Result<T, BlobError>) -> BlobError {
+    let blob = base.sealed();
+    assert!(blob.scene().is_ok());
+    let error = read(blob.bytes()).err();
+    let error = error.unwrap_or(BlobError::Misaligned);
+    speaks(&error);
+    error
+}
+
 /// Every structure, effect and kind of primitive.
 fn everything() -> Errors {
     Errors::of(Base::of(&small_blob(24)))

@@ -3,31 +3,35 @@
 use super::*;
 use crate::scene::TrackTarget;
 
+fn floats(numbers: &[f32]) -> Vec<u8> {
+    numbers.iter().flat_map(|it| it.to_le_bytes()).collect()
+}
+
+/// Adds an accessor with bytes of its own, and returns its number.
+fn stored(document: &mut Value, bytes: &[u8], mut accessor: Value) -> usize {
+    let data = STANDARD.encode(bytes);
+    let uri = format!("data:application/octet-stream;base64,{data}");
+    let number = |document: &Value, list: &str| document[list].as_array().unwrap().len();
+    let view = json!({"buffer": number(document, "buffers"), "byteLength": bytes.len()});
+    push(
+        document,
+        "buffers",
+        json!({"byteLength": bytes.len(), "uri": uri}),
+    );
+    accessor["bufferView"] = json!(number(document, "bufferViews"));
+    push(document, "bufferViews", view);
+    push(document, "accessors", accessor);
+    number(document, "accessors") - 1
+}
+
 /// The document with two morph targets of the square, whose vertices have normals along z. The first moves the second
 /// vertex by (2, 0, 0), the others not; the second moves all by (0, 0, 1) and leans their normals by (1, 0, 0).
 fn morphed() -> Value {
     let mut document = document();
     let first = [[0.0_f32; 3], [2.0, 0.0, 0.0], [0.0; 3], [0.0; 3]];
-    let vectors = [first, [[0.0, 0.0, 1.0]; 4], [[1.0, 0.0, 0.0]; 4]];
-    let bytes: Vec<u8> = vectors
-        .iter()
-        .flatten()
-        .flatten()
-        .flat_map(|it| it.to_le_bytes())
-        .collect();
-    let data = STANDARD.encode(&bytes);
-    let uri = format!("data:application/octet-stream;base64,{data}");
-    push(
-        &mut document,
-        "buffers",
-        json!({"byteLength": bytes.len(), "uri": uri}),
-    );
-    for number in 0..3 {
-        let view = json!({"buffer": 1, "byteOffset": 48 * number, "byteLength": 48});
-        push(&mut document, "bufferViews", view);
-        let accessor = json!({"bufferView": 2 + number, "componentType": 5126, "count": 4,
-            "type": "VEC3", "min": [0, 0, 0], "max": [2, 1, 1]});
-        push(&mut document, "accessors", accessor);
+    for vectors in [first, [[0.0, 0.0, 1.0]; 4], [[1.0, 0.0, 0.0]; 4]] {
+        let accessor = json!({"componentType": 5126, "count": 4, "type": "VEC3", "min": [0, 0, 0], "max": [2, 1, 1]});
+        stored(&mut document, &floats(&vectors.concat()), accessor);
     }
     let part = &mut document["meshes"][0]["primitives"][0];
     part["attributes"]["NORMAL"] = json!(3);
@@ -82,23 +86,9 @@ fn nodes_with_weights_have_parts_of_their_own() {
         .iter()
         .flat_map(|it| it.to_le_bytes())
         .collect();
-    let uri = format!(
-        "data:application/octet-stream;base64,{}",
-        STANDARD.encode(&corners)
-    );
-    push(
-        &mut document,
-        "buffers",
-        json!({"byteLength": corners.len(), "uri": uri}),
-    );
-    push(
-        &mut document,
-        "bufferViews",
-        json!({"buffer": 2, "byteLength": corners.len()}),
-    );
-    let accessor = json!({"bufferView": 5, "componentType": 5123, "count": 6000, "type": "SCALAR"});
-    push(&mut document, "accessors", accessor);
-    document["meshes"][0]["primitives"][0]["indices"] = json!(5);
+    let accessor = json!({"componentType": 5123, "count": 6000, "type": "SCALAR"});
+    let indices = stored(&mut document, &corners, accessor);
+    document["meshes"][0]["primitives"][0]["indices"] = json!(indices);
     for place in 1..4 {
         push(
             &mut document,
@@ -134,22 +124,10 @@ fn targets_of_another_length_are_rejected() {
 /// The document, whose animation moves the weights of its two morph targets by these numbers at 0 s and 1 s.
 fn animated(values: &[f32], interpolation: &str) -> Value {
     let mut document = morphed();
-    let numbers = [&[0.0_f32, 1.0], values].concat();
-    let bytes: Vec<u8> = numbers.iter().flat_map(|it| it.to_le_bytes()).collect();
-    let data = STANDARD.encode(&bytes);
-    let uri = format!("data:application/octet-stream;base64,{data}");
-    push(
-        &mut document,
-        "buffers",
-        json!({"byteLength": bytes.len(), "uri": uri}),
-    );
-    for (start, count) in [(0, 2), (8, values.len())] {
-        let view = json!({"buffer": 2, "byteOffset": start, "byteLength": 4 * count});
-        push(&mut document, "bufferViews", view);
-        let view = document["bufferViews"].as_array().unwrap().len() - 1;
-        let accessor = json!({"bufferView": view, "componentType": 5126, "count": count,
-            "type": "SCALAR", "min": [0], "max": [1]});
-        push(&mut document, "accessors", accessor);
+    for numbers in [&[0.0, 1.0], values] {
+        let accessor = json!({"componentType": 5126, "count": numbers.len(), "type": "SCALAR",
+            "min": [0], "max": [1]});
+        stored(&mut document, &floats(numbers), accessor);
     }
     document["animations"] = json!([{
         "name": "wave",
@@ -256,30 +234,11 @@ fn animated_nodes_have_parts_of_their_own() {
         [true, false]
     );
     // A node that moves as well is an instance of a part that morphs.
-    let vectors: Vec<u8> = [[0.0_f32; 3], [0.0, 4.0, 0.0]]
-        .concat()
-        .iter()
-        .flat_map(|it| it.to_le_bytes())
-        .collect();
-    let uri = format!(
-        "data:application/octet-stream;base64,{}",
-        STANDARD.encode(&vectors)
-    );
-    push(
-        &mut document,
-        "buffers",
-        json!({"byteLength": 24, "uri": uri}),
-    );
-    push(
-        &mut document,
-        "bufferViews",
-        json!({"buffer": 3, "byteLength": 24}),
-    );
-    let view = document["bufferViews"].as_array().unwrap().len() - 1;
-    let accessor = json!({"bufferView": view, "componentType": 5126, "count": 2, "type": "VEC3"});
-    push(&mut document, "accessors", accessor);
+    let vectors = floats(&[0.0, 0.0, 0.0, 0.0, 4.0, 0.0]);
+    let accessor = json!({"componentType": 5126, "count": 2, "type": "VEC3"});
+    let output = stored(&mut document, &vectors, accessor);
     let animation = &mut document["animations"][0];
-    push(animation, "samplers", json!({"input": 5, "output": 7}));
+    push(animation, "samplers", json!({"input": 5, "output": output}));
     push(
         animation,
         "channels",
@@ -309,26 +268,14 @@ fn targets_of_normals_alone_change_normals() {
 #[test]
 fn weights_can_be_integers() {
     let mut document = animated(&[0.0, 0.0, 0.0, 0.0], "LINEAR");
-    let data = STANDARD.encode([0_u8, 255, 51, 102]);
-    let uri = format!("data:application/octet-stream;base64,{data}");
-    push(
-        &mut document,
-        "buffers",
-        json!({"byteLength": 4, "uri": uri}),
-    );
-    push(
-        &mut document,
-        "bufferViews",
-        json!({"buffer": 3, "byteLength": 4}),
-    );
-    let view = document["bufferViews"].as_array().unwrap().len() - 1;
-    document["accessors"][6] = json!({"bufferView": view, "componentType": 5121,
-        "normalized": true, "count": 4, "type": "SCALAR"});
+    let accessor = json!({"componentType": 5121, "normalized": true, "count": 4, "type": "SCALAR"});
+    let output = stored(&mut document, &[0, 255, 51, 102], accessor);
+    document["animations"][0]["samplers"][0]["output"] = json!(output);
     let scene = scene(&document);
     let values = |track: usize| [0, 1].map(|key: usize| scene.tracks[track].keys[key].value[0]);
     assert_eq!([values(0), values(1)], [[0.0, 0.2], [1.0, 0.4]]);
     // Times are floats.
-    document["animations"][0]["samplers"][0]["input"] = json!(6);
+    document["animations"][0]["samplers"][0]["input"] = json!(output);
     assert!(cause(&document).contains("is to hold times"));
 }
 
