@@ -148,22 +148,26 @@ impl<'a> MorphTargets<'a> {
                 });
             }
         }
-        let mut last = None;
+        if let Displacements::Long(all) = self.displacements {
+            let section = SectionKind::Displacements;
+            let most = i64::from(LARGEST_DISPLACEMENT);
+            for (steps, index) in all.iter().zip(0..) {
+                At { section, index }.all_within(Field::Displacement, steps, -most, most)?;
+            }
+        }
+        let mut next = 0_u64;
         for index in 0..expected {
             let at = |section| At { section, index };
             let vertex = self.vertices.get(index).unwrap_or_default();
+            let number = self.numbers.get(index).unwrap_or_default();
             let most = vertices as i64 - 1;
             at(SectionKind::MorphVertices).within(Field::Vertex, vertex.into(), 0, most)?;
-            let number = self.numbers.get(index).unwrap_or_default();
             let most = self.rest.len() as i64 - 1;
             at(SectionKind::MorphNumbers).within(Field::MorphTarget, number.into(), 0, most)?;
-            let section = SectionKind::Displacements;
-            let steps = self.displacements.get(index).unwrap_or_default();
-            let most = i64::from(LARGEST_DISPLACEMENT);
-            at(section).all_within(Field::Displacement, &steps, -most, most)?;
-            let place = Some((vertex, number));
-            at(section).ensure(last < place, Reason::DisplacementOrder)?;
-            last = place;
+            let place = u64::from(vertex) << 32 | u64::from(number);
+            let follows = place >= next;
+            at(SectionKind::Displacements).ensure(follows, Reason::DisplacementOrder)?;
+            next = place.saturating_add(1);
         }
         Ok(())
     }
