@@ -107,6 +107,8 @@ impl Importer<'_> {
 
     /// Warns of morph targets and weights that do not belong together.
     fn check_targets(&mut self, document: &Document) {
+        let mut targets = Vec::with_capacity(document.meshes().len());
+        let mut weights = Vec::new();
         for mesh in document.meshes() {
             let counts = mesh.primitives().map(|it| it.morph_targets().len());
             let (least, most) = counts.fold((usize::MAX, 0), |(least, most), count| {
@@ -118,23 +120,25 @@ impl Importer<'_> {
                     "the primitives of mesh {number} have {least} to {most} morph targets; some have fewer than others"
                 ));
             }
-            let weights = mesh.weights().map(<[f32]>::len);
-            if let Some(found) = weights.filter(|found| *found != most) {
-                self.warn(format!(
-                    "mesh {number} has {most} morph targets and {found} weights; missing weights are 0, others are left out"
-                ));
+            targets.push(most);
+            let own = mesh
+                .weights()
+                .map(|it| (number, String::from("it"), it.len()));
+            weights.extend(own);
+        }
+        for node in document.nodes() {
+            if let (Some(mesh), Some(own)) = (node.mesh(), node.weights()) {
+                let owner = format!("node {}", node.index());
+                weights.push((mesh.index(), owner, own.len()));
             }
-            let nodes = document.nodes();
-            let of_mesh = |node: &Node<'_>| node.mesh().is_some_and(|it| it.index() == number);
-            for node in nodes.filter(of_mesh) {
-                let weights = node.weights().map(<[f32]>::len);
-                if let Some(found) = weights.filter(|found| *found != most) {
-                    self.warn(format!(
-                        "mesh {number} has {most} morph targets and node {} {found} weights; missing weights are 0, others \
-                         are left out",
-                        node.index()
-                    ));
-                }
+        }
+        for (mesh, owner, found) in weights {
+            let expected = targets[mesh];
+            if found != expected {
+                self.warn(format!(
+                    "mesh {mesh} has {expected} morph targets, and {owner} has {found} weights; missing weights are 0, \
+                     others are left out"
+                ));
             }
         }
     }

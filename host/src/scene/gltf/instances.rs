@@ -71,7 +71,7 @@ impl Importer<'_> {
         let named = Named {
             mesh,
             weights: weights(node, mesh),
-            moving: self.moving_targets(node, mesh)?,
+            moving: self.moving_targets(node, mesh),
             name: &name,
         };
         let objects = self.objects(&named, world)?;

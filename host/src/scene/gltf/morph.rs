@@ -65,14 +65,8 @@ impl Importer<'_> {
 
     /// Makes morph targets and their tracks, if the animation moves the weights of a node's mesh. Returns the number of
     /// the first.
-    pub(super) fn moving_targets(
-        &mut self,
-        node: &Node<'_>,
-        mesh: &Mesh<'_>,
-    ) -> Result<Option<usize>, SceneError> {
-        let Some(curves) = self.motion.weights(node.index()) else {
-            return Ok(None);
-        };
+    pub(super) fn moving_targets(&mut self, node: &Node<'_>, mesh: &Mesh<'_>) -> Option<usize> {
+        let curves = self.motion.weights(node.index())?;
         let first = self.scene.morph_targets.len();
         let name = node.name().or(mesh.name());
         let name = name.map_or_else(|| format!("node {}", node.index()), str::to_owned);
@@ -94,7 +88,7 @@ impl Importer<'_> {
                 place: self.place.clone(),
             });
         }
-        Ok(Some(first))
+        Some(first)
     }
 
     /// The displacements of a mesh in this place by its morph targets, if they move.
@@ -140,9 +134,7 @@ impl Importer<'_> {
         }
         Ok(all)
     }
-}
 
-impl Importer<'_> {
     /// Adds to the normals of a mesh what its morph targets say about them, if they move.
     pub(super) fn change_normals(
         &self,

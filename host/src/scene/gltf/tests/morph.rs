@@ -293,8 +293,8 @@ fn counts_that_differ_and_what_is_left_out_are_warned_of() {
     let said = warnings(&document).join("\n");
     for words in [
         "the primitives of mesh 0 have 1 to 2 morph targets",
-        "mesh 0 has 2 morph targets and 3 weights",
-        "mesh 0 has 2 morph targets and node 0 1 weights",
+        "mesh 0 has 2 morph targets, and it has 3 weights",
+        "mesh 0 has 2 morph targets, and node 0 has 1 weights",
         "two channels for one property of node 0",
         "colors and texture coordinates of morph targets are ignored",
     ] {
