@@ -30,6 +30,7 @@ pub mod board;
 pub mod casts;
 pub mod finder;
 pub mod measure;
+#[cfg(all(feature = "bvh", feature = "triangle"))]
 pub mod mesh;
 pub mod orbit;
 pub mod rays;
