@@ -351,8 +351,8 @@ fn answer<N: Number>(
 fn load_ahead(rays: &[SceneRay], hits: &[SceneHit], places: Range<usize>) {
     #[cfg(target_arch = "x86_64")]
     if let (Some(rays), Some(hits)) = (rays.get(places.clone()), hits.get(places)) {
-        rays.iter().for_each(gridel_x86::prefetch);
-        hits.iter().for_each(gridel_x86::prefetch_to_write);
+        rays.iter().for_each(gridel_cpu::prefetch);
+        hits.iter().for_each(gridel_cpu::prefetch_to_write);
     }
     #[cfg(not(target_arch = "x86_64"))]
     let _ = (rays, hits, places);

@@ -13,17 +13,23 @@ inline_unless_small!(
     }
 );
 
+/// Returns true if a wide number is finite: false for NaN and infinities.
+#[inline(always)]
+pub(crate) fn is_finite<N: Arithmetic>(wide: N::Wide) -> bool {
+    N::wide_times(wide, 0) == N::Wide::default()
+}
+
 /// The largest magnitude of far coordinates.
 #[inline(always)]
 pub(crate) fn far_extent<N: Arithmetic>(coordinates: [N::Wide; 3]) -> N::Wide {
-    let magnitude = |wide: N::Wide| {
-        if wide < N::Wide::default() {
-            -wide
-        } else {
-            wide
-        }
-    };
-    let [x, y, z] = coordinates.map(magnitude);
+    let [x, y, z] = coordinates.map(N::magnitude);
     let larger = if x > y { x } else { y };
     if larger > z { larger } else { z }
+}
+
+/// The sum of the magnitudes of far coordinates.
+#[inline(always)]
+pub(crate) fn taxicab<N: Arithmetic>(coordinates: [N::Wide; 3]) -> N::Wide {
+    let [x, y, z] = coordinates.map(N::magnitude);
+    x + y + z
 }

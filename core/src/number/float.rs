@@ -1,7 +1,7 @@
 //! IEEE 754 arithmetic in single and double precision.
 //!
 //! Uses only operations whose result is the same on every machine. There is no fused multiply-add, and no `min` and
-//! `max` of the standard library (they differ on signed zeros). Square roots are those of libm.
+//! `max` of the standard library (they differ on signed zeros).
 
 use crate::axis::pick;
 use crate::number::Convert;
@@ -11,9 +11,10 @@ use crate::number::Products;
 use crate::number::Scalar;
 use crate::number::Vectors;
 use crate::number::error_free::{SPLITTER_F32, SPLITTER_F64, carry, product_error, two_sum};
-use crate::number::extent;
+use crate::number::root;
 use crate::number::scalar::Sealed;
 use crate::number::{Arithmetic, Format};
+use crate::number::{extent, is_finite};
 
 /// 2^-60 and 2^-100: smaller numbers need care.
 const SMALLEST_F32: f32 = 1.0 / (1u64 << 60) as f32;
@@ -50,7 +51,7 @@ fn slope_of_extremes<N: Arithmetic<Wide = N>>(
     major: usize,
 ) -> Option<N> {
     let scaled = [x, y, z];
-    let ordinary = scaled.iter().all(|&component| N::is_finite(component));
+    let ordinary = scaled.iter().all(|&component| is_finite::<N>(component));
     if !ordinary || extent(scaled) == N::ZERO {
         return None;
     }
@@ -112,13 +113,7 @@ macro_rules! float_number {
 
             #[inline(always)]
             fn sqrt(self) -> Self {
-                // Rounded to nearest either way. On x86-64 libm uses an SSE instruction, for which a core waits while
-                // its wide registers are in use.
-                #[cfg(feature = "std")]
-                let root = $float::sqrt;
-                #[cfg(not(feature = "std"))]
-                let root = $sqrt;
-                if self > 0.0 { root(self) } else { 0.0 }
+                if self > 0.0 { $sqrt(self) } else { 0.0 }
             }
 
             #[inline(always)]
@@ -240,8 +235,8 @@ macro_rules! float_number {
             }
 
             #[inline(always)]
-            fn is_finite(wide: Self) -> bool {
-                $float::is_finite(wide)
+            fn magnitude(wide: Self) -> Self {
+                $float::abs(wide)
             }
 
             #[inline(always)]
@@ -469,7 +464,7 @@ float_number!(
     Format::F32,
     1.0 / 16_777_216.0,
     SMALLEST_F32,
-    libm::sqrtf,
+    root::of_f32,
     libm::expf,
     compare_products_f32,
     SPLITTER_F32,
@@ -490,7 +485,7 @@ float_number!(
     Format::F64,
     1.0 / 9_007_199_254_740_992.0,
     SMALLEST_F64,
-    libm::sqrt,
+    root::of_f64,
     libm::exp,
     compare_products_f64,
     SPLITTER_F64,

@@ -29,6 +29,7 @@ mod format;
 pub mod log2;
 mod powers;
 mod products;
+mod root;
 pub(crate) mod rotation;
 mod scalar;
 mod vectors;
@@ -37,7 +38,7 @@ pub use angle::Angle;
 pub use arithmetic::Arithmetic;
 pub use convert::Convert;
 pub use error_bounds::ErrorBounds;
-pub(crate) use extent::{extent, far_extent};
+pub(crate) use extent::{extent, far_extent, is_finite, taxicab};
 pub use fixed::base::Fixed;
 #[cfg(feature = "strict-ranges")]
 pub use fixed::strict::let_numbers_wrap;

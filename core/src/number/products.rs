@@ -11,8 +11,8 @@ pub trait Products: Scalar {
     fn widen(self) -> Self::Wide;
     /// The inverse of [`widen`](Self::widen); saturates.
     fn narrow(wide: Self::Wide) -> Self;
-    /// Returns true if a wide number is finite: false for NaN and infinities.
-    fn is_finite(wide: Self::Wide) -> bool;
+    /// The magnitude of a wide number; wraps.
+    fn magnitude(wide: Self::Wide) -> Self::Wide;
     /// A wide number times an integer.
     fn wide_times(wide: Self::Wide, factor: i32) -> Self::Wide;
     /// A wide number over a positive integer below 2^24, towards zero.

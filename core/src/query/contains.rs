@@ -1,6 +1,7 @@
 //! The test whether an object contains a point.
 
 use crate::accel::{Accel, Number, StackView};
+use crate::number::is_finite;
 use crate::observe::count::Observer;
 use crate::query::all_hits::{COUNTED, HitList, all_hits};
 use crate::query::hit::PrimitiveHit;
@@ -44,7 +45,7 @@ pub fn containment_ray<N: Number>(
     scene: &Scene<'_>,
     point: [N::Wide; 3],
 ) -> Result<Option<Ray<N>>, RayError> {
-    if !point.into_iter().all(N::is_finite) {
+    if !point.into_iter().all(is_finite::<N>) {
         return Err(RayError::Origin);
     }
     let mut nearest: Option<(N::Wide, usize, i64)> = None;

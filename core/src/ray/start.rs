@@ -3,7 +3,7 @@
 use crate::axis::pick;
 use crate::format::limits::FARTHEST;
 use crate::format::record::UnitBox;
-use crate::number::{Arithmetic, Format};
+use crate::number::{Arithmetic, Format, is_finite};
 use crate::ray::error::RayError;
 use crate::target::{SMALL, inline_unless_small};
 use core::cmp::Ordering;
@@ -172,7 +172,7 @@ pub(super) fn check_origin<N: Arithmetic>(
     // False for NaN.
     if origin.iter().all(|&x| -most <= x && x <= most) {
         Ok(())
-    } else if origin.into_iter().all(N::is_finite) {
+    } else if origin.into_iter().all(is_finite::<N>) {
         Err(RayError::Distance)
     } else {
         Err(RayError::Origin)

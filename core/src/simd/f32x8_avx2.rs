@@ -1,10 +1,10 @@
 //! Eight lanes in one register of AVX2.
 
 use crate::simd::{F32x8, Simd};
-pub use gridel_x86::Avx2;
+pub use gridel_cpu::Avx2;
 
 impl Simd for Avx2 {
-    type F32x8 = gridel_x86::F32x8;
+    type F32x8 = gridel_cpu::F32x8;
 
     #[inline(always)]
     fn splat(self, value: f32) -> Self::F32x8 {
@@ -46,7 +46,7 @@ impl Simd for Avx2 {
     }
 }
 
-impl F32x8 for gridel_x86::F32x8 {
+impl F32x8 for gridel_cpu::F32x8 {
     #[inline(always)]
     fn to_array(self) -> [f32; 8] {
         self.to_array()

@@ -17,7 +17,7 @@ mod f32x8_portable;
 pub use avx2::Avx2;
 pub use f32x8_portable::Portable;
 #[cfg(all(feature = "avx2", target_arch = "x86_64"))]
-pub(crate) use gridel_x86::F64x4;
+pub(crate) use gridel_cpu::F64x4;
 
 use core::ops::{Add, Mul, Sub};
 

@@ -10,7 +10,7 @@ use gridel_core::format::limits::MAX_STACK_DEPTH;
 use gridel_core::{
     Format, FourGivenRays, FourReadyRays, NoCount, ReadyRay, Scene, Stack, Structure, Wide,
 };
-use gridel_x86::{Avx2, F64x4};
+use gridel_cpu::{Avx2, F64x4};
 use std::{array, slice};
 
 /// Four rays that are ready for queries, or some of them.

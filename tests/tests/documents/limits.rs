@@ -6,7 +6,7 @@ use std::path::Path;
 const DOCUMENTS: [&str; 16] = [
     README,
     "core/README.md",
-    "core/x86/README.md",
+    "core/cpu/README.md",
     "host/README.md",
     "CONTRIBUTING.md",
     "CHANGELOG.md",
@@ -83,7 +83,7 @@ fn documents_link_to_files_that_exist() {
 /// A package holds its own folder alone: its page cannot link to files of the repository.
 #[test]
 fn pages_of_packages_have_no_relative_links() {
-    for package in ["core", "core/x86", "host"] {
+    for package in ["core", "core/cpu", "host"] {
         let manifest = text(&format!("{package}/Cargo.toml"));
         assert!(manifest.contains("\nreadme = \"README.md\"\n"), "{package}");
         let page = text(&format!("{package}/README.md"));

@@ -187,8 +187,8 @@ impl Products for Fixed {
     }
 
     #[inline(always)]
-    fn is_finite(_: Product) -> bool {
-        true
+    fn magnitude(wide: Product) -> Product {
+        Product(wide.0.wrapping_abs())
     }
 
     #[inline(always)]

@@ -6,7 +6,7 @@ use crate::rays::Rays;
 use gridel_core::format::limits::MAX_STACK_DEPTH;
 use gridel_core::{Scene, Stack, Wide};
 use gridel_host::trace::{Four, Frame};
-use gridel_x86::Avx2;
+use gridel_cpu::Avx2;
 use std::array;
 
 /// Answers a question about some rays, as [`ask_chunk`] does.

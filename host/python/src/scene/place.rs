@@ -32,7 +32,7 @@ impl NativeScene {
             && hit.instance == NONE
             && let Some(corners) = self.corners(hit.primitive)
         {
-            corners.into_iter().for_each(gridel_x86::prefetch);
+            corners.into_iter().for_each(gridel_cpu::prefetch);
         }
         #[cfg(not(target_arch = "x86_64"))]
         let _ = hit;

@@ -1,15 +1,12 @@
-//! Instructions of x86-64 that gridel uses, as safe functions, in a program that is built for any
-//! x86-64 processor.
+//! Instructions of x86-64, in a program that is built for any x86-64 processor.
 //!
 //! [`Avx2`] proves that the processor has the instructions: only [`Avx2::detect`] makes one. Code that has one can make
-//! [`F32x8`], and code that has an [`F32x8`] can compute with it. So the functions here are safe to call, and
-//! `gridel-core` needs no `unsafe`.
+//! [`F32x8`], and code that has an [`F32x8`] can compute with it. So the functions here are safe to call.
 //!
 //! The operations compile to single instructions only inside of [`Avx2::call`], whose function must be
 //! inlined into it. Anywhere else they are correct, but each is a call.
 //!
 //! No operation but [`F32x8::mul_add`] is fused, so every lane holds the bits that scalar code gives.
-#![cfg(target_arch = "x86_64")]
 
 mod f32x8;
 mod f64x4;
