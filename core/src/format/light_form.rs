@@ -33,9 +33,11 @@ records! {
         /// The cosine of the angle at which a spot ends, 30 fraction bits; -2^30 where there is none.
         #[valid(ConeCosine: -ONE..=ONE)]
         pub cone_cosine: i32,
-        /// By how much the cosine of the angle to which a spot is fully bright is larger, 30 fraction bits.
-        #[valid(ConeWidth: 0..=ONE)]
-        pub cone_width: i32,
+        /// Of a spot, by how much the cosine of the angle to which it is fully bright is larger, with 30 fraction bits.
+        /// Of what is flat, with 13 fraction bits: its points are drawn by solid angle where the magnitudes of the
+        /// coordinates of the way to its position add up to less, and by area beyond.
+        #[valid(LightWidth: 0..=ONE)]
+        pub width: i32,
         /// The direction of a spot, or the side on which a rectangle or disc shines: length 1, 30 fraction bits.
         #[valid(Normal: -ONE..=ONE)]
         pub normal: [i32; 3],

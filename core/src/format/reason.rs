@@ -72,7 +72,7 @@ texts! {
         LightReference => "distance at which a light has its color",
         LightRange => "distance at which a light ends",
         ConeCosine => "cosine of a spot's angle",
-        ConeWidth => "width of a spot's edge",
+        LightWidth => "width of a light",
         LightEdge => "edge of a light",
         LightForm => "form of a light",
         Emission => "radiance of a material",

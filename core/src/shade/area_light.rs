@@ -1,22 +1,20 @@
 //! Lights with an area: every sample of a pixel sees one point of each.
 //!
-//! - **Sphere**: a uniformly distributed direction of the cone in which it is seen. All drawn points face the surface.
-//!   (Shirley, Wang and Zimmerman, "Monte Carlo Techniques for Direct Lighting Calculations", 1996.)
-//! - **Rectangle, triangle and disc**: a uniformly distributed point of the area, whose brightness the
-//!   [falloff](super::falloff) weighs by distance and angle. Sampling the solid angle of a rectangle (Ureña, Fajardo
-//!   and King, 2013) needs arc cosines. `fixed` does not have them, and all formats must draw the same points.
+//! - **Sphere**, and what is **flat and near**: a point by [solid angle](super::solid_angle).
+//! - **Flat and farther away**: a uniformly distributed point of the area, whose brightness the
+//!   [falloff](super::falloff) weighs by distance and angle. From there all points look nearly alike.
 
 use crate::accel::Number;
 use crate::format::Effects;
 use crate::format::light_form::LightForm;
 use crate::format::record::Light;
-use crate::number::{Angle, extent, far_extent};
+use crate::number::{Angle, far_extent, taxicab};
 use crate::observe::count::Observer;
 use crate::observe::event::Event;
-use crate::shade::basis::beside;
 use crate::shade::effect::{Effect, Tracer};
-use crate::shade::light::{Reach, length};
-use crate::shade::surface::{Aim, Cone, Lighting, Surface};
+use crate::shade::light::length;
+use crate::shade::solid_angle;
+use crate::shade::surface::{Aim, Lighting, Surface};
 use crate::target::inline_on_boards;
 
 pub(crate) struct AreaLight;
@@ -75,8 +73,16 @@ inline_on_boards!(
     fn at<N: Number>(form: &LightForm, aim: &mut Aim<N>, [u, v]: [u32; 2]) {
         let ratio = |point: u32| N::ratio((point >> 2) as i32);
         let turn = || Angle(v).sin_cos().map(N::ratio);
+        if form.shape == LightForm::SPHERE {
+            return solid_angle::of_sphere(form, aim, ratio(u), turn());
+        }
+        if taxicab::<N>(aim.way) < N::far(form.width.into())
+            && let Some(near) = solid_angle::of_flat(form, aim.way, [ratio(u), ratio(v)])
+        {
+            *aim = near;
+            return;
+        }
         let [along, across] = match form.shape {
-            LightForm::SPHERE => return on_sphere(form, aim, ratio(u), turn()),
             LightForm::RECTANGLE => [ratio(u), ratio(v)],
             // The half of a parallelogram beyond the third side is folded onto the other half.
             LightForm::TRIANGLE if (u >> 2) + (v >> 2) > 1 << 30 => {
@@ -98,39 +104,3 @@ inline_on_boards!(
         aim.distance = Some(far_extent::<N>(aim.way));
     }
 );
-
-/// Turns the way to the middle of a sphere into the way to where a random direction hits it; no way from inside the
-/// sphere.
-fn on_sphere<N: Number>(form: &LightForm, aim: &mut Aim<N>, u: N, [sine, cosine]: [N; 2]) {
-    let reach = Reach::<N>::of(aim.way, aim.distance);
-    aim.way = [N::Wide::default(); 3];
-    let Some(Reach { unit, distance }) = reach else {
-        return;
-    };
-    let radius = distance.half_length(form.edges[0][0]);
-    let widest = radius.div(distance.half);
-    if widest <= N::ZERO || widest >= N::ONE {
-        return;
-    }
-    let square = widest * widest;
-    let one = N::ONE.half();
-    // 1 - cos of the cone's angle, and of the direction's.
-    let widening = one.div(one + (N::ONE - square).sqrt().half());
-    let cap = square * widening;
-    let sag = cap * u;
-    let away = (sag + (sag - sag * sag)).sqrt().min(widest);
-    let toward = N::ONE - sag;
-    let [first, second] = beside(unit);
-    let (right, up) = (away * cosine, away * sine);
-    let axis = |k: usize| unit[k] * toward + first[k] * right + second[k] * up;
-    let direction = [axis(0), axis(1), axis(2)];
-    // In halves, from the middle of the chord to the surface.
-    let part = away.div(widest).min(N::ONE);
-    let inward = radius * (N::ONE - part * part).sqrt();
-    let end = distance.whole((distance.half * toward - inward) * extent(direction));
-    *aim = Aim {
-        way: direction.map(N::widen),
-        distance: Some(end + end),
-        cone: Some(Cone { distance, widening }),
-    };
-}

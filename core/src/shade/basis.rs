@@ -14,3 +14,9 @@ pub(super) fn beside<N: Number>([x, y, z]: [N; 3]) -> [[N; 3]; 2] {
         [signed(mixed), signed(N::ONE + y * y * scale), -y],
     ]
 }
+
+/// The cross product of two directions.
+pub(super) fn cross<N: Number>(a: [N; 3], b: [N; 3]) -> [N; 3] {
+    let component = |k: usize, l: usize| a[k] * b[l] - a[l] * b[k];
+    [component(1, 2), component(2, 0), component(0, 1)]
+}

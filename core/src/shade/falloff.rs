@@ -101,8 +101,8 @@ inline_on_boards!(
         lighting: &Lighting<'_, N>,
         color: Color<N>,
     ) -> Color<N> {
-        let middle = lighting.cone.map(|cone| cone.distance);
-        let Some(distance) = middle.or_else(|| lighting.light_distance()) else {
+        let own = lighting.share.map(|share| share.distance);
+        let Some(distance) = own.or_else(|| lighting.light_distance()) else {
             return Color::BLACK;
         };
         let mut arriving = if form.reference == 0 {
@@ -110,7 +110,9 @@ inline_on_boards!(
         } else {
             fallen(color, distance.half_length(form.reference), distance.half)
         };
-        if form.range > 0 {
+        if form.range > 0
+            && let Some(distance) = lighting.light_distance()
+        {
             // KHR_lights_punctual: 1 minus the fourth power of the distance over the range.
             let part = distance.half.div(distance.half_length(form.range));
             if part >= N::ONE {
@@ -119,9 +121,8 @@ inline_on_boards!(
             let square = part * part;
             arriving = arriving.scaled(N::ONE - square * square);
         }
-        if let Some(cone) = lighting.cone {
-            // A cone around a sphere takes 2 s² / (1 + cos) of π, where s is the sine of its angle.
-            let arriving = arriving.scaled(cone.widening);
+        if let Some(share) = lighting.share {
+            let arriving = arriving.scaled(share.half);
             return arriving.plus(arriving);
         }
         match form.shape {
@@ -130,7 +131,7 @@ inline_on_boards!(
             }
             _ if has_cone(form) => {
                 let within = lighting.facing - N::ratio(form.cone_cosine);
-                let width = N::ratio(form.cone_width);
+                let width = N::ratio(form.width);
                 if within >= width {
                     return arriving;
                 }

@@ -49,6 +49,12 @@ impl<N: Number> Distance<N> {
         Self { half, shift }
     }
 
+    /// A distance that fits every format, given by its half.
+    #[inline(always)]
+    pub(crate) fn near(half: N) -> Self {
+        Self { half, shift: 0 }
+    }
+
     /// Returns half of a length with 13 fraction bits, over the same power of two.
     #[inline(always)]
     pub(crate) fn half_length(&self, q13: i32) -> N {

@@ -28,6 +28,7 @@ pub(crate) mod facets;
 pub(crate) mod light;
 mod material;
 pub mod sampler;
+mod solid_angle;
 pub(crate) mod surface;
 
 use crate::format::effects::{Effects, effects};

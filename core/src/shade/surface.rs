@@ -87,8 +87,8 @@ pub(crate) struct Lighting<'l, N: Number> {
     pub(crate) to_light: [N; 3],
     /// The length of `way`, of whose largest component this is a multiple: 1 to the square root of 3.
     pub(crate) norm: N,
-    /// The cone of the light, if the light is a sphere.
-    pub(crate) cone: Option<Cone<N>>,
+    /// The light that its point brings, if it was drawn by solid angle.
+    pub(crate) share: Option<Share<N>>,
     /// The cosine between the light's own direction and the way from it, if the light has a direction.
     pub(crate) facing: N,
 }
@@ -101,13 +101,13 @@ impl<N: Number> Lighting<'_, N> {
     }
 }
 
-/// The cone in which a sphere is seen.
+/// The light that a point of a light brings, if it was drawn by solid angle.
 #[derive(Clone, Copy)]
-pub(crate) struct Cone<N> {
-    /// The distance of its middle.
+pub(crate) struct Share<N> {
+    /// It is the light at this distance,
     pub(crate) distance: Distance<N>,
-    /// 1 / (1 + cos) of the angle between its axis and its side.
-    pub(crate) widening: N,
+    /// times twice this ratio.
+    pub(crate) half: N,
 }
 
 /// The way from a surface to a light.
@@ -117,8 +117,8 @@ pub(crate) struct Aim<N: Number> {
     pub(crate) way: [N::Wide; 3],
     /// The distance of the light along the largest component of `way`; `None` for infinitely far.
     pub(crate) distance: Option<N::Wide>,
-    /// The cone of the light, if the light is a sphere.
-    pub(crate) cone: Option<Cone<N>>,
+    /// The light that its point brings, if it was drawn by solid angle.
+    pub(crate) share: Option<Share<N>>,
 }
 
 /// A surface between a light and another surface.

@@ -7,6 +7,7 @@ use super::random;
 use super::reason::Reason;
 use super::search::{Stop, Tracer};
 use super::sky;
+use super::solid_angle::{self, Drawn, Share, length};
 use super::world::NONE;
 use gridel_core::format::light_form::LightForm;
 use gridel_core::format::record::Light;
@@ -17,24 +18,20 @@ pub struct Aim<N> {
     /// The way to the light. For infinitely far lights its length has no meaning.
     pub way: Three<N>,
     pub is_far: bool,
-    /// The cone of the light, where it is a sphere.
-    cone: Option<Cone<N>>,
+    /// The light that its point brings, where it was drawn by solid angle.
+    share: Option<Share<N>>,
     /// The light's color.
     pub color: Three<N>,
 }
 
-/// The cone of directions to a sphere.
-#[derive(Clone, Copy, Debug)]
-struct Cone<N> {
-    /// The distance of the sphere's middle.
-    distance: N,
-    /// 1 / (1 + cos) of the angle between its axis and its side.
-    widening: N,
-}
-
-/// A length with 13 fraction bits of a unit, which are 5 of a step.
-fn length<N: Enclosure>(q13: i64) -> N {
-    N::scaled(q13, 5)
+impl<N> Aim<N> {
+    fn at(self, drawn: Drawn<N>) -> Self {
+        Self {
+            way: drawn.way,
+            share: Some(drawn.share),
+            ..self
+        }
+    }
 }
 
 impl Tracer<'_, '_> {
@@ -54,7 +51,7 @@ impl Tracer<'_, '_> {
             Ok(Some(Aim {
                 way,
                 is_far: true,
-                cone: None,
+                share: None,
                 color,
             }))
         };
@@ -79,7 +76,7 @@ impl Tracer<'_, '_> {
         let aim = Aim {
             way,
             is_far: false,
-            cone: None,
+            share: None,
             color,
         };
         match scene.light_form(light).filter(|_| light.is_area()) {
@@ -91,40 +88,28 @@ impl Tracer<'_, '_> {
                     // From within a sphere its light is invisible.
                     return Ok(None);
                 }
-                let found = on_sphere(radius, aim, path.point(dimension));
+                let drawn = solid_angle::of_sphere(radius, way, path.point(dimension));
+                let drawn = self.known(drawn, Reason::Sampling, place, point)?;
+                Ok(Some(aim.at(drawn)))
+            }
+            Some(form) => {
+                let found = on_flat(form, aim, path.point(dimension));
                 self.known(found, Reason::Sampling, place, point).map(Some)
             }
-            Some(form) => Ok(Some(Aim {
-                way: plus(way, within(form, path.point(dimension))),
-                ..aim
-            })),
         }
     }
 }
 
-/// Returns the way to where a random direction meets a sphere from outside of it; `None` where the way is open.
-fn on_sphere<N: Enclosure>(radius: N, aim: Aim<N>, [u, v]: [u32; 2]) -> Option<Aim<N>> {
-    let one = N::one();
-    let distance = norm2(aim.way).sqrt();
-    let axis = unit(aim.way)?;
-    let widest = radius.over(distance)?;
-    let square = widest.square();
-    let widening = one.over(one + (one - square).sqrt())?;
-    // 1 - cos of the direction's angle, of up to that of the cone's.
-    let sag = square * widening * random::ratio(u);
-    let away = (sag + (sag - sag.square())).sqrt().at_most(widest);
-    let toward = one - sag;
-    let [sine, cosine] = random::turn::<N>(v);
-    let sides = random::beside(axis)?;
-    let direction = random::combined(axis, toward, sides, [away * cosine, away * sine]);
-    // From the middle of the chord to the surface.
-    let part = away.over(widest)?.at_most(one);
-    let inward = radius * (one - part.square()).sqrt();
-    Some(Aim {
-        way: scale(direction, distance * toward - inward),
-        cone: Some(Cone { distance, widening }),
-        ..aim
-    })
+/// Returns the way to a random point of a flat light; `None` where it is open how the point is drawn.
+fn on_flat<N: Enclosure>(form: &LightForm, aim: Aim<N>, point: [u32; 2]) -> Option<Aim<N>> {
+    let [x, y, z] = aim.way.map(N::abs);
+    if positive(length::<N>(form.width.into()) - (x + y + z))?
+        && let Some(drawn) = solid_angle::of_flat(form, aim.way, point)?
+    {
+        return Some(aim.at(drawn));
+    }
+    let way = plus(aim.way, within(form, point));
+    Some(Aim { way, ..aim })
 }
 
 /// From the position of a flat light to a random point of it.
@@ -153,7 +138,7 @@ pub fn arriving<N: Enclosure>(
 ) -> Option<Three<N>> {
     let (zero, one) = (N::zero(), N::one());
     let own = norm2(aim.way).sqrt();
-    let distance = aim.cone.map_or(own, |cone| cone.distance);
+    let distance = aim.share.map_or(own, |share| share.distance);
     let mut part = one;
     if form.reference > 0 {
         // Nothing is nearer than 2^-32 of that distance.
@@ -161,19 +146,11 @@ pub fn arriving<N: Enclosure>(
         part = ratio.at_most(N::int(1 << 32)).square();
     }
     if form.range > 0 {
-        let range = length::<N>(form.range.into());
-        let square = distance.over(range)?.square();
+        let square = own.over(length(form.range.into()))?.square();
         part = part * (one - square.square()).at_least(zero);
-        // A sphere's point may be in range where its middle is not, and the other way round.
-        let beyond = own - range;
-        match positive(-beyond) {
-            Some(true) => {}
-            Some(false) => part = zero,
-            None => part = part.hull(zero),
-        }
     }
-    if let Some(cone) = aim.cone {
-        part = part * (cone.widening + cone.widening);
+    if let Some(share) = aim.share {
+        part = part * (share.half + share.half);
     } else {
         let cosine = -dot(form.normal.map(ratio_of), to_light);
         let cosine = cosine.at_least(-one).at_most(one);
@@ -184,7 +161,7 @@ pub fn arriving<N: Enclosure>(
             _ if form.cone_cosine > -(1 << 30) => {
                 let within = cosine - ratio_of(form.cone_cosine);
                 part = part
-                    * match (form.cone_width, positive(within)) {
+                    * match (form.width, positive(within)) {
                         (0, Some(is_inside)) => N::int(is_inside.into()),
                         (0, None) => zero.hull(one),
                         (width, _) => {

@@ -46,6 +46,7 @@ mod search;
 mod shade;
 mod shapes;
 mod sky;
+mod solid_angle;
 mod surface;
 mod tone;
 mod torus;

@@ -7,14 +7,14 @@ use super::sky::in_sun;
 use super::surface::Trail;
 use gridel_core::format::light_form::LightForm;
 use gridel_core::format::record::Light;
-use gridel_host::shape::exact::{Real, Vector, dot, minus, norm, scaled, unit};
+use gridel_host::shape::exact::{Real, Vector, cross, dot, minus, norm, scaled, unit};
 
-/// The cone of directions to a sphere.
-pub struct Cone {
-    /// How far its middle is.
+/// The light that a point brings which was drawn by solid angle.
+pub struct Share {
+    /// The distance at which it is,
     distance: Real,
-    /// 1 / (1 + cos) of the angle between its axis and its side.
-    widening: Real,
+    /// and how much of it, over 2.
+    half: Real,
 }
 
 /// The way to a point of a light.
@@ -22,8 +22,8 @@ pub struct Aim {
     pub way: Vector,
     /// How far along the way the light is; `None` for infinitely far.
     pub end: Option<Real>,
-    /// Where the light is a sphere.
-    pub cone: Option<Cone>,
+    /// Where the point was drawn by solid angle.
+    pub share: Option<Share>,
     /// Its radiance, before it falls off.
     pub brought: Vector,
 }
@@ -33,7 +33,7 @@ impl Aim {
         Self {
             way,
             end: None,
-            cone: None,
+            share: None,
             brought,
         }
     }
@@ -58,8 +58,17 @@ pub fn toward(light: &Light, from: &Vector) -> Vector {
 
 /// The way to a random point of an area; `None` if it is hidden.
 fn on_area(form: &LightForm, middle: Aim, [u, v]: [u32; 2]) -> Option<Aim> {
+    let [first, second] = form.edges.map(|edge| color(edge, 13));
+    if form.shape == LightForm::SPHERE {
+        return on_sphere(form, middle, [u, v]);
+    }
+    let [x, y, z] = middle.way.clone().map(|it| it.abs());
+    if x + y + z < fraction(form.width, 13)
+        && let Some(near) = on_near(form, &middle, [&first, &second], [u, v])
+    {
+        return Some(near);
+    }
     let (along, across) = match form.shape {
-        LightForm::SPHERE => return on_sphere(form, middle, [u, v]),
         LightForm::DISC => {
             let (radius, [sine, cosine]) = (part(u).sqrt(), turn(v));
             (&radius * cosine, radius * sine)
@@ -68,9 +77,68 @@ fn on_area(form: &LightForm, middle: Aim, [u, v]: [u32; 2]) -> Option<Aim> {
         LightForm::TRIANGLE if part(u) + part(v) > one() => (one() - part(u), one() - part(v)),
         _ => (part(u), part(v)),
     };
-    let [first, second] = form.edges.map(|edge| color(edge, 13));
     let way = mixed([&middle.way, &first, &second], [&one(), &along, &across]);
     Some(Aim::at(way, middle.brought))
+}
+
+/// The way to a random point of a flat light: a row of it by the tangent of half its angle, and a place in the row by
+/// the sine of its angle. `None` behind it.
+fn on_near(
+    form: &LightForm,
+    middle: &Aim,
+    [first, second]: [&Vector; 2],
+    [u, v]: [u32; 2],
+) -> Option<Aim> {
+    let toward = color(form.normal, 30);
+    let (right, side) = (unit(first), norm(first));
+    let up = cross(&toward, &right);
+    let (height, depth) = (-dot(&toward, &middle.way), dot(&up, second));
+    if !height.is_positive() || !depth.is_positive() {
+        return None;
+    }
+    let [x, y] = [&right, &up].map(|axis| dot(axis, &middle.way));
+    let hypotenuse = |a: &Real, b: &Real| (a * a + b * b).sqrt();
+    let is_disc = form.shape == LightForm::DISC;
+    let near = if is_disc { &y - &side } else { y.clone() };
+    let half_tangent = |row: Real| &row / (&height + hypotenuse(&height, &row));
+    let nearest = half_tangent(near);
+    let turn = half_tangent(&y + &depth) - &nearest;
+    let tangent = &nearest + &turn * part(u);
+    let square = &tangent * &tangent;
+    let row = real(2.0) * &height * &tangent / (one() - &square);
+
+    let place = (&row - &y) / &depth;
+    let start = x.clone() + dot(&right, second) * &place;
+    let (left, end) = if is_disc {
+        let chord = &side * (one() - &place * &place).max(real(0.0)).sqrt();
+        (&x - &chord, &x + &chord)
+    } else if form.shape == LightForm::TRIANGLE {
+        (start.clone(), start + &side * (one() - &place))
+    } else {
+        (start.clone(), start + &side)
+    };
+    let away = hypotenuse(&height, &row);
+    let leftmost = &left / hypotenuse(&left, &away);
+    let width = &end / hypotenuse(&end, &away) - &leftmost;
+    let sine = leftmost + &width * part(v);
+    let along = &away * &sine / (one() - &sine * &sine).sqrt();
+    let area = &side
+        * &depth
+        * real(match form.shape {
+            LightForm::DISC => std::f64::consts::PI,
+            LightForm::TRIANGLE => 0.5,
+            _ => 1.0,
+        });
+    Some(Aim {
+        share: Some(Share {
+            distance: area.sqrt() / real(2.0),
+            half: turn * width / (real(4.0) * (one() + square)),
+        }),
+        ..Aim::at(
+            mixed([&right, &up, &toward], [&along, &row, &-height]),
+            middle.brought.clone(),
+        )
+    })
 }
 
 /// The way to where a random direction meets a sphere; `None` within it.
@@ -83,9 +151,9 @@ fn on_sphere(form: &LightForm, middle: Aim, [u, v]: [u32; 2]) -> Option<Aim> {
     let axis = unit(&middle.way);
     let widest = &radius / &distance;
     let square = &widest * &widest;
-    let widening = one() / (one() + (one() - &square).sqrt());
+    let half = one() / (one() + (one() - &square).sqrt());
     // 1 less the cosine of the direction's angle.
-    let sag = &square * &widening * part(u);
+    let sag = &square * &half * part(u);
     let away = (&sag * (real(2.0) - &sag)).sqrt().min(widest.clone());
     let near = one() - &sag;
     let [sine, cosine] = turn(v);
@@ -100,7 +168,7 @@ fn on_sphere(form: &LightForm, middle: Aim, [u, v]: [u32; 2]) -> Option<Aim> {
     Some(Aim {
         way,
         end: Some(&distance * &near - inward),
-        cone: Some(Cone { distance, widening }),
+        share: Some(Share { distance, half }),
         brought: middle.brought,
     })
 }
@@ -135,27 +203,28 @@ pub fn shines(form: &LightForm, aim: &Aim, to_light: &Vector) -> bool {
 
 /// Returns the light that arrives from a light.
 pub fn falling(form: &LightForm, aim: &Aim, to_light: &Vector) -> Vector {
-    let middle = aim.cone.as_ref().map(|cone| cone.distance.clone());
-    let Some(distance) = middle.or_else(|| aim.distance()) else {
+    let Some(own) = aim.distance() else {
         return black();
     };
+    let share = aim.share.as_ref();
+    let distance = share.map_or(&own, |share| &share.distance);
     let mut factor = one();
     if form.reference > 0 {
-        let ratio = fraction(form.reference, 13) / &distance;
+        let ratio = fraction(form.reference, 13) / distance;
         factor = &ratio * &ratio;
     }
     if form.range > 0 {
-        let ratio = &distance / fraction(form.range, 13);
+        let ratio = &own / fraction(form.range, 13);
         let square = &ratio * &ratio;
         factor = factor * (one() - &square * &square).max(real(0.0));
     }
-    if let Some(cone) = &aim.cone {
-        factor = factor * &cone.widening * real(2.0);
+    if let Some(share) = share {
+        factor = factor * &share.half * real(2.0);
     } else if is_flat(form) {
         factor = factor * cos_from(form, to_light).max(real(0.0));
     } else if has_cone(form) {
         let within = cos_from(form, to_light) - fraction(form.cone_cosine, 30);
-        let width = fraction(form.cone_width, 30);
+        let width = fraction(form.width, 30);
         if within < width {
             let ratio = within.max(real(0.0)) / width;
             factor = factor * &ratio * &ratio;

@@ -168,7 +168,15 @@ pub fn form_record(
         reference: q13(reference).max(i32::from(reference > 0.0)),
         range: range.map_or(0, |range| q13(range).max(1)),
         cone_cosine: cone.map_or(-(1 << 30), |[outer, _]| q30(outer)),
-        cone_width: cone.map_or(0, |[outer, inner]| q30(inner) - q30(outer)),
+        width: match (shape, cone) {
+            (_, Some([outer, inner])) => q30(inner) - q30(outer),
+            (0 | Record::SPHERE, _) => 0,
+            // Within its own size of all of it.
+            _ => {
+                let sizes = edges.map(|edge| 2.0 * edge.abs().element_sum());
+                q13(sizes.iter().sum()).min(1 << 30)
+            }
+        },
         normal: normal.to_array().map(q30),
         edges: edges.map(|edge| edge.to_array().map(q13)),
     };

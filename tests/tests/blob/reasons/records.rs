@@ -85,7 +85,7 @@ pub(super) fn light_forms() -> Errors {
         (Field::LightReference, &|it| it.reference = -1),
         (Field::LightRange, &|it| it.range = -1),
         (Field::ConeCosine, &|it| it.cone_cosine = i32::MAX),
-        (Field::ConeWidth, &|it| it.cone_width = -1),
+        (Field::LightWidth, &|it| it.width = -1),
         (Field::Normal, &|it| it.normal[1] = i32::MIN),
         (Field::LightEdge, &|it| it.edges[1][2] = i32::MAX),
     ];
