@@ -74,10 +74,15 @@ pub(super) fn of_flat<N: Number>(
     way: [N::Wide; 3],
     [u, v]: [N; 2],
 ) -> Option<Aim<N>> {
-    // Quarters of lengths, so that sums and squares of all that is near are in range.
+    // Quarters of lengths, so that sums of all that is near are in range, and then with as many bits as squares have
+    // room for.
     let quarter = |length: N| length.half().half();
     let corner = way.map(|component| quarter(N::narrow(component)));
     let [first, second] = form.edges.map(|edge| edge.map(|it| quarter(length(it))));
+    let size = extent(corner) + extent(first) + extent(second);
+    let bits = N::headroom(size + size);
+    let [corner, first, second] =
+        [corner, first, second].map(|v| v.map(|component| component.scale_up(bits)));
     let normal = form.normal.map(N::ratio);
     let (along, side) = N::normalize(first);
     let across = cross(normal, along);
@@ -96,7 +101,7 @@ pub(super) fn of_flat<N: Number>(
     // The tangent of half the angle: x / (h + √(h² + x²)).
     let [nearest, farthest] = [near, far].map(|row| {
         let away = N::root(height.wide(height) + row.wide(row));
-        row.half().div(height.half() + away.half())
+        row.div(height + away)
     });
     let turn = farthest.half() - nearest.half();
     let tangent = nearest + turn * u + turn * u;
@@ -126,7 +131,8 @@ pub(super) fn of_flat<N: Number>(
     let place = (away * sine).div(cosine).max(left).min(right);
 
     let axis = |k: usize| along[k] * place + across[k] * row - normal[k] * height;
-    let way = [axis(0), axis(1), axis(2)].map(|component| N::wide_times(component.widen(), 4));
+    let whole = |quarter: N| N::wide_times(quarter.scale_down(bits).widen(), 4);
+    let way = [axis(0), axis(1), axis(2)].map(whole);
     // At half of the root of its area a light has 4 / π of its radiance, and 8 is the most that the product below
     // stands for.
     let root = N::root(side.wide(depth));
@@ -139,7 +145,7 @@ pub(super) fn of_flat<N: Number>(
         way,
         distance: Some(far_extent::<N>(way)),
         share: Some(Share {
-            distance: Distance::near(half),
+            distance: Distance::near(half.scale_down(bits)),
             half: turn * narrowing * width,
         }),
     })

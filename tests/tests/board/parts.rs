@@ -135,16 +135,18 @@ fn shine(scene: &mut Scene, shape: LightShape, spot: Option<Spot>) {
 }
 
 /// The base under a point light, and under lights with an area in its place.
-pub fn lamps() -> [Compiled; 4] {
-    let across = |length: f64| [DVec3::new(length, 0.0, 0.0), DVec3::new(0.0, 0.5, 0.0)];
+pub fn lamps() -> [Compiled; 5] {
+    let square = |side: f64| [DVec3::new(-side, 0.0, 0.0), DVec3::new(0.0, side, 0.0)];
     let shapes = [
         ("point-light", None),
         ("sphere-light", Some(LightShape::Sphere { radius: 0.5 })),
         (
             "rectangle-light",
-            Some(LightShape::Rectangle {
-                edges: across(-0.5),
-            }),
+            Some(LightShape::Rectangle { edges: square(0.5) }),
+        ),
+        (
+            "near-rectangle-light",
+            Some(LightShape::Rectangle { edges: square(3.0) }),
         ),
         (
             "disc-light",

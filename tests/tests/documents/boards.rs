@@ -246,6 +246,7 @@ fn memory_page_shows_recorded_cost_per_hit() {
         ("bilinear normal map, a palette", "normal-map"),
         ("light that is a sphere", "sphere-light"),
         ("light that is a rectangle", "rectangle-light"),
+        ("the same from near by", "near-rectangle-light"),
         ("light that is a disc", "disc-light"),
     ] {
         let each = on_board(scene, "mps2-an386", "f32")("hit-instructions");
