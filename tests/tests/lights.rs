@@ -197,6 +197,25 @@ fn lights_near_by_give_the_analytic_irradiance() {
     }
 }
 
+/// Only what arrives is limited in `fixed`, and not the radiance: a bright lamp above a dark floor, from near by and from
+/// where it is drawn by area.
+#[test]
+fn bright_lights_near_by_are_as_bright_in_every_format() {
+    const DARK: &str = "[material.dark]\ndiffuse = 0.00048828125\n\
+                        [[object]]\nkind = 'box'\nmin = [-9, -1, -9]\nmax = [9, 0, 9]\nmaterial = 'dark'";
+    let down = [(-0.05, -0.05), (0.05, -0.05), (0.05, 0.05), (-0.05, 0.05)];
+    for height in [0.15, 0.25, 0.35, 0.5] {
+        let polygon = down.map(|(x, z)| DVec3::new(x, height, z));
+        let exact = 1e4 * irradiance(&polygon, DVec3::ZERO, DVec3::Y) / PI;
+        let light = format!(
+            "[[light]]\nkind = 'rectangle'\ncorner = [-0.05, {height}, -0.05]\n\
+             edges = [[0.1, 0, 0], [0, 0, 0.1]]\nradiance = 1e4"
+        );
+        let blob = scene(&light, "[0, 0.4, 0]", "[0, 0, 0]", DARK);
+        check(&format!("{height}"), &blob, exact / 2048.0);
+    }
+}
+
 /// Triangles and parallelograms that glow, just above a floor.
 #[test]
 fn surfaces_near_by_give_the_analytic_irradiance() {

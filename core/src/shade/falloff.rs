@@ -101,8 +101,8 @@ inline_on_boards!(
         lighting: &Lighting<'_, N>,
         color: Color<N>,
     ) -> Color<N> {
-        let own = lighting.share.map(|share| share.distance);
-        let Some(distance) = own.or_else(|| lighting.light_distance()) else {
+        let apparent = lighting.apparent;
+        let Some(distance) = apparent.or_else(|| lighting.light_distance()) else {
             return Color::BLACK;
         };
         let mut arriving = if form.reference == 0 {
@@ -121,11 +121,8 @@ inline_on_boards!(
             let square = part * part;
             arriving = arriving.scaled(N::ONE - square * square);
         }
-        if let Some(share) = lighting.share {
-            let arriving = arriving.scaled(share.half);
-            return arriving.plus(arriving);
-        }
         match form.shape {
+            _ if apparent.is_some() => arriving,
             LightForm::RECTANGLE | LightForm::DISC | LightForm::TRIANGLE => {
                 arriving.scaled(lighting.facing)
             }

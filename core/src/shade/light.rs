@@ -27,6 +27,9 @@ pub(crate) fn length<N: Number>(q13: i32) -> N {
     N::narrow(N::far(q13.into()))
 }
 
+/// √½, with 30 fraction bits.
+pub(crate) const ROOT_OF_HALF: i32 = 759_250_125;
+
 /// Half of a distance, over a power of two by which it fits every format.
 #[derive(Clone, Copy)]
 pub(crate) struct Distance<N> {
@@ -53,6 +56,13 @@ impl<N: Number> Distance<N> {
     #[inline(always)]
     pub(crate) fn near(half: N) -> Self {
         Self { half, shift: 0 }
+    }
+
+    /// Returns where the light of a point is that at this distance, times twice a ratio.
+    #[inline(always)]
+    pub(crate) fn for_twice(self, ratio: N) -> Self {
+        let half = (self.half * N::ratio(ROOT_OF_HALF)).div(ratio.sqrt());
+        Self { half, ..self }
     }
 
     /// Returns half of a length with 13 fraction bits, over the same power of two.

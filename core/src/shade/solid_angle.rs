@@ -4,12 +4,11 @@ use crate::accel::Number;
 use crate::format::light_form::LightForm;
 use crate::number::{extent, far_extent};
 use crate::shade::basis::{beside, cross};
-use crate::shade::light::{Distance, Reach, length};
-use crate::shade::surface::{Aim, Share};
+use crate::shade::light::{Distance, ROOT_OF_HALF, Reach, length};
+use crate::shade::surface::Aim;
 
-/// √π - 1 and √½, with 30 fraction bits.
+/// √π - 1, with 30 fraction bits.
 const ROOT_OF_PI_LESS_1: i32 = 829_416_007;
-const ROOT_OF_HALF: i32 = 759_250_125;
 
 /// Turns the way to the middle of a sphere into the way to where a random direction hits it; no way from inside the
 /// sphere.
@@ -51,20 +50,16 @@ pub(super) fn of_sphere<N: Number>(
         way: direction.map(N::widen),
         distance: Some(end + end),
         // A cone takes 2 s² / (1 + cos) of π, where s is the sine of its angle.
-        share: Some(Share {
-            distance,
-            half: widening,
-        }),
+        apparent: Some(distance.for_twice(widening)),
     };
 }
 
-/// Returns the way to a random point of a rectangle, triangle or disc, and its share of the light; `None` from behind.
+/// Returns the way to a random point of a rectangle, triangle or disc; `None` from behind.
 ///
 /// The light consists of rows. A row is drawn by the angle at which it lies as seen from the foot of the surface on the
 /// light's plane, and a point of the row by the angle between its ends. Both angles take part by functions without
-/// trigonometry: the tangent of half of the first, the sine of the second. So the share differs from the solid angle,
-/// which would be the same for all points, by a factor of 2 at most over the angle of the rows, and by the length of
-/// the row. (Drawing exactly by the solid angle needs arc cosines: Ureña, Fajardo and King, "An Area-Preserving
+/// trigonometry: the tangent of half of the first, the sine of the second. So what a point brings is not the same for
+/// all: it differs by a factor of 2 at most with the angle of the row, and with the length of the row. (Drawing exactly by the solid angle needs arc cosines: Ureña, Fajardo and King, "An Area-Preserving
 /// Parametrization for Spherical Rectangles", 2013.)
 // Out of line, so that what is far away keeps the registers.
 #[cold]
@@ -133,8 +128,8 @@ pub(super) fn of_flat<N: Number>(
     let axis = |k: usize| along[k] * place + across[k] * row - normal[k] * height;
     let whole = |quarter: N| N::wide_times(quarter.scale_down(bits).widen(), 4);
     let way = [axis(0), axis(1), axis(2)].map(whole);
-    // At half of the root of its area a light has 4 / π of its radiance, and 8 is the most that the product below
-    // stands for.
+    // What fills the solid angle w brings w / π of its radiance. At half of the root of its area a light has 4 / π of
+    // it, and the product below is an eighth of w.
     let root = N::root(side.wide(depth));
     let half = match form.shape {
         LightForm::DISC => root + root * N::ratio(ROOT_OF_PI_LESS_1),
@@ -144,9 +139,6 @@ pub(super) fn of_flat<N: Number>(
     Some(Aim {
         way,
         distance: Some(far_extent::<N>(way)),
-        share: Some(Share {
-            distance: Distance::near(half.scale_down(bits)),
-            half: turn * narrowing * width,
-        }),
+        apparent: Some(Distance::near(half.scale_down(bits)).for_twice(turn * narrowing * width)),
     })
 }

@@ -87,8 +87,8 @@ pub(crate) struct Lighting<'l, N: Number> {
     pub(crate) to_light: [N; 3],
     /// The length of `way`, of whose largest component this is a multiple: 1 to the square root of 3.
     pub(crate) norm: N,
-    /// The light that its point brings, if it was drawn by solid angle.
-    pub(crate) share: Option<Share<N>>,
+    /// Where the light is as bright as what its point brings, if that was drawn by solid angle.
+    pub(crate) apparent: Option<Distance<N>>,
     /// The cosine between the light's own direction and the way from it, if the light has a direction.
     pub(crate) facing: N,
 }
@@ -101,15 +101,6 @@ impl<N: Number> Lighting<'_, N> {
     }
 }
 
-/// The light that a point of a light brings, if it was drawn by solid angle.
-#[derive(Clone, Copy)]
-pub(crate) struct Share<N> {
-    /// It is the light at this distance,
-    pub(crate) distance: Distance<N>,
-    /// times twice this ratio.
-    pub(crate) half: N,
-}
-
 /// The way from a surface to a light.
 #[derive(Clone, Copy)]
 pub(crate) struct Aim<N: Number> {
@@ -117,8 +108,8 @@ pub(crate) struct Aim<N: Number> {
     pub(crate) way: [N::Wide; 3],
     /// The distance of the light along the largest component of `way`; `None` for infinitely far.
     pub(crate) distance: Option<N::Wide>,
-    /// The light that its point brings, if it was drawn by solid angle.
-    pub(crate) share: Option<Share<N>>,
+    /// Where the light is as bright as what its point brings, if that was drawn by solid angle.
+    pub(crate) apparent: Option<Distance<N>>,
 }
 
 /// A surface between a light and another surface.
