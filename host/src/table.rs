@@ -132,8 +132,27 @@ pub fn shortened(text: &str) -> Cow<'_, str> {
     }
 }
 
-/// Returns a sentence without its middle if it is too long to be read, because it lists what a file has.
+/// Returns text as a terminal can show it: control characters but line feeds are escaped as in Rust.
+///
+/// ```
+/// assert_eq!(gridel_host::table::shown("a\u{1b}[31mb"), "a\\u{1b}[31mb");
+/// ```
+pub fn shown(text: &str) -> Cow<'_, str> {
+    let is_kept = |c: char| !c.is_control() || c == '\n';
+    if text.chars().all(is_kept) {
+        return Cow::Borrowed(text);
+    }
+    let escaped = text.chars().map(|c| match is_kept(c) {
+        true => String::from(c),
+        false => c.escape_debug().to_string(),
+    });
+    Cow::Owned(escaped.collect())
+}
+
+/// Returns a sentence as a terminal can show it, and without its middle if it is too long to be read, because it lists
+/// what a file has.
 pub(crate) fn clipped(sentence: String) -> String {
+    let sentence = shown(&sentence).into_owned();
     if sentence.len() <= MAX_SENTENCE {
         return sentence;
     }

@@ -86,13 +86,18 @@ fn of_view(view: &View) -> gridel_camera {
     }
 }
 
-/// A scene's view with another camera; numbers are checked where it is used.
-pub(crate) fn view_from(scene: &Scene<'_>, camera: &gridel_camera) -> View {
-    View {
+/// A scene's view with another camera; the sizes of numbers are checked where it is used.
+pub(crate) fn view_from(scene: &Scene<'_>, camera: &gridel_camera) -> Result<View, gridel_status> {
+    // A camera that was forgotten to be made is 0.
+    let axes = [camera.forward, camera.right, camera.up];
+    if camera.reserved != 0 || axes.contains(&[0; 3]) {
+        return Err(gridel_status::CameraInvalid);
+    }
+    Ok(View {
         eye: camera.eye,
         forward: camera.forward,
         right: camera.right,
         up: camera.up,
         ..*scene.view()
-    }
+    })
 }

@@ -243,7 +243,7 @@ unsafe fn render_from<N: Number>(
     // SAFETY: the caller's promise.
     let (scene, picture, rectangle) = unsafe { (scene(loaded)?, read(picture)?, read(rectangle)?) };
     // SAFETY: the caller's promise.
-    let view = view_from(scene, &unsafe { read(camera) }?);
+    let view = view_from(scene, &unsafe { read(camera) }?)?;
     let seen = scene.with_view(&view);
     let seen = seen.map_err(|_| gridel_status::CameraInvalid)?;
     // SAFETY: the caller's promise.

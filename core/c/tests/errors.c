@@ -334,6 +334,12 @@ int main(int count_of_arguments, char **arguments) {
     wrong = camera;
     wrong.eye[0] = ((int64_t)1 << 50) + 1;
     EXPECT(GRIDEL_STATUS_CAMERA_INVALID, renders_from[k](&scene, &wrong, &picture, &rectangle, buffer(pixels, 48), large));
+    wrong = camera;
+    wrong.forward[0] = wrong.forward[1] = wrong.forward[2] = 0;
+    EXPECT(GRIDEL_STATUS_CAMERA_INVALID, renders_from[k](&scene, &wrong, &picture, &rectangle, buffer(pixels, 48), large));
+    wrong = camera;
+    wrong.reserved = 1;
+    EXPECT(GRIDEL_STATUS_CAMERA_INVALID, renders_from[k](&scene, &wrong, &picture, &rectangle, buffer(pixels, 48), large));
   }
 
   if (failures == 0) printf("scene %u bytes\n", (unsigned)sizeof scene);

@@ -73,9 +73,10 @@ const STATE: &str = "certify.state";
 const MOST_PIXELS: usize = 1 << 22;
 
 /// The version of what is proved and how. Raise it with every change, so that older states are not continued.
-const RULES: u32 = 4;
+const RULES: u32 = 5;
 
-/// How often the state is written.
+/// After how long the state is written first, and how often at most: each time after twice as long.
+const SOON: Duration = Duration::from_millis(250);
 const OFTEN: Duration = Duration::from_secs(5);
 
 /// The JSON output.
@@ -158,7 +159,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     };
     let mut pixels = state.read(count)?;
     let progress = Progress::steps("certifying", settings.height.into());
-    let mut written = Instant::now();
+    let (mut written, mut pause) = (Instant::now(), SOON);
     // Pixels are kept one by one; a picture of any cost loses a few seconds.
     certify(
         &world,
@@ -166,11 +167,12 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         &mut pixels,
         &|| progress.step(),
         |pixels| {
-            if written.elapsed() < OFTEN {
+            if written.elapsed() < pause {
                 return Ok(());
             }
-            written = Instant::now();
-            state.write(pixels)
+            state.write(pixels)?;
+            (written, pause) = (Instant::now(), OFTEN.min(2 * pause));
+            Ok(())
         },
     )?;
     drop(progress);

@@ -1,6 +1,7 @@
 //! The reasons why a command ends early, and their exit codes.
 
 use gridel_host::compile::CompileError;
+use gridel_host::table::shown;
 use miette::{Diagnostic, MietteHandlerOpts, Report};
 use std::io;
 use std::path::Path;
@@ -51,7 +52,7 @@ struct Fault {
 }
 
 fn fault(cause: impl Into<String>, remedy: impl Into<String>) -> Report {
-    let (cause, remedy) = (cause.into(), remedy.into());
+    let [cause, remedy] = [cause.into(), remedy.into()].map(|it| shown(&it).into_owned());
     Report::new(Fault { cause, remedy })
 }
 

@@ -45,7 +45,7 @@ mod web;
 
 use clap::{CommandFactory, Parser, Subcommand};
 use peak_alloc::PeakAlloc;
-use std::io::{self, Write};
+use std::io::{self, IsTerminal, Write};
 use std::process::ExitCode;
 
 /// Compile scenes into blobs, and ray trace them on a microcontroller or on a host
@@ -95,7 +95,13 @@ pub fn run(memory: &PeakAlloc) -> ExitCode {
         Err(answer) => return answered(&answer),
     };
     // Without a handler an interrupt would only leave a temporary file behind.
-    let _ = ctrlc::set_handler(|| gridel_host::output::unfinished::exit_removing_unfinished(130));
+    let _ = ctrlc::set_handler(|| {
+        if io::stderr().is_terminal() {
+            // What is shown of progress ends in the middle of a line.
+            let _ = io::stderr().write_all(b"\r\x1b[2K");
+        }
+        gridel_host::output::unfinished::exit_removing_unfinished(130)
+    });
     if let Err(cause) = gridel_host::simd::from_environment() {
         return failure::Failure::usage(cause, "unset the variable for the fastest").report();
     }

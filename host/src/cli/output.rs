@@ -3,6 +3,7 @@
 use super::failure::Failure;
 use super::input::is_standard;
 use gridel_host::output::{self, Files, place, write_whole};
+use gridel_host::table::shown;
 use serde::Serialize;
 use std::collections::BTreeSet;
 use std::fmt::Display;
@@ -204,5 +205,5 @@ pub fn printed(written: io::Result<()>) -> Result<(), Failure> {
 /// Prints a warning on standard error.
 pub fn warn(sentence: impl Display) {
     // Standard error may be closed; that is no reason to stop.
-    let _ = writeln!(io::stderr(), "warning: {sentence}");
+    let _ = writeln!(io::stderr(), "warning: {}", shown(&sentence.to_string()));
 }

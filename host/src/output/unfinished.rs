@@ -6,6 +6,8 @@ use std::io;
 use std::path::{Path, PathBuf};
 use std::process::{Child, Command, ExitStatus};
 use std::sync::{Mutex, MutexGuard, PoisonError};
+use std::thread;
+use std::time::Duration;
 use tempfile::TempDir;
 
 /// All of it, at one time.
@@ -36,7 +38,21 @@ pub(crate) fn gives_back(screen: Option<Box<dyn FnOnce() + Send>>) {
 /// Ends what runs, removes what writing has left so far, gives the terminal back, and ends the program: for whoever
 /// handles an interrupt.
 pub fn exit_removing_unfinished(exit_code: i32) -> ! {
-    let mut unfinished = unfinished();
+    exit_removing(unfinished(), exit_code)
+}
+
+/// [`exit_removing_unfinished`] for a thread that may have the lists locked. If it has, they stay as they are.
+pub fn exit_without_memory(exit_code: i32) -> ! {
+    for _ in 0..100 {
+        if let Ok(unfinished) = UNFINISHED.try_lock() {
+            exit_removing(unfinished, exit_code);
+        }
+        thread::sleep(Duration::from_millis(10));
+    }
+    std::process::exit(exit_code)
+}
+
+fn exit_removing(mut unfinished: MutexGuard<'static, Unfinished>, exit_code: i32) -> ! {
     if let Some(give_back) = unfinished.screen.take() {
         give_back();
     }

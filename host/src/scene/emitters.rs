@@ -313,7 +313,7 @@ fn seen(position: DVec3, shape: &LightShape) -> Option<Shape> {
         triangles,
     };
     Some(match *shape {
-        LightShape::Point => return None,
+        LightShape::Point | LightShape::Facet { .. } => return None,
         LightShape::Sphere { radius } => Shape::Sphere(crate::shape::Sphere {
             center: position,
             radius,

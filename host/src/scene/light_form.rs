@@ -37,6 +37,8 @@ impl Default for LightForm {
 pub enum LightShape {
     /// The position itself.
     Point,
+    /// The position, which shines as a small surface does: to the side of its normal, by the cosine of the angle to it.
+    Facet { normal: DVec3 },
     /// A sphere around the position.
     Sphere { radius: f64 },
     /// A rectangle with a corner at the position; it shines to the side of the cross product of its edges.
@@ -88,7 +90,9 @@ impl LightForm {
     /// whose light falls off is what arrives at a distance of 1.
     pub(super) fn moved_brightness(&self, by: &DAffine3) -> f64 {
         match self.shape {
-            LightShape::Point if self.falls_off => scale_of(by) * scale_of(by),
+            LightShape::Point | LightShape::Facet { .. } if self.falls_off => {
+                scale_of(by) * scale_of(by)
+            }
             _ => 1.0,
         }
     }
@@ -125,6 +129,9 @@ impl LightForm {
         Self {
             shape: match self.shape {
                 LightShape::Point => LightShape::Point,
+                LightShape::Facet { normal } => LightShape::Facet {
+                    normal: moved_normal(normal, by),
+                },
                 LightShape::Sphere { radius } => LightShape::Sphere {
                     radius: radius * scale,
                 },

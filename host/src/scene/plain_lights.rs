@@ -1,6 +1,6 @@
 //! Scenes whose lights lose their area, or their falloff.
 
-use super::light_form::{LightForm, LightShape, Spot};
+use super::light_form::{LightForm, LightShape};
 use super::model::{Light, Scene};
 use super::track::Track;
 use glam::DVec3;
@@ -12,7 +12,7 @@ use std::f64::consts::PI;
 /// radiance.
 fn brightness(shape: &LightShape) -> f64 {
     match *shape {
-        LightShape::Point => 1.0,
+        LightShape::Point | LightShape::Facet { .. } => 1.0,
         LightShape::Sphere { radius } | LightShape::Disc { radius, .. } => radius * radius,
         LightShape::Rectangle { edges } => edges[0].cross(edges[1]).length() / PI,
         LightShape::Triangle { edges } => 0.5 * edges[0].cross(edges[1]).length() / PI,
@@ -28,15 +28,42 @@ fn to_middle(shape: &LightShape) -> DVec3 {
     }
 }
 
-/// The side to which an area shines.
-fn side(shape: &LightShape) -> Option<DVec3> {
+/// A point that shines as an area does from far away.
+fn shrunk(shape: &LightShape) -> LightShape {
     match *shape {
-        LightShape::Point | LightShape::Sphere { .. } => None,
-        LightShape::Rectangle { edges } | LightShape::Triangle { edges } => {
-            Some(edges[0].cross(edges[1]))
+        LightShape::Point | LightShape::Sphere { .. } => LightShape::Point,
+        LightShape::Rectangle { edges } | LightShape::Triangle { edges } => LightShape::Facet {
+            normal: edges[0].cross(edges[1]),
+        },
+        LightShape::Disc { normal, .. } | LightShape::Facet { normal } => {
+            LightShape::Facet { normal }
         }
-        LightShape::Disc { normal, .. } => Some(normal),
     }
+}
+
+/// The part of a point's light that leaves it in a direction and is left at a distance.
+fn shine(form: &LightForm, way: DVec3) -> f64 {
+    let (distance, direction) = (way.length(), way.normalize_or_zero());
+    let mut part = match form.shape {
+        LightShape::Facet { normal } => normal.normalize_or_zero().dot(direction).max(0.0),
+        _ => 1.0,
+    };
+    if let Some(spot) = form.spot {
+        let [inner, outer] = [spot.inner, spot.outer].map(|angle| angle.to_radians().cos());
+        let within = spot.direction.normalize_or_zero().dot(direction) - outer;
+        let width = inner - outer;
+        part *= match within >= width {
+            true => f64::from(u8::from(within > 0.0)),
+            false => (within.max(0.0) / width).powi(2),
+        };
+    }
+    if let Some(range) = form.range {
+        part *= 1.0 - (distance / range).min(1.0).powi(4);
+    }
+    if form.falls_off && distance > 0.0 {
+        part /= distance * distance;
+    }
+    part
 }
 
 /// Makes points of areas, as bright from far away. Spheres around these points are removed: they would block all light.
@@ -48,7 +75,7 @@ pub(super) fn shrink_areas(scene: &mut Scene) {
         remove_spheres_of_lights(scene);
     }
     for (number, form) in scene.light_forms.iter_mut().enumerate() {
-        let Some(form) = form.as_mut().filter(|it| it.shape != LightShape::Point) else {
+        let Some(form) = form.as_mut() else {
             continue;
         };
         let Some(Light::Point { position, color }) = scene.lights.get_mut(number) else {
@@ -60,13 +87,8 @@ pub(super) fn shrink_areas(scene: &mut Scene) {
         let mut tracks = scene.tracks.iter_mut();
         change_tracks(&mut tracks, number, factor, middle);
         *form = LightForm {
-            shape: LightShape::Point,
+            shape: shrunk(&form.shape),
             is_surface: false,
-            spot: side(&form.shape).map(|direction| Spot {
-                direction,
-                inner: 0.0,
-                outer: 90.0,
-            }),
             ..*form
         };
     }
@@ -100,12 +122,9 @@ pub(super) fn remove_falloff(scene: &mut Scene) {
         let Some(Light::Point { position, color }) = scene.lights.get_mut(number) else {
             continue;
         };
-        let distance = position.distance(looked_at);
-        if form.falls_off && distance > 0.0 {
-            let factor = distance.powi(-2);
-            *color = color.map(|channel| channel * factor);
-            change_tracks(&mut scene.tracks.iter_mut(), number, factor, DVec3::ZERO);
-        }
+        let factor = shine(&form, looked_at - *position);
+        *color = color.map(|channel| channel * factor);
+        change_tracks(&mut scene.tracks.iter_mut(), number, factor, DVec3::ZERO);
     }
     scene.light_forms.clear();
 }
@@ -151,7 +170,8 @@ fn change_tracks<'t>(
 
 #[cfg(test)]
 mod tests {
-    use crate::scene::{Light, Scene, leave_out, read};
+    use crate::scene::{Light, LightShape, Scene, leave_out, read};
+    use glam::DVec3;
     use gridel_core::Effects;
 
     const FLOOR: &str =
@@ -184,6 +204,33 @@ mod tests {
                 assert_eq!(object.name, "floor");
                 assert!(matches!(scene.lights[..], [Light::Point { .. }]));
             }
+        }
+    }
+
+    /// A disc 2 above the floor, turned by 60 degrees: half as bright below it as one that faces the floor.
+    #[test]
+    fn points_shine_to_the_sides_to_which_areas_did() {
+        for (normal, part) in [
+            ("[0, -1, 0]", 1.0),
+            ("[3, -1.732050807568877, 0]", 0.5),
+            ("[0, 1, 0]", 0.0),
+        ] {
+            let text = format!(
+                "[camera]\neye = [0, 1, -4]\ntarget = [0, 0, 0]\n{FLOOR}\
+                 [[light]]\nkind = 'disc'\ncenter = [0, 2, 0]\nradius = 0.1\nradiance = 40\nnormal = {normal}\n"
+            );
+            let mut left = scene(&text);
+            left.remove_effects(Effects::AREA_LIGHT);
+            let LightShape::Facet { normal } = left.light_forms[0].unwrap().shape else {
+                panic!("{:?}", left.light_forms);
+            };
+            assert!((normal.normalize().dot(DVec3::NEG_Y) - part).abs() < 1e-9 || part == 0.0);
+            left.remove_effects(Effects::FALLOFF);
+            let [Light::Point { color, .. }] = left.lights[..] else {
+                panic!("{:?}", left.lights);
+            };
+            // The area over π, times the radiance, over the square of the distance.
+            assert!((color[0] - 0.1 * part).abs() < 1e-9, "{color:?} {part}");
         }
     }
 

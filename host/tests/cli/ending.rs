@@ -79,6 +79,73 @@ fn a_version_or_help_that_cannot_be_written_is_an_error() {
     }
 }
 
+/// The program under a limit of the shell's.
+#[cfg(target_os = "linux")]
+fn limited(folder: &Folder, limit: &str, arguments: &[&str]) -> std::process::Output {
+    let program = folder.command(&[]).get_program().to_owned();
+    let script = format!("ulimit {limit} && exec \"$@\"");
+    let mut shell = std::process::Command::new("sh");
+    shell
+        .args(["-c", &script, "sh"])
+        .arg(program)
+        .args(arguments);
+    shell.current_dir(folder.path("")).output().unwrap()
+}
+
+#[cfg(target_os = "linux")]
+#[test]
+fn too_little_memory_is_an_error() {
+    let folder = Folder::with_quick();
+    let cube = [
+        "--accel",
+        "cylinder-cube",
+        "--gridels",
+        "64",
+        "--budget",
+        "100G",
+    ];
+    let build = [&["build", "quick.toml", "-o", "a.gridel"][..], &cube].concat();
+    let names = folder.names();
+    let output = limited(&folder, "-v 1000000", &build);
+    let message = String::from_utf8(output.stderr).unwrap();
+    assert_eq!(output.status.code(), Some(1), "{message}");
+    assert!(message.contains("bytes of memory more"), "{message}");
+    assert!(message.contains("help: "), "{message}");
+    assert_eq!(folder.names(), names);
+}
+
+#[cfg(target_os = "linux")]
+#[test]
+fn too_small_a_limit_of_files_is_an_error() {
+    let folder = Folder::with_quick();
+    folder.write("a.png", b"old");
+    let names = folder.names();
+    let render = ["render", "quick.toml", "-o", "a.png", "--size", "400x400"];
+    let output = limited(&folder, "-f 4", &render);
+    let message = String::from_utf8(output.stderr).unwrap();
+    assert_eq!(output.status.code(), Some(1), "{message}");
+    assert!(message.contains("a.png cannot be written"), "{message}");
+    assert_eq!(folder.read("a.png"), b"old");
+    assert_eq!(folder.names(), names);
+}
+
+#[test]
+fn control_characters_of_names_are_escaped() {
+    let folder = Folder::new();
+    let scene = "[[object]]\nkind = 'import'\nfile = \"\\u001b[31mX.obj\"\n";
+    folder.write("a.toml", scene.as_bytes());
+    folder.fails(
+        1,
+        &["inspect", "a.toml"],
+        &["\\u{1b}[31mX.obj cannot be read"],
+    );
+    folder.fails(
+        1,
+        &["inspect", "\u{1b}[31m.toml"],
+        &["\\u{1b}[31m.toml cannot be read"],
+    );
+}
+
 #[cfg(unix)]
 #[test]
 fn an_interrupt_leaves_the_old_file_and_nothing_else() {

@@ -65,7 +65,7 @@ impl LightChange {
                 ));
             }
             (Light::Point { .. }, Property::Direction(_)) => {
-                return Err(self.misfit("shines in all directions", "position"));
+                return Err(self.misfit("has a position and no direction to change", "position"));
             }
         }
         Ok(())

@@ -32,7 +32,9 @@ fn lift_length(form: &LightForm, lattice: &Lattice) -> f64 {
 /// surface in the scene, which must not block the light.
 pub fn lift(form: &LightForm, lattice: &Lattice) -> DVec3 {
     let normal = match form.shape {
-        LightShape::Point | LightShape::Sphere { .. } => return DVec3::ZERO,
+        LightShape::Point | LightShape::Facet { .. } | LightShape::Sphere { .. } => {
+            return DVec3::ZERO;
+        }
         LightShape::Rectangle { edges } | LightShape::Triangle { edges } => {
             edges[0].cross(edges[1])
         }
@@ -82,6 +84,10 @@ pub fn form_record(
             let direction = form.spot.map_or(DVec3::ZERO, |spot| unit(spot.direction));
             let reference = if form.falls_off { 1.0 } else { 0.0 };
             (0, direction, [DVec3::ZERO; 2], reference)
+        }
+        LightShape::Facet { normal } => {
+            let reference = if form.falls_off { 1.0 } else { 0.0 };
+            (Record::RECTANGLE, unit(normal), [DVec3::ZERO; 2], reference)
         }
         LightShape::Sphere { radius } => (
             Record::SPHERE,

@@ -102,7 +102,8 @@ impl LightData {
         let (form, color) = form_record(&formed, lattice)?;
         let light = Light::Point { position, color };
         let record = light_record(&light, lattice, space.size(), number)?;
-        let directional = record::Light::with_form(self.forms.len() as u32, form.shape != 0);
+        let is_area = form.shape != 0 && form.edges != [[0; 3]; 2];
+        let directional = record::Light::with_form(self.forms.len() as u32, is_area);
         self.forms.push(form);
         Ok(record::Light {
             directional,
