@@ -54,6 +54,18 @@ pub(super) fn of_sphere<N: Number>(
     };
 }
 
+/// [`Scalar::div`](crate::number::Scalar::div) out of line: it is used often where little is gained by copies.
+#[inline(never)]
+fn over<N: Number>(a: N, b: N) -> N {
+    a.div(b)
+}
+
+/// √(a² + b²) of lengths, out of line likewise.
+#[inline(never)]
+fn hypotenuse<N: Number>(a: N, b: N) -> N {
+    N::root(a.wide(a) + b.wide(b))
+}
+
 /// Returns the way to a random point of a rectangle, triangle or disc; `None` from behind.
 ///
 /// The light consists of rows. A row is drawn by the angle at which it lies as seen from the foot of the surface on the
@@ -94,20 +106,18 @@ pub(super) fn of_flat<N: Number>(
     let far = from + depth;
 
     // The tangent of half the angle: x / (h + √(h² + x²)).
-    let [nearest, farthest] = [near, far].map(|row| {
-        let away = N::root(height.wide(height) + row.wide(row));
-        row.div(height + away)
-    });
+    let half_tangent = |row: N| over(row, height + hypotenuse(height, row));
+    let [nearest, farthest] = [half_tangent(near), half_tangent(far)];
     let turn = farthest.half() - nearest.half();
     let tangent = nearest + turn * u + turn * u;
     let square = tangent * tangent;
     let one = N::ONE.half();
-    let narrowing = one.div(one + square.half());
+    let narrowing = over(one, one + square.half());
     let (sine, cosine) = (tangent * narrowing, one - square * narrowing);
-    let row = (height * sine).div(cosine.max(N::ZERO)).max(near).min(far);
-    let away = N::root(height.wide(height) + row.wide(row));
+    let row = over(height * sine, cosine.max(N::ZERO)).max(near).min(far);
+    let away = hypotenuse(height, row);
 
-    let place = (row - from).div(depth);
+    let place = over(row - from, depth);
     let start = on(along, corner) + on(along, second) * place;
     let [left, right] = match form.shape {
         LightForm::DISC => {
@@ -118,12 +128,12 @@ pub(super) fn of_flat<N: Number>(
         LightForm::TRIANGLE => [start, start + side * (N::ONE - place)],
         _ => [start, start + side],
     };
-    let [leftmost, rightmost] =
-        [left, right].map(|end| end.div(N::root(end.wide(end) + away.wide(away))));
+    let sine_of = |end: N| over(end, hypotenuse(end, away));
+    let [leftmost, rightmost] = [sine_of(left), sine_of(right)];
     let width = rightmost.half() - leftmost.half();
     let sine = leftmost + width * v + width * v;
     let cosine = (N::ONE - sine * sine).sqrt();
-    let place = (away * sine).div(cosine).max(left).min(right);
+    let place = over(away * sine, cosine).max(left).min(right);
 
     let axis = |k: usize| along[k] * place + across[k] * row - normal[k] * height;
     let whole = |quarter: N| N::wide_times(quarter.scale_down(bits).widen(), 4);
