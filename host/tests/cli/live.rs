@@ -87,7 +87,7 @@ fn changes_that_do_not_fit_are_rejected() {
         ),
         (
             ["--light", "0.direction=1,0,0"],
-            "light 0 shines in all directions",
+            "light 0 has a position and no direction to change",
         ),
         (
             ["--light", "1.position=1,0,0"],
