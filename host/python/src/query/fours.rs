@@ -5,8 +5,8 @@ use super::{BATCH, Met, Question, ask_chunk};
 use crate::rays::Rays;
 use gridel_core::format::limits::MAX_STACK_DEPTH;
 use gridel_core::{Scene, Stack, Wide};
-use gridel_host::trace::{Four, Frame};
 use gridel_cpu::Avx2;
+use gridel_host::trace::{Four, Frame};
 use std::array;
 
 /// Answers a question about some rays, as [`ask_chunk`] does.
