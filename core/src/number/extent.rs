@@ -27,7 +27,7 @@ pub(crate) fn far_extent<N: Arithmetic>(coordinates: [N::Wide; 3]) -> N::Wide {
     if larger > z { larger } else { z }
 }
 
-/// The sum of the magnitudes of far coordinates.
+/// The sum of the magnitudes of far coordinates: the length of a way, or up to √3 times as much.
 #[inline(always)]
 pub(crate) fn taxicab<N: Arithmetic>(coordinates: [N::Wide; 3]) -> N::Wide {
     let [x, y, z] = coordinates.map(N::magnitude);

@@ -288,13 +288,13 @@ impl<N: Number, A: Accel, C: Observer, const EFFECTS: u32> Tracing<'_, '_, '_, N
         let mut aim = Aim {
             way,
             distance,
-            apparent: None,
+            apparent_distance: None,
         };
         All::aim::<EFFECTS, N, _>(self, &mut state, number, light, &mut aim);
         let Aim {
             way,
             distance,
-            apparent,
+            apparent_distance,
         } = aim;
         let Some((slopes, _)) = N::slopes(way) else {
             return Color::BLACK;
@@ -317,7 +317,7 @@ impl<N: Number, A: Accel, C: Observer, const EFFECTS: u32> Tracing<'_, '_, '_, N
             distance,
             to_light,
             norm,
-            apparent,
+            apparent_distance,
             facing: N::ONE,
         };
         let mut reflected = surface.diffuse.scaled(cos);

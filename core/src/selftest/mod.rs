@@ -29,9 +29,10 @@ use checks::Checks;
 /// A named test.
 type Case = (&'static str, fn(&mut Checks<'_>));
 
-const CASES: [Case; 16] = [
+const CASES: [Case; 17] = [
     ("fixed: products and quotients", numbers::products),
     ("fixed: square roots", numbers::roots),
+    ("f32: square roots", numbers::float_roots),
     ("fixed: signs of cross products", numbers::fixed_signs),
     ("f32, f64: signs of cross products", numbers::float_signs),
     ("all formats: slopes and unit vectors", numbers::vectors),

@@ -178,6 +178,21 @@ pub(super) fn float_signs(checks: &mut Checks<'_>) {
     }
 }
 
+/// Whatever instruction computes them, down to the smallest number and up to the largest.
+pub(super) fn float_roots(checks: &mut Checks<'_>) {
+    let mut random = Random(7);
+    let ends = [1, 0x007f_ffff, 0x0080_0000, 0x3f80_0001, f32::MAX.to_bits()];
+    let drawn = core::iter::repeat_with(|| random.integer(31).unsigned_abs() as u32);
+    let finite = drawn
+        .take(ROUNDS)
+        .filter(|bits| *bits < f32::INFINITY.to_bits());
+    for bits in finite.chain(ends) {
+        let x = f32::from_bits(bits);
+        let (found, expected) = (Scalar::sqrt(x).to_bits(), libm::sqrtf(x).to_bits());
+        checks.equal(format_args!("root of {bits:#x}"), found, expected);
+    }
+}
+
 pub(super) fn vectors(checks: &mut Checks<'_>) {
     // The distance from 1 to the next number.
     vectors_in::<Fixed>(checks, 1.0 / 1_073_741_824.0);

@@ -77,7 +77,7 @@ impl Effect for Environment {
         *aim = Aim {
             way,
             distance: None,
-            apparent: None,
+            apparent_distance: None,
         };
     }
 

@@ -101,7 +101,7 @@ inline_on_boards!(
         lighting: &Lighting<'_, N>,
         color: Color<N>,
     ) -> Color<N> {
-        let apparent = lighting.apparent;
+        let apparent = lighting.apparent_distance;
         let Some(distance) = apparent.or_else(|| lighting.light_distance()) else {
             return Color::BLACK;
         };

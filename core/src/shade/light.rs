@@ -58,7 +58,7 @@ impl<N: Number> Distance<N> {
         Self { half, shift: 0 }
     }
 
-    /// Returns where the light of a point is that at this distance, times twice a ratio.
+    /// Returns the distance at which the light of a point is what it is at this distance, times twice a ratio.
     #[inline(always)]
     pub(crate) fn for_twice(self, ratio: N) -> Self {
         let half = (self.half * N::ratio(ROOT_OF_HALF)).div(ratio.sqrt());

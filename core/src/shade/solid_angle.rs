@@ -50,7 +50,7 @@ pub(super) fn of_sphere<N: Number>(
         way: direction.map(N::widen),
         distance: Some(end + end),
         // A cone takes 2 s² / (1 + cos) of π, where s is the sine of its angle.
-        apparent: Some(distance.for_twice(widening)),
+        apparent_distance: Some(distance.for_twice(widening)),
     };
 }
 
@@ -70,9 +70,11 @@ fn hypotenuse<N: Number>(a: N, b: N) -> N {
 ///
 /// The light consists of rows. A row is drawn by the angle at which it lies as seen from the foot of the surface on the
 /// light's plane, and a point of the row by the angle between its ends. Both angles take part by functions without
-/// trigonometry: the tangent of half of the first, the sine of the second. So what a point brings is not the same for
-/// all: it differs by a factor of 2 at most with the angle of the row, and with the length of the row. (Drawing exactly by the solid angle needs arc cosines: Ureña, Fajardo and King, "An Area-Preserving
-/// Parametrization for Spherical Rectangles", 2013.)
+/// trigonometry: the tangent of half of the first, the sine of the second. So not all points bring the same: that
+/// differs by a factor of 2 at most with the angle of the row, and with the angle between its ends.
+///
+/// Exactly equal points need arc cosines, which `fixed` does not have: Ureña, Fajardo and King, "An Area-Preserving
+/// Parametrization for Spherical Rectangles", 2013.
 // Out of line, so that what is far away keeps the registers.
 #[cold]
 #[inline(never)]
@@ -149,6 +151,8 @@ pub(super) fn of_flat<N: Number>(
     Some(Aim {
         way,
         distance: Some(far_extent::<N>(way)),
-        apparent: Some(Distance::near(half.scale_down(bits)).for_twice(turn * narrowing * width)),
+        apparent_distance: Some(
+            Distance::near(half.scale_down(bits)).for_twice(turn * narrowing * width),
+        ),
     })
 }

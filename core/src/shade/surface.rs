@@ -87,8 +87,9 @@ pub(crate) struct Lighting<'l, N: Number> {
     pub(crate) to_light: [N; 3],
     /// The length of `way`, of whose largest component this is a multiple: 1 to the square root of 3.
     pub(crate) norm: N,
-    /// Where the light is as bright as what its point brings, if that was drawn by solid angle.
-    pub(crate) apparent: Option<Distance<N>>,
+    /// The distance at which the light is as bright as what its point brings; `None` unless that was drawn by solid
+    /// angle.
+    pub(crate) apparent_distance: Option<Distance<N>>,
     /// The cosine between the light's own direction and the way from it, if the light has a direction.
     pub(crate) facing: N,
 }
@@ -108,8 +109,9 @@ pub(crate) struct Aim<N: Number> {
     pub(crate) way: [N::Wide; 3],
     /// The distance of the light along the largest component of `way`; `None` for infinitely far.
     pub(crate) distance: Option<N::Wide>,
-    /// Where the light is as bright as what its point brings, if that was drawn by solid angle.
-    pub(crate) apparent: Option<Distance<N>>,
+    /// The distance at which the light is as bright as what its point brings; `None` unless that was drawn by solid
+    /// angle.
+    pub(crate) apparent_distance: Option<Distance<N>>,
 }
 
 /// A surface between a light and another surface.
