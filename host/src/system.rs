@@ -1,4 +1,4 @@
-//! What the program asks of the system, and does where the system has no more: memory, and room in a file.
+//! What the program does where the system's limits are reached: those of memory and of the sizes of files.
 
 use gridel_host::output::unfinished;
 use peak_alloc::PeakAlloc;
@@ -20,8 +20,8 @@ fn checked(memory: *mut u8, layout: Layout) -> *mut u8 {
     if memory.is_null() && !IS_ENDING.replace(true) {
         let _ = writeln!(
             io::stderr(),
-            "  × the system has no {} bytes of memory more\n  help: let the program have more, or ask for less: a \
-             smaller scene, another structure, fewer rays or pixels",
+            "  × there is not enough memory: {} more bytes are needed at once\n  help: let the program use more, or \
+             choose a smaller scene, another structure, fewer rays or fewer pixels",
             layout.size()
         );
         unfinished::exit_without_memory(1);
@@ -56,7 +56,7 @@ unsafe impl GlobalAlloc for Memory {
     }
 }
 
-/// Lets writing fail at the largest size of a file, where the system would end the program otherwise.
+/// Lets writing beyond the largest size of a file fail, where the system would end the program otherwise.
 pub fn keep_file_size_limits() {
     #[cfg(unix)]
     {

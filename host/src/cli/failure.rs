@@ -12,7 +12,8 @@ use textwrap::{WordSeparator, WordSplitter};
 pub const EXIT_CODES: &str = "\
 Exit codes:
   0    success
-  1    an input is invalid, a file cannot be read or written, or a check fails
+  1    an input is invalid, a file cannot be read or written, a check fails, or
+       there is not enough memory
   2    the command line is wrong, by itself or for this input
   3    the scene does not fit the given memory
   130  interrupted; no output is incomplete";
@@ -49,6 +50,11 @@ pub enum Failure {
 struct Fault {
     cause: String,
     remedy: String,
+}
+
+/// What cannot be done with a file.
+fn about(path: &Path, done: &str) -> String {
+    shown(&format!("{} cannot be {done}", path.display())).into_owned()
 }
 
 fn fault(cause: impl Into<String>, remedy: impl Into<String>) -> Report {
@@ -103,7 +109,7 @@ impl Failure {
     where
         E: Diagnostic + Send + Sync + 'static,
     {
-        Self::Failed(Report::new(error).wrap_err(format!("{} cannot be used", path.display())))
+        Self::Failed(Report::new(error).wrap_err(about(path, "used")))
     }
 
     /// A scene that cannot be compiled.
@@ -112,7 +118,7 @@ impl Failure {
             error,
             CompileError::TooLarge { .. } | CompileError::OverBudget { .. }
         );
-        let report = Report::new(error).wrap_err(format!("{} cannot be compiled", path.display()));
+        let report = Report::new(error).wrap_err(about(path, "compiled"));
         if over_budget {
             Self::Rejected(report)
         } else {

@@ -210,10 +210,10 @@ mod tests {
     /// A disc 2 above the floor, turned by 60 degrees: half as bright below it as one that faces the floor.
     #[test]
     fn points_shine_to_the_sides_to_which_areas_did() {
-        for (normal, part) in [
+        for (normal, cosine) in [
             ("[0, -1, 0]", 1.0),
             ("[3, -1.732050807568877, 0]", 0.5),
-            ("[0, 1, 0]", 0.0),
+            ("[0, 1, 0]", -1.0),
         ] {
             let text = format!(
                 "[camera]\neye = [0, 1, -4]\ntarget = [0, 0, 0]\n{FLOOR}\
@@ -224,13 +224,54 @@ mod tests {
             let LightShape::Facet { normal } = left.light_forms[0].unwrap().shape else {
                 panic!("{:?}", left.light_forms);
             };
-            assert!((normal.normalize().dot(DVec3::NEG_Y) - part).abs() < 1e-9 || part == 0.0);
+            assert!((normal.normalize().dot(DVec3::NEG_Y) - cosine).abs() < 1e-9);
             left.remove_effects(Effects::FALLOFF);
             let [Light::Point { color, .. }] = left.lights[..] else {
                 panic!("{:?}", left.lights);
             };
-            // The area over π, times the radiance, over the square of the distance.
-            assert!((color[0] - 0.1 * part).abs() < 1e-9, "{color:?} {part}");
+            // The area over π, times the radiance, over the square of the distance; nothing behind the light.
+            let expected = 0.1 * f64::max(cosine, 0.0);
+            assert!((color[0] - expected).abs() < 1e-9, "{color:?} {cosine}");
+        }
+    }
+
+    /// A spot 2 above where the camera looks, turned by 20 degrees, that is full up to 10 and ends at 30.
+    #[test]
+    fn lights_without_falloff_are_as_bright_as_where_the_camera_looks() {
+        let text = |rest: &str| {
+            format!(
+                "[camera]\neye = [0, 1, -4]\ntarget = [0, 0, 0]\n{FLOOR}\
+                 [[light]]\nposition = [0, 2, 0]\nfalloff = 'square'\ncolor = 8\n{rest}\n"
+            )
+        };
+        let [sine, cosine] = [f64::sin, f64::cos].map(|of| of(20_f64.to_radians()));
+        let spot = |inner: f64, outer: f64| {
+            format!(
+                "kind = 'spot'\ndirection = [{sine}, {}, 0]\ninner = {inner}\nouter = {outer}",
+                -cosine
+            )
+        };
+        let [full, end] = [10_f64, 30.0].map(|angle| angle.to_radians().cos());
+        for (rest, expected) in [
+            (String::from("kind = 'point'"), 2.0),
+            (
+                String::from("kind = 'point'\nrange = 4"),
+                2.0 * (1.0 - 1.0 / 16.0),
+            ),
+            (String::from("kind = 'point'\nrange = 2"), 0.0),
+            (spot(25.0, 30.0), 2.0),
+            (
+                spot(10.0, 30.0),
+                2.0 * ((cosine - end) / (full - end)).powi(2),
+            ),
+            (spot(5.0, 15.0), 0.0),
+        ] {
+            let mut left = scene(&text(&rest));
+            left.remove_effects(Effects::FALLOFF);
+            let [Light::Point { color, .. }] = left.lights[..] else {
+                panic!("{:?}", left.lights);
+            };
+            assert!((color[0] - expected).abs() < 1e-9, "{rest}: {color:?}");
         }
     }
 

@@ -109,7 +109,10 @@ fn too_little_memory_is_an_error() {
     let output = limited(&folder, "-v 1000000", &build);
     let message = String::from_utf8(output.stderr).unwrap();
     assert_eq!(output.status.code(), Some(1), "{message}");
-    assert!(message.contains("bytes of memory more"), "{message}");
+    assert!(
+        message.contains("there is not enough memory: "),
+        "{message}"
+    );
     assert!(message.contains("help: "), "{message}");
     assert_eq!(folder.names(), names);
 }

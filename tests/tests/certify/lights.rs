@@ -9,11 +9,9 @@ use gridel_core::format::light_form::LightForm;
 use gridel_core::format::record::Light;
 use gridel_host::shape::exact::{Real, Vector, cross, dot, minus, norm, scaled, unit};
 
-/// The light that a point brings which was drawn by solid angle.
+/// The light that a point brings which was drawn by solid angle: that at a distance, times twice a ratio.
 pub struct Share {
-    /// The distance at which it is,
     distance: Real,
-    /// and how much of it, over 2.
     half: Real,
 }
 

@@ -1,6 +1,7 @@
 //! Lights with an area, a falloff or a spot: pictures have the values that analysis gives.
 
-use glam::{DQuat, DVec3};
+mod near_by;
+
 use gridel_core::{Effects, Format, Settings, Structure};
 use gridel_host::blob::Blob;
 use gridel_host::compile::{Options, compile};
@@ -133,112 +134,6 @@ fn spheres_and_discs_give_the_analytic_irradiance() {
             &blob,
             radiance * square / (square + height * height),
         );
-    }
-}
-
-/// The irradiance of a polygon above a surface over its radiance, by the angles of its edges (Lambert, 1760).
-fn irradiance(polygon: &[DVec3], point: DVec3, normal: DVec3) -> f64 {
-    let next = polygon.iter().cycle().skip(1);
-    let edges = polygon
-        .iter()
-        .zip(next)
-        .map(|(&a, &b)| [a - point, b - point]);
-    let parts = edges.map(|[a, b]| a.angle_between(b) * a.cross(b).normalize().dot(normal));
-    parts.sum::<f64>().abs() / 2.0
-}
-
-/// A light just above a floor and beside a wall, as near as a hundredth of its size: below its middle, an edge and a
-/// corner, and outside of it.
-#[test]
-fn lights_near_by_give_the_analytic_irradiance() {
-    // No sample is brighter than white, to which it would be limited.
-    const RADIANCE: f64 = 0.3;
-    let given = |v: DVec3| format!("[{}, {}, {}]", v.x, v.y, v.z);
-    let (wide, long) = (DVec3::X * 80.0, DVec3::Z * 100.0);
-    for height in [1.0, 5.0, 60.0] {
-        let above = DVec3::Y * height;
-        let corner = above - (wide + long) / 2.0;
-        let rectangle = format!(
-            "kind = 'rectangle'\ncorner = {}\nedges = [{}, {}]",
-            given(corner),
-            given(wide),
-            given(long)
-        );
-        let disc = format!(
-            "kind = 'disc'\ncenter = {}\nradius = 40\nnormal = [0, -1, 0]",
-            given(above)
-        );
-        let around = |k: u32| DQuat::from_rotation_y(f64::from(k) * PI / 500.0) * DVec3::X;
-        for (light, polygon) in [
-            (
-                rectangle,
-                vec![corner, corner + wide, corner + wide + long, corner + long],
-            ),
-            (disc, (0..1000).map(|k| above - 40.0 * around(k)).collect()),
-        ] {
-            let light = format!("[[light]]\n{light}\nradiance = {RADIANCE}");
-            for [x, z] in [
-                [0.0, 0.0],
-                [-40.0, 3.0],
-                [-39.0, -49.0],
-                [43.0, 10.0],
-                [80.0, 80.0],
-            ] {
-                let (eye, target) = (format!("[{x}, 30, {z}]"), format!("[{x}, 0, {z}]"));
-                let exact = irradiance(&polygon, DVec3::new(x, 0.0, z), DVec3::Y) / PI;
-                let blob = scene(&light, &eye, &target, FLOOR);
-                check(&format!("{light} {x}"), &blob, RADIANCE * exact);
-            }
-            let wall = "[[object]]\nkind = 'box'\nmin = [41, -99, -200]\nmax = [50, 99, 200]\nmaterial = 'white'";
-            let exact = irradiance(&polygon, DVec3::new(41.0, 0.0, 2.0), DVec3::NEG_X) / PI;
-            let blob = scene(&light, "[30, 0, 2]", "[41, 0, 2]", wall);
-            check(&format!("{light} wall"), &blob, RADIANCE * exact);
-        }
-    }
-}
-
-/// Only what arrives is limited in `fixed`, and not the radiance: a bright lamp above a dark floor, from near by and from
-/// where it is drawn by area.
-#[test]
-fn bright_lights_near_by_are_as_bright_in_every_format() {
-    const DARK: &str = "[material.dark]\ndiffuse = 0.00048828125\n\
-                        [[object]]\nkind = 'box'\nmin = [-9, -1, -9]\nmax = [9, 0, 9]\nmaterial = 'dark'";
-    let down = [(-0.05, -0.05), (0.05, -0.05), (0.05, 0.05), (-0.05, 0.05)];
-    for height in [0.15, 0.25, 0.35, 0.5] {
-        let polygon = down.map(|(x, z)| DVec3::new(x, height, z));
-        let exact = 1e4 * irradiance(&polygon, DVec3::ZERO, DVec3::Y) / PI;
-        let light = format!(
-            "[[light]]\nkind = 'rectangle'\ncorner = [-0.05, {height}, -0.05]\n\
-             edges = [[0.1, 0, 0], [0, 0, 0.1]]\nradiance = 1e4"
-        );
-        let blob = scene(&light, "[0, 0.4, 0]", "[0, 0, 0]", DARK);
-        check(&format!("{height}"), &blob, exact / 2048.0);
-    }
-}
-
-/// Triangles and parallelograms that glow, just above a floor.
-#[test]
-fn surfaces_near_by_give_the_analytic_irradiance() {
-    for height in [2.0, 10.0] {
-        let corner = DVec3::new(-40.0, height, -50.0);
-        let (wide, skew) = (DVec3::X * 80.0, DVec3::new(60.0, 0.0, 90.0));
-        for polygon in [
-            vec![corner, corner + wide, corner + skew],
-            vec![corner, corner + wide, corner + wide + skew, corner + skew],
-        ] {
-            let vertices = polygon.iter().map(|v| v.to_array()).collect::<Vec<_>>();
-            let faces = (0..polygon.len()).collect::<Vec<_>>();
-            let objects = format!(
-                "{FLOOR}\n[material.lamp]\ndiffuse = 0\nemission = 0.3\n\
-                 [[object]]\nkind = 'mesh'\nvertices = {vertices:?}\nfaces = [{faces:?}]\nmaterial = 'lamp'"
-            );
-            for [x, z] in [[0.0, 0.0], [-42.0, -52.0], [20.0, 38.0]] {
-                let eye = format!("[{x}, {}, {z}]", height / 2.0);
-                let blob = scene("", &eye, &format!("[{x}, 0, {z}]"), &objects);
-                let exact = irradiance(&polygon, DVec3::new(x, 0.0, z), DVec3::Y) / PI;
-                check(&format!("{polygon:?} {x}"), &blob, 0.3 * exact);
-            }
-        }
     }
 }
 
