@@ -25,7 +25,7 @@
 //! renderer.row(0, 120, &mut row, &mut space, &mut NoCount);
 //!
 //! let ray = renderer.primary_ray(160, 120)?;
-//! let mut stack = gridel_core::Stack::<32>::new();
+//! let mut stack = gridel_core::Stack::for_any_scene();
 //! if let Some(hit) = scene.closest_hit(&ray, stack.as_view()) {
 //!     println!("object {} at {:?}", hit.object, hit.point);
 //! }

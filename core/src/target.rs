@@ -135,7 +135,7 @@ macro_rules! inline_on_hosts {
     };
 }
 
-/// As [`inline_on_hosts!`], with a hint to inline on boards.
+/// Like [`inline_on_hosts!`], with a hint to inline on boards.
 macro_rules! inline_on_hosts_hint_on_boards {
     ($function:item) => {
         #[cfg_attr(feature = "wide", inline(always))]

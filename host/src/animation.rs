@@ -8,7 +8,7 @@ use gif::{Encoder, Frame, Repeat};
 use std::io::{self, Write};
 use std::path::Path;
 
-/// How an animation is stored; all of them repeat without end.
+/// A file format of animations; all of them repeat without end.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum AnimationFormat {
     /// Animated PNG, 8 bits per channel, sRGB.
@@ -32,7 +32,7 @@ pub struct Animation {
 pub type NextPicture<'p> = &'p mut dyn FnMut(u32) -> io::Result<Vec<u8>>;
 
 impl AnimationFormat {
-    /// The format that a file's extension names: `apng` or `gif`.
+    /// Returns the format that a file's extension names: `apng` or `gif`.
     ///
     /// ```
     /// use gridel_host::animation::AnimationFormat;
@@ -49,7 +49,7 @@ impl AnimationFormat {
         }
     }
 
-    /// The most pictures per second that programs show.
+    /// Returns the most pictures per second that programs show.
     pub fn most_per_second(self) -> u16 {
         match self {
             Self::Apng => 1000,
@@ -222,7 +222,7 @@ impl NumberedName {
         }
     }
 
-    /// The name with a number.
+    /// Returns the name with a number.
     pub fn of(&self, number: u32) -> String {
         let Self {
             before,

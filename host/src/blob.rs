@@ -46,7 +46,7 @@ const _: () =
     assert!(align_of::<u128>() == SECTION_ALIGNMENT && size_of::<u128>() == SECTION_ALIGNMENT);
 
 impl Buffer {
-    /// So many zeros.
+    /// Returns a buffer with this number of zero bytes.
     pub(crate) fn zeros(length: usize) -> Self {
         Self {
             words: vec![0; length.div_ceil(SECTION_ALIGNMENT)],
@@ -85,7 +85,7 @@ impl Blob {
         std::fs::read(path).map(|bytes| Self::new(&bytes))
     }
 
-    /// The bytes.
+    /// Returns the bytes.
     pub fn bytes(&self) -> &[u8] {
         self.0.borrow_owner().bytes()
     }
@@ -95,7 +95,7 @@ impl Blob {
         bytemuck::from_bytes(&self.bytes()[..size_of::<Header>()])
     }
 
-    /// The checked view, for queries with [these instructions](crate::simd::level).
+    /// Returns the checked view, for queries with [these instructions](crate::simd::level).
     pub fn scene(&self) -> Result<Scene<'_>, gridel_core::BlobError> {
         // The scene's own faults come first: without a header that is read no part is.
         match self.0.borrow_dependent() {

@@ -70,7 +70,7 @@ impl<T: Copy> Memory<T> for Grown<T> {
     }
 }
 
-/// A deformation of a scene, at rest.
+/// Returns a deformation of a scene, at rest.
 ///
 /// # Errors
 /// If the blob holds structures that cannot be refitted, or its vertices have another type.

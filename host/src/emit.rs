@@ -12,7 +12,7 @@ use std::path::Path;
 pub const MODULE: &str = "scene.rs";
 pub const BLOB: &str = "scene.gridel";
 
-/// How every module begins.
+/// The first line of every module.
 const FIRST: &str = "// Written by `gridel build --emit-rust`";
 
 /// Returns whether a file is such a module.
@@ -39,13 +39,13 @@ pub struct Emitted<'s> {
 }
 
 impl Emitted<'_> {
-    /// The Cargo features of `gridel-core` that the scene requires.
+    /// Returns the Cargo features of `gridel-core` that the scene requires.
     pub fn features(&self) -> Vec<&'static str> {
         let structure = Some(self.structure.name()).filter(|_| self.structure != Structure::List);
         structure.into_iter().chain(self.scene.features()).collect()
     }
 
-    /// The module's text.
+    /// Returns the module's text.
     ///
     /// ```
     /// # use gridel_host::compile::{Options, compile};
@@ -126,10 +126,10 @@ impl Emitted<'_> {
              pub const WIDTH: usize = {width};\n\
              /// Rows.\n\
              pub const HEIGHT: usize = {height};\n\
-             /// A step of `gridel_core::Position` is 2 to this power scene units.\n\
+             /// A coordinate step, that of `gridel_core::Position`, is 2 to this power scene units.\n\
              #[allow(dead_code)]\n\
              pub const COORDINATE_EXPONENT: i32 = {exponent};\n\
-             /// Where coordinates are counted from, in scene units.\n\
+             /// The place from which coordinates are counted, in scene units.\n\
              #[allow(dead_code)]\n\
              pub const COORDINATE_ORIGIN: [f64; 3] = {origin:?};\n\
              {unit}\
@@ -138,10 +138,10 @@ impl Emitted<'_> {
              pub type Number = {number};\n\
              /// The acceleration structure.\n\
              pub type Accel = gridel_core::{structure};\n\
-             /// A traversal stack for rays of one's own, exactly deep enough.\n\
+             /// A traversal stack for other queries, exactly deep enough.\n\
              #[allow(dead_code)]\n\
              pub type Stack = gridel_core::Stack<STACK_DEPTH>;\n\
-             /// All that pictures write to beside their pixels, exactly large enough.\n\
+             /// All memory that rendering writes to, except pixels, exactly large enough.\n\
              #[allow(dead_code)]\n\
              pub type Space = gridel_core::Workspace<Number, STACK_DEPTH, WORK_DEPTH>;\n\
              /// The renderer, with the code of the scene's effects.\n\
@@ -153,24 +153,24 @@ impl Emitted<'_> {
              \n\
              const BYTES: &[u8] = include_bytes!(\"{BLOB}\");\n\
              \n\
-             // A blob that asks for more than this was written for does not compile.\n\
+             // A blob that requires more than this was written for does not compile.\n\
              #[allow(long_running_const_eval)]\n\
              const _: () = {{\n    \
-             let Ok(demand) = gridel_core::Requirements::of(BYTES) else {{\n        \
+             let Ok(required) = gridel_core::Requirements::of(BYTES) else {{\n        \
              panic!(\"the blob was cut off: write it and this module again\")\n    }};\n    \
-             assert!(\n        gridel_core::Effects(EFFECTS).contains(demand.effects),\n        \
+             assert!(\n        gridel_core::Effects(EFFECTS).contains(required.effects),\n        \
              \"the blob requires effects beyond EFFECTS: write this module again\"\n    );\n    \
-             assert!(\n        demand.stack_depth <= STACK_DEPTH,\n        \
+             assert!(\n        required.stack_depth <= STACK_DEPTH,\n        \
              \"the blob outgrew STACK_DEPTH: write this module again\"\n    );\n    \
-             assert!(\n        demand.work_depth <= WORK_DEPTH,\n        \
+             assert!(\n        required.work_depth <= WORK_DEPTH,\n        \
              \"the blob outgrew WORK_DEPTH: write this module again\"\n    );\n    \
-             assert!(\n        demand.parts <= PARTS,\n        \
+             assert!(\n        required.parts <= PARTS,\n        \
              \"the blob outgrew PARTS: write this module again\"\n    );\n    \
-             assert!(\n        demand.width == WIDTH && demand.height == HEIGHT,\n        \
+             assert!(\n        required.width == WIDTH && required.height == HEIGHT,\n        \
              \"the blob's picture has another size: write this module again\"\n    );\n    \
-             assert!(\n        demand.holds(gridel_core::Structure::{structure}),\n        \
+             assert!(\n        required.holds(gridel_core::Structure::{structure}),\n        \
              \"the blob does not hold the structure of Accel: write this module again\"\n    );\n    \
-             if let Some(missing) = demand.missing() {{\n        \
+             if let Some(missing) = required.missing() {{\n        \
              panic!(\"{{}}\", missing)\n    }}\n\
              {budget}\
              }};\n",
@@ -178,7 +178,7 @@ impl Emitted<'_> {
             mesh = self.mesh(),
             stack = scene.stack_depth(),
             exponent = scene.coordinate_exponent(),
-            origin = coordinate_origin(scene),
+            origin = scene.header().coordinate_origin(),
             unit = scene_unit(scene.coordinate_exponent()),
             waiting = scene.effects().work_depth(view.depth),
             effects = effects,
@@ -189,23 +189,14 @@ impl Emitted<'_> {
     }
 }
 
-/// Where scene coordinates are counted from: the scene's own origin, or the lattice's where that is too far away.
-fn coordinate_origin(scene: &Scene<'_>) -> [f64; 3] {
-    let header = scene.header();
-    match header.coordinate_origin {
-        0 => header.origin,
-        _ => [0.0; 3],
-    }
-}
-
-/// The constant that states a scene unit in steps; nothing where a step is longer than a unit, or the number is beyond
-/// 64 bits.
+/// The constant that states a scene unit in coordinate steps; nothing where a step is longer than a unit, or the number
+/// is beyond 64 bits.
 fn scene_unit(exponent: i32) -> String {
     if !(-62..=0).contains(&exponent) {
         return String::new();
     }
     format!(
-        "/// A scene unit in steps of `gridel_core::Position`.\n\
+        "/// A scene unit in coordinate steps, those of `gridel_core::Position`.\n\
          #[allow(dead_code)]\n\
          pub const UNIT: i64 = 1 << {};\n",
         -exponent
@@ -213,7 +204,8 @@ fn scene_unit(exponent: i32) -> String {
 }
 
 impl Emitted<'_> {
-    /// How many morph targets the scene has, and the type of its own deforming mesh; nothing where no vertex moves.
+    /// Returns the number of morph targets and the type of the scene's own deforming mesh as Rust; nothing if no vertex
+    /// moves.
     fn mesh(&self) -> String {
         let tracks = Tracks::from_bytes(self.blob).ok();
         let targets = tracks.map_or(0, |tracks| tracks.weights_at_rest().len());

@@ -6,7 +6,7 @@ use std::io::{self, Write};
 use std::ops::Range;
 use std::path::Path;
 
-/// How linear values are stored.
+/// A file format of linear values.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum LinearFormat {
     /// NumPy's array file: one layer.
@@ -16,7 +16,7 @@ pub enum LinearFormat {
 }
 
 impl LinearFormat {
-    /// The format that a file's extension names: `npy` or `exr`.
+    /// Returns the format that a file's extension names: `npy` or `exr`.
     ///
     /// ```
     /// use gridel_host::layer::LinearFormat;

@@ -16,7 +16,7 @@
 //! | move the vertices of a mesh | [`deformation`], [`morphed`] |
 //! | compare structures on a scene | [`compare`] |
 //! | put parts of a picture together, and pictures into an animation | [`merge`], [`animation`] |
-//! | trace rays of one's own | [`trace`], and [`npy`] for NumPy's files |
+//! | trace rays of the caller | [`trace`], and [`npy`] for NumPy's files |
 //! | explain a ray or a pixel | [`explain`] |
 //! | view a scene live, from coarse to fine | [`view`] |
 //! | measure what accuracy costs in time | [`accuracy`] |

@@ -68,7 +68,7 @@ fn upright(view: &View) -> Option<DVec3> {
 }
 
 impl Light {
-    /// A light of a blob.
+    /// Returns a light of a blob.
     pub fn of_blob(scene: &Scene<'_>, light: &record::Light) -> Self {
         let color = light.color.map(|channel| f64::from(channel) / exp2(20));
         if light.directional == 1 {
@@ -80,7 +80,7 @@ impl Light {
         }
     }
 
-    /// This light as a record of a blob.
+    /// Returns this light as a record of a blob.
     ///
     /// # Errors
     /// If it lies too far away.

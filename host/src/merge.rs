@@ -22,7 +22,7 @@ pub struct Part {
     pixels: Vec<u8>,
 }
 
-/// Why a file is no part of a picture.
+/// The reason why a file is not a part of a picture.
 #[derive(Debug, thiserror::Error)]
 pub enum PartError {
     #[error("it cannot be read: {0}")]
@@ -41,7 +41,7 @@ pub enum PartError {
     Rows { rows: Range<u16>, found: u32 },
 }
 
-/// Why parts make no picture; parts are numbered in the order in which they were added.
+/// The reason why parts do not make a picture. Parts are numbered in the order in which they were added.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum MergeError {
     /// Two parts are of pictures of different sizes: width and height of each.
@@ -195,7 +195,7 @@ fn read_ppm(mut input: impl BufRead) -> Result<Read4, PartError> {
 pub struct Merge {
     /// Width and height, once there is a part.
     size: Option<[u32; 2]>,
-    /// How the first part was made.
+    /// The metadata of the first part.
     made: Vec<(String, String)>,
     /// For each row, the part that it came with, and its pixels.
     rows: Vec<Option<(usize, Vec<u8>)>>,
@@ -240,7 +240,7 @@ impl Merge {
         self.size
     }
 
-    /// The pixels of the whole picture.
+    /// Returns the pixels of the whole picture.
     ///
     /// # Errors
     /// If rows are missing.

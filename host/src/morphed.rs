@@ -11,7 +11,7 @@ use gridel_core::{BlobError, Scene};
 use std::mem::offset_of;
 use std::ops::Range;
 
-/// Why a blob cannot have these weights.
+/// The reason why a blob cannot have these weights.
 #[derive(Debug, thiserror::Error)]
 pub enum MorphError {
     /// The blob is not valid.
@@ -22,9 +22,9 @@ pub enum MorphError {
     Deform(#[from] DeformError),
 }
 
-/// Returns the blob of a scene with vertices, normals and boxes as its morph targets have them with these weights, which have 24 fraction
-/// bits; `None` if no vertex moves. A device that [morphs](gridel_core::deform::DeformationIn::morph) its meshes sees the
-/// same, bit for bit.
+/// Returns the blob of a scene with vertices, normals and boxes as its morph targets have them with these weights,
+/// which have 24 fraction bits; `None` if no vertex moves. A device that
+/// [morphs](gridel_core::deform::DeformationIn::morph) its meshes sees the same, bit for bit.
 ///
 /// ```
 /// # let file = "[morph.up]\n[[object]]\nkind = 'triangle'\nvertices = [[0, 0, 0], [1, 0, 0], [0, 1, 0]]\n\
@@ -43,8 +43,8 @@ pub enum MorphError {
 /// ```
 ///
 /// # Errors
-/// If there are more or fewer weights than morph targets, one is beyond ±64, or a mesh cannot be so. Also if the scene is
-/// not the blob's.
+/// If there are more or fewer weights than morph targets, one is beyond ±64, or a mesh cannot be so. Also if the scene
+/// is not the blob's.
 pub fn morphed(
     blob: &Blob,
     scene: &Scene<'_>,
@@ -132,7 +132,7 @@ fn section(blob: &[u8], kind: SectionKind) -> Option<SectionEntry> {
     entries.iter().find(|it| it.kind == kind as u16).copied()
 }
 
-/// Where a valid blob lies, and those of its parts.
+/// Returns the byte ranges of a valid blob and of its parts.
 fn blob_ranges(blob: &[u8]) -> Result<Vec<Range<usize>>, BlobError> {
     let start = blob.as_ptr() as usize;
     let parts = gridel_core::scene::part_blobs(blob)?;

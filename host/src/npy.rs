@@ -10,7 +10,7 @@ use crate::trace::{SceneHit, SceneRay};
 use glam::DVec3;
 use std::io::{self, Write};
 
-/// Why a file holds no rays.
+/// The reason why a file does not contain rays.
 #[derive(Debug, PartialEq, thiserror::Error, miette::Diagnostic)]
 pub enum RaysError {
     #[error("it is not a NumPy array file: it does not begin with \\x93NUMPY")]

@@ -6,8 +6,8 @@ use std::any::Any;
 /// Receives a ray that was cast: a [`Ray`](gridel_core::Ray) of some number format.
 pub type RaySink<'s> = &'s mut dyn FnMut(RayKind, &dyn Any);
 
-/// Counts, radiance and rays. One type for all of them: the code that traces rays through all structures is compiled for
-/// every observer, in every number format.
+/// Counts, radiance and rays. One type for all of them: the code that traces rays through all structures is compiled
+/// for every observer, in every number format.
 #[derive(Default)]
 pub struct Observed<'s> {
     pub counters: Counters,
@@ -25,8 +25,8 @@ impl Observer for Observed<'_> {
         self.counters.boxes(number);
     }
 
-    fn objects(&mut self, number: u32) {
-        self.counters.objects(number);
+    fn primitives(&mut self, number: u32) {
+        self.counters.primitives(number);
     }
 
     fn cells(&mut self, number: u32) {

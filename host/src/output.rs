@@ -33,7 +33,7 @@ pub fn check_writable(path: &Path) -> io::Result<()> {
     }
 }
 
-/// Where a file is, or would be if it were there: the same for all paths that lead to it.
+/// Returns the place of a file, which need not exist: the same for all paths that lead to it.
 pub fn place(path: &Path) -> PathBuf {
     let path = std::path::absolute(path).unwrap_or_else(|_| path.to_owned());
     let real = path.ancestors().find_map(|ancestor| {

@@ -28,7 +28,7 @@ pub fn hash(pixels: &[[u16; 3]]) -> String {
     format!("{hash:016x}")
 }
 
-/// How a picture is stored.
+/// A file format of pictures.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum PictureFormat {
     /// PNG, 8 bits per channel, sRGB.
@@ -41,7 +41,7 @@ pub enum PictureFormat {
 }
 
 impl PictureFormat {
-    /// The format that a file's extension names: `png`, `ppm` or `rgb565`.
+    /// Returns the format that a file's extension names: `png`, `ppm` or `rgb565`.
     ///
     /// ```
     /// use gridel_host::picture::PictureFormat;
@@ -99,7 +99,7 @@ impl PictureFormat {
     }
 }
 
-/// A picture as sRGB, three bytes per pixel.
+/// Converts a picture to sRGB, three bytes per pixel.
 pub fn srgb(picture: &Picture, dither: bool) -> Vec<u8> {
     let pixels: Vec<Rgb888> = encoded(picture, dither);
     bytemuck::cast_slice(&pixels).to_vec()

@@ -11,7 +11,7 @@ use std::any::Any;
 /// Most rays of one picture.
 pub const MOST_RAYS: usize = 1 << 22;
 
-/// Why a picture's rays cannot be cast.
+/// The reason why a picture's rays cannot be cast.
 #[derive(Debug, thiserror::Error, miette::Diagnostic)]
 pub enum PictureRaysError {
     #[error("the picture of {pixels} pixels casts more than {most} rays")]
@@ -25,11 +25,11 @@ pub enum PictureRaysError {
 /// The rays of a picture, in the order of its pixels.
 #[derive(Clone, Debug, Default)]
 pub struct PictureRays<N: Number> {
-    /// From the camera.
+    /// Rays from the camera.
     pub primary: Vec<Ray<N>>,
-    /// Towards lights.
+    /// Rays towards lights.
     pub shadow: Vec<Ray<N>>,
-    /// Off mirrors, glass and diffuse surfaces, and through glass.
+    /// Rays off mirrors, glass and diffuse surfaces, and through glass.
     pub bounced: Vec<Ray<N>>,
 }
 
@@ -99,7 +99,7 @@ impl<N: Number> PictureRays<N> {
         rays
     }
 
-    /// All rays.
+    /// Returns all rays.
     pub fn count(&self) -> usize {
         self.primary.len() + self.shadow.len() + self.bounced.len()
     }

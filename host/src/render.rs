@@ -50,7 +50,7 @@ pub struct Job {
 }
 
 impl Job {
-    /// All rows, without counting.
+    /// Returns all rows, without counting.
     pub fn whole(format: Format, structure: Structure, settings: Settings) -> Self {
         Self {
             format,
@@ -159,7 +159,7 @@ pub(crate) type Tracer<'s> = dyn Fn([u16; 2], &mut [[u16; 3]]) -> Option<Cost> +
 /// The cost of a part of a row in total, and of each of its pixels.
 pub(crate) type Cost = (Counters, Vec<u32>);
 
-/// A new tracer, or the reason why there is none.
+/// Returns a new tracer, or the reason why there is none.
 type NewTracer<'s> = Result<Box<Tracer<'s>>, RenderError>;
 
 /// Sets of effects that the ray loop is compiled for; a scene gets the first that has all of its.
@@ -218,7 +218,7 @@ pub(crate) fn chosen<'a>(
     chosen.ok_or(RenderError::Structure(structure))
 }
 
-/// Through a structure of its own, with no code for effects that the plainer scenes do without.
+/// Returns a tracer through one structure. Plain scenes get one without code for effects that they do not use.
 fn fast<'s, N: Number, A: Accel + 's>(moments: &'s [Scene<'_>], job: &Job) -> NewTracer<'s> {
     let plain = moments
         .iter()
@@ -288,7 +288,7 @@ fn counted_row<N: Number, A: Accel, const EFFECTS: u32>(
     let mut work = Vec::with_capacity(pixels.len());
     let mut total = Counters::default();
     let counted = |Observed { counters, .. }: Observed<'_>| {
-        work.push((counters.boxes + counters.objects).min(u32::MAX.into()) as u32);
+        work.push((counters.boxes + counters.primitives).min(u32::MAX.into()) as u32);
         total = total.plus(&counters);
     };
     render_row(renderers, first, pixels, Observed::default, counted);

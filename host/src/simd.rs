@@ -1,4 +1,4 @@
-//! Which instructions queries use: the best that the processor has, unless the environment chooses.
+//! The instructions that queries use: the best that the processor has, unless the environment chooses.
 
 use gridel_core::SimdLevel;
 use std::sync::OnceLock;
@@ -6,13 +6,13 @@ use std::sync::OnceLock;
 /// The environment variable that names a level, to compare levels on one machine.
 const VARIABLE: &str = "GRIDEL_SIMD";
 
-/// The level for scenes of this program.
+/// Returns the level for scenes of this program.
 pub fn level() -> SimdLevel {
     static LEVEL: OnceLock<SimdLevel> = OnceLock::new();
     *LEVEL.get_or_init(|| from_environment().unwrap_or_else(|_| SimdLevel::detect()))
 }
 
-/// The level that the environment names, or else the processor's best.
+/// Returns the level that the environment names, or else the processor's best.
 ///
 /// # Errors
 /// If the environment names a level that is unknown, or that this processor does not have.

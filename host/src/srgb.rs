@@ -1,7 +1,7 @@
 //! The curve of sRGB (IEC 61966-2-1), with the powers of `libm`: those of the standard library differ from one machine
 //! to another.
 
-/// The linear value of a channel in sRGB, 0 to 1. The curve goes on above 1.
+/// Returns the linear value of a channel in sRGB, 0 to 1. The curve goes on above 1.
 ///
 /// ```
 /// assert!((gridel_host::srgb::linear_of_srgb(0.5) - 0.21404).abs() < 1e-5);
@@ -14,7 +14,7 @@ pub fn linear_of_srgb(encoded: f64) -> f64 {
     }
 }
 
-/// The channel in sRGB of a linear value, 0 to 1.
+/// Returns the channel in sRGB of a linear value, 0 to 1.
 ///
 /// ```
 /// assert!((gridel_host::srgb::srgb_of_linear(0.21404) - 0.5).abs() < 1e-5);

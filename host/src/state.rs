@@ -48,11 +48,11 @@ pub struct Poses {
 }
 
 impl Poses {
-    /// The instances of a scene, as it was loaded, at a time in ticks; `None` where none hangs on a joint.
+    /// Returns the instances of a scene, as it was loaded, at a time in ticks; `None` where none hangs on a joint.
     ///
     /// # Errors
-    /// If an instance leaves the scene's box, which those of a compiled scene do not, or the tracks are not those of the
-    /// scene's blob.
+    /// If an instance leaves the scene's box, which those of a compiled scene do not, or the tracks are not those of
+    /// the scene's blob.
     pub fn at(
         scene: &Scene<'_>,
         tracks: &Tracks<'_>,
@@ -94,7 +94,7 @@ impl Poses {
         }
     }
 
-    /// The scene with its instances here.
+    /// Returns the scene with its instances here.
     ///
     /// # Errors
     /// If they are those of another scene.
@@ -103,7 +103,7 @@ impl Poses {
     }
 }
 
-/// Why a scene has no state at a time.
+/// The reason why a scene has no state at a time.
 #[derive(Debug, thiserror::Error)]
 pub enum StateError {
     /// The camera is invalid at this time, in seconds.
@@ -121,7 +121,7 @@ pub enum StateError {
 }
 
 impl State {
-    /// The state of a blob's scene at a time, in ticks of its tracks.
+    /// Returns the state of a blob's scene at a time, in ticks of its tracks.
     ///
     /// # Errors
     /// If the camera would have no direction or would look along up, an instance leaves the scene's box, or the corners
@@ -159,7 +159,7 @@ impl State {
         })
     }
 
-    /// The scene in this state. Where meshes have moved, it is that of another blob.
+    /// Returns the scene in this state. Where meshes have moved, it is that of another blob.
     ///
     /// # Errors
     /// If a value is out of its range, which that of a track never is.
@@ -177,8 +177,8 @@ impl State {
     }
 }
 
-/// The materials of a scene with a trace of all that the tracks of its blob raise from 0. [`Scene::with_materials`] of
-/// them makes a scene that requires the effects of all times.
+/// Returns the materials of a scene with a trace of all that the tracks of its blob raise from 0.
+/// [`Scene::with_materials`] of them makes a scene that requires the effects of all times.
 ///
 /// ```
 /// # use gridel_host::compile::{Options, compile};
@@ -216,14 +216,14 @@ pub fn raised_materials(scene: &Scene<'_>, blob: &[u8]) -> Vec<Material> {
     materials
 }
 
-/// The nearest tick to a time in seconds; one out of range is the first or the last.
+/// Returns the nearest tick to a time in seconds; one out of range is the first or the last.
 pub fn ticks(tracks: &Tracks<'_>, seconds: f64) -> i32 {
     // The cast saturates.
     (seconds * f64::from(tracks.ticks_per_second())).round() as i32
 }
 
-/// The moments while a shutter is open for some ticks from a time on: the middles of equal parts, in ticks. One out of
-/// range is the first or the last tick.
+/// Returns the moments while a shutter is open for some ticks from a time on: the middles of equal parts, in ticks. One
+/// out of range is the first or the last tick.
 ///
 /// ```
 /// use gridel_host::state::exposed;

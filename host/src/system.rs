@@ -1,4 +1,4 @@
-//! What the program does where the system's limits are reached: those of memory and of the sizes of files.
+//! Behavior of the program at the system's limits of memory and file sizes.
 
 use gridel_host::output::unfinished;
 use peak_alloc::PeakAlloc;
@@ -10,11 +10,11 @@ use std::io::{self, Write};
 pub struct Memory(pub PeakAlloc);
 
 thread_local! {
-    /// Whether this thread is ending the program.
+    /// True if this thread is ending the program.
     static IS_ENDING: Cell<bool> = const { Cell::new(false) };
 }
 
-/// Passes memory on; where there is none, ends the program.
+/// Returns the memory; ends the program if it is null.
 fn checked(memory: *mut u8, layout: Layout) -> *mut u8 {
     // What ending the program needs may be missing, too; then it aborts.
     if memory.is_null() && !IS_ENDING.replace(true) {

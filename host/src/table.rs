@@ -3,7 +3,7 @@
 use std::borrow::Cow;
 use std::fmt;
 
-/// On which side a column's cells line up.
+/// The alignment of a column's cells.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Align {
     Left,
@@ -26,7 +26,7 @@ pub struct Table {
 }
 
 impl Table {
-    /// A table with a line of titles.
+    /// Returns a table with a line of titles.
     pub fn new<'c>(columns: impl IntoIterator<Item = (&'c str, Align)>) -> Self {
         let columns = columns.into_iter();
         let (titles, columns) = columns
@@ -74,7 +74,7 @@ impl fmt::Display for Table {
     }
 }
 
-/// A whole number, not negative, with a comma before every third digit from its end.
+/// Formats a whole number, not negative, with a comma before every third digit from its end.
 ///
 /// ```
 /// assert_eq!(gridel_host::table::grouped(1_234_567), "1,234,567");
@@ -91,7 +91,7 @@ pub fn grouped(number: impl ToString) -> String {
     text
 }
 
-/// A number of things: `1 thread`, `2 threads`, `3 meshes`, `4 entries`.
+/// Formats a number of things: `1 thread`, `2 threads`, `3 meshes`, `4 entries`.
 ///
 /// ```
 /// assert_eq!(gridel_host::table::counted(2, "mesh"), "2 meshes");
@@ -109,7 +109,7 @@ pub fn counted(number: usize, thing: &str) -> String {
     format!("{} {things}", grouped(number))
 }
 
-/// A power of two, so that it can be recognized, and its size: `2^-20 = 9.537e-7`.
+/// Formats a power of two, so that it can be recognized, and its size: `2^-20 = 9.537e-7`.
 pub fn power_of_two(power: f64) -> String {
     format!("2^{} = {power:.3e}", power.log2().round())
 }
@@ -173,7 +173,7 @@ pub fn printable(name: &str) -> String {
     escaped.replace("\\\"", "\"").replace("\\'", "'")
 }
 
-/// A number with six digits that count, and without zeros that do not.
+/// Formats a number with six significant digits, without trailing zeros.
 ///
 /// ```
 /// assert_eq!(gridel_host::table::significant(0.1 + 0.2), "0.3");

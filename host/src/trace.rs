@@ -60,7 +60,7 @@ pub struct SceneHit {
 }
 
 impl SceneHit {
-    /// Nothing was met.
+    /// The answer for a ray that misses.
     pub const MISS: Self = Self {
         t: f64::INFINITY,
         object: u32::MAX,
@@ -90,7 +90,7 @@ impl SceneHit {
     }
 }
 
-/// How to trace.
+/// Options for tracing.
 #[derive(Clone, Copy, Debug)]
 pub struct Query {
     pub format: Format,
@@ -178,7 +178,7 @@ pub fn trace(
 /// };
 /// let mut counters = Counters::default();
 /// trace_counted(&scene, &[down], query, &mut [SceneHit::MISS], &mut counters)?;
-/// assert_eq!(counters.objects, 1);
+/// assert_eq!(counters.primitives, 1);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 pub fn trace_counted(

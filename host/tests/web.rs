@@ -42,7 +42,7 @@ fn main() {
         _ => "",
     };
     let is_required = page.is_some() && browser::is_required();
-    let tests: [Test; 8] = [
+    let tests: [Test; 10] = [
         ("web_page_is_small", page_is_small),
         ("web_page_draws_the_pixels_of_the_program", pixels_equal),
         ("web_page_follows_mouse_and_keys", camera_follows),
@@ -52,7 +52,15 @@ fn main() {
             "web_page_keeps_the_scene_before_a_broken_one",
             opening::scene_stays,
         ),
+        (
+            "web_page_stops_compiling_for_another_scene",
+            opening::compiling_stops,
+        ),
         ("web_page_answers_while_it_draws", answers_soon),
+        (
+            "web_page_stops_measuring_and_restores_settings",
+            sweep_stops,
+        ),
         (
             "web_page_fits_phones_and_names_everything",
             page_is_accessible,
@@ -237,7 +245,7 @@ fn answers(page: &Page) {
 
     // All number formats, one after the other.
     browser.click("//*[@id='measure']");
-    browser.wait("document.getElementById('measure').ariaDisabled !== 'true'");
+    browser.wait("document.getElementById('measure').textContent === 'Measure all'");
     settle(&browser);
     let rows = content(&browser, "rows");
     for format in ["fixed", "f32", "f64"] {
@@ -267,14 +275,16 @@ fn answers(page: &Page) {
     browser.command("Page.setDownloadBehavior", downloads);
     browser.wait("document.getElementById('memory').textContent.includes('dual-split')");
     let report = content(&browser, "memory");
-    let inspected = page
-        .files
-        .done(&["inspect", "quick.toml", "--target", "stm32vldiscovery"]);
-    assert!(inspected.contains(report.trim()), "{report}\n{inspected}");
     let expected = page.files.path("expected.gridel").display().to_string();
     page.files.done(&["build", "quick.toml", "-o", &expected]);
     browser.click("//*[@id='save-blob']");
     assert!(page.saved("quick.gridel") == page.files.read("expected.gridel"));
+    // The report is of the blob that was saved.
+    let board = "stm32vldiscovery";
+    let inspect = ["inspect", "quick.gridel", "--target", board];
+    let inspected = page.files.done(&inspect);
+    assert!(inspected.contains(report.trim()), "{report}\n{inspected}");
+    assert!(report.contains("name-text"), "{report}");
     page.files.done(&[
         "render",
         "quick.toml",
@@ -303,6 +313,22 @@ fn answers(page: &Page) {
     page.files.done(&[&build[..], &[&expected]].concat());
     assert!(page.saved("quick.gridel") == page.files.read("expected.gridel"));
     settle(&browser);
+
+    // Pixels outside of the picture are errors.
+    for (column, message) in [
+        ("320", "Column 320 is not in the picture"),
+        ("-1", "Column -1 is not in the picture"),
+        ("1.5", "Column 1.5 is not in the picture"),
+        ("", "Column has no number"),
+    ] {
+        browser.script(&format!(
+            "document.getElementById('pixel-x').value = '{column}';
+             document.getElementById('explain').click()"
+        ));
+        let summary = content(&browser, "summary");
+        assert!(summary.starts_with(message), "{summary}");
+        assert!(summary.ends_with("from 0 to 319."), "{summary}");
+    }
 
     // Instances have their names.
     page.files.write(
@@ -352,9 +378,55 @@ fn answers_soon(page: &Page) {
     let first_share = "return Math.min(...[...window.shares].filter((it) => it > 0))";
     let first_share: f64 = browser.text(first_share).parse().unwrap();
     assert!(first_share < 0.02, "{first_share}");
+    browser
+        .wait("document.getElementById('status').textContent.startsWith('Drawing, 256 samples')");
+    // A picture is saved once it is finished.
+    let downloads = json!({"behavior": "allow", "downloadPath": page.files.path("")});
+    browser.command("Page.setDownloadBehavior", downloads);
+    browser.click("//*[@id='save-picture']");
+    let waits = "The picture will be saved when it is finished";
+    assert!(content(&browser, "status").contains(waits));
     samples(1);
     settle(&browser);
     assert!(shown(&browser) == first);
+    let setting = ["--format", "f32", "--accel", "dual-split"];
+    let render = ["render", "quick.toml", "-o", "expected.png"];
+    page.files.done(&[&render[..], &setting].concat());
+    assert!(page.saved("quick.png") == page.files.read("expected.png"));
+    assert!(!content(&browser, "status").contains(waits));
+    assert_no_message(&browser);
+}
+
+fn sweep_stops(page: &Page) {
+    let browser = page.open();
+    choose(&browser, "sample", "quick.toml");
+    choose(&browser, "samples", "4");
+    browser.script("document.getElementById('sweep').value = 'bits'");
+    let bits = || browser.text("return document.getElementById('bits').value");
+    let button = "document.getElementById('measure').textContent";
+    let begin = || {
+        browser.script("document.documentElement.dataset.state = 'wait'");
+        browser.click("//*[@id='measure']");
+        browser.wait("document.getElementById('bits').value < 24");
+        assert_eq!(browser.text(&format!("return {button}")), "Stop");
+    };
+    let stopped = || {
+        browser.wait(&format!("{button} === 'Measure all'"));
+        settle(&browser);
+        assert_eq!(bits(), "24");
+    };
+    begin();
+    browser.click("//*[@id='measure']");
+    stopped();
+    begin();
+    browser.script("document.getElementById('canvas').focus()");
+    browser.keys(&[RIGHT]);
+    stopped();
+    // What was changed meanwhile stays.
+    begin();
+    choose(&browser, "samples", "2");
+    stopped();
+    assert_eq!(content(&browser, "status").matches("2 samples").count(), 1);
     assert_no_message(&browser);
 }
 

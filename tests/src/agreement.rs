@@ -111,7 +111,7 @@ fn compare_one<N: Number>(
     // With instances the scene's box is larger than that of its own objects, and so are boxes of flagged nodes that
     // share its sides.
     if scene.instances().is_empty() {
-        let work = |counters: &Counters| (counters.boxes, counters.objects);
+        let work = |counters: &Counters| (counters.boxes, counters.primitives);
         assert_eq!(work(&plain_work), work(&flagged_work), "{}", about());
         let planes = |counters: &Counters| counters.planes - 6;
         let (plain_planes, flagged_planes) = (planes(&plain_work), planes(&flagged_work));

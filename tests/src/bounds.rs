@@ -38,7 +38,7 @@ fn table(bound: impl Fn(&Named) -> (f64, &'static str)) -> Vec<Bound> {
     bounds.collect()
 }
 
-/// By how many units of last place a normal's length may differ from 1.
+/// Largest difference of a normal's length from 1, in units of last place.
 pub const NORMAL_LENGTH: f64 = 4.0;
 
 /// The bound of a table for a shape.

@@ -33,7 +33,7 @@ pub static BOUNDED: LazyLock<Vec<usize>> = LazyLock::new(|| {
         .collect()
 });
 
-/// How large, and how far from the scene's middle: units.
+/// Sizes of shapes, and their distances from the scene's middle, in units.
 const SIZES: [(&str, f64, f64); 5] = [
     ("ordinary", 900.0, 9000.0),
     ("tiny", 0.05, 20_000.0),

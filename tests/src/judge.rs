@@ -52,11 +52,11 @@ pub struct Verdict<N: Number> {
     pub crossing: f64,
     /// The error, if a hit is missing, or reported where there is none.
     pub flag: f64,
-    /// By how much the normal is off.
+    /// Error of the normal.
     pub normal: f64,
-    /// By how much the normal's length differs from 1, in units of last place.
+    /// Difference of the normal's length from 1, in units of last place.
     pub length: f64,
-    /// How far the surface is from the hit's point, as a part of the bound that comes with it.
+    /// Distance of the surface from the hit's point, as a part of the bound that comes with it.
     pub point: f64,
     /// True if a ray that enters the solid was reported to leave it, or the other way.
     pub wrong_side: bool,

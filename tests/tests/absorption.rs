@@ -4,7 +4,7 @@ use gridel_core::Format;
 use gridel_host::compile::{Options, compile};
 use gridel_tests::measured::{measured, read, wrong_pixels};
 
-/// With a priority and without.
+/// Glass with a priority and without.
 const PRIORITIES: [&str; 2] = ["", "priority = 1\n"];
 
 /// A look down at the middle of a floor with albedo 0.8 through glass that bends nothing and absorbs half of the light

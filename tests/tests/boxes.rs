@@ -9,7 +9,7 @@ use gridel_host::compile::{Options, compile};
 use gridel_host::scene::Shape;
 use gridel_host::shape::{Cone, Cuboid, Disc, Sphere};
 use gridel_tests::cases::slope;
-use gridel_tests::effort::{part_of, third_of};
+use gridel_tests::effort::{part_of, sixth_of};
 use gridel_tests::exact_box::{ExactRay, SLOPE_BITS};
 use gridel_tests::query::{HitBits, UnitRay, closest, held, through};
 use gridel_tests::random::Random;
@@ -287,7 +287,7 @@ fn signs_of_zero_and_lengths_of_directions_change_no_bit() {
     }
     let blob = scenes::blob(&scenes::soup(8, 60, 0.5), 24);
     let scene = blob.scene().expect("a scene");
-    every_format!(judge(&scene, part_of(third_of(20_000), 100_000)));
+    every_format!(judge(&scene, part_of(sixth_of(20_000), 100_000)));
 }
 
 /// Any hit is a closest hit at or before the end (A9): ends exactly at hits, and about them.
@@ -340,7 +340,7 @@ fn any_number_of_the_same_primitive() {
             assert_eq!(any, count > 0);
         }
     }
-    for count in [0, 1, 2, 3, 31, 32, 255, 256, 257, third_of(4096)] {
+    for count in [0, 1, 2, 3, 31, 32, 255, 256, 257, sixth_of(4096)] {
         let sphere = Shape::Sphere(Sphere {
             center: DVec3::new(1.0, 2.0, 3.0),
             radius: 2.0,

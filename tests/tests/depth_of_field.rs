@@ -112,7 +112,7 @@ fn what_is_in_focus_is_as_sharp_as_with_a_pinhole() {
     }
 }
 
-/// Without a focus of its own the camera is sharp where it looks.
+/// If a camera has no focus of its own, it is sharp at its target.
 #[test]
 fn focus_is_on_the_target() {
     let disc = "[[object]]\nkind = 'disc'\ncenter = [0, 0, -7]\nnormal = [0, 0, 1]\nradius = 1\nmaterial = 'lamp'";

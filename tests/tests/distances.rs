@@ -24,7 +24,7 @@ impl Ball {
         (half > 0.0 && along > 0.0).then(|| along - half.sqrt())
     }
 
-    /// How much a distance changes with the surface's, at the hit: one over the cosine.
+    /// Returns the change of a distance per change of the surface's, at the hit: one over the cosine.
     fn slope(&self, origin: DVec3, direction: DVec3, distance: f64) -> f64 {
         let direction = direction.normalize();
         let normal = (origin + distance * direction - self.center) / self.radius;
@@ -64,10 +64,7 @@ fn distances_of_a_ball<N: Number>() {
         let scene = compiled.blob.scene().expect("the compiler's own blob");
         let header = scene.header();
         let step = f64::powi(2.0, scene.coordinate_exponent());
-        let counted_from = match header.coordinate_origin {
-            0 => DVec3::from_array(header.origin),
-            _ => DVec3::ZERO,
-        };
+        let counted_from = DVec3::from_array(header.coordinate_origin());
         let Some(gridel_core::geometry::Geometry::Sphere { center, radius }) =
             scene.geometry(gridel_core::Kind::Sphere, 0)
         else {

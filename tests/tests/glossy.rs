@@ -381,7 +381,7 @@ fn rough_glass_that_bends_no_light_is_invisible() {
     }
 }
 
-/// Where the surface is shaded as if it leant by an angle, mirrored rays go below the triangle: they are turned into its
+/// If the surface is shaded as if it leant by an angle, mirrored rays go below the triangle. They are turned into its
 /// plane, and see the surroundings.
 #[test]
 fn rough_mirrors_with_their_own_normals_lose_no_rays() {

@@ -18,12 +18,7 @@ use gridel_tests::scenes;
 
 /// Steps of a scene's coordinates in scene units.
 fn in_scene_units(scene: &Scene<'_>, position: Position) -> DVec3 {
-    let header = scene.header();
-    let origin = match header.coordinate_origin {
-        0 => DVec3::from_array(header.origin),
-        _ => DVec3::ZERO,
-    };
-    origin
+    DVec3::from_array(scene.header().coordinate_origin())
         + DVec3::from_array(position.0.map(f64::from)) * f64::powi(2.0, scene.coordinate_exponent())
 }
 
@@ -369,7 +364,7 @@ fn coordinates_are_the_scenes_own_or_the_lattices_far_from_there() {
         });
         let blob = built(&file);
         let scene = blob.scene().expect("a scene");
-        assert_eq!(scene.header().coordinate_origin, own, "{offset}");
+        assert_eq!(scene.header().counted_from, own, "{offset}");
         // Steps are far below a pixel, and reach beyond the eye.
         let step = f64::powi(2.0, scene.coordinate_exponent());
         assert!(step < 1e-6, "{step} at {offset}");

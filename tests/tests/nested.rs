@@ -9,7 +9,7 @@ use gridel_tests::measured::{measured, read};
 
 /// A body with faces square to the axis along which the camera looks, which comes from large z.
 struct Slab {
-    /// Where it ends, and where it begins.
+    /// Its end, and its start.
     z: [f64; 2],
     medium: Medium,
 }

@@ -376,7 +376,7 @@ fn mirrored_rays_stay_before_the_surface() {
     }
 }
 
-/// Where the image is the same along a line there are no axes, and the mesh is as without it.
+/// If the image is constant along a line there are no axes, and the mesh is shaded as without it.
 #[test]
 fn triangles_whose_coordinates_have_no_area_are_plain() {
     let mut scene = square(layouts()[0], 1.0, true, TO_LIGHT);

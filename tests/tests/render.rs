@@ -1,4 +1,4 @@
-//! Pictures: the same bytes however they are made, and what physics demands of them.
+//! Pictures: the same bytes however they are made, and the laws of physics that they obey.
 //!
 //! `fixtures/check.toml` holds a hash of a small picture of every fixture in every number format,
 //! and its costs. After an intended change of these, `gridel check --bless fixtures/check.toml`

@@ -31,7 +31,7 @@ fn refracted(eta: f64, way: DVec3, normal: DVec3) -> Option<DVec3> {
 #[derive(Clone, Copy, Default)]
 struct Path {
     surfaces: usize,
-    /// It met a surface from the wrong side, or none where it was inside.
+    /// True if it hit a surface from the wrong side, or none although it was inside.
     odd: bool,
 }
 

@@ -10,12 +10,12 @@ use gridel_host::blob::Blob;
 use gridel_host::scene::{Scene, Shape};
 use gridel_host::shape::{Cuboid, Disc, Sphere};
 use gridel_tests::agreement::{Tally, compare};
-use gridel_tests::effort::{step, third_of};
+use gridel_tests::effort::{part_of, sixth_of};
 use gridel_tests::every_format;
 use gridel_tests::{rays, scenes};
 use rayon::prelude::*;
 
-/// How much to compare of a scene in one format.
+/// The amount of a scene to compare in one format.
 #[derive(Clone, Copy)]
 struct Amount {
     rays: usize,
@@ -25,8 +25,8 @@ struct Amount {
 
 fn quick() -> Amount {
     Amount {
-        rays: third_of(60_000),
-        list_tests: third_of(20_000_000) as u64,
+        rays: sixth_of(60_000),
+        list_tests: sixth_of(20_000_000) as u64,
     }
 }
 /// The list's share is what takes the time: 3 x 10^9 tests of primitives per scene, 10 s per core.
@@ -37,7 +37,7 @@ const FULL: Amount = Amount {
 /// Parts that a scene's rays are compared in, at the same time.
 const PARTS: usize = 8;
 
-/// With tables of candidates, too.
+/// The amount with tables of candidates, too.
 const TABLES: Amount = Amount {
     rays: 3_000,
     list_tests: 2_000_000,
@@ -173,10 +173,10 @@ fn fixtures_agree() {
 
 #[test]
 fn tables_of_candidates_agree() {
-    for (name, scene) in scenes::fixtures().into_iter().step_by(step()) {
+    for (name, scene) in scenes::fixtures().into_iter().step_by(part_of(3, 1)) {
         compare_blob(&name, &scenes::blob_with_gridels(&scene, 24, 3), TABLES);
     }
-    for (name, scene) in degenerate_scenes().into_iter().step_by(step()) {
+    for (name, scene) in degenerate_scenes().into_iter().step_by(part_of(3, 1)) {
         compare_blob(name, &scenes::blob_with_gridels(&scene, 24, 2), TABLES);
     }
 }

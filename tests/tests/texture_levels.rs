@@ -94,7 +94,7 @@ fn blob_of(scene: &scene::Scene) -> Blob {
     compile(scene, &options).expect("compiles").blob
 }
 
-/// Where a texture was looked up, and in which level.
+/// The coordinates and the levels of texture lookups.
 #[derive(Default)]
 struct Looked(Vec<(DVec2, f64)>);
 
@@ -175,7 +175,7 @@ fn levels_are_those_of_the_footprints_of_samples() {
     }
 }
 
-/// From 10 to 100,000 times the floor's size away, through lenses as long.
+/// The eye is 10 to 100,000 times the floor's size away, with lenses as long.
 #[test]
 fn levels_seen_from_afar_are_those_of_the_distance() {
     for distance in [8e2, 8e4, 8e6] {

@@ -16,7 +16,7 @@ use gridel_host::verify::{
     ClosedMesh, Property, RAYS, StructureAnswer, Targets, UnitRay, ask, ask_all, check, leave,
     sealed, verify,
 };
-use gridel_tests::effort::{part_of, third_of};
+use gridel_tests::effort::{part_of, sixth_of};
 use gridel_tests::scenes;
 use gridel_tests::shapes::examples;
 
@@ -44,7 +44,7 @@ fn right_scenes_are_right() {
     }
 }
 
-/// Of some structures a blob holds primitives in clusters alone.
+/// For some structures a blob stores primitives only in clusters.
 #[test]
 fn scenes_of_every_structure_alone_are_right() {
     for structure in Structure::ALL {
@@ -92,7 +92,7 @@ fn every_shape_keeps_its_promises() {
 fn fixtures_keep_their_promises() {
     for (name, scene) in scenes::fixtures() {
         let blob = scenes::blob(&scene, 24);
-        let rays = third_of(RAYS as usize) as u64;
+        let rays = sixth_of(RAYS as usize) as u64;
         let report = verify(&blob.scene().expect("a scene"), rays, &|| ());
         assert_eq!(report.broken(), 0, "{name}: {:#?}", report.properties);
         for format in &report.formats {
@@ -107,7 +107,7 @@ fn fixtures_keep_their_promises() {
     }
 }
 
-/// With the program's own number of rays in the full run.
+/// The full run casts the program's own number of rays.
 #[test]
 fn real_scenes_keep_their_promises() {
     let names = [
@@ -404,7 +404,7 @@ fn a_broken_structure_is_caught() {
     assert!(leaks[1] > 20, "{}", leaks[1]);
 }
 
-/// Where the error bound of a hit is a lie, secondary rays meet their own surface.
+/// If the error bound of a hit is too small, secondary rays hit their own surface.
 #[test]
 fn a_bound_that_is_too_small_is_caught() {
     let tori = examples().into_iter().filter(|(name, _)| *name == "torus");

@@ -76,7 +76,7 @@ enum gridel_status
   GRIDEL_STATUS_RAY_DIRECTION = 30,
   // The ray's origin is infinite or NaN.
   GRIDEL_STATUS_RAY_ORIGIN = 31,
-  // The ray's origin is too far from the scene.
+  // The ray's origin is too far from the scene, or the point of its hit from 0 for the hit's type.
   GRIDEL_STATUS_RAY_DISTANCE = 32,
   // The ray's interval ends before it begins, or is NaN.
   GRIDEL_STATUS_RAY_INTERVAL = 33,
@@ -84,7 +84,7 @@ enum gridel_status
   GRIDEL_STATUS_PICTURE_SIZE = 40,
   // The samples per pixel are not 1 to 4096.
   GRIDEL_STATUS_PICTURE_SAMPLES = 41,
-  // The ray depth is above 32, or above 16 in a library without the feature `indirect`.
+  // The ray depth is above 32.
   GRIDEL_STATUS_PICTURE_DEPTH = 42,
   // The format of the pixels is unknown.
   GRIDEL_STATUS_PICTURE_FORMAT = 43,
@@ -102,6 +102,8 @@ enum gridel_status
   GRIDEL_STATUS_CAMERA_EYE = 53,
   // A camera's numbers are out of range: it was not made by this library.
   GRIDEL_STATUS_CAMERA_INVALID = 54,
+  // The axis that points up is neither 1 nor 2.
+  GRIDEL_STATUS_CAMERA_UP_AXIS = 55,
 };
 #ifndef __cplusplus
 #if __STDC_VERSION__ >= 202311L
@@ -141,11 +143,11 @@ typedef struct gridel_scene {
 typedef struct gridel_camera {
   // The eye, in the library's own units.
   int64_t eye[3];
-  // From the eye to the middle of the picture; the three vectors have one scale.
+  // The vector from the eye to the middle of the picture; the three vectors have one scale.
   int32_t forward[3];
-  // From the middle to the right, by half of the picture's height.
+  // The vector from the middle to the right, as long as half of the picture's height.
   int32_t right[3];
-  // From the middle to the upper edge.
+  // The vector from the middle to the upper edge.
   int32_t up[3];
   // 0.
   uint32_t reserved;
@@ -176,7 +178,7 @@ typedef struct gridel_circle {
   uint32_t elevation;
   // The angle of the picture's height, in 2^-32 turn: at least 2 and below half a turn.
   uint32_t field_of_view;
-  // The axis that points up: 2 for z, else y.
+  // The axis that points up: 1 for y, 2 for z.
   uint32_t up_axis;
 } gridel_circle;
 
@@ -300,7 +302,7 @@ typedef struct gridel_picture {
   uint16_t height;
   // Samples per pixel, 1 to 4096.
   uint16_t samples;
-  // How often a ray may be reflected or refracted, 0 to 32; to 16 in a library without the feature `indirect`.
+  // Maximum number of reflections and refractions of a ray, 0 to 32.
   uint16_t depth;
   // 1 to dither, else 0.
   uint16_t dither;

@@ -60,7 +60,11 @@ pub unsafe extern "C" fn gridel_orbit(
         let (scene, circle, camera) = unsafe { (scene(loaded)?, read(circle)?, output(camera)?) };
         let [azimuth, elevation, field_of_view] =
             [circle.azimuth, circle.elevation, circle.field_of_view].map(Angle);
-        let up = if circle.up_axis == 2 { Up::Z } else { Up::Y };
+        let up = match circle.up_axis {
+            1 => Up::Y,
+            2 => Up::Z,
+            _ => return Err(gridel_status::CameraUpAxis),
+        };
         let target = Position(circle.target);
         let made = Camera::orbit(
             up,

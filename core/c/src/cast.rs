@@ -66,9 +66,13 @@ pub unsafe extern "C" fn gridel_cast_f32(
         if found.t.is_finite() && found.t != 0.0 && !t.is_normal() {
             return Err(gridel_status::RayDirection);
         }
+        let point = found.point.map(|x| x as f32);
+        if !point.iter().all(|x| x.is_finite()) {
+            return Err(gridel_status::RayDistance);
+        }
         hit.write(gridel_hit_f32 {
             t,
-            point: found.point.map(|x| x as f32),
+            point,
             normal: found.normal.map(|x| x as f32),
             object: found.object,
             primitive: found.primitive,
@@ -370,8 +374,7 @@ impl Units {
         let larger = |a: f64, b: f64| if a < b { b } else { a };
         let [x, y, z] = ray.direction.map(|x| if x < 0.0 { -x } else { x });
         let largest = larger(larger(x, y), z);
-        // True for NaN as well.
-        if largest == 0.0 || !largest.is_finite() {
+        if largest == 0.0 || !ray.direction.iter().all(|x| x.is_finite()) {
             return Err(gridel_status::RayDirection);
         }
         let factor = largest * self.per_unit;

@@ -1,4 +1,4 @@
-//! From a blob to a scene.
+//! Loading of blobs as scenes.
 
 use crate::memory::{PartViews, bytes, clear, input, output, scene, stack_bytes, store};
 use crate::{STRUCTURE, gridel_buffer, gridel_info, gridel_scene, gridel_status};
@@ -183,10 +183,7 @@ pub unsafe extern "C" fn gridel_info_of(
         let (scene, info) = unsafe { (scene(loaded)?, output(info)?) };
         let header = scene.header();
         info.write(gridel_info {
-            coordinate_origin: match header.coordinate_origin {
-                0 => header.origin,
-                _ => [0.0; 3],
-            },
+            coordinate_origin: header.coordinate_origin(),
             coordinate_exponent: scene.coordinate_exponent(),
             stack_depth: header.stack_depth.into(),
             objects: header.objects,

@@ -203,7 +203,7 @@ macro_rules! with_stack {
     };
 }
 
-/// As `with_stack`, with the places for rays that wait.
+/// Like `with_stack`, for the number of waiting rays.
 macro_rules! with_waiting {
     ($depth:expr, $use:ident) => {
         with_least!($depth, [0 5 9 17 33], 65, $use)

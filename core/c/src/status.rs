@@ -46,7 +46,7 @@ pub enum gridel_status {
     RayDirection = 30,
     /// The ray's origin is infinite or NaN.
     RayOrigin = 31,
-    /// The ray's origin is too far from the scene.
+    /// The ray's origin is too far from the scene, or the point of its hit from 0 for the hit's type.
     RayDistance = 32,
     /// The ray's interval ends before it begins, or is NaN.
     RayInterval = 33,
@@ -54,7 +54,7 @@ pub enum gridel_status {
     PictureSize = 40,
     /// The samples per pixel are not 1 to 4096.
     PictureSamples = 41,
-    /// The ray depth is above 32, or above 16 in a library without the feature `indirect`.
+    /// The ray depth is above 32.
     PictureDepth = 42,
     /// The format of the pixels is unknown.
     PictureFormat = 43,
@@ -72,6 +72,8 @@ pub enum gridel_status {
     CameraEye = 53,
     /// A camera's numbers are out of range: it was not made by this library.
     CameraInvalid = 54,
+    /// The axis that points up is neither 1 nor 2.
+    CameraUpAxis = 55,
 }
 
 impl From<BlobError> for gridel_status {
@@ -165,7 +167,7 @@ fn text(status: u32) -> &'static CStr {
         33 => c"the ray's interval ends before it begins, or is NaN",
         40 => c"the picture has no pixels, or is more than 64 times as wide as high",
         41 => c"the samples per pixel must be 1 to 4096",
-        42 => c"the ray depth must be 0 to 32, or to 16 in a library without the feature `indirect`",
+        42 => c"the ray depth must be 0 to 32",
         43 => c"the format of the pixels is unknown: use one of gridel_pixel_format",
         44 => c"the pixels are too narrow for the number format: use fewer pixels, or gridel_render_f64",
         45 => c"the rectangle leaves the picture",
@@ -174,6 +176,7 @@ fn text(status: u32) -> &'static CStr {
         52 => c"the camera looks along the direction that points up: give one across the view",
         53 => c"the camera's eye is beyond the range of scene coordinates",
         54 => c"the camera's numbers are out of range: make it by gridel_look_at or gridel_orbit",
+        55 => c"the axis that points up must be 1 for y or 2 for z",
         _ => c"unknown status",
     }
 }

@@ -160,11 +160,11 @@ pub struct gridel_hit_f64 {
 pub struct gridel_camera {
     /// The eye, in the library's own units.
     pub eye: [i64; 3],
-    /// From the eye to the middle of the picture; the three vectors have one scale.
+    /// The vector from the eye to the middle of the picture; the three vectors have one scale.
     pub forward: [i32; 3],
-    /// From the middle to the right, by half of the picture's height.
+    /// The vector from the middle to the right, as long as half of the picture's height.
     pub right: [i32; 3],
-    /// From the middle to the upper edge.
+    /// The vector from the middle to the upper edge.
     pub up: [i32; 3],
     /// 0.
     pub reserved: u32,
@@ -199,7 +199,7 @@ pub struct gridel_circle {
     pub elevation: u32,
     /// The angle of the picture's height, in 2^-32 turn: at least 2 and below half a turn.
     pub field_of_view: u32,
-    /// The axis that points up: 2 for z, else y.
+    /// The axis that points up: 1 for y, 2 for z.
     pub up_axis: u32,
 }
 
@@ -213,7 +213,7 @@ pub struct gridel_picture {
     pub height: u16,
     /// Samples per pixel, 1 to 4096.
     pub samples: u16,
-    /// How often a ray may be reflected or refracted, 0 to 32; to 16 in a library without the feature `indirect`.
+    /// Maximum number of reflections and refractions of a ray, 0 to 32.
     pub depth: u16,
     /// 1 to dither, else 0.
     pub dither: u16,

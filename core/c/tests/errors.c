@@ -291,7 +291,7 @@ int main(int count_of_arguments, char **arguments) {
   }
 
   /* Every code has a text of its own. */
-  for (k = 0; k < 50; k++) CHECK(strlen(gridel_text((gridel_status)k)) > 3);
+  for (k = 0; k < 56; k++) CHECK(strlen(gridel_text((gridel_status)k)) > 3);
   CHECK(strcmp(gridel_text((gridel_status)999), "unknown status") == 0);
   /* Cameras. */
   EXPECT(NOT_LOADED, gridel_camera_of(&fresh, &camera));
@@ -317,6 +317,9 @@ int main(int count_of_arguments, char **arguments) {
   circle.distance = 0xffffffffu;
   EXPECT(GRIDEL_STATUS_CAMERA_EYE, gridel_orbit(&scene, &circle, &camera));
   circle.distance = 1000;
+  circle.up_axis = 0;
+  EXPECT(GRIDEL_STATUS_CAMERA_UP_AXIS, gridel_orbit(&scene, &circle, &camera));
+  circle.up_axis = 2;
   EXPECT(GRIDEL_STATUS_OK, gridel_orbit(&scene, &circle, &camera));
   EXPECT(GRIDEL_STATUS_OK, gridel_picture_of(&scene, &picture));
   picture.width = picture.height = 4;

@@ -1,11 +1,11 @@
-//! Renders the frames of a turning camera for a display on an SPI bus, beside other tasks.
+//! Renders the frames of a turning camera for a display on an SPI bus, alongside other tasks.
 //!
 //! Two tasks share two buffers of a row each. `render` fills one of them, while the DMA channel of the SPI peripheral
-//! sends the other for `send`. `render` traces so many rays, then lets other tasks run. No task waits longer for it than
-//! those rays take, and no row waits for the bus unless the bus is slower than the rays.
+//! sends the other for `send`. `render` traces so many rays, then lets other tasks run. No task waits longer for it
+//! than those rays take, and no row waits for the bus unless the bus is slower than the rays.
 //!
 //! The board is a nRF52840-DK; a display of the ST7789 family has its clock on P0.19, its data on P0.20 and its
-//! data/command line on P0.21. What a display needs before its first picture is in its data sheet.
+//! data/command line on P0.21. See the display's data sheet for its initialization.
 #![no_std]
 #![no_main]
 
@@ -35,7 +35,7 @@ const HEIGHT: u16 = 120;
 /// Rays between two chances for other tasks: some milliseconds.
 const RAYS: u32 = 16;
 
-/// A row as displays want it: two bytes a pixel, the upper one first.
+/// A row in the format of displays: two bytes per pixel, the upper one first.
 type Row = [u8; 2 * WIDTH as usize];
 
 bind_interrupts!(struct Interrupts {

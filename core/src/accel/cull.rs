@@ -223,7 +223,7 @@ impl Cull {
         self.start
     }
 
-    /// One bit per axis, set where the ray runs down it.
+    /// Returns one bit per axis, set if the ray runs down it.
     #[inline(always)]
     pub(crate) fn descending(&self) -> u32 {
         let [x, y, z] = self.axes.map(|axis| axis.rotation);

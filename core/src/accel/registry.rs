@@ -8,8 +8,8 @@ use crate::format::record::Pair;
 use crate::format::structure::structures;
 use crate::format::{BlobError, Sections, Structure};
 
-/// A structure of this build, as a type. Structures that a program does not name are not in its code. Queries through one
-/// need a blob that [holds](crate::Scene::holds) it.
+/// A structure of this build, as a type. Structures that a program does not name are not in its code. Queries through
+/// one need a blob that [holds](crate::Scene::holds) it.
 #[diagnostic::on_unimplemented(
     message = "the code of the structure `{Self}` is not in this build",
     note = "enable the Cargo feature of gridel-core with the structure's name"
@@ -58,8 +58,8 @@ macro_rules! registry {
                 })
             }
 
-            /// Whether a structure of the scene leads to the shared leaves. A structure whose code
-            /// is not here is taken to if there are any.
+            /// Returns true if a structure of the scene uses the shared leaves. A structure without code in this build
+            /// counts as using them if there are any.
             pub(crate) fn uses_leaves(space: &Space<'_>) -> bool {
                 let uses = |structure| match structure {
                     $(

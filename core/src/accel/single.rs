@@ -4,8 +4,8 @@
 //! instead of a quarter. The margin along the ray is four units, where the integers' three steps and roundings come to
 //! less than three. Rounding moves `p / s - o / s` by less than 2^-5 unit laterally (coordinates are below 2^17), and
 //! less where product and sum are rounded together, so a box's interval here holds its interval there. Hits are clamped
-//! to the latter, so the answers are the same. The margins lie in the ray's constants, so they cost nothing per box. No number is NaN: an inverse slope is at most 4096
-//! in magnitude, and all products are finite.
+//! to the latter, so the answers are the same. The margins lie in the ray's constants, so they cost nothing per box. No
+//! number is NaN: an inverse slope is at most 4096 in magnitude, and all products are finite.
 
 use crate::accel::cull_axis::CullArithmetic;
 use crate::ray::Ray;
@@ -16,9 +16,9 @@ pub(super) struct Single {
     /// One over the slope, at least 1 in magnitude; below zero where the ray runs down the axis and
     /// the planes change roles.
     pub(super) inverse: Vec4,
-    /// For the plane through which the ray enters.
+    /// The offset of the plane through which the ray enters.
     pub(super) near: Vec4,
-    /// For the plane through which it leaves.
+    /// The offset of the plane through which it leaves.
     pub(super) far: Vec4,
 }
 

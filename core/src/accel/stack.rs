@@ -1,5 +1,6 @@
 //! The traversal stack.
 
+use crate::format::limits::MAX_STACK_DEPTH;
 use crate::observe::count::Observer;
 use crate::observe::event::{Event, NodeId};
 use heapless::{Vec, VecView};
@@ -21,11 +22,24 @@ pub struct Entry {
 #[derive(Debug, Default)]
 pub struct Stack<const DEPTH: usize>(Vec<Entry, DEPTH>);
 
+impl Stack<MAX_STACK_DEPTH> {
+    /// Returns an empty stack for queries in any scene: 2 KiB.
+    ///
+    /// ```
+    /// use gridel_core::Stack;
+    ///
+    /// assert_eq!(Stack::for_any_scene().as_view().capacity(), 160);
+    /// ```
+    pub const fn for_any_scene() -> Self {
+        Self::new()
+    }
+}
+
 /// A [`Stack`] whose depth is not part of its type.
 pub type StackView = VecView<Entry>;
 
 impl<const DEPTH: usize> Stack<DEPTH> {
-    /// An empty stack.
+    /// Returns an empty stack.
     ///
     /// ```
     /// # static BLOB: &[u8] =

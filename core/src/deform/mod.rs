@@ -120,8 +120,8 @@ impl<T: Copy, const MOST: usize> Memory<T> for Vec<T, MOST> {
 impl<V, const VERTICES: usize, const PAIRS: usize, const NORMALS: usize>
     Deformation<V, VERTICES, PAIRS, NORMALS>
 {
-    /// A deformation without a scene, for a `static`: [`reset`](DeformationIn::reset) makes it the deformation of a
-    /// scene.
+    /// Returns a deformation without a scene, for a `static`: [`reset`](DeformationIn::reset) makes it the deformation
+    /// of a scene.
     pub const fn new() -> Self {
         Self {
             vertices: Vec::new(),
@@ -134,7 +134,7 @@ impl<V, const VERTICES: usize, const PAIRS: usize, const NORMALS: usize>
         }
     }
 
-    /// A deformation of a scene, at rest.
+    /// Returns a deformation of a scene, at rest.
     ///
     /// # Errors
     /// The errors of [`reset`](DeformationIn::reset).
@@ -184,7 +184,7 @@ impl<V: Vertex, A: Memory<V>, B: Memory<Pair>, C: Memory<[i16; 2]>> DeformationI
         Ok(())
     }
 
-    /// The vertices.
+    /// Returns the vertices.
     pub fn vertices(&self) -> &[V] {
         &self.vertices
     }
@@ -197,13 +197,13 @@ impl<V: Vertex, A: Memory<V>, B: Memory<Pair>, C: Memory<[i16; 2]>> DeformationI
         &mut self.vertices
     }
 
-    /// The normals that morph targets have changed, as the blob [stores](crate::geometry::smooth) them; none where they
-    /// change none.
+    /// Returns the normals that morph targets have changed, as the blob [stores](crate::geometry::smooth) them; none
+    /// where they change none.
     pub fn normals(&self) -> &[[i16; 2]] {
         &self.normals
     }
 
-    /// The pairs of the hierarchy, with the boxes of the pose that was refitted last.
+    /// Returns the pairs of the hierarchy, with the boxes of the pose that was refitted last.
     pub fn pairs(&self) -> &[Pair] {
         &self.pairs
     }
@@ -279,7 +279,8 @@ impl<'a> Scene<'a> {
         self.structures.pairs().len()
     }
 
-    /// Returns the scene with the vertices and boxes of a deformation in place of the blob's own. Costs nothing per ray.
+    /// Returns the scene with the vertices and boxes of a deformation in place of the blob's own. Costs nothing per
+    /// ray.
     ///
     /// Triangles are shaded flat, because the normals of a blob are those at rest. After
     /// [`morph`](DeformationIn::morph) they are shaded by the normals that it makes.

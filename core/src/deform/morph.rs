@@ -1,8 +1,8 @@
 //! Morph targets: shapes that a mesh takes on by weights.
 //!
-//! A mesh at its weights has each vertex where it is at rest, displaced by each morph target times the difference of its
-//! weight from that at rest. Normals change likewise, on the octahedron that they are stored on. All in integers: sums
-//! with 24 fraction bits, rounded once. So the result is the same in every number format and on every machine.
+//! A mesh at its weights has each vertex where it is at rest, displaced by each morph target times the difference of
+//! its weight from that at rest. Normals change likewise, on the octahedron that they are stored on. All in integers:
+//! sums with 24 fraction bits, rounded once. So the result is the same in every number format and on every machine.
 
 use crate::deform::{DeformError, DeformationIn, Memory, fit};
 use crate::format::limits::{LARGEST_DISPLACEMENT, LARGEST_WEIGHT};
@@ -80,13 +80,14 @@ impl Displacements<'_> {
 }
 
 impl<'a> MorphTargets<'a> {
-    /// Checks the morph targets of a blob's own meshes and returns them. A blob without any is valid; nothing moves then.
+    /// Checks the morph targets of a blob's own meshes and returns them. A blob without any is valid; nothing moves
+    /// then.
     ///
     /// Costs time linear in the number of displacements.
     ///
     /// # Errors
-    /// If a number is out of its range, vertices or their morph targets do not ascend, or the sections differ in length.
-    /// Also if the header or the section table is invalid.
+    /// If a number is out of its range, vertices or their morph targets do not ascend, or the sections differ in
+    /// length. Also if the header or the section table is invalid.
     pub fn from_bytes(blob: &'a [u8]) -> Result<Self, BlobError> {
         let header = header(blob)?;
         let sections = Sections::read(blob, header.section_count)?;
@@ -172,7 +173,7 @@ impl<'a> MorphTargets<'a> {
         Ok(())
     }
 
-    /// The weights at rest of all morph targets of the scene, with 24 fraction bits.
+    /// Returns the weights at rest of all morph targets of the scene, with 24 fraction bits.
     pub fn weights_at_rest(&self) -> &'a [i32] {
         self.rest
     }
@@ -244,16 +245,16 @@ impl<V: Vertex, A: Memory<V>, B: Memory<Pair>, C: Memory<[i16; 2]>> DeformationI
     /// Moves all vertices to where morph targets have them with these weights, and [refits](Self::refit) the boxes.
     ///
     /// Weights are those of all morph targets of the scene, with 24 fraction bits: 2^24 is 1.
-    /// [`Tracks::weights_at`](crate::Tracks::weights_at) has them at a time. `scene` is the scene, or the part, as it was
-    /// loaded. Normals of vertices change with them, where the blob says how, and the mesh is shaded by them. With the
-    /// weights at rest, all have the blob's own bits.
+    /// [`Tracks::weights_at`](crate::Tracks::weights_at) has them at a time. `scene` is the scene, or the part, as it
+    /// was loaded. Normals of vertices change with them, where the blob says how, and the mesh is shaded by them. With
+    /// the weights at rest, all have the blob's own bits.
     ///
-    /// Costs on a Cortex-M4F about 500 instructions per triangle of a mesh with two morph targets that change normals, 190
-    /// of them for the boxes.
+    /// Costs on a Cortex-M4F about 500 instructions per triangle of a mesh with two morph targets that change normals,
+    /// 190 of them for the boxes.
     ///
     /// # Errors
-    /// If the scene or the morph targets are of another blob, or there are more or fewer weights than morph targets. Also
-    /// if a weight is beyond ±64, there is no room for the normals, or the pose is one that [`refit`](Self::refit)
+    /// If the scene or the morph targets are of another blob, or there are more or fewer weights than morph targets.
+    /// Also if a weight is beyond ±64, there is no room for the normals, or the pose is one that [`refit`](Self::refit)
     /// rejects.
     pub fn morph(
         &mut self,

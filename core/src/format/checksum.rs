@@ -2,7 +2,7 @@
 
 use crate::format::record::Header;
 
-/// The checksum of a blob: FNV-1a over its 32-bit words. The word of the checksum itself counts as 0.
+/// Returns the checksum of a blob: FNV-1a over its 32-bit words. The word of the checksum itself counts as 0.
 ///
 /// Every step is a bijection of the state, so the checksum detects a change of any single word.
 ///

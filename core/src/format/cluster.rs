@@ -140,7 +140,7 @@ impl StripMembers {
         }
     }
 
-    /// The number of the first triangle among the members.
+    /// Returns the number of the first triangle among the members.
     #[inline(always)]
     pub fn first(&self) -> u32 {
         from_24(self.first)

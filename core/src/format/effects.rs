@@ -4,7 +4,7 @@
 //! An effect is a file in [`shade`](crate::shade) and a row in the table below. Its code is a Cargo
 //! feature of the same name.
 
-use crate::format::limits::{MAX_RAY_DEPTH, work_depth};
+use crate::format::limits::MAX_RAY_DEPTH;
 use core::fmt;
 
 /// Passes the table of effects to a macro. The columns are constant, bit in the blob, name and Cargo feature, type and
@@ -173,17 +173,21 @@ impl Effects {
         Effects(self.0 & !other.0)
     }
 
-    /// This set under a condition, else none.
+    /// Returns this set under a condition, else an empty one.
     pub const fn only_if(self, condition: bool) -> Effects {
         if condition { self } else { Effects::NONE }
     }
 
-    /// This set and that of `other`.
+    /// Returns the union of this set and `other`.
     pub const fn with(self, other: Effects) -> Effects {
         Effects(self.0 | other.0)
     }
 
-    /// Places for waiting rays that pictures with these effects need at a ray depth: see [`work_depth`].
+    /// Places for waiting rays that pictures with these effects need at a ray depth: `WORK` of a
+    /// [`Workspace`](crate::Workspace).
+    ///
+    /// `depth + 1` where rays are mirrored, pass through or are reflected diffusely; `2 * depth + 1` where a hit can
+    /// cause all three; 0 where no ray causes another.
     ///
     /// ```
     /// use gridel_core::Effects;
@@ -199,9 +203,9 @@ impl Effects {
             0
         } else if self.contains(Self::INDIRECT) && self.casts_two() {
             // All but one of the rays of every hit wait.
-            work_depth(depth) + depth as usize
+            2 * depth as usize + 1
         } else {
-            work_depth(depth)
+            depth as usize + 1
         }
     }
 
@@ -215,7 +219,7 @@ impl Effects {
         mirrors && goes_on
     }
 
-    /// The names of the effects in this set.
+    /// Returns the names of the effects in this set.
     ///
     /// ```
     /// use gridel_core::Effects;

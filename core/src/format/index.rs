@@ -74,7 +74,7 @@ impl<'a> Indices<'a> {
         }
     }
 
-    /// The integer at `index`; `None` beyond the end and for an absent array.
+    /// Returns the integer at `index`; `None` beyond the end and for an absent array.
     #[inline]
     pub fn get(&self, index: usize) -> Option<u32> {
         match self {

@@ -65,7 +65,7 @@ macro_rules! kinds {
                 }
             }
 
-            /// The name that tables use, and the Cargo feature.
+            /// Returns the name that tables use, and the Cargo feature.
             pub const fn name(self) -> &'static str {
                 match self {
                     $(Kind::$form => $form_name,)*
@@ -73,8 +73,8 @@ macro_rules! kinds {
                 }
             }
 
-            /// Whether this build holds the kind's code. A blob that holds primitives of a kind
-            /// without code is rejected.
+            /// Returns true if this build has the kind's code. Blobs with primitives of a kind without code are
+            /// rejected.
             #[inline(always)]
             pub const fn is_available(self) -> bool {
                 match self {
@@ -83,7 +83,7 @@ macro_rules! kinds {
                 }
             }
 
-            /// Whether leaves of [`Wide`](crate::accel) hold primitives of the kind in clusters.
+            /// Returns true if leaves of [`Wide`](crate::accel) store primitives of the kind in clusters.
             pub const fn is_clustered(self) -> bool {
                 match self {
                     $(Kind::$form => true,)*

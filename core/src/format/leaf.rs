@@ -31,12 +31,12 @@ impl Leaf {
         self.first as usize..self.first.wrapping_add(self.count) as usize
     }
 
-    /// The leaf as a word.
+    /// Returns the leaf as a word.
     pub const fn to_word(self) -> u32 {
         self.first | self.count << 24 | (self.kind as u32) << 29
     }
 
-    /// The leaf of a word; `None` for a kind that does not exist.
+    /// Returns the leaf of a word; `None` for a kind that does not exist.
     #[inline(always)]
     pub fn from_word(word: u32) -> Option<Self> {
         let kind = Kind::from_number(word >> 29)?;

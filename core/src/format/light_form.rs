@@ -22,9 +22,10 @@ records! {
         /// it, 4 a triangle with a corner there.
         #[valid(Kind: 0..=4)]
         pub shape: u32,
-        /// The distance at which the light has its color, with 13 fraction bits: it falls off with the distance's square. 0
-        /// for light that does not fall off. Of what has an area, the color is the radiance times a factor, and this
-        /// the length whose square is the area over π (of a sphere: its radius), over the factor's root.
+        /// The distance at which the light has its color, with 13 fraction bits: it falls off with the distance's
+        /// square. 0 for light that does not fall off. For lights with an area, the color is the radiance times a
+        /// factor, and this is the length whose square is the area over π (for a sphere: its radius), over the factor's
+        /// root.
         #[valid(LightReference: 0..=LONGEST)]
         pub reference: i32,
         /// The distance at which light ends, with 13 fraction bits; 0 for none.
@@ -33,16 +34,16 @@ records! {
         /// The cosine of the angle at which a spot ends, 30 fraction bits; -2^30 where there is none.
         #[valid(ConeCosine: -ONE..=ONE)]
         pub cone_cosine: i32,
-        /// Of a spot, by how much the cosine of the angle to which it is fully bright is larger, with 30 fraction bits.
-        /// Of what is flat, with 13 fraction bits: its points are drawn by solid angle where the magnitudes of the
-        /// coordinates of the way to its position add up to less, and by area beyond.
+        /// For spots: the cosine of the angle up to which they are fully bright, less `cone_cosine`, with 30 fraction
+        /// bits. For flat lights: a length with 13 fraction bits. Points are drawn by solid angle where the magnitudes
+        /// of the coordinates of the way to the position add up to less, and by area beyond.
         #[valid(LightWidth: 0..=ONE)]
         pub width: i32,
         /// The direction of a spot, or the side on which a rectangle or disc shines: length 1, 30 fraction bits.
         #[valid(Normal: -ONE..=ONE)]
         pub normal: [i32; 3],
-        /// `[edge][axis]`: the edges of a rectangle (any parallelogram) or a triangle, or two perpendicular radii of a disc, lengths with 13 fraction bits. The
-        /// first number is the radius of a sphere.
+        /// `[edge][axis]`: the edges of a rectangle (any parallelogram) or a triangle, or two perpendicular radii of a
+        /// disc, lengths with 13 fraction bits. The first number is the radius of a sphere.
         #[valid(LightEdge: -EDGE..=EDGE)]
         pub edges: [[i32; 3]; 2],
     }
@@ -65,12 +66,12 @@ impl Light {
     /// The value for an area light.
     const AREA: u32 = 3;
 
-    /// The value of [`directional`](Self::directional) for a light whose form has a number below 2^30.
+    /// Returns the value of [`directional`](Self::directional) for a light whose form has a number below 2^30.
     pub const fn with_form(number: u32, is_area: bool) -> u32 {
         number << 2 | if is_area { Self::AREA } else { Self::FORM }
     }
 
-    /// The number of its form; `None` for a plain point light and for a directional one.
+    /// Returns the number of its form; `None` for a plain point light and for a directional one.
     pub const fn form(&self) -> Option<u32> {
         if self.directional & Self::FORM != 0 {
             Some(self.directional >> 2)

@@ -7,7 +7,10 @@ pub const MAX_STACK_DEPTH: usize = 160;
 pub const MAX_LEVELS: usize = 48;
 
 /// The largest ray depth of a scene.
-pub const MAX_RAY_DEPTH: usize = if INDIRECT { 32 } else { 16 };
+pub const MAX_RAY_DEPTH: usize = 32;
+
+/// Maximum number of surfaces that a shadow ray passes; light behind more surfaces does not arrive.
+pub const MAX_SHADOW_SURFACES: usize = 128;
 
 /// Maximum number of diffuse reflections of a ray of light.
 pub const MAX_BOUNCES: usize = 32;
@@ -17,11 +20,6 @@ pub const MAX_SAMPLES: u16 = 4096;
 
 /// Maximum number of bytes of a name.
 pub const MAX_NAME_BYTES: usize = 255;
-
-/// Places for waiting rays that a ray depth needs where a hit causes up to two.
-pub const fn work_depth(depth: u8) -> usize {
-    depth as usize + 1
-}
 
 /// The greatest distance of an origin from the lattice's middle along each axis: 2^37 units, with 13 fraction bits.
 /// Eyes and lights of a blob are no farther away, so sums and products with ratios stay in 64 bits.

@@ -15,12 +15,12 @@ impl Link {
     /// Number of pairs that a link can address.
     pub const PAIRS: u32 = 1 << 24;
 
-    /// A link without owners.
+    /// Returns a link without owners.
     pub const fn new(first_pair: u32, left_is_leaf: bool, right_is_leaf: bool) -> Self {
         Self(first_pair | (left_is_leaf as u32) << 24 | (right_is_leaf as u32) << 25)
     }
 
-    /// The link with owners. Bits 0 to 2 are for the lower planes of x, y and z, bits 3 to 5 for
+    /// Returns the link with owners. Bits 0 to 2 are for the lower planes of x, y and z, bits 3 to 5 for
     /// the upper ones. A set bit means the right child.
     pub const fn with_owners(self, owners: u32) -> Self {
         Self(self.0 & 0x03ff_ffff | owners << 26)
@@ -32,7 +32,7 @@ impl Link {
         self.0 & 0xff_ffff
     }
 
-    /// The owners of the planes.
+    /// Returns the owners of the planes.
     #[inline(always)]
     pub const fn owners(self) -> u32 {
         self.0 >> 26

@@ -16,7 +16,7 @@ impl NodeWord {
     /// The axis of an absent split or carve.
     pub const NONE: u32 = 3;
 
-    /// A node's last word.
+    /// Returns a node's last word.
     pub const fn new(number: u32, split: u32, carves: [u32; 2]) -> Self {
         Self(number | split << 24 | carves[0] << 26 | carves[1] << 28)
     }
@@ -27,7 +27,7 @@ impl NodeWord {
         self.0 & 0xff_ffff
     }
 
-    /// The axis of the split, or 3 in a leaf.
+    /// Returns the axis of the split, or 3 in a leaf.
     #[inline(always)]
     pub const fn split(self) -> usize {
         (self.0 >> 24 & 3) as usize
@@ -51,7 +51,7 @@ impl NodeWord {
         (self.0 >> 28) as usize
     }
 
-    /// The axes of the carves, or 3.
+    /// Returns the axes of the carves, or 3.
     #[inline(always)]
     pub const fn carves(self) -> [usize; 2] {
         [(self.0 >> 26 & 3) as usize, (self.0 >> 28 & 3) as usize]
@@ -80,7 +80,7 @@ impl ClassNode {
         Self(dimension as u32 | first << 3)
     }
 
-    /// A leaf with the list of a cell.
+    /// Returns a leaf with the list of a cell.
     pub const fn leaf(cell: u32) -> Self {
         Self(Self::LEAF | cell << 3)
     }
@@ -112,7 +112,7 @@ impl OctreeNode {
     /// A leaf without primitives.
     pub const EMPTY: Self = Self(u32::MAX);
 
-    /// A leaf with a list.
+    /// Returns a leaf with a list.
     pub const fn leaf(list: u32) -> Self {
         Self(list | 1 << 31)
     }
@@ -143,12 +143,12 @@ impl Child {
 
     const NODE: u32 = 7 << 29;
 
-    /// A node.
+    /// Returns a node.
     pub const fn node(number: u32) -> Self {
         Self(Self::NODE | number)
     }
 
-    /// A leaf.
+    /// Returns a leaf.
     pub const fn leaf(leaf: Leaf) -> Self {
         Self(leaf.to_word())
     }

@@ -23,7 +23,7 @@ macro_rules! texts {
             /// All of them.
             pub const ALL: &'static [Self] = &[$(Self::$variant),*];
 
-            /// Its text.
+            /// Returns its text.
             pub const fn text(self) -> &'static str {
                 match self {
                     $(Self::$variant => $text,)*

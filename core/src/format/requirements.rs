@@ -30,7 +30,7 @@ use core::mem::offset_of;
 pub struct Requirements {
     /// Entries of the traversal stack.
     pub stack_depth: usize,
-    /// Places for rays that wait: the ray depth and one, or 0 where no ray causes another.
+    /// Places for rays that wait: [`Effects::work_depth`] at the scene's ray depth.
     pub work_depth: usize,
     /// The effects that the scene requires.
     pub effects: Effects,
@@ -66,9 +66,9 @@ impl Requirements {
     /// [`Prevalidated`](crate::scene::Prevalidated) for that.
     pub const fn of(blob: &[u8]) -> Result<Self, BlobError> {
         proved!(complete(blob));
-        let (mut demand, [directory, blobs]) = proved!(Self::without_parts(blob));
+        let (mut required, [directory, blobs]) = proved!(Self::without_parts(blob));
         let mut part = 0;
-        while part < demand.parts {
+        while part < required.parts {
             let entry = directory.saturating_add(part * size_of::<Part>());
             let start = proved!(word(blob, entry.saturating_add(offset_of!(Part, start))));
             let start = blobs.saturating_add((start as usize).saturating_mul(SECTION_ALIGNMENT));
@@ -79,10 +79,10 @@ impl Requirements {
                 });
             };
             let (of_part, _) = proved!(Self::without_parts(blob_of_part));
-            demand = demand.with_part(&of_part);
+            required = required.with_part(&of_part);
             part += 1;
         }
-        Ok(demand)
+        Ok(required)
     }
 
     /// The requirements of a blob and of a part in it. A part's picture is not rendered.
@@ -107,7 +107,7 @@ impl Requirements {
     /// The requirements of a blob without its parts, and where its sections of parts begin: directory and blobs.
     const fn without_parts(blob: &[u8]) -> Result<(Self, [usize; 2]), BlobError> {
         let lattice_bits = proved!(half(blob, offset_of!(Header, lattice_bits))) & 0xff;
-        let mut demand = Self {
+        let mut required = Self {
             stack_depth: proved!(half(blob, offset_of!(Header, stack_depth))) as usize,
             work_depth: 0,
             effects: Effects(proved!(word(blob, offset_of!(Header, effects)))),
@@ -135,40 +135,40 @@ impl Requirements {
             let count = proved!(word(blob, entry + offset_of!(SectionEntry, count)));
             let start = proved!(word(blob, entry + offset_of!(SectionEntry, offset))) as usize;
             if count > 0 && kind < u128::BITS as u16 {
-                demand.sections |= 1 << kind;
+                required.sections |= 1 << kind;
             }
             if kind == SectionKind::View as u16 {
                 // Fields of half a word and less lie two and three to a word.
                 let size = proved!(word(blob, start.saturating_add(offset_of!(View, width))));
                 let rays = proved!(word(blob, start.saturating_add(offset_of!(View, samples))));
-                (demand.width, demand.height) = (size as usize & 0xffff, size as usize >> 16);
+                (required.width, required.height) = (size as usize & 0xffff, size as usize >> 16);
                 // The last byte of the word that begins with the depth.
-                demand.display_values = rays >> 24 == View::DISPLAY_VALUES as u32;
-                demand.work_depth = demand.effects.work_depth((rays >> 16) as u8);
+                required.display_values = rays >> 24 == View::DISPLAY_VALUES as u32;
+                required.work_depth = required.effects.work_depth((rays >> 16) as u8);
             } else if kind == SectionKind::Vertices as u16 {
-                demand.vertices = count as usize;
+                required.vertices = count as usize;
             } else if kind == SectionKind::Pairs as u16 {
-                demand.pairs = count as usize;
+                required.pairs = count as usize;
             } else if kind == SectionKind::Normals as u16 {
                 normals = count as usize;
             } else if kind == SectionKind::NormalChanges as u16 {
                 // The normals come before.
-                demand.moving_normals = normals;
+                required.moving_normals = normals;
             } else if kind == SectionKind::MorphWeights as u16 {
-                demand.morph_targets = count as usize;
+                required.morph_targets = count as usize;
             } else if kind == SectionKind::Triangles as u16 {
-                demand.wide_indices = stride > size_of::<[u16; 3]>();
+                required.wide_indices = stride > size_of::<[u16; 3]>();
             } else if kind == SectionKind::Parts as u16 {
-                (demand.parts, places[0]) = (count as usize, start);
+                (required.parts, places[0]) = (count as usize, start);
             } else if kind == SectionKind::PartBlobs as u16 {
                 places[1] = start;
             }
             index += 1;
         }
         use SectionKind::{Packs, Spheres, Strips, Triangles};
-        demand.clusters_alone = demand.has(Strips) && !demand.has(Triangles)
-            || demand.has(Packs) && !demand.has(Spheres);
-        Ok((demand, places))
+        required.clusters_alone = required.has(Strips) && !required.has(Triangles)
+            || required.has(Packs) && !required.has(Spheres);
+        Ok((required, places))
     }
 
     const fn has(&self, kind: SectionKind) -> bool {
@@ -180,8 +180,8 @@ impl Requirements {
         self.structures & structure.bit() != 0
     }
 
-    /// A sentence about a Cargo feature that the scene requires and that this build lacks. Loading rejects a blob that
-    /// requires one.
+    /// Returns a sentence about a Cargo feature that the scene requires and that this build lacks. Loading rejects a
+    /// blob that requires one.
     pub const fn missing(&self) -> Option<&'static str> {
         macro_rules! parts {
             ($($required:expr => $feature:literal,)*) => {

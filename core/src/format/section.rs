@@ -39,19 +39,19 @@ macro_rules! kinds {
                 known
             };
 
-            /// The kind with a number.
+            /// Returns the kind with a number.
             pub fn of_number(number: u16) -> Option<Self> {
                 Self::ALL.into_iter().find(|&kind| kind as u16 == number)
             }
 
-            /// The name that errors and memory maps use.
+            /// Returns the name that errors and memory maps use.
             pub const fn name(self) -> &'static str {
                 match self {
                     $(SectionKind::$kind => $name,)*
                 }
             }
 
-            /// The name of one of its records, and of the structure or array that it belongs to.
+            /// Returns the name of one of its records, and of the structure or array that it belongs to.
             /// The first is empty where there is only one record, the second where it belongs to the scene.
             pub const fn record_name(self) -> (&'static str, &'static str) {
                 match self {

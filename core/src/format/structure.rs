@@ -78,7 +78,7 @@ macro_rules! names {
             /// All structures, compiled in or not.
             pub const ALL: [Structure; [$($number),*].len()] = [$(Structure::$variant),*];
 
-            /// The name that command lines and tables use.
+            /// Returns the name that command lines and tables use.
             pub const fn name(self) -> &'static str {
                 match self {
                     $(Structure::$variant => $name,)*
@@ -103,7 +103,7 @@ macro_rules! names {
 structures!(names);
 
 impl Structure {
-    /// The structure's bit in the header.
+    /// Returns the structure's bit in the header.
     pub const fn bit(self) -> u32 {
         1 << self as u32
     }

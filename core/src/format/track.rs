@@ -79,7 +79,7 @@ impl Interpolation {
     /// All of them, by their number in the blob.
     pub const ALL: [Self; 3] = [Self::Step, Self::Linear, Self::Cubic];
 
-    /// The name that scene files and reports use.
+    /// Returns the name that scene files and reports use.
     pub const fn name(self) -> &'static str {
         match self {
             Self::Step => "step",
@@ -127,7 +127,7 @@ impl ValueKind {
         }
     }
 
-    /// The least and the greatest value of a component.
+    /// Returns the least and the greatest value of a component.
     pub const fn range(self) -> [i32; 2] {
         const RATIO: i32 = 1 << 30;
         match self {
@@ -167,7 +167,7 @@ impl ValueKind {
 
 macro_rules! targets {
     ($($(#[doc = $doc:literal])* $target:ident = $number:literal, $name:literal, $kind:ident;)*) => {
-        /// What a track moves.
+        /// The property that a track moves.
         #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
         #[repr(u16)]
         pub enum TrackTarget {
@@ -186,7 +186,7 @@ macro_rules! targets {
                 }
             }
 
-            /// What its values are.
+            /// Returns the kind of its values.
             pub const fn kind(self) -> ValueKind {
                 match self {
                     $(Self::$target => ValueKind::$kind,)*
@@ -205,9 +205,9 @@ targets! {
     CameraUp = 2, "camera.up", Direction;
     /// The full vertical angle that the camera sees.
     CameraFieldOfView = 3, "camera.fov", FieldOfView;
-    /// How the camera is turned, in place of a target and a direction that points up.
+    /// The rotation of the camera, in place of a target and an up direction.
     CameraRotation = 4, "camera.rotation", Rotation;
-    /// How far the eye is turned about the direction that points up, through the target.
+    /// The angle by which the eye is turned about the axis through the target along the up direction.
     CameraOrbit = 5, "camera.orbit", Turns;
     /// The place of a point light.
     LightPosition = 6, "light.position", Position;
@@ -225,13 +225,13 @@ targets! {
     MaterialMirror = 12, "material.mirror", Ratios;
     /// The weight of what a material's glass brings.
     MaterialTransmit = 13, "material.transmit", Ratios;
-    /// How a joint is turned about its pivot.
+    /// The rotation of a joint about its pivot.
     JointRotation = 14, "joint.rotation", Rotation;
-    /// How far a joint is shifted.
+    /// The shift of a joint.
     JointShift = 15, "joint.shift", Shift;
-    /// How much larger what hangs on a joint is than at rest.
+    /// The scale of a joint relative to rest.
     JointScale = 16, "joint.scale", Scale;
-    /// How much of a morph target meshes have.
+    /// The weight of a morph target.
     MorphWeight = 17, "morph.weight", Weight;
 }
 
@@ -258,12 +258,12 @@ impl TrackTarget {
 }
 
 impl Track {
-    /// The target; `None` if its number is invalid.
+    /// Returns the target; `None` if its number is invalid.
     pub fn target(&self) -> Option<TrackTarget> {
         TrackTarget::ALL.get(usize::from(self.target)).copied()
     }
 
-    /// The interpolation; `None` if its number is invalid.
+    /// Returns the interpolation; `None` if its number is invalid.
     pub fn interpolation(&self) -> Option<Interpolation> {
         Interpolation::ALL
             .get(usize::from(self.interpolation))

@@ -143,7 +143,7 @@ impl<'a> Coordinates<'a> {
         }
     }
 
-    /// Those of three vertices with [`COORDINATE_BITS`] fraction bits; `None` where one has none.
+    /// Returns the coordinates of three vertices with [`COORDINATE_BITS`] fraction bits; `None` if one has none.
     #[inline(always)]
     pub(crate) fn corners(&self, vertices: [usize; 3]) -> Option<[[i32; 2]; 3]> {
         let [a, b, c] = vertices;

@@ -64,7 +64,7 @@ const SLIDES: usize = 4;
 
 /// The solid's frame, from its integers.
 struct Frame<N> {
-    /// From base to apex, of length 1.
+    /// The direction from base to apex, of length 1.
     axis: [N; 3],
     /// Half of the height.
     half_height: N,
@@ -75,7 +75,7 @@ struct Frame<N> {
     radius: N,
 }
 
-/// Where a line is in the infinite mantle: `cos |q + d s| <= g - e s`.
+/// The inequality for a line inside the infinite mantle: `cos |q + d s| <= g - e s`.
 struct Mantle<N: Arithmetic> {
     q: [N; 3],
     d: [N; 3],
@@ -97,7 +97,7 @@ impl<N: Arithmetic> Mantle<N> {
         (c, b + g.wide(self.e))
     }
 
-    /// Where the line enters and leaves, by roots around the origin that slid to `s`.
+    /// Returns the distances at which the line enters and leaves, from the roots around the origin moved to `s`.
     fn roots(&self, s: N) -> Option<(N, N)> {
         let zero = N::Wide::default();
         let axis = |k: usize| self.q[k] + s * self.d[k];
@@ -209,7 +209,8 @@ impl Primitive for Cone {
         self.bounds
     }
 
-    /// The crossing with the solid. `recip_norm2` is [`Vectors::recip_norm2`](crate::number::Vectors::recip_norm2) of the ray's slopes.
+    /// The crossing with the solid. `recip_norm2` is [`Vectors::recip_norm2`](crate::number::Vectors::recip_norm2) of
+    /// the ray's slopes.
     ///
     /// Cost: some 20 multiplications and additions to reject by the sphere around the solid; some
     /// 100, five divisions and six square roots to accept.
@@ -239,8 +240,8 @@ impl Primitive for Cone {
         let q_axial = N::from_wide(N::dot(q, frame.axis));
         let d_axial = N::from_wide(N::dot(d, frame.axis));
 
-        // Between the caps. If they are at right angles to an axis, the ray crosses their planes at the t that it has for
-        // every face in these planes, to the last bit.
+        // Between the caps. If they are at right angles to an axis, the ray crosses their planes at the t that it has
+        // for every face in these planes, to the last bit.
         let face = self.axis();
         let (mut enter, mut leave) = ((-N::FAR, BASE), (N::FAR, APEX));
         let (mut first_t, mut last_t) = (N::ZERO, N::ZERO);

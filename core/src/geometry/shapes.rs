@@ -34,7 +34,7 @@ macro_rules! registry {
             pub(crate) triangles: Triangles<'a>,
             pub(crate) spheres: Spheres<'a>,
             $(pub(crate) $field: &'a [super::$module::$record],)*
-            /// Where there are both, the same triangles and spheres lie in clusters as in the arrays above.
+            /// Triangles and spheres in clusters. If the arrays above are present too, both hold the same primitives.
             clusters: WideOnly<Clusters<'a>>,
             /// Normals of the first vertices.
             normals: SmoothOnly<&'a [[i16; 2]]>,
@@ -66,7 +66,7 @@ macro_rules! registry {
             }
         }
 
-        /// Whether a shape has no inside: its front is the side to which its normal points.
+        /// Returns true if a shape has no inside: its front is the side to which its normal points.
         #[inline(always)]
         pub(crate) const fn is_flat(kind: Kind) -> bool {
             match kind {
@@ -76,7 +76,7 @@ macro_rules! registry {
             }
         }
 
-        /// Whether the normal of a shape is made level with the ray where it lies on the wrong side of it.
+        /// Returns true if a shape's normal is made perpendicular to the ray where it points to the wrong side.
         #[inline(always)]
         const fn is_leveled(kind: Kind) -> bool {
             match kind {
@@ -86,8 +86,8 @@ macro_rules! registry {
         }
 
         impl Kind {
-            /// Whether primitives of the kind have a box. Those that have none are in no structure: every query tests
-            /// them first. Builds without code for any of those hold none, and need not distinguish them.
+            /// Returns true if primitives of the kind have a box. Those without a box are in no structure: every query
+            /// tests them first. In builds without code for such kinds it is always true.
             #[inline(always)]
             pub const fn is_bounded(self) -> bool {
                 match self {
@@ -191,13 +191,13 @@ macro_rules! registry {
                 }
             }
 
-            /// Whether any primitive's test needs the norm of the ray's direction.
+            /// Returns true if any primitive's test needs the norm of the ray's direction.
             pub(crate) fn needs_norm(&self) -> bool {
                 self.count(Kind::Sphere) > 0
                     $(|| super::$module::$record::NEEDS_NORM && self.count(Kind::$kind) > 0)*
             }
 
-            /// Whether any primitive has no box.
+            /// Returns true if any primitive has no box.
             pub(crate) fn has_unbounded(&self) -> bool {
                 UNBOUNDED
                     && Kind::ALL.into_iter().any(|kind| !kind.is_bounded() && self.records(kind) > 0)

@@ -244,7 +244,7 @@ pub(crate) fn passes<N: Project>(ray: &Ray<N>, corners: [[i32; 3]; 3]) -> bool {
     half_open::encloses_origin(corner(a), corner(b), corner(c))
 }
 
-/// Where a ray crosses the plane of a triangle.
+/// The point at which a ray crosses the plane of a triangle.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct PlaneCrossing<N> {
     pub(crate) t: N,

@@ -40,12 +40,12 @@ impl Angle {
         Self::of_turn(degrees, 360)
     }
 
-    /// This angle and another one.
+    /// Returns the sum of this angle and another one.
     pub const fn plus(self, other: Self) -> Self {
         Self(self.0.wrapping_add(other.0))
     }
 
-    /// The opposite angle.
+    /// Returns the opposite angle.
     pub const fn negative(self) -> Self {
         Self(self.0.wrapping_neg())
     }

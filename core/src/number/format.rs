@@ -16,7 +16,7 @@ impl Format {
     /// All formats, in the order of their names.
     pub const ALL: [Format; 3] = [Format::Fixed, Format::F32, Format::F64];
 
-    /// The name that command lines and tables use.
+    /// Returns the name that command lines and tables use.
     pub const fn name(self) -> &'static str {
         match self {
             Format::Fixed => "fixed",

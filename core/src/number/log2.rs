@@ -3,13 +3,13 @@
 /// Fraction bits of a logarithm.
 pub const LOG2_BITS: u32 = 8;
 
-/// The binary logarithm of 2 to a power.
+/// Returns the binary logarithm of 2 to a power.
 #[inline(always)]
 pub const fn log2_of_power(exponent: i32) -> i32 {
     exponent << LOG2_BITS
 }
 
-/// The binary logarithm of a number; that of 0 is 0, as of 1.
+/// Returns the binary logarithm of a number; that of 0 is 0, as of 1.
 ///
 /// ```
 /// use gridel_core::number::log2::{LOG2_BITS, log2, log2_of_power};
@@ -31,7 +31,7 @@ pub fn log2(number: u64) -> i32 {
     log2_of_power(63_i32.wrapping_sub(zeros.cast_signed())).wrapping_add(fraction.cast_signed())
 }
 
-/// The binary logarithm of the length of a vector whose components have at most 63 bits; that of 0 is 0.
+/// Returns the binary logarithm of the length of a vector whose components have at most 63 bits; that of 0 is 0.
 pub fn log2_of_length(vector: [i64; 3]) -> i32 {
     let [x, y, z] = vector.map(i64::unsigned_abs);
     // The squares of components below 2^31 fit.

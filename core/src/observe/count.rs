@@ -45,7 +45,7 @@ pub trait Observer {
     fn boxes(&mut self, _: u32) {}
     /// Primitives were tested.
     #[inline(always)]
-    fn objects(&mut self, _: u32) {}
+    fn primitives(&mut self, _: u32) {}
     /// Cells of a subdivision of space were entered.
     #[inline(always)]
     fn cells(&mut self, _: u32) {}
@@ -81,7 +81,7 @@ pub struct Counters {
     /// Boxes that were tested.
     pub boxes: u64,
     /// Primitives that were tested.
-    pub objects: u64,
+    pub primitives: u64,
     /// Cells of a subdivision of space that were entered.
     pub cells: u64,
     /// Instances that were entered.
@@ -99,7 +99,7 @@ pub struct Counters {
 }
 
 impl Counters {
-    /// All rays.
+    /// Returns all rays.
     ///
     /// ```
     /// use gridel_core::Counters;
@@ -111,29 +111,29 @@ impl Counters {
         self.primary + self.secondary()
     }
 
-    /// All rays but those from the camera.
+    /// Returns all rays but those from the camera.
     pub fn secondary(&self) -> u64 {
         self.shadow + self.reflected + self.refracted + self.diffuse
     }
 
-    /// All tests of boxes, bounding spheres and primitives, and all cells that were entered.
+    /// Returns all tests of boxes, bounding spheres and primitives, and all cells that were entered.
     ///
     /// ```
     /// use gridel_core::Counters;
     ///
-    /// let counters = Counters { planes: 9, boxes: 3, objects: 2, cells: 1, ..Counters::default() };
+    /// let counters = Counters { planes: 9, boxes: 3, primitives: 2, cells: 1, ..Counters::default() };
     /// assert_eq!(counters.tests(), 6);
     /// ```
     pub fn tests(&self) -> u64 {
-        self.boxes + self.cells + self.objects
+        self.boxes + self.cells + self.primitives
     }
 
-    /// The counts of two parts of the work.
+    /// Returns the counts of two parts of the work.
     pub fn plus(&self, other: &Self) -> Self {
         Self {
             planes: self.planes + other.planes,
             boxes: self.boxes + other.boxes,
-            objects: self.objects + other.objects,
+            primitives: self.primitives + other.primitives,
             cells: self.cells + other.cells,
             instances: self.instances + other.instances,
             primary: self.primary + other.primary,
@@ -154,8 +154,8 @@ impl Observer for Counters {
         self.boxes = self.boxes.wrapping_add(number.into());
     }
 
-    fn objects(&mut self, number: u32) {
-        self.objects = self.objects.wrapping_add(number.into());
+    fn primitives(&mut self, number: u32) {
+        self.primitives = self.primitives.wrapping_add(number.into());
     }
 
     fn cells(&mut self, number: u32) {

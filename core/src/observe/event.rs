@@ -11,15 +11,15 @@ use crate::format::Kind;
 /// The purpose of a ray.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum RayKind {
-    /// From the camera.
+    /// A ray from the camera.
     Primary,
-    /// Towards a light.
+    /// A ray towards a light.
     Shadow,
-    /// Off a mirror, or off glass.
+    /// A ray off a mirror, or off glass.
     Reflected,
-    /// Into glass or out of it.
+    /// A ray into glass or out of it.
     Refracted,
-    /// Off a surface in a random direction.
+    /// A ray off a surface in a random direction.
     Diffuse,
     /// Off a rough mirror or rough glass, and from there through glass. The lights that it can hit were already
     /// reflected at the rough surface.
@@ -75,7 +75,7 @@ pub enum Event {
     NodeSkipped {
         /// The part that is dropped.
         place: NodeId,
-        /// Where the ray would enter it.
+        /// The distance at which the ray would enter it.
         enters: f64,
     },
     /// The ray goes into a node, a leaf or a cell.
@@ -149,8 +149,8 @@ pub enum Event {
         coordinates: [f64; 2],
         /// The number of times that the image is halved for this look-up; a fraction lies between two of its levels.
         level: f64,
-        /// The nearest texel of the finer level, counted from the upper left one, or the upper left one of the four that
-        /// are mixed.
+        /// The nearest texel of the finer level, counted from the upper left one, or the upper left one of the four
+        /// that are mixed.
         texel: [u32; 2],
         /// The texture's color: linear ratios.
         color: [f64; 3],
@@ -278,7 +278,7 @@ pub struct NodeId {
 }
 
 impl NodeId {
-    /// What the leaves of the hierarchy above instances are.
+    /// The name of the leaves of the hierarchy above instances.
     pub const INSTANCE: &'static str = "instance";
 }
 

@@ -57,7 +57,7 @@ impl<N: Number, const SIZE: usize> Default for HitList<N, SIZE> {
 }
 
 impl<N: Number, const SIZE: usize> HitList<N, SIZE> {
-    /// An empty list, to begin with a ray's first hit.
+    /// Returns an empty list, to begin with a ray's first hit.
     pub const fn new() -> Self {
         const { assert!(SIZE > 0, "a list of hits has at least one entry") };
         Self {
@@ -82,7 +82,7 @@ impl<N: Number, const SIZE: usize> HitList<N, SIZE> {
         self.entries.is_empty()
     }
 
-    /// The hits that were listed last, in order.
+    /// Returns the hits that were listed last, in order.
     pub fn iter(&self) -> impl ExactSizeIterator<Item = &PrimitiveHit<N>> {
         self.entries.iter().map(|entry| &entry.hit)
     }
@@ -91,10 +91,10 @@ impl<N: Number, const SIZE: usize> HitList<N, SIZE> {
 /// Lists the hits of a ray in its interval: the first ones, and at each later call with the list, those behind them.
 /// Returns true if more hits are possible, because the list is full.
 ///
-/// Hits are ordered by t, counted from where the ray enters the scene's box: from far away that is finer than the t which
-/// is returned. At the same t those of the scene's own objects come first, then those of instances in
-/// scene-file order. Then the primitive that comes first in the scene file counts, and the entry into a solid before
-/// the exit. All structures return this order and the same bits.
+/// Hits are ordered by t, counted from where the ray enters the scene's box: from far away that is finer than the t
+/// which is returned. At the same t those of the scene's own objects come first, then those of instances in scene-file
+/// order. Then the primitive that comes first in the scene file counts, and the entry into a solid before the exit. All
+/// structures return this order and the same bits.
 ///
 /// Every crossing is a hit. Spheres, boxes and other solids have an entry and an exit, even if both have the same t; a
 /// torus has up to four crossings. Triangles follow the half-open rule. A ray through an edge or a vertex of a closed
@@ -211,7 +211,7 @@ struct PlacedSearch<N: Number> {
     index: u32,
     number: u32,
     first_primitive: u32,
-    /// That of the scene's ray.
+    /// The interval of the scene's ray.
     interval: [N; 2],
 }
 

@@ -66,8 +66,9 @@ fn along_u(corners: [[i32; 3]; 3], coordinates: [[i32; 2]; 3]) -> Option<([i64; 
 
 impl<N: Number> Hit<N> {
     /// Returns the texture coordinates at the hit, u to the right and v down: a multiple of 2^-20 each, from -1024 to
-    /// 1024. `scene` is that of the query. `None` unless the hit is of a mesh whose material has a texture: the compiler
-    /// leaves other coordinates out. Those of a mesh within -2 to 2 are rounded to multiples of 2^-14 at its vertices.
+    /// 1024. `scene` is that of the query. `None` unless the hit is of a mesh whose material has a texture: the
+    /// compiler leaves other coordinates out. Those of a mesh within -2 to 2 are rounded to multiples of 2^-14 at its
+    /// vertices.
     ///
     /// ```
     /// # static BLOB: &[u8] =
@@ -78,10 +79,10 @@ impl<N: Number> Hit<N> {
     /// let mut stack = Stack::<32>::new();
     /// let down = Ray::<f32>::from_f64(scene.bounds(), [0.0, 1e6, 0.0], [0.0, -1.0, 0.0], 0.0, 1e9)?;
     /// let hit = scene.closest_hit(&down, stack.as_view()).expect("a sphere");
-    /// assert_eq!(hit.mapped_coordinates(&scene), None);
+    /// assert_eq!(hit.texture_coordinates(&scene), None);
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
-    pub fn mapped_coordinates(&self, scene: &Scene<'_>) -> Option<[f64; 2]> {
+    pub fn texture_coordinates(&self, scene: &Scene<'_>) -> Option<[f64; 2]> {
         let found = self.coordinates(scene)?;
         Some(found.map(|it| f64::from(it) / f64::from(1 << COORDINATE_BITS)))
     }

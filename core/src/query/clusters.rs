@@ -49,7 +49,7 @@ impl<N: Number, K: Culling<N>, F: Collect<N>> Search<'_, '_, N, K, F> {
         let Some(strip) = strips.get(number as usize) else {
             return;
         };
-        count.objects(strip.members().count());
+        count.primitives(strip.members().count());
         let mut met = self.strip_met(strip);
         let missed = strip.members().lanes() & !met;
         let id = |place| PrimitiveId::in_cluster(Kind::Triangle, number, place);
@@ -102,7 +102,7 @@ impl<N: Number, K: Culling<N>, F: Collect<N>> Search<'_, '_, N, K, F> {
     ) {
         let Some(pack) = pack else { return };
         let place = |lane| PrimitiveId::in_cluster(Kind::Sphere, number, lane);
-        count.objects(pack.lanes().count_ones());
+        count.primitives(pack.lanes().count_ones());
         if N::FORMAT != Format::F32 {
             for lane in 0..LANES as u32 {
                 self.sphere_in_pack(pack, lane, place(lane), count);

@@ -27,7 +27,7 @@ impl Solid {
         }
     }
 
-    /// The object that a hit belongs to.
+    /// Returns the object that a hit belongs to.
     pub fn of_hit<N: Number>(scene: &Scene<'_>, hit: &PrimitiveHit<N>) -> Self {
         Self {
             object: scene.object(hit.primitive),

@@ -12,7 +12,7 @@ use core::cmp::Ordering;
 pub struct OrderedHit<N: Number>(Entry<N>);
 
 impl<N: Number> OrderedHit<N> {
-    /// The hit.
+    /// Returns the hit.
     pub fn hit(&self) -> &PrimitiveHit<N> {
         &self.0.hit
     }

@@ -76,7 +76,7 @@ impl FourReadyRays {
         }
     }
 
-    /// A ray; `None` if [`Ray::from_f64`] must set it up, or reject it.
+    /// Returns a ray; `None` if [`Ray::from_f64`] must set it up, or reject it.
     #[inline(always)]
     pub fn get(&self, lane: usize) -> Option<&ReadyRay> {
         let is_ready = self.ready >> (lane & 3) & 1 != 0;
@@ -85,7 +85,7 @@ impl FourReadyRays {
 }
 
 impl ReadyRay {
-    /// The ray.
+    /// Returns the ray.
     #[inline(always)]
     pub fn ray(&self) -> &Ray<f32> {
         &self.ray

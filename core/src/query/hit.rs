@@ -33,8 +33,8 @@ pub(super) struct InInstance<N> {
 }
 
 impl<N: Number> PrimitiveHit<N> {
-    /// The place of the instance that was hit among the scene's [instances](Scene::instances); `None` for a hit of the
-    /// scene's own objects.
+    /// Returns the place of the instance that was hit among the scene's [instances](Scene::instances); `None` for a hit
+    /// of the scene's own objects.
     pub fn instance(&self) -> Option<u32> {
         let placed = self.placed.get().copied().flatten()?;
         Some(placed.index)
@@ -222,35 +222,8 @@ impl<N: Number> Hit<N> {
         }
     }
 
-    /// Returns the texture coordinates of box mapping: the point's coordinates, in units, on the two axes across the
-    /// normal's largest component.
-    ///
-    /// ```
-    /// # static BLOB: &[u8] =
-    /// #     gridel_core::include_blob!(concat!(env!("CARGO_MANIFEST_DIR"), "/../fixtures/blobs/dual-split.gridel"));
-    /// use gridel_core::{Ray, Scene, Stack};
-    ///
-    /// let scene = Scene::from_bytes(BLOB)?;
-    /// let mut stack = Stack::<32>::new();
-    /// let down = Ray::<f32>::from_f64(scene.bounds(), [0.0, 1e6, 0.0], [0.0, -1.0, 0.0], 0.0, 1e9)?;
-    /// let hit = scene.closest_hit(&down, stack.as_view()).expect("a sphere");
-    /// let coordinates = hit.texture_coordinates();
-    /// assert!(coordinates.iter().all(|it| hit.point.contains(it)));
-    /// # Ok::<(), Box<dyn std::error::Error>>(())
-    /// ```
-    pub fn texture_coordinates(&self) -> [N; 2] {
-        let ([x, y, z], [a, b, c]) = (self.point, self.normal.map(N::abs));
-        if a >= b && a >= c {
-            [y, z]
-        } else if b >= c {
-            [x, z]
-        } else {
-            [x, y]
-        }
-    }
-
-    /// The place of the instance that was hit among the scene's [instances](Scene::instances); `None` for a hit of the
-    /// scene's own objects.
+    /// Returns the place of the instance that was hit among the scene's [instances](Scene::instances); `None` for a hit
+    /// of the scene's own objects.
     pub fn instance(&self) -> Option<u32> {
         let instance = self.instance.get().copied()?;
         (instance != NO_INSTANCE).then_some(instance)

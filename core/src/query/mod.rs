@@ -2,8 +2,8 @@
 //!
 //! `search` tests the primitives of a structure's leaves, `clusters` those in leaves of eight, `unbounded` those that
 //! lie in no structure. `collect` keeps or lists the hits of a search. `all_hits` lists all hits with the search in
-//! `crossings`, `every_hit` visits them in no order, and `contains` counts them. `hit` is the answer, `smooth` its normal
-//! for shading, `attributes` its vertex attributes, and `distance` its form for range finders.
+//! `crossings`, `every_hit` visits them in no order, and `contains` counts them. `hit` is the answer, `smooth` its
+//! normal for shading, `attributes` its vertex attributes, and `distance` its form for range finders.
 
 mod all_hits;
 mod attributes;
@@ -52,8 +52,9 @@ inline_on_hosts_hint_on_boards!(
     /// Returns the primitive that a ray hits first in its interval, found through the structure `A`.
     ///
     /// At the same t, the hit that comes first in the scene file counts, so the answer is the same for every structure.
-    /// The stack must be as deep as the blob states, and the blob must [hold](crate::Scene::holds) the structure: through
-    /// another one the answer means nothing. A [`Renderer`](crate::Renderer) and modules of `--emit-rust` check both.
+    /// The stack must be as deep as the blob states, and the blob must [hold](crate::Scene::holds) the structure:
+    /// through another one the answer means nothing. A [`Renderer`](crate::Renderer) and modules of `--emit-rust` check
+    /// both.
     ///
     /// ```
     /// # static BLOB: &[u8] =
@@ -234,7 +235,7 @@ inline_on_hosts!(
     /// let (mut stack, mut counters) = (Stack::<32>::new(), Counters::default());
     /// let down = Ray::<f32>::from_f64(scene.bounds(), [0.0, 1e6, 0.0], [0.0, -1.0, 0.0], 0.0, 1e9)?;
     /// assert!(any_hit::<f32, DualSplit, _>(&scene, &down, stack.as_view(), &mut counters));
-    /// assert!(counters.objects > 0);
+    /// assert!(counters.primitives > 0);
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
     // See above.

@@ -68,7 +68,8 @@ impl<'s, 'a, N: Number, K: Culling<N>, F: Collect<N>> Search<'s, 'a, N, K, F> {
         }
     }
 
-    /// Considers a crossing; it is committed if it beats the best hit: a smaller t, or the same t of an earlier primitive.
+    /// Considers a crossing; it is committed if it beats the best hit: a smaller t, or the same t of an earlier
+    /// primitive.
     #[inline(always)]
     pub(super) fn consider(&mut self, crossing: Crossing<N>, place: PrimitiveId) {
         if F::ALL {
@@ -140,7 +141,7 @@ impl<'s, 'a, N: Number, K: Culling<N>, F: Collect<N>> Search<'s, 'a, N, K, F> {
         if A::HAS_CLUSTERS && leaf.count == 0 {
             return self.cluster::<_, ANY>(leaf, count);
         }
-        count.objects(leaf.count);
+        count.primitives(leaf.count);
         self.slots(leaf, count);
     }
 
@@ -405,8 +406,8 @@ pub(super) fn search_structure<N: Number, A: Accel, C: Observer, F: Collect<N>, 
 }
 
 inline_on_boards!(
-    /// [`search_structure`] for scenes with instances or unbounded shapes, which search in several places: hosts hold it
-    /// once for all of those.
+    /// [`search_structure`] for scenes with instances or unbounded shapes, which search in several places: hosts hold
+    /// it once for all of those.
     pub(super) fn search_apart<N: Number, A: Accel, C: Observer, const ANY: bool>(
         scene: &Scene<'_>,
         ray: &Ray<N>,

@@ -68,7 +68,7 @@ impl<N: Number> Hit<N> {
         Some(map.step(way))
     }
 
-    /// Of an instance.
+    /// Returns the smooth normal at a hit of an instance.
     #[cold]
     #[inline(never)]
     fn placed_normal(&self, scene: &Scene<'_>, facing: [N; 3]) -> Option<[N; 3]> {

@@ -10,18 +10,17 @@ use crate::observe::event::Event;
 use crate::ray::{FarPoint, Ray};
 use crate::scene::Scene;
 
-/// Where a ray meets a shape without bounds.
+/// The hit of a ray with a shape without bounds.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct FarHit<N: Number> {
-    /// Counted from the ray's start, as kernels count.
+    /// Distance from the ray's start, as kernels count.
     pub(super) after_start: N,
-    /// As the caller counts it: what tells apart hits that lie farther away than kernels count.
+    /// Distance as the caller counts it. It distinguishes hits that lie farther away than kernels count.
     pub(super) t: N::Wide,
     pub(super) place: PrimitiveId,
 }
 
-/// The nearest hit in the interval that the caller gave. Of hits at the same t the one that comes first in the scene
-/// file counts.
+/// Returns the nearest hit in the interval that the caller gave. Ties go to the hit that comes first in the scene file.
 #[cold]
 #[inline(never)]
 pub(super) fn nearest<N: Number, C: Observer>(
@@ -43,8 +42,8 @@ pub(super) fn nearest<N: Number, C: Observer>(
     best
 }
 
-/// Calls `consider` with every hit in the interval that the caller gave, in the order of their records. It returns whether
-/// the hit is the nearest so far.
+/// Calls `consider` with every hit in the interval that the caller gave, in the order of their records. It returns
+/// whether the hit is the nearest so far.
 #[inline(always)]
 pub(super) fn each<N: Number, C: Observer>(
     scene: &Scene<'_>,
@@ -61,7 +60,7 @@ pub(super) fn each<N: Number, C: Observer>(
         });
         let in_interval = hit.filter(|hit| hit.t >= tmin && hit.t <= tmax);
         let nearest = in_interval.is_some_and(&mut consider);
-        count.objects(1);
+        count.primitives(1);
         if C::ENABLED {
             count.event(Event::Candidate {
                 kind: place.kind,

@@ -17,7 +17,7 @@ const LENGTHS: [f64; 2] = [1.0 / (1_u128 << 100) as f64, (1_u128 << 100) as f64]
 /// Four rays in units. Each row has a number of every ray.
 #[derive(Clone, Copy, Debug)]
 pub struct FourGivenRays {
-    /// Where the rays begin.
+    /// The origins of the rays.
     pub origin: [F64x4; 3],
     /// Directions of any length.
     pub direction: [F64x4; 3],

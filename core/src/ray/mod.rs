@@ -64,7 +64,7 @@ pub struct Ray<N: Arithmetic> {
 
 impl<N: Arithmetic> Ray<N> {
     inline_on_hosts_hint_on_boards!(
-        /// A ray through a scene whose box is `bounds` (see [`Scene::bounds`](crate::Scene::bounds)).
+        /// Returns a ray through a scene whose box is `bounds` (see [`Scene::bounds`](crate::Scene::bounds)).
         ///
         /// Origin and interval are lengths in units; the direction is of any length but 0. Hits are reported for
         /// `tmin <= t <= tmax`, in lengths along the major axis; `tmin` can be negative.
@@ -221,7 +221,7 @@ impl<N: Arithmetic> Ray<N> {
         }
     );
 
-    /// The axis along which `t` is measured: 0, 1 or 2.
+    /// Returns the axis along which `t` is measured: 0, 1 or 2.
     ///
     /// ```
     /// # static BLOB: &[u8] =
@@ -235,7 +235,7 @@ impl<N: Arithmetic> Ray<N> {
         self.major
     }
 
-    /// The direction, scaled so that its major component is 1 or -1.
+    /// Returns the direction, scaled so that its major component is 1 or -1.
     ///
     /// ```
     /// # static BLOB: &[u8] =
@@ -264,12 +264,12 @@ impl<N: Arithmetic> Ray<N> {
         self.origin
     }
 
-    /// The t of [`start`](Self::start), as the caller counts it.
+    /// Returns the t of [`start`](Self::start), as the caller counts it.
     pub fn start_t(&self) -> N::Wide {
         self.start_t
     }
 
-    /// The interval in which hits are reported, counted from [`start`](Self::start).
+    /// Returns the interval in which hits are reported, counted from [`start`](Self::start).
     pub fn interval(&self) -> [N; 2] {
         [self.tmin, self.tmax]
     }
@@ -325,8 +325,9 @@ impl<N: Arithmetic> Ray<N> {
         }
     }
 
-    /// How far behind the ray's start a surface without bounds is met, to the last bit what kernels find for a shape in
-    /// that place: at most half of the longest length, and negative for what lies before the start.
+    /// Returns the distance from the ray's start to a hit with a surface without bounds. It has the same bits as the
+    /// result of kernels for a shape there. It is at most half of the longest length, and negative for a hit before the
+    /// start.
     pub(crate) fn after_start(&self, met: &FarPoint<N>) -> N {
         let difference = end_after::<N>(met.t(), self.start_t);
         let after = if difference >= N::ZERO && met.at == self.start_t {

@@ -33,7 +33,7 @@ enum Origin<N: Arithmetic> {
 }
 
 impl<N: Arithmetic> Pencil<N> {
-    /// The rays from a point, with all `t` that are not negative: see [`Ray::new`].
+    /// Returns the rays from a point, with all `t` that are not negative: see [`Ray::new`].
     ///
     /// ```
     /// # static BLOB: &[u8] =
@@ -81,7 +81,7 @@ impl<N: Arithmetic> Pencil<N> {
         })
     }
 
-    /// The ray in a direction of any length.
+    /// Returns the ray in a direction of any length.
     ///
     /// ```
     /// # static BLOB: &[u8] =

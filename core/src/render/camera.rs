@@ -100,7 +100,7 @@ impl Camera {
         Self::looking([toward(0), toward(1), toward(2)], eye, up, field_of_view)
     }
 
-    /// A camera that looks in a direction of any length.
+    /// Returns a camera that looks in a direction of any length.
     ///
     /// # Errors
     /// The errors of [`look_at`](Self::look_at).
@@ -131,7 +131,7 @@ impl Camera {
         Self::with_axes([forward, right, up], eye, field_of_view)
     }
 
-    /// A camera turned by a quaternion of any length, x, y, z and w: without a turn it looks along -z, with y
+    /// Returns a camera turned by a quaternion of any length, x, y, z and w: without a turn it looks along -z, with y
     /// upwards.
     ///
     /// # Errors
@@ -213,7 +213,7 @@ impl Camera {
         })
     }
 
-    /// The place of the eye.
+    /// Returns the place of the eye.
     pub fn eye(&self) -> Position {
         self.eye
     }
@@ -223,7 +223,7 @@ impl Camera {
         self.replace_in(scene.view(), scene.header())
     }
 
-    /// A view with this camera in place of its own, in the scene coordinates that a header states.
+    /// Returns a view with this camera in place of its own, in the scene coordinates that a header states.
     pub fn replace_in(&self, view: &View, header: &Header) -> View {
         let [forward, right, up] = self.frame;
         View {
@@ -237,7 +237,7 @@ impl Camera {
 }
 
 impl Up {
-    /// The axis: 1 for y, 2 for z.
+    /// Returns the axis: 1 for y, 2 for z.
     pub const fn axis(self) -> usize {
         match self {
             Self::Y => 1,

@@ -33,8 +33,8 @@ impl<'s, 'a> Renderer<'s, 'a, f32, DynAccel, { Effects::AVAILABLE.0 }> {
 }
 
 impl<N: Number> Workspace<N, MAX_STACK_DEPTH, { Effects::MAX_WORK_DEPTH }> {
-    /// An empty workspace that is large enough for every scene: 5 KB in `f32` and `fixed`, and 3 KB without the feature
-    /// `indirect`.
+    /// Returns an empty workspace that is large enough for every scene: 5 KB in `f32` and `fixed`, and 3 KB without the
+    /// feature `indirect`.
     ///
     /// ```
     /// # static BLOB: &[u8] =

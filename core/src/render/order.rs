@@ -92,7 +92,7 @@ pub struct CoarseToFine {
 const COARSEST: u16 = 8;
 
 impl CoarseToFine {
-    /// The pixels of a rectangle, without those beyond number 65535.
+    /// Returns the pixels of a rectangle, without those beyond number 65535.
     pub fn new(corner: [u16; 2], size: [u16; 2]) -> Self {
         let [x, y] = corner;
         let [width, height] = size;
@@ -106,7 +106,7 @@ impl CoarseToFine {
         }
     }
 
-    /// The side of the next blocks: 8, 4, 2 or 1, and 0 after all pixels.
+    /// Returns the side of the next blocks: 8, 4, 2 or 1, and 0 after all pixels.
     pub fn side(&self) -> u16 {
         self.side
     }

@@ -30,7 +30,7 @@ pub struct Settings {
     /// Samples per pixel, 1 to 4,096; powers of two are spread best. Beyond 256 they share places within the pixel, but
     /// effects draw different random points.
     pub samples: u16,
-    /// Maximum number of reflections and refractions of a ray, 0 to 16, or to 32 with the feature `indirect`.
+    /// Maximum number of reflections and refractions of a ray, 0 to 32.
     pub depth: u8,
     /// True if pixels are dithered.
     pub dither: bool,
@@ -80,7 +80,7 @@ pub enum RenderError {
         /// Samples per pixel.
         samples: u16,
     },
-    /// The depth is above 16, or above 32 with the feature `indirect`.
+    /// The depth is above 32.
     Depth(u8),
     /// The blob does not hold the structure.
     Structure(Structure),
@@ -232,7 +232,7 @@ impl<'s, 'a, N: Number, A: Accel, const EFFECTS: u32> Renderer<'s, 'a, N, A, EFF
         })
     }
 
-    /// The settings.
+    /// Returns the settings.
     ///
     /// ```
     /// # static BLOB: &[u8] =
@@ -286,7 +286,7 @@ impl<'s, 'a, N: Number, A: Accel, const EFFECTS: u32> Renderer<'s, 'a, N, A, EFF
         Ok(())
     }
 
-    /// The ray from the eye through the middle of a pixel, for queries of the caller's own.
+    /// Returns the ray from the eye through the middle of a pixel, for queries of the caller's own.
     ///
     /// ```
     /// # static BLOB: &[u8] =

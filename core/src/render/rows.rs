@@ -91,7 +91,7 @@ impl<N: Number, A: Accel, const EFFECTS: u32> Renderer<'_, '_, N, A, EFFECTS> {
         self.to_linear(shown)
     }
 
-    /// One pixel in a display's form.
+    /// Returns one pixel in a display's form.
     ///
     /// ```
     /// # static BLOB: &[u8] =

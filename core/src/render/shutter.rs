@@ -23,7 +23,7 @@ pub struct Shutter<'r, 's, 'a, N: Number, A: Accel, const EFFECTS: u32> {
 }
 
 impl<'r, 's, 'a, N: Number, A: Accel, const EFFECTS: u32> Shutter<'r, 's, 'a, N, A, EFFECTS> {
-    /// A shutter that is open over the moments of some renderers, in the order of time.
+    /// Returns a shutter that is open over the moments of some renderers, in the order of time.
     ///
     /// ```
     /// # static BLOB: &[u8] =
@@ -66,12 +66,12 @@ impl<'r, 's, 'a, N: Number, A: Accel, const EFFECTS: u32> Shutter<'r, 's, 'a, N,
         Ok(Self { first, moments })
     }
 
-    /// The settings of the picture.
+    /// Returns the settings of the picture.
     pub fn settings(&self) -> Settings {
         self.first.settings()
     }
 
-    /// One pixel, linear, 65535 being white: see [`Renderer::linear`].
+    /// Returns one pixel, linear, 65535 being white: see [`Renderer::linear`].
     pub fn linear<C: Observer>(
         &self,
         x: u16,
@@ -89,7 +89,7 @@ impl<'r, 's, 'a, N: Number, A: Accel, const EFFECTS: u32> Shutter<'r, 's, 'a, N,
         }
     }
 
-    /// One pixel in a display's form: see [`Renderer::pixel`].
+    /// Returns one pixel in a display's form: see [`Renderer::pixel`].
     pub fn pixel<P: Pixel, C: Observer>(
         &self,
         x: u16,

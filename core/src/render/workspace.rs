@@ -34,9 +34,9 @@ pub fn bytes_per_ray<N: Number>(effects: Effects) -> usize {
 /// All memory to which rendering writes. The caller owns it, and it is used again for every pixel.
 ///
 /// `STACK` must be at least the blob's [stack depth](crate::Scene::stack_depth), `WORK` at least
-/// [`work_depth`](crate::format::limits::work_depth) of the ray depth. The workspace takes 12 bytes per entry of the
-/// stack. In `f32` and `fixed` it takes 40 bytes per place for a ray, up to 48 in builds with the effects `nested`,
-/// `texture-levels` and `indirect`.
+/// [`Effects::work_depth`](crate::Effects::work_depth) of the scene's effects at the ray depth. The workspace takes 12
+/// bytes per entry of the stack. In `f32` and `fixed` it takes 40 bytes per place for a ray, up to 48 in builds with
+/// the effects `nested`, `texture-levels` and `indirect`.
 #[derive(Debug)]
 pub struct Workspace<N: Number, const STACK: usize, const WORK: usize> {
     stack: Stack<STACK>,
@@ -44,7 +44,7 @@ pub struct Workspace<N: Number, const STACK: usize, const WORK: usize> {
 }
 
 impl<N: Number, const STACK: usize, const WORK: usize> Workspace<N, STACK, WORK> {
-    /// An empty workspace.
+    /// Returns an empty workspace.
     ///
     /// ```
     /// use gridel_core::{Fixed, Workspace};
@@ -60,7 +60,7 @@ impl<N: Number, const STACK: usize, const WORK: usize> Workspace<N, STACK, WORK>
         }
     }
 
-    /// The workspace in the form that renderers use.
+    /// Returns the workspace in the form that renderers use.
     pub fn as_view(&mut self) -> WorkspaceView<'_, N> {
         WorkspaceView {
             stack: self.stack.as_view(),

@@ -62,7 +62,7 @@ pub(crate) struct Rough<'a> {
 }
 
 impl<'a> Scene<'a> {
-    /// The header.
+    /// Returns the header.
     ///
     /// ```
     /// # static BLOB: &[u8] =
@@ -88,7 +88,7 @@ impl<'a> Scene<'a> {
         self.view
     }
 
-    /// The lights.
+    /// Returns the lights.
     ///
     /// ```
     /// # static BLOB: &[u8] =
@@ -101,7 +101,7 @@ impl<'a> Scene<'a> {
         self.lights
     }
 
-    /// The forms of lights, which lights name by their numbers.
+    /// Returns the forms of lights, which lights name by their numbers.
     pub fn light_forms(&self) -> &'a [LightForm] {
         self.light_forms.get().copied().unwrap_or_default()
     }
@@ -111,14 +111,14 @@ impl<'a> Scene<'a> {
         self.emissions.get().copied().unwrap_or_default()
     }
 
-    /// The light that an object emits.
+    /// Returns the light that an object emits.
     #[inline(always)]
     pub fn emission(&self, object: u32) -> Option<&'a Emission> {
         let number = self.material_number(object);
         self.emissions().get(number as usize)
     }
 
-    /// The camera's lens; `None` for a pinhole.
+    /// Returns the camera's lens; `None` for a pinhole.
     #[inline(always)]
     pub fn lens(&self) -> Option<&'a Lens> {
         self.lens.get()?.first()
@@ -130,13 +130,13 @@ impl<'a> Scene<'a> {
         self.bounces.get().copied().unwrap_or(0)
     }
 
-    /// The numbers of the materials with a priority, from the highest on; none where glass does not overlap.
+    /// Returns the numbers of the materials with a priority, from the highest on; none where glass does not overlap.
     #[inline(always)]
     pub fn media(&self) -> &'a [u32] {
         self.media.get().copied().unwrap_or_default()
     }
 
-    /// The place of an object's material in the order of media; `None` for one without a priority.
+    /// Returns the place of an object's material in the order of media; `None` for one without a priority.
     #[inline(always)]
     pub fn place_among_media(&self, object: u32) -> Option<u8> {
         let number = self.material_number(object);
@@ -159,7 +159,7 @@ impl<'a> Scene<'a> {
         self.rough.get().map_or(&[], |rough| rough.alphas)
     }
 
-    /// The α of an object's facets; `None` for a smooth one.
+    /// Returns the α of an object's facets; `None` for a smooth one.
     #[inline(always)]
     pub fn roughness(&self, object: u32) -> Option<i32> {
         let rough = self.rough.get()?;
@@ -175,13 +175,13 @@ impl<'a> Scene<'a> {
         mark() == Some(&1)
     }
 
-    /// The form of a light.
+    /// Returns the form of a light.
     #[inline(always)]
     pub fn light_form(&self, light: &Light) -> Option<&'a LightForm> {
         self.light_forms().get(light.form()? as usize)
     }
 
-    /// The materials.
+    /// Returns the materials.
     ///
     /// ```
     /// # static BLOB: &[u8] =
@@ -194,12 +194,12 @@ impl<'a> Scene<'a> {
         self.materials
     }
 
-    /// The scene's box, for [`Ray::new`](crate::Ray::new).
+    /// Returns the scene's box, for [`Ray::new`](crate::Ray::new).
     pub fn bounds(&self) -> &'a UnitBox {
         self.space.bounds()
     }
 
-    /// The effects that the scene requires.
+    /// Returns the effects that the scene requires.
     ///
     /// ```
     /// # static BLOB: &[u8] =
@@ -263,7 +263,7 @@ impl<'a> Scene<'a> {
         scene
     }
 
-    /// The instructions that queries through [`Wide`](crate::Wide) use.
+    /// Returns the instructions that queries through [`Wide`](crate::Wide) use.
     pub fn simd(&self) -> SimdLevel {
         self.space.simd()
     }
@@ -294,14 +294,9 @@ impl<'a> Scene<'a> {
         self.space.shapes.normals().len()
     }
 
-    /// The colors of the first vertices: see [`attributes`](crate::geometry::attributes).
+    /// Returns the colors of the first vertices: see [`attributes`](crate::geometry::attributes).
     pub fn vertex_colors(&self) -> &'a [[u8; 4]] {
         self.space.shapes.colors()
-    }
-
-    /// Number of vertices that have texture coordinates: see [`attributes`](crate::geometry::attributes).
-    pub fn texture_coordinates(&self) -> usize {
-        self.space.shapes.coordinates().len()
     }
 
     /// Number of maps.
@@ -309,29 +304,30 @@ impl<'a> Scene<'a> {
         self.textures.get().map_or(0, |it| it.maps.len())
     }
 
-    /// The textures.
+    /// Returns the textures.
     pub fn textures(&self) -> &'a [Texture] {
         self.textures.get().map_or(&[], |it| it.textures)
     }
 
-    /// The box of a primitive, given by its kind and its slot among those of that kind; `None` for one without bounds.
+    /// Returns the box of a primitive, given by its kind and its slot among those of that kind; `None` for one without
+    /// bounds.
     pub fn primitive_bounds(&self, kind: Kind, slot: usize) -> Option<UnitBox> {
         self.space.shapes.bounds(kind, slot)
     }
 
-    /// The corners of a triangle in 1/256 unit, given by its slot.
+    /// Returns the corners of a triangle in 1/256 unit, given by its slot.
     pub fn triangle(&self, slot: usize) -> Option<[[i32; 3]; 3]> {
         self.space.shapes.triangle(slot)
     }
 
-    /// The stored normals of a triangle's corners (see [`smooth`](crate::geometry::smooth)), given by the triangle's
-    /// slot; `None` if the triangle is not smooth.
+    /// Returns the stored normals of a triangle's corners (see [`smooth`](crate::geometry::smooth)), given by the
+    /// triangle's slot; `None` if the triangle is not smooth.
     pub fn corner_normals(&self, slot: usize) -> Option<[[i16; 2]; 3]> {
         Some(self.space.shapes.smooth_triangle(slot)?.normals)
     }
 
-    /// The colors of a triangle's corners (see [`attributes`](crate::geometry::attributes)), given by the triangle's
-    /// slot; `None` where no corner has one.
+    /// Returns the colors of a triangle's corners (see [`attributes`](crate::geometry::attributes)), given by the
+    /// triangle's slot; `None` where no corner has one.
     pub fn corner_colors(&self, slot: usize) -> Option<[[u8; 4]; 3]> {
         let all = self.space.shapes.colors();
         let vertices = self.space.shapes.triangles.corners(slot)?;
@@ -340,20 +336,20 @@ impl<'a> Scene<'a> {
         has_color.then(|| vertices.map(color))
     }
 
-    /// The texture coordinates of a triangle's corners, with 20 fraction bits, given by the triangle's slot; `None` where
-    /// a corner has none.
+    /// Returns the texture coordinates of a triangle's corners, with 20 fraction bits, given by the triangle's slot;
+    /// `None` where a corner has none.
     pub fn corner_coordinates(&self, slot: usize) -> Option<[[i32; 2]; 3]> {
         let vertices = self.space.shapes.triangles.corners(slot)?;
         self.space.shapes.coordinates().corners(vertices)
     }
 
-    /// A primitive in lattice coordinates, given by its kind and its slot among those of that kind.
+    /// Returns a primitive in lattice coordinates, given by its kind and its slot among those of that kind.
     pub fn geometry(&self, kind: Kind, slot: usize) -> Option<Geometry> {
         self.space.shapes.geometry(kind, slot)
     }
 
-    /// The number, in scene-file order, of a primitive given by kind and slot. It is below the number of primitives.
-    /// Several slots have one number where a triangle was cut into pieces.
+    /// Returns the number, in scene-file order, of a primitive given by kind and slot. It is below the number of
+    /// primitives. Several slots have one number where a triangle was cut into pieces.
     #[inline]
     pub fn primitive(&self, kind: Kind, slot: u32) -> u32 {
         self.primitive_at(self.space.shapes.place(kind, slot))
@@ -405,7 +401,7 @@ impl<'a> Scene<'a> {
         self.order.get(slot).unwrap_or(slot as u32)
     }
 
-    /// The object that a primitive belongs to.
+    /// Returns the object that a primitive belongs to.
     ///
     /// ```
     /// # static BLOB: &[u8] =
@@ -436,7 +432,7 @@ impl<'a> Scene<'a> {
         low as u32
     }
 
-    /// The material of an object.
+    /// Returns the material of an object.
     ///
     /// ```
     /// # static BLOB: &[u8] =
@@ -451,7 +447,7 @@ impl<'a> Scene<'a> {
         self.materials.get(self.material_number(object) as usize)
     }
 
-    /// The number of an object's material among the [materials](Self::materials).
+    /// Returns the number of an object's material among the [materials](Self::materials).
     #[inline]
     pub fn material_number(&self, object: u32) -> u32 {
         self.object_material.get(object as usize).unwrap_or(0)

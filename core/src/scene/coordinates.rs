@@ -6,8 +6,7 @@ use crate::format::record::Header;
 use crate::ray::{Ray, RayError};
 use crate::scene::Scene;
 
-/// A place in scene coordinates, in multiples of the scene's step: 2 to the power of
-/// [`Scene::coordinate_exponent`] scene units.
+/// A place in scene coordinates, in coordinate steps of 2 to the power of [`Scene::coordinate_exponent`] scene units.
 ///
 /// Coordinates are counted from the scene file's own origin. Where a scene lies too far from it for 32 bits, they are
 /// counted from the [lattice's](crate::format::record::Header::origin); `gridel inspect` reports that. They reach at
@@ -21,7 +20,7 @@ pub struct Position(pub [i32; 3]);
 const LENGTH_BITS: i32 = 13;
 
 impl Scene<'_> {
-    /// One step of scene coordinates is 2 to this power scene units.
+    /// Returns the exponent of a coordinate step: a step is 2 to this power scene units.
     ///
     /// ```
     /// # static BLOB: &[u8] =
@@ -92,13 +91,23 @@ impl Scene<'_> {
 }
 
 impl Header {
-    /// One step of scene coordinates is 2 to this power scene units.
+    /// Returns the exponent of a coordinate step: a step is 2 to this power scene units.
     pub fn coordinate_exponent(&self) -> i32 {
         let shift = i32::from(self.coordinate_shift);
         i32::from(self.unit_exponent) - LENGTH_BITS + shift
     }
 
-    /// A place on the lattice: units with 13 fraction bits, at most [`FARTHEST`] in magnitude.
+    /// Returns the place in scene units from which scene coordinates are counted: the scene file's origin, or the
+    /// lattice's where that is too far away.
+    pub fn coordinate_origin(&self) -> [f64; 3] {
+        if self.counted_from == 0 {
+            self.origin
+        } else {
+            [0.0; 3]
+        }
+    }
+
+    /// Returns a place on the lattice: units with 13 fraction bits, at most [`FARTHEST`] in magnitude.
     pub fn on_lattice(&self, position: Position) -> [i64; 3] {
         let shift = self.coordinate_shift.min(MAX_COORDINATE_SHIFT);
         let coordinate = |coordinate: i32, origin: f64| {
@@ -145,7 +154,7 @@ impl Header {
     /// bits. It is computed from the number's bits, so that no floating-point code is needed. Out of range, it is moved
     /// to the range's end.
     fn origin_on_lattice(&self, origin: f64) -> i64 {
-        if self.coordinate_origin == 0 {
+        if self.counted_from == 0 {
             return 0;
         }
         const FRACTION: u32 = f64::MANTISSA_DIGITS - 1;
@@ -181,7 +190,7 @@ mod tests {
         Header {
             unit_exponent,
             coordinate_shift,
-            coordinate_origin: 1,
+            counted_from: 1,
             origin: [origin; 3],
             ..Header::zeroed()
         }

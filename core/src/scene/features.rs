@@ -6,8 +6,8 @@ use crate::geometry::triangle::Triangles;
 use crate::scene::Scene;
 
 impl Scene<'_> {
-    /// The Cargo features of this crate that the scene and its parts require, without that of its structure. They are
-    /// the kinds of its primitives, their stored forms, display values as colors, and its effects.
+    /// Returns the Cargo features of this crate that the scene and its parts require, without that of its structure.
+    /// They are the kinds of its primitives, their stored forms, display values as colors, and its effects.
     ///
     /// ```
     /// # static BLOB: &[u8] =
@@ -41,7 +41,7 @@ impl Scene<'_> {
         names.chain(self.effects_with_parts().names())
     }
 
-    /// The effects that the scene requires, and those that its parts require at loading.
+    /// Returns the effects that the scene requires, and those that its parts require at loading.
     pub fn effects_with_parts(&self) -> Effects {
         let parts = self.parts().iter();
         parts.fold(self.effects(), |all, part| all.with(part.effects()))

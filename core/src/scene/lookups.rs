@@ -63,7 +63,7 @@ impl<'a> Scene<'a> {
         self.textures.get()?.maps_of(material)
     }
 
-    /// The environment.
+    /// Returns the environment.
     pub fn environment(&self) -> Option<&'a Environment> {
         self.environment.get()?.record
     }

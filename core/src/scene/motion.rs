@@ -36,7 +36,7 @@ const SCALE_BITS: u32 = 24;
 pub struct Motion {
     /// Row by row, with 30 fraction bits.
     rotation: [[i32; 3]; 3],
-    /// With [`SCALE_BITS`].
+    /// The scale with [`SCALE_BITS`] fraction bits.
     scale: i32,
     /// The place to which the origin is moved: coordinate steps with [`OFFSET_BITS`].
     offset: [i64; 3],
@@ -53,13 +53,13 @@ impl Motion {
     /// The least and the greatest scale, with 24 fraction bits: 1/16384 and 64.
     pub const SCALES: [i32; 2] = SCALES;
 
-    /// A turn about an axis of any length through a place, counterclockwise as seen from the axis' tip; `None` if the
-    /// axis has no length. Each number of its matrix is within 2^-25.
+    /// Returns a turn about an axis of any length through a place, counterclockwise as seen from the axis' tip; `None`
+    /// if the axis has no length. Each number of its matrix is within 2^-25.
     pub fn turn(pivot: Position, axis: [i32; 3], angle: Angle) -> Option<Self> {
         Self::rotation(pivot, about(axis, angle)?)
     }
 
-    /// A turn about a place by a quaternion of any length, x, y, z and w; `None` if it has no length.
+    /// Returns a turn about a place by a quaternion of any length, x, y, z and w; `None` if it has no length.
     pub fn rotation(pivot: Position, rotation: [i32; 4]) -> Option<Self> {
         let [x, y, z] = columns(rotation)?;
         let row = |axis: usize| [x[axis].0, y[axis].0, z[axis].0];
@@ -183,7 +183,7 @@ impl Motion {
         }
     }
 
-    /// As [`place`](Self::place), with the matrix kept in its range, which rounding can leave.
+    /// Like [`place`](Self::place), with the matrix kept in its range, which rounding can leave.
     ///
     /// The rounding of compositions adds up, and in chains of some twenty it leaves the range. Rounded rows of the
     /// instance can also be longer than 1, which shows after a turn along an axis.

@@ -24,7 +24,7 @@ use crate::scene::read::header;
 /// ```
 #[derive(Clone, Copy, Debug)]
 pub struct Names<'a> {
-    /// Where each name begins; then where the last one ends.
+    /// The start of each name, then the end of the last one.
     starts: Indices<'a>,
     text: &'a str,
     objects: usize,
@@ -72,13 +72,13 @@ impl<'a> Names<'a> {
         self.starts.is_empty()
     }
 
-    /// The name of an object; empty for one without a name, and beyond the last object.
+    /// Returns the name of an object; empty for one without a name, and beyond the last object.
     pub fn object(&self, object: u32) -> &'a str {
         let inside = Some(object as usize).filter(|&object| object < self.objects);
         inside.map_or("", |object| self.name(object))
     }
 
-    /// The name of a material, by its number in the blob; empty for one without a name, and beyond the
+    /// Returns the name of a material, by its number in the blob; empty for one without a name, and beyond the
     /// last material.
     pub fn material(&self, material: u32) -> &'a str {
         let inside = Some(material as usize).filter(|&material| material < self.materials);
@@ -87,7 +87,7 @@ impl<'a> Names<'a> {
         })
     }
 
-    /// The name of a light; empty for one without a name, and beyond the last light.
+    /// Returns the name of a light; empty for one without a name, and beyond the last light.
     pub fn light(&self, light: u32) -> &'a str {
         let before = self.objects.saturating_add(self.materials);
         self.name(before.saturating_add(light as usize))

@@ -230,19 +230,19 @@ impl<'a> Scene<'a> {
         Ok(Self { placed, ..*self })
     }
 
-    /// The instances, in the order of the hierarchy above them.
+    /// Returns the instances, in the order of the hierarchy above them.
     // Every query calls it.
     #[cfg_attr(feature = "wide", inline(always))]
     pub fn instances(&self) -> &'a [Instance] {
         self.placed.get().map_or(&[], |placed| placed.top.instances)
     }
 
-    /// The parts that instances place.
+    /// Returns the parts that instances place.
     pub fn parts(&self) -> &'a [Scene<'a>] {
         self.placed.get().map_or(&[], |placed| placed.parts)
     }
 
-    /// The number of the first primitive of a part among all primitives of the scene.
+    /// Returns the number of the first primitive of a part among all primitives of the scene.
     pub fn first_primitive_of_part(&self, part: usize) -> Option<u32> {
         let directory = self.placed.get()?.directory;
         directory.get(part).map(|part| part.first_primitive)

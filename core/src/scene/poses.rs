@@ -66,7 +66,7 @@ impl<const MOST: usize> Poses<MOST> {
         }
     }
 
-    /// The instances of a scene at its own places.
+    /// Returns the instances of a scene at its own places.
     ///
     /// # Errors
     /// If the scene has more than `MOST`.
@@ -92,7 +92,7 @@ pub struct PosesView<'p> {
 }
 
 impl<'p> PosesView<'p> {
-    /// The instances of a scene at its own places, in slices of at least as many records.
+    /// Returns the instances of a scene at its own places, in slices of at least as many records.
     ///
     /// # Errors
     /// If a slice is too short.

@@ -2,7 +2,6 @@
 
 use crate::accel::Number;
 use crate::accel::list::List;
-use crate::format::limits::work_depth;
 use crate::observe::count::NoCount;
 use crate::render::Pixel;
 use crate::selftest::checks::{Checks, FNV_START, hash, name};
@@ -59,7 +58,7 @@ pub(super) fn matches<N: Number>(checks: &mut Checks<'_>) {
     let Ok(renderer) = renderer else {
         return checks.equal(format_args!("the renderer"), "rejected", "made");
     };
-    let mut space = Workspace::<N, 0, { work_depth(4) }>::new();
+    let mut space = Workspace::<N, 0, { Effects::GLASS.work_depth(4) }>::new();
     let mut space = space.as_view();
     let enough = renderer.check_workspace(&space);
     checks.equal(format_args!("workspace"), enough, Ok(()));

@@ -1,7 +1,7 @@
 //! Glass that absorbs light along the way: Beer's law.
 //!
-//! A ray knows the glass without a priority that it is inside of, so that what lies in the glass is seen through it, and
-//! lit through it. Of glass in such glass only the inner is known. A waiting ray needs two more bytes for it.
+//! A ray knows the glass without a priority that it is inside of, so that objects in the glass are seen and lit through
+//! it. If such glasses are nested, it knows only the inner one. A waiting ray needs two more bytes for it.
 
 use crate::accel::Number;
 use crate::format::Effects;

@@ -74,7 +74,7 @@ macro_rules! places {
             /// The effect, as sets hold it.
             const EFFECT: Effects;
 
-            /// Whether rays wait because of it.
+            /// True if rays wait because of it.
             const CASTS: bool = Effects::CASTING.contains(Self::EFFECT);
 
             /// True if it needs the direction of a ray with length 1.
@@ -86,20 +86,21 @@ macro_rules! places {
             /// True if because of it rays may pass a surface straight on.
             const PASSES: bool = false;
 
-            /// True if it acts on the mean of samples that are brighter than display white, or needs that mean to be right.
+            /// True if it acts on the mean of samples that are brighter than display white, or needs that mean to be
+            /// right.
             const DEVELOPS: bool = false;
 
-            /// Whether a material requires it.
+            /// Returns true if a material requires it.
             fn is_required_by_material(material: &Material) -> bool {
                 false
             }
 
-            /// Whether a light requires it.
+            /// Returns true if a light requires it.
             fn is_required_by_light(light: &Light) -> bool {
                 false
             }
 
-            /// Whether a view requires it.
+            /// Returns true if a view requires it.
             fn is_required_by_view(view: &View) -> bool {
                 false
             }

@@ -29,7 +29,7 @@ pub(crate) struct Facets<N> {
 }
 
 impl<N: Number> Facets<N> {
-    /// With an α of 30 fraction bits.
+    /// Returns facets with an α of 30 fraction bits.
     #[inline(always)]
     pub(crate) fn new(alpha: i32, normal: [N; 3], cos_in: N) -> Self {
         // Limited to the range for blobs that are not proved.

@@ -200,8 +200,8 @@ static NOTHING: Material = Material {
     maps: 0,
 };
 
-/// How often a ray is inside each medium, up to 15 times: four bits each, from the highest priority on. Bytes, so that
-/// they fill gaps next to other states.
+/// Number of times that a ray is inside each medium, at most 15: four bits each, from the highest priority on. It is
+/// stored as bytes to fill gaps next to other states.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Inside([u8; 4 * NESTED as usize]);
 
@@ -256,7 +256,7 @@ impl Inside {
 struct Boundary {
     /// The medium that fills the near side; `None` for the surroundings.
     from: Option<u8>,
-    /// That of the far side.
+    /// The medium that fills the far side; `None` for the surroundings.
     to: Option<u8>,
     /// The media that a ray on the far side is inside of.
     beyond: Inside,

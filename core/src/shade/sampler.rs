@@ -40,7 +40,7 @@ pub struct Sampler {
 }
 
 impl Sampler {
-    /// Of a sample, counted from 0, of a pixel of the picture.
+    /// Returns the sampler for a sample, counted from 0, of a pixel of the picture.
     #[inline(always)]
     pub fn new(pixel: [u16; 2], sample: u16) -> Self {
         Self { pixel, sample }
@@ -52,7 +52,7 @@ impl Sampler {
         self.sample
     }
 
-    /// A point of the unit square, with 32 fraction bits.
+    /// Returns a point of the unit square, with 32 fraction bits.
     ///
     /// `bounce` separates the rays of a sample. `dimension` separates the draws of one ray: two effects, or two lights,
     /// with the same number would draw the same point. Both can be any number.

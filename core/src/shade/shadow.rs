@@ -2,7 +2,7 @@
 
 use crate::accel::Number;
 use crate::format::Effects;
-use crate::format::limits::MAX_RAY_DEPTH;
+use crate::format::limits::MAX_SHADOW_SURFACES;
 use crate::format::record::Light;
 use crate::number::extent;
 use crate::observe::count::Observer;
@@ -10,9 +10,6 @@ use crate::observe::event::{Event, RayKind};
 use crate::shade::Color;
 use crate::shade::effect::{Effect, Tracer};
 use crate::shade::surface::{Filter, Lighting, Reach, Surface, depart, secondary_ray};
-
-/// Maximum number of surfaces that a shadow ray passes; light behind more surfaces does not arrive.
-const SURFACES: usize = 4 * MAX_RAY_DEPTH;
 
 pub(crate) struct Shadow;
 
@@ -59,7 +56,7 @@ fn through<'s, N: Number, X: Tracer<'s, N>>(
         ..
     } = *lighting;
     let mut left = Color::WHITE;
-    for _ in 0..SURFACES {
+    for _ in 0..=MAX_SHADOW_SURFACES {
         // The light itself, and objects that touch it, cast no shadow.
         let end = distance.map(|distance| {
             let magnitude = extent(origin).max(N::narrow(distance));

@@ -2,7 +2,7 @@
 
 use crate::accel::Number;
 use crate::format::light_form::LightForm;
-use crate::number::{extent, far_extent};
+use crate::number::{Format, extent, far_extent};
 use crate::shade::basis::{beside, cross};
 use crate::shade::light::{Distance, ROOT_OF_HALF, Reach, length};
 use crate::shade::surface::Aim;
@@ -54,16 +54,29 @@ pub(super) fn of_sphere<N: Number>(
     };
 }
 
-/// [`Scalar::div`](crate::number::Scalar::div) out of line: it is used often where little is gained by copies.
-#[inline(never)]
+/// The quotient of two numbers.
+#[inline(always)]
 fn over<N: Number>(a: N, b: N) -> N {
-    a.div(b)
+    in_one_place(move || a.div(b))
 }
 
-/// √(a² + b²) of lengths, out of line likewise.
-#[inline(never)]
+/// √(a² + b²) of lengths.
+#[inline(always)]
 fn hypotenuse<N: Number>(a: N, b: N) -> N {
-    N::root(a.wide(a) + b.wide(b))
+    in_one_place(move || N::root(a.wide(a) + b.wide(b)))
+}
+
+/// Computes a number. In integers that takes much code, which the program holds once and not wherever it is used.
+#[inline(always)]
+fn in_one_place<N: Number>(number: impl FnOnce() -> N) -> N {
+    #[inline(never)]
+    fn out_of_line<N>(number: impl FnOnce() -> N) -> N {
+        number()
+    }
+    match N::FORMAT {
+        Format::Fixed => out_of_line(number),
+        Format::F32 | Format::F64 => number(),
+    }
 }
 
 /// Returns the way to a random point of a rectangle, triangle or disc; `None` from behind.

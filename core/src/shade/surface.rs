@@ -64,7 +64,7 @@ impl<N: Number> Surface<'_, N> {
 }
 
 impl<N: Number> Interface<N> {
-    /// Between the surroundings and glass.
+    /// Returns the interface between the surroundings and glass.
     #[inline(always)]
     pub(crate) fn of(hit: &Hit<N>, material: &Material) -> Self {
         Self {

@@ -5,7 +5,6 @@ mod mocks;
 
 use crate::accel::Number;
 use crate::format::Effects;
-use crate::format::limits::work_depth;
 use crate::selftest::TinyBlob;
 use crate::shade::EffectsThen;
 use crate::{Counters, Fixed, List, Renderer, Scene, Settings, Workspace};
@@ -54,7 +53,7 @@ fn picture<N: Number, const EFFECTS: u32>(depth: u8) -> Picture {
     let renderer =
         Renderer::<N, List, EFFECTS>::with_settings(&scene, settings).expect("a renderer");
     // Up to three rays wait after a hit.
-    let mut space = Workspace::<N, 0, { 2 * work_depth(4) }>::new();
+    let mut space = Workspace::<N, 0, { Effects::MAX_WORK_DEPTH }>::new();
     let mut space = space.as_view();
     let mut counters = Counters::default();
     let places = (0..settings.height).flat_map(|y| (0..settings.width).map(move |x| [x, y]));
@@ -128,7 +127,7 @@ fn surface_mock_changes_the_normal_that_lights_are_computed_with() {
 }
 
 #[test]
-fn surface_mock_paints_by_texture_coordinates() {
+fn surface_mock_paints_by_place() {
     let background = background();
     let (pixels, _) = picture::<f32, { TRUE | Print::BITS | Matt::BITS }>(0);
     let mut count = [0; 2];

@@ -33,18 +33,18 @@ pub enum SimdLevel {
 }
 
 impl SimdLevel {
-    /// The fastest level of this processor.
+    /// Returns the fastest level of this processor.
     pub fn detect() -> Self {
         Avx2::detect().map_or(Self::Portable, Self::Avx2)
     }
 
-    /// All levels of this processor, the portable one first.
+    /// Returns all levels of this processor, the portable one first.
     pub fn available() -> impl Iterator<Item = Self> {
         let best = Some(Self::detect()).filter(|best| *best != Self::Portable);
         core::iter::once(Self::Portable).chain(best)
     }
 
-    /// The name that command lines and tables use.
+    /// Returns the name that command lines and tables use.
     pub const fn name(self) -> &'static str {
         match self {
             Self::Portable => "portable",

@@ -6,12 +6,12 @@ use crate::scene::{Motion, PosesView, Position, Scene};
 use crate::tracks::Tracks;
 
 impl<'a> Tracks<'a> {
-    /// The joints on which instances hang; a joint comes before those that hang on it.
+    /// Returns the joints on which instances hang; a joint comes before those that hang on it.
     pub fn joints(&self) -> &'a [Joint] {
         self.0.joints
     }
 
-    /// The joint of an instance, given by its index among [`Scene::instances`]; `None` if it hangs on none.
+    /// Returns the joint of an instance, given by its index among [`Scene::instances`]; `None` if it hangs on none.
     pub fn joint_of(&self, instance: usize) -> Option<usize> {
         let joint = self.0.instance_joints.get(instance).copied();
         joint

@@ -102,7 +102,7 @@ impl<'a> Tracks<'a> {
         self.0.tracks.is_empty()
     }
 
-    /// The tracks, in the order of their targets and numbers.
+    /// Returns the tracks, in the order of their targets and numbers.
     pub fn tracks(&self) -> &'a [Track] {
         self.0.tracks
     }
@@ -112,7 +112,7 @@ impl<'a> Tracks<'a> {
         self.0.timeline.ticks_per_second
     }
 
-    /// The times of the earliest and of the latest key; 0 in a blob without tracks.
+    /// Returns the times of the earliest and of the latest key; 0 in a blob without tracks.
     pub fn span(&self) -> [i32; 2] {
         [self.0.timeline.first, self.0.timeline.last]
     }

@@ -10,7 +10,7 @@ use crate::tracks::Tracks;
 use crate::tracks::interpolate::Sample;
 
 impl Tracks<'_> {
-    /// The camera at a time; `None` if the blob's camera does not move. [`Camera::view`] makes a view of it.
+    /// Returns the camera at a time; `None` if the blob's camera does not move. [`Camera::view`] makes a view of it.
     ///
     /// # Errors
     /// If the moving camera looks nowhere or along the direction that points up, or an orbit leads beyond the range of
@@ -159,7 +159,7 @@ impl Tracks<'_> {
         Ok(())
     }
 
-    /// The weights of morph targets at rest.
+    /// Returns the weights of morph targets at rest.
     pub fn weights_at_rest(&self) -> &[i32] {
         self.0.weights
     }

@@ -5,6 +5,7 @@ use gridel_host::compile::{CompileError, Options};
 use gridel_host::explained;
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
+use std::path::Path;
 
 /// A ValueError of what is wrong.
 pub fn invalid(error: impl std::fmt::Display) -> PyErr {
@@ -13,7 +14,39 @@ pub fn invalid(error: impl std::fmt::Display) -> PyErr {
 
 /// A ValueError of what is wrong and what to do.
 pub fn rejected(error: impl Into<CompileError>) -> PyErr {
-    invalid(explained(&error.into()))
+    invalid(in_python(&explained(&error.into())))
+}
+
+/// A sentence with the options of the command line as they are written in Python: `--model N` as `model=N`.
+pub fn in_python(sentence: &str) -> String {
+    const OPTIONS: [&str; 11] = [
+        "accel",
+        "allow-outside",
+        "altloc",
+        "animation",
+        "assembly",
+        "camera",
+        "instances",
+        "lattice-bits",
+        "model",
+        "normals",
+        "style",
+    ];
+    OPTIONS.iter().fold(sentence.to_owned(), |sentence, name| {
+        let own = name.replace('-', "_");
+        sentence
+            .replace(&format!("`--{name}`"), &format!("`{own}`"))
+            .replace(&format!("`--{name} "), &format!("`{own}="))
+    })
+}
+
+/// The error of a file: a ValueError names it, others stay as they are.
+pub fn in_file(py: Python<'_>, path: &Path, error: PyErr) -> PyErr {
+    if error.is_instance_of::<PyValueError>(py) {
+        invalid(format!("{}: {}", path.display(), error.value(py)))
+    } else {
+        error
+    }
 }
 
 pub fn structure(name: &str) -> PyResult<Structure> {

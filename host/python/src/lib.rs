@@ -4,6 +4,7 @@
 mod arguments;
 mod closed;
 mod hit_arrays;
+mod load_options;
 mod meshes;
 mod model;
 mod query;
@@ -16,6 +17,12 @@ use pyo3::prelude::*;
 /// Native code of the package gridel.
 #[pymodule]
 mod _gridel {
+    use gridel_host::compile;
+
     #[pymodule_export]
     use crate::scene::NativeScene;
+
+    /// Fewest and most bits of a lattice.
+    #[pymodule_export]
+    const LATTICE_BITS: (u8, u8) = (*compile::LATTICE_BITS.start(), *compile::LATTICE_BITS.end());
 }

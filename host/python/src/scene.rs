@@ -5,10 +5,11 @@ mod place;
 
 pub use native::NativeScene;
 
-use crate::arguments::{invalid, options, rejected};
+use crate::arguments::{in_file, in_python, invalid, options, rejected};
 use crate::hit_arrays::{
     Arrays, Cast, HitArrays, MeshHitArrays, append, collected, column, rows, too_large, zeros,
 };
+use crate::load_options::LoadOptions;
 use crate::meshes::{self, GivenMesh, Mesh};
 use crate::model::{Model, warn};
 use crate::query::{self, Any, FirstPrimitive, Found, Inside, NONE, Rows};
@@ -19,7 +20,7 @@ use gridel_host::blob::Blob;
 use gridel_host::compile::{Options, compile};
 use gridel_host::picture::srgb;
 use gridel_host::render::{Job, render};
-use gridel_host::scene::{self, ImportOptions, Imported};
+use gridel_host::scene;
 use gridel_host::trace::SceneRay;
 use numpy::{IntoPyArray, PyArray2, PyArrayMethods, PyUntypedArray};
 use pyo3::exceptions::{PyFileNotFoundError, PyIsADirectoryError};
@@ -36,8 +37,7 @@ const ROWS_PER_THREAD: u64 = 4;
 #[pymethods]
 impl NativeScene {
     #[staticmethod]
-    #[pyo3(signature = (path, accel, lattice_bits))]
-    fn load(py: Python<'_>, path: PathBuf, accel: Vec<String>, lattice_bits: u8) -> PyResult<Self> {
+    fn load(py: Python<'_>, path: PathBuf, given: LoadOptions) -> PyResult<Self> {
         if path.is_dir() {
             return Err(PyIsADirectoryError::new_err(format!(
                 "{}: a directory; name a scene file in it",
@@ -52,23 +52,24 @@ impl NativeScene {
             let sentence = format!("{}: {what}", path.display());
             return Err(PyFileNotFoundError::new_err(sentence));
         }
-        let options = options(&accel, lattice_bits)?;
+        let (options, importing) = (given.for_compiler()?, given.for_import()?);
         if gridel_host::blob::is_blob(&path)? {
+            given.reject_for_blob(&path)?;
             return py.detach(|| Self::of_blob(Blob::read(&path)?, None, f64::NAN));
         }
-        let imported = in_pool(py, 0, || scene::load_with(&path, &ImportOptions::default()))?;
-        let Imported {
-            scene, warnings, ..
-        } = imported.map_err(rejected)?;
-        for warning in warnings {
-            warn(py, &warning, 2)?;
+        let imported = in_pool(py, 0, || scene::load_with(&path, &importing))?;
+        let imported = imported.map_err(rejected)?;
+        given.check(&path, &imported)?;
+        let unposed = given.warning(&path, &imported);
+        for warning in imported.warnings.iter().chain(&unposed) {
+            warn(py, &in_python(warning), 2)?;
         }
         let model = Model {
-            scene,
+            scene: imported.scene,
             options,
             is_of_arrays: false,
         };
-        Self::compiled(py, model, 2)
+        Self::compiled(py, model, 2).map_err(|error| in_file(py, &path, error))
     }
 
     #[staticmethod]

@@ -340,7 +340,7 @@ def test_errors_name_the_argument(cube):
         cube.render(5, 5, samples=-1)
     with pytest.raises(ValueError, match="depth is 300"):
         cube.render(5, 5, depth=300)
-    with pytest.raises(ValueError, match="lattice_bits is -1; it must be 16 to 24"):
+    with pytest.raises(ValueError, match="lattice_bits is -1; it must be 10 to 24"):
         gridel.Scene.from_arrays(CUBE, FACES, lattice_bits=-1)
     with pytest.raises(TypeError, match="vertices: the array has the type complex128"):
         gridel.Scene.from_arrays(CUBE.astype(complex), FACES)

@@ -163,7 +163,7 @@ fn time_text(cost: &Cost) -> String {
     }
 }
 
-/// How a time compares with another, with its range.
+/// Returns a sentence part that compares a time with another, with its range.
 fn ratio_text(cost: &Cost, to: &Cost) -> String {
     let ratio = cost.time() / to.time().max(f64::MIN_POSITIVE);
     let Some(([low, high], [least, most])) = cost.interval().zip(to.interval()) else {

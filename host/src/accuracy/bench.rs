@@ -21,10 +21,10 @@ use std::collections::HashMap;
 pub struct Point {
     pub name: String,
     pub setting: Setting,
-    /// Against the reference.
+    /// Errors against the reference.
     pub errors: Errors,
     pub parts: ErrorParts,
-    /// Where effects are left out: against the picture that has them, of otherwise the same setting.
+    /// If effects are left out: the errors against the picture with these effects and otherwise the same setting.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub lost: Option<Errors>,
     pub cost: Cost,
@@ -34,8 +34,8 @@ pub struct Point {
 /// one may cancel the other.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct ErrorParts {
-    /// The true picture of this setting, of `f64` or exact, against the reference: what samples, depth, cut-off, lattice and left-out
-    /// effects do.
+    /// The true picture of this setting, of `f64` or exact, against the reference: what samples, depth, cut-off,
+    /// lattice and left-out effects do.
     pub sampling: f64,
     /// The picture of the setting's number format against the true picture of this setting.
     pub arithmetic: f64,
@@ -61,12 +61,12 @@ pub struct Cost {
 }
 
 impl Cost {
-    /// The median of the repeats.
+    /// Returns the median of the repeats.
     pub fn time(&self) -> f64 {
         time::median(&self.seconds).unwrap_or(0.0)
     }
 
-    /// The least and the largest of the repeats: see [`time::interval`].
+    /// Returns the least and the largest of the repeats: see [`time::interval`].
     pub fn interval(&self) -> Option<[f64; 2]> {
         time::interval(&self.seconds)
     }
@@ -76,12 +76,12 @@ impl Cost {
         time::is_below(&self.seconds, &other.seconds)
     }
 
-    /// The largest less the least, as a part of the median.
+    /// Returns the largest less the least, as a part of the median.
     pub fn spread(&self) -> Option<f64> {
         time::spread(&self.seconds)
     }
 
-    /// The spread as tables show it.
+    /// Returns the spread as tables show it.
     pub fn spread_text(&self) -> String {
         let spread = self.spread();
         spread.map_or(String::from("-"), |spread| {
@@ -118,7 +118,7 @@ pub struct Reference {
     hits: Vec<Option<FirstHit>>,
 }
 
-/// Why something cannot be measured.
+/// An error of a measurement.
 #[derive(Debug, thiserror::Error, miette::Diagnostic)]
 pub enum MeasureError {
     #[error(transparent)]
@@ -169,8 +169,8 @@ pub struct Bench<'s> {
     exact: HashMap<String, (Vec<[u16; 3]>, usize)>,
 }
 
-/// How the reference is made: double precision, the finest lattice, all reflections that a picture
-/// could show.
+/// Returns the setting of the reference: double precision, the finest lattice, all reflections that a picture could
+/// show.
 pub fn reference_setting(samples: u16) -> Setting {
     Setting {
         format: Format::F64,

@@ -23,7 +23,7 @@ pub struct Worth {
     pub tests: f64,
     /// Part of the time that is saved without it, by the medians; negative where it takes longer.
     pub time: f64,
-    /// Between what this part lies by the repeats; `None` where they were timed once.
+    /// The range of this part over the repeats; `None` if they were timed once.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub time_range: Option<[f64; 2]>,
     /// Bytes of the blob.

@@ -53,7 +53,7 @@ pub struct Results {
 }
 
 impl Results {
-    /// A point by its setting.
+    /// Returns a point by its setting.
     pub fn point(&mut self, setting: &Setting) -> Option<&mut Point> {
         self.points.iter_mut().find(|p| p.setting == *setting)
     }
@@ -124,7 +124,8 @@ impl Limits {
     }
 }
 
-/// The point with the smallest error that casts no more rays per pixel; of several the one with the fewest rays and tests.
+/// Returns the point with the smallest error that casts no more rays per pixel; of several the one with the fewest rays
+/// and tests.
 pub fn most_accurate<'p>(points: &'p [Point], rays: f64, board: Option<&str>) -> Option<&'p Point> {
     let key = |point: &&Point| {
         (
@@ -148,7 +149,7 @@ pub fn cheapest<'p>(points: &'p [Point], most: f64, board: Option<&str>) -> Opti
     cheapest_within(points, Limits::of_error(most), board)
 }
 
-/// The cheapest point within limits of error and rays: see [`cheapest`].
+/// Returns the cheapest point within limits of error and rays: see [`cheapest`].
 pub fn cheapest_within<'p>(
     points: &'p [Point],
     limits: Limits,

@@ -311,7 +311,7 @@ impl Worth {
         }
     }
 
-    /// The least and the most instructions per pixel of the rays that it sends.
+    /// Returns the least and the most instructions per pixel of the rays that it sends.
     pub fn instructions_text(&self) -> String {
         let known = self
             .instructions

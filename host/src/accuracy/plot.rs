@@ -7,7 +7,7 @@ use plotters::prelude::*;
 use std::fmt::Write;
 use std::io;
 
-/// A plot of the RMSE against time, both by their logarithms, as SVG.
+/// Returns a plot of the RMSE against time, both by their logarithms, as SVG.
 ///
 /// # Errors
 /// If it cannot be drawn.

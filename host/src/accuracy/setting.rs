@@ -80,7 +80,7 @@ impl Parameter {
         Parameter::Effects,
     ];
 
-    /// Its name.
+    /// Returns its name.
     pub const fn name(self) -> &'static str {
         match self {
             Parameter::Format => "number format",
@@ -105,7 +105,7 @@ const CUTOFFS: [f64; 6] = [
 ];
 
 impl Setting {
-    /// Its short name: `f32-24bit-4spp-6deep-0.002`, and `-without-glass` where effects are left out.
+    /// Returns its short name: `f32-24bit-4spp-6deep-0.002`, and `-without-glass` where effects are left out.
     pub fn name(&self) -> String {
         let effects: String = self
             .without
@@ -144,7 +144,7 @@ impl Setting {
         }
     }
 
-    /// The parameters in which it differs from another.
+    /// Returns the parameters in which it differs from another.
     pub fn differs(&self, other: &Self) -> Vec<Parameter> {
         let differs = |parameter: &Parameter| match parameter {
             Parameter::Format => self.format != other.format,

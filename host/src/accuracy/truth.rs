@@ -26,7 +26,7 @@ impl Truth {
         }
     }
 
-    /// How sentences name its pictures, with the format's name between backticks.
+    /// Returns the name of its pictures in sentences, with the format's name between backticks.
     pub const fn picture(self) -> &'static str {
         match self {
             Self::F64 => "the picture of `f64`",

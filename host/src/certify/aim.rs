@@ -35,7 +35,7 @@ impl<N> Aim<N> {
 }
 
 impl Tracer<'_, '_> {
-    /// The way to a light; `None` where it does not shine on a point.
+    /// Returns the way to a light; `None` where it does not shine on a point.
     ///
     /// # Errors
     /// If the way is open.
@@ -112,7 +112,7 @@ fn on_flat<N: Enclosure>(form: &LightForm, aim: Aim<N>, point: [u32; 2]) -> Opti
     Some(Aim { way, ..aim })
 }
 
-/// From the position of a flat light to a random point of it.
+/// Returns the vector from the position of a flat light to a random point of it.
 fn within<N: Enclosure>(form: &LightForm, [u, v]: [u32; 2]) -> Three<N> {
     let one = 1_u32 << 30;
     let [along, across] = match form.shape {

@@ -40,7 +40,7 @@ fn within(index: u16, count: u16) -> [i64; 2] {
     [first + half_cell, second + half_cell]
 }
 
-/// The ray of a sample; `None` where it is open which point of the lens it comes from.
+/// Returns the ray of a sample; `None` where it is open which point of the lens it comes from.
 pub fn path<N: Enclosure>(
     world: &World<'_>,
     settings: &Settings,

@@ -13,7 +13,7 @@ use std::cmp::Ordering;
 /// One end of an interval on the line; `None` reaches without end.
 type End<N> = Option<Crossing<N>>;
 
-/// The crossings of the solid. `at` says which of the mantle, the base and the other cap the ray starts on.
+/// Returns the crossings of the solid. `at` says which of the mantle, the base and the other cap the ray starts on.
 pub fn crossings<N: Enclosure>(
     form: &Form,
     at: [bool; 3],
@@ -254,7 +254,7 @@ fn grazes<N: Enclosure>(form: &Form, ray: &Ray<N>) -> Result<(), Grazes> {
     }
 }
 
-/// The outward normal.
+/// Returns the outward normal.
 pub fn normal<N: Enclosure>(form: &Form, part: u8, point: Three<N>) -> Option<Three<N>> {
     let Form::Cone {
         base,

@@ -76,7 +76,7 @@ pub fn compare<N: Enclosure>(a: &Crossing<N>, b: &Crossing<N>) -> Option<Orderin
     })
 }
 
-/// An exact vector of integers.
+/// Converts a vector of integers exactly.
 pub fn exact<N: Enclosure>(v: [i64; 3]) -> Three<N> {
     v.map(N::int)
 }
@@ -95,7 +95,7 @@ impl<N: Enclosure> Crossing<N> {
     }
 }
 
-/// The axis of a normal that has one.
+/// Returns the axis of a normal that has one.
 pub fn axis_of(normal: [i64; 3]) -> Option<usize> {
     let is = |k: usize| normal[k] != 0 && normal[(k + 1) % 3] == 0 && normal[(k + 2) % 3] == 0;
     (0..3).find(|&k| is(k))

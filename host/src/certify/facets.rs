@@ -21,7 +21,7 @@ pub fn is_wide(alpha: i32) -> bool {
 /// The facets of a surface, seen by a ray.
 #[derive(Clone, Copy, Debug)]
 pub struct Facets<N> {
-    /// That for shading, on the side from which the ray came.
+    /// The normal for shading, on the side from which the ray came.
     normal: Three<N>,
     alpha: N,
     square: N,
@@ -29,7 +29,7 @@ pub struct Facets<N> {
     slant_in: N,
 }
 
-/// How much of a ray leaves by a facet.
+/// The part of a ray that leaves by a facet.
 pub struct Unmasked<N> {
     pub part: N,
     /// True if it cannot be decided whether the ray leads to the right side of the surface as it is shaded.
@@ -59,7 +59,7 @@ impl<N: Enclosure> Facets<N> {
         (self.square + (N::one() - self.square) * cos.square()).sqrt()
     }
 
-    /// The normal of a random facet that a ray of length 1 sees; `None` where it is open.
+    /// Returns the normal of a random facet that a ray of length 1 sees; `None` where it is open.
     pub fn draw(&self, direction: Three<N>, [u, v]: [u32; 2]) -> Option<Three<N>> {
         let sides = random::beside(self.normal)?;
         let back = sides.map(|side| -dot(side, direction));
@@ -78,7 +78,7 @@ impl<N: Enclosure> Facets<N> {
         Some(random::combined(self.normal, z, sides, [x, y]))
     }
 
-    /// The part with which a ray leaves, because no other facet is in its way.
+    /// Returns the part with which a ray leaves, because no other facet is in its way.
     pub fn unmasked(
         &self,
         hit: &Hit<N>,

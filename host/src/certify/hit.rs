@@ -29,7 +29,7 @@ pub struct Hit<N> {
 }
 
 impl<N: Enclosure> Hit<N> {
-    /// The normal on the side from which the ray came.
+    /// Returns the normal on the side from which the ray came.
     pub fn facing(&self) -> Three<N> {
         if self.front {
             self.normal
@@ -38,7 +38,7 @@ impl<N: Enclosure> Hit<N> {
         }
     }
 
-    /// The face, for a ray that goes on beyond it.
+    /// Returns the face, for a ray that goes on beyond it.
     pub fn crossed(&self) -> Crossed {
         Crossed {
             object: self.object,
@@ -68,7 +68,7 @@ pub struct Seen<'h, N> {
     /// True if it is a boundary, and not within a medium of a higher priority.
     pub is_there: bool,
     pub normal: Three<N>,
-    /// That of the ray, of length 1.
+    /// The direction of the ray, of length 1.
     pub direction: Three<N>,
     pub diffuse: Three<N>,
     /// The ratio of the light from here that arrives at the eye.
@@ -80,6 +80,6 @@ pub struct Seen<'h, N> {
     pub beyond: Inside,
     /// Diffuse reflections that led here.
     pub reflections: u8,
-    /// How long the rays are that led here, where textures have levels.
+    /// The length of the rays that led here, if textures have levels.
     pub length: Option<Log2>,
 }

@@ -36,7 +36,7 @@ fn norm<N: Enclosure>(path: &Path<N>, largest: N) -> Option<Log2> {
     Some(Log2::of_ratio(square).negative().half())
 }
 
-/// The length of all rays up to a hit, in units with 13 fraction bits.
+/// Returns the length of all rays up to a hit, in units with 13 fraction bits.
 pub fn length<N: Enclosure>(path: &Path<N>, hit: &Hit<N>) -> Option<Log2> {
     let largest = largest(path);
     // A step is 32 of these.

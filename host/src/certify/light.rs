@@ -13,11 +13,12 @@ use super::search::{Candidate, Stop, Tracer};
 use super::shade;
 use super::world::{NONE, passes};
 use gridel_core::Effects;
+use gridel_core::format::limits::MAX_SHADOW_SURFACES;
 use gridel_core::format::record::{Light, Material};
 use std::cmp::Ordering;
 
 impl Tracer<'_, '_> {
-    /// The radiance that a light of the scene, given with its number, adds.
+    /// Returns the radiance that a light of the scene, given with its number, adds.
     pub fn lit<N: Enclosure>(
         &self,
         (number, light): (u32, &Light),
@@ -183,7 +184,7 @@ impl Tracer<'_, '_> {
             self.note(Reason::Shadow, depth, primitive, point);
             is_open = true;
         }
-        if surfaces.len() > shade::SURFACES {
+        if surfaces.len() > MAX_SHADOW_SURFACES {
             return Ok(black);
         }
         let mut surfaces = self.one_each(&surfaces, ray, depth)?;

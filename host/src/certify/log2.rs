@@ -30,7 +30,7 @@ impl Log2 {
         Self(self.0.map(|it| it >> 1))
     }
 
-    /// That of the sum of two numbers.
+    /// Returns the logarithm of the sum of two numbers.
     pub fn sum(self, other: Self) -> Self {
         Self([0, 1].map(|end: usize| log2_of_sum(self.0[end], other.0[end])))
     }
@@ -39,17 +39,17 @@ impl Log2 {
         Self(self.0.map(|it| it.max(least)))
     }
 
-    /// That of a number as an integer, which is rounded down after some more is added.
+    /// Returns the logarithm of a number as an integer. The number plus `more` is rounded down.
     pub fn of<N: Enclosure>(number: N, more: f64) -> Self {
         Self(number.bounds().map(|it| log2((it + more).max(0.0) as u64)))
     }
 
-    /// That of a ratio.
+    /// Returns the logarithm of a ratio.
     pub fn of_ratio<N: Enclosure>(ratio: N) -> Self {
         Self::of(ratio * N::int(1 << 30), 0.0).and(-log2_of_power(30))
     }
 
-    /// The footprints that it may be; `None` if there are too many.
+    /// Returns the footprints that it may be; `None` if there are too many.
     pub fn footprints(self) -> Option<impl Iterator<Item = Footprint>> {
         let [low, high] = self.0;
         (high - low < MOST).then(|| (low..=high).map(Footprint::of_log2))

@@ -21,7 +21,7 @@ impl<N: Enclosure> Interface<N> {
         (self.k - N::one()).sign() != Some(Ordering::Equal)
     }
 
-    /// Between the surroundings and glass, whose front a ray meets or not.
+    /// Returns the passage between the surroundings and glass. `front` is true if the ray hits the front.
     pub fn of(front: bool, material: &Material) -> Self {
         Self {
             k: ratio_of(material.inverse_ior),
@@ -33,7 +33,7 @@ impl<N: Enclosure> Interface<N> {
 /// The glass that a ray is inside of.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Inside {
-    /// How often it is inside of each medium, from the highest priority on.
+    /// Number of times that it is inside of each medium, from the highest priority on.
     counts: [u8; MAX_MEDIA],
     /// The number of the material of glass without a priority: the last that the ray entered and did not leave.
     plain: Option<u32>,
@@ -62,7 +62,7 @@ impl Inside {
         self.with(place, |count| count.saturating_sub(1))
     }
 
-    /// The glass behind a face that a ray crosses.
+    /// Returns the glass behind a face that a ray crosses.
     pub fn beyond(self, scene: &Scene<'_>, boundary: Option<&Boundary>, hit: Crossed) -> Self {
         if let Some(boundary) = boundary {
             return boundary.beyond;
@@ -81,7 +81,7 @@ impl Inside {
         Self { plain, ..self }
     }
 
-    /// The material that fills a place, where no face says otherwise.
+    /// Returns the material that fills a place, where no face says otherwise.
     pub fn material<'s>(self, scene: &Scene<'s>) -> Option<&'s Material> {
         let plain = self
             .plain
@@ -146,7 +146,7 @@ impl Boundary {
     }
 }
 
-/// The material that a ray or light came through to a face.
+/// Returns the material that a ray or light came through to a face.
 pub fn passed<'s>(
     scene: &Scene<'s>,
     boundary: Option<&Boundary>,

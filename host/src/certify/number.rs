@@ -118,7 +118,7 @@ pub fn dot<N: Enclosure>(a: Three<N>, b: Three<N>) -> N {
     a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 }
 
-/// The product with itself.
+/// Returns the product with itself.
 pub fn norm2<N: Enclosure>(a: Three<N>) -> N {
     a[0].square() + a[1].square() + a[2].square()
 }
@@ -160,7 +160,7 @@ pub fn opposite<N: Enclosure>(a: Three<N>) -> Three<N> {
     a.map(|x| -x)
 }
 
-/// The vector at length 1; `None` if it may have no length.
+/// Returns the vector at length 1; `None` if it may have no length.
 pub fn unit<N: Enclosure>(v: Three<N>) -> Option<Three<N>> {
     // Squares of very long and very short vectors would leave the range of floats, so they are scaled by a power of
     // two.
@@ -181,12 +181,12 @@ pub fn unit<N: Enclosure>(v: Three<N>) -> Option<Three<N>> {
     Some(unit)
 }
 
-/// A radiance with 20 fraction bits.
+/// Converts a radiance with 20 fraction bits.
 pub fn radiance_of<N: Enclosure>(q20: i32) -> N {
     N::scaled(q20.into(), 20)
 }
 
-/// A ratio with 30 fraction bits.
+/// Converts a ratio with 30 fraction bits.
 pub fn ratio_of<N: Enclosure>(q30: i32) -> N {
     N::scaled(q30.into(), 30)
 }

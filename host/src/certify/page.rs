@@ -52,7 +52,7 @@ pub fn page(
     Ok(page)
 }
 
-/// The result in one sentence.
+/// Returns the result in one sentence.
 pub fn sentence(report: &Report) -> String {
     format!(
         "{:.3} % of {} pixels are proved: {} with 53 bits, {} with 128 and {} with 256.",

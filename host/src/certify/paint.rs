@@ -60,7 +60,7 @@ pub fn weight<N: Enclosure>(
     Some(found)
 }
 
-/// How much of a surface is there.
+/// The part of a surface that is there.
 pub struct Alpha<N> {
     pub part: N,
     pub is_open: bool,

@@ -21,12 +21,12 @@ pub struct Path<N> {
     /// Diffuse reflections that led to it, without the last.
     pub reflections: u8,
     pub inside: Inside,
-    /// How long the rays before it are, where textures have levels.
+    /// The length of the rays before it, if textures have levels.
     pub length: Option<Log2>,
 }
 
 impl<N> Path<N> {
-    /// A random point of the unit square, with 32 fraction bits.
+    /// Returns a random point of the unit square, with 32 fraction bits.
     pub fn point(&self, dimension: u16) -> [u32; 2] {
         let bounce = u16::from(self.depth) << 8 | self.kind as u16;
         self.points.point(bounce, dimension)

@@ -17,7 +17,7 @@ use gridel_core::render::Pixel as _;
 use gridel_core::{Rgb888, Settings};
 use std::cell::{Cell, RefCell};
 
-/// How exactly a pixel was evaluated: bits of its numbers.
+/// The levels of precision with which a pixel is evaluated: bits of its numbers.
 pub const LEVELS: [usize; 3] = [53, 128, 256];
 
 /// Outcomes that are followed at each level.
@@ -32,7 +32,7 @@ const EQUAL: f64 = 1e-40;
 pub struct Enclosed {
     /// Linear values that enclose the exact ones, red, green and blue: 1 is display white.
     pub linear: [[f64; 2]; 3],
-    /// Where an open comparison is, in lattice units.
+    /// The point of an open comparison, in lattice units.
     pub point: [f32; 3],
     /// The primitive of an open comparison, or [`NONE`].
     pub primitive: u32,
@@ -43,7 +43,7 @@ pub struct Enclosed {
     pub level: u8,
     /// The reason for which the pixel is open, or 0.
     pub reason: u8,
-    /// How many reflections and refractions lead to an open comparison.
+    /// Number of reflections and refractions that lead to an open comparison.
     pub depth: u8,
     /// 1 where the exact picture lies on a boundary, as far as 256 bits can decide.
     pub on_boundary: u8,
@@ -53,7 +53,7 @@ pub struct Enclosed {
 }
 
 impl Enclosed {
-    /// The exact 8-bit values, if they are proved.
+    /// Returns the exact 8-bit values, if they are proved.
     pub fn proved(&self) -> Option<[u8; 3]> {
         (self.done == 1 && self.low == self.high).then_some(self.low)
     }
@@ -97,7 +97,7 @@ fn from_display(value: u16) -> u16 {
     (low + (((high - low) * part + 0x8000) >> 16)) as u16
 }
 
-/// The 8-bit values of a picture's own 16-bit values.
+/// Returns the 8-bit values of a picture's own 16-bit values.
 pub fn code(linear: [u16; 3]) -> [u8; 3] {
     let Rgb888(code) = Rgb888::encode(linear, None);
     code
@@ -265,7 +265,7 @@ fn at_level(
     })
 }
 
-/// The rays behind a pixel and the numbers along them, at the level at which the pixel was decided. Points and
+/// Returns the rays behind a pixel and the numbers along them, at the level at which the pixel was decided. Points and
 /// distances are in scene units.
 pub fn explain(
     world: &World<'_>,

@@ -37,7 +37,7 @@ pub fn combined<N: Enclosure>(
     [0, 1, 2].map(|k| axis[k] * along + first[k] * right + second[k] * up)
 }
 
-/// A direction around a normal, more often the nearer to it, by the cosine.
+/// Returns a direction around a normal, more often the nearer to it, by the cosine.
 pub fn around<N: Enclosure>(normal: Three<N>, [u, v]: [u32; 2]) -> Option<Three<N>> {
     let square = ratio::<N>(u);
     let (away, toward) = (square.sqrt(), (N::one() - square).sqrt());

@@ -1,35 +1,35 @@
-//! Why a pixel is open.
+//! The reasons why pixels are open.
 
 use serde::{Deserialize, Serialize};
 
-/// Why something is open.
+/// A reason why a comparison is open.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 #[repr(u8)]
 pub enum Reason {
-    /// Which surface a ray hits: at an edge, or where surfaces meet.
+    /// It is open which surface a ray hits: at an edge, or where surfaces meet.
     Hit = 1,
     /// It is open whether a surface is in a shadow.
     Shadow,
-    /// On which side of a surface a light is that it faces edge on.
+    /// It is open on which side of a surface a light is, because the surface faces it edge on.
     Terminator,
     /// It is open whether light is totally reflected.
     CriticalAngle,
-    /// Which cell of a checkerboard a point lies in.
+    /// It is open in which cell of a checkerboard a point lies.
     Checker,
     /// It is open whether a ray's weight suffices to trace it.
     Cutoff,
-    /// To which side of a triangle a ray leaves that its smooth normal sends.
+    /// It is open to which side of a triangle a ray leaves, because the smooth normal decides its direction.
     Smooth,
-    /// Where a ray crosses a surface that it runs along.
+    /// It is open where a ray crosses a surface that it runs along.
     Grazing,
     /// Too many outcomes to follow.
     Branches,
-    /// Which of two 8-bit values is nearer, though everything else is known.
+    /// It is open which of two 8-bit values is nearer, though everything else is known.
     Rounding,
-    /// Which texel a point shows, or how texels are weighted there.
+    /// It is open which texel a point shows, or how texels are weighted there.
     Texture,
-    /// In which direction a random ray leaves, or a random point lies.
+    /// It is open in which direction a random ray leaves, or a random point lies.
     Sampling,
     /// It is open whether a random facet sends a ray off its surface.
     Facet,
@@ -56,7 +56,7 @@ impl Reason {
         Self::ALL.into_iter().find(|&it| it as u8 == number)
     }
 
-    /// The reason in words.
+    /// Returns the reason in words.
     pub const fn text(self) -> &'static str {
         match self {
             Self::Hit => "edge of a hit, or surfaces that meet",

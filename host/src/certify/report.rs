@@ -9,11 +9,11 @@ use rayon::prelude::*;
 use serde::Serialize;
 use std::sync::{Mutex, PoisonError};
 
-/// What pixels are stored to, as they are done.
+/// The store of pixels as they are done.
 struct Kept<'p, F> {
     pixels: &'p mut [Enclosed],
     keep: F,
-    /// For each row, how many pixels are not done.
+    /// For each row, the number of pixels that are not done.
     open: Vec<usize>,
 }
 
@@ -69,7 +69,7 @@ pub struct Report {
     pub certified: f64,
     /// Pixels proved with numbers of 53, 128 and 256 bits.
     pub proved_with_bits: Vec<(usize, usize)>,
-    /// Why the others are open.
+    /// The reasons why the others are open.
     pub reasons: Vec<OpenPixels>,
     pub widths: Vec<Width>,
     pub formats: Vec<FormatReport>,
@@ -138,7 +138,7 @@ pub struct DifferentPixel {
 const NARROWEST: i32 = -17;
 
 impl Report {
-    /// The report of pixels and of pictures in some formats, as 16-bit values.
+    /// Returns the report of pixels and of pictures in some formats, as 16-bit values.
     pub fn of(
         world: &World<'_>,
         settings: &Settings,

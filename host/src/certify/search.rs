@@ -63,7 +63,7 @@ pub struct Tracer<'w, 's> {
     pub spread: i32,
     /// True if numbers are so slow that intervals are evaluated first.
     pub is_slow: bool,
-    /// How many outcomes may still be followed.
+    /// Number of outcomes that may still be followed.
     pub left: Cell<u32>,
     pub open: RefCell<Vec<Open>>,
     pub steps: Option<RefCell<Vec<Step>>>,
@@ -152,7 +152,7 @@ impl Tracer<'_, '_> {
         self.world.scene.effects().contains(effects)
     }
 
-    /// Every crossing that may be the nearest, and whether the ray may hit nothing.
+    /// Returns every crossing that may be the nearest, and whether the ray may hit nothing.
     pub fn nearest<N: Enclosure>(
         &self,
         ray: &Ray<N>,
@@ -363,7 +363,7 @@ impl Tracer<'_, '_> {
         if stopped { Err(Stop) } else { Ok(()) }
     }
 
-    /// The surface where a ray crosses it.
+    /// Returns the surface where a ray crosses it.
     pub fn hit<N: Enclosure>(
         &self,
         candidate: &Candidate<N>,

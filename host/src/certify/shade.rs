@@ -5,15 +5,11 @@ use super::hit::{Hit, Seen};
 use super::media::Interface;
 use super::number::*;
 use super::world::{Form, World};
-use gridel_core::format::limits::MAX_RAY_DEPTH;
 use gridel_core::format::record::Material;
 use gridel_core::geometry::smooth::LARGEST;
 use std::cmp::Ordering;
 
-/// How many surfaces light passes on its way to another one.
-pub const SURFACES: usize = 4 * MAX_RAY_DEPTH;
-
-/// The part of light that is left after a length of glass, in lattice steps.
+/// Returns the part of light that is left after a length of glass, in lattice steps.
 pub fn absorbed<N: Enclosure>(material: &Material, length: N) -> Three<N> {
     // Coefficients have 32 fraction bits and count units of 256 steps.
     material
@@ -144,7 +140,7 @@ pub fn split<N: Enclosure>(
     })
 }
 
-/// The part of light that passes a surface straight on, for shadows.
+/// Returns the part of light that passes a surface straight on, for shadows.
 pub fn filtered<N: Enclosure>(
     hit: &Hit<N>,
     material: &Material,
@@ -182,7 +178,7 @@ pub fn highlight<N: Enclosure>(
     Some([0, 1, 2].map(|k| (reflected[k] + highlight[k]).at_most(N::one())))
 }
 
-/// A smooth normal, turned until it is level with a ray of length 1 that meets it from behind.
+/// Returns a smooth normal, turned until it is level with a ray of length 1 that meets it from behind.
 pub fn turned_to_ray<N: Enclosure>(normal: Three<N>, direction: Three<N>) -> Option<Three<N>> {
     let behind = dot(normal, direction);
     match behind.sign() {
@@ -237,7 +233,8 @@ fn smooth<N: Enclosure>(world: &World<'_>, hit: &Hit<N>) -> Option<Smooth<N>> {
     })
 }
 
-/// The point of a hit of a triangle in the triangle's space, and the weights of the corners there, whose sum is 1.
+/// Returns the point of a hit of a triangle in the triangle's space, and the weights of the corners there, whose sum is
+/// 1.
 pub fn weights<N: Enclosure>(
     world: &World<'_>,
     hit: &Hit<N>,

@@ -1,4 +1,4 @@
-//! Where a ray crosses a primitive, and the surface there, by the formulas that define the shapes.
+//! Crossings of rays with primitives, and the surface there, by the formulas that define the shapes.
 //!
 //! Solids are closed. A ray from a surface starts exactly on it. The t of its start is excluded by what is known of the
 //! start, not by a comparison. A free start may lie on a surface by chance: it meets that surface at t = 0.
@@ -19,12 +19,12 @@ impl Placed {
         self.matrix.map(|row| dot(exact(row), v) * power)
     }
 
-    /// A place of the scene in the part.
+    /// Converts a place of the scene to the part.
     pub fn point<N: Enclosure>(&self, place: Three<N>) -> Three<N> {
         self.rotate(minus(place, exact(self.center)))
     }
 
-    /// A ray of the scene in the part; its t stays.
+    /// Converts a ray of the scene to the part; its t stays.
     pub fn ray<N: Enclosure>(&self, ray: &Ray<N>) -> Ray<N> {
         Ray {
             origin: self.point(ray.origin),
@@ -33,12 +33,12 @@ impl Placed {
         }
     }
 
-    /// A direction of the scene in the part, up to its length.
+    /// Converts a direction of the scene to the part, up to its length.
     pub fn direction<N: Enclosure>(&self, way: Three<N>) -> Three<N> {
         self.rotate(way)
     }
 
-    /// A normal of the part in the scene, with the part's lattice steps per step along it as its length.
+    /// Converts a normal of the part to the scene, with the part's lattice steps per step along it as its length.
     pub fn normal<N: Enclosure>(&self, normal: Three<N>) -> Three<N> {
         let power = N::float(f64::powi(2.0, self.exponent));
         let column = |k: usize| exact([self.matrix[0][k], self.matrix[1][k], self.matrix[2][k]]);
@@ -46,7 +46,7 @@ impl Placed {
     }
 }
 
-/// The crossings of a primitive ahead of a ray.
+/// Returns the crossings of a primitive ahead of a ray.
 ///
 /// # Errors
 /// If the ray grazes the primitive so that it is open where it crosses it.
@@ -149,7 +149,7 @@ fn all_crossings<N: Enclosure>(
     }
 }
 
-/// Where a ray crosses a plane; `None` if it runs along it.
+/// Returns the crossing of a ray with a plane; `None` if it runs along it.
 pub fn flat<N: Enclosure>(
     normal: Three<N>,
     relative: Three<N>,
@@ -361,8 +361,8 @@ fn cuboid<N: Enclosure>(
     Ok(())
 }
 
-/// The normal of a primitive, of length 1, at a point of its surface: outward, or to the front. `None` where it is
-/// open, at the tip of a cone.
+/// Returns the normal of a primitive, of length 1, at a point of its surface: outward, or to the front. `None` where it
+/// is open, at the tip of a cone.
 pub fn normal<N: Enclosure>(form: &Form, part: u8, point: Three<N>) -> Option<Three<N>> {
     match *form {
         Form::Triangle { normal, .. } | Form::Disc { normal, .. } | Form::Plane { normal, .. } => {
@@ -379,7 +379,7 @@ pub fn normal<N: Enclosure>(form: &Form, part: u8, point: Three<N>) -> Option<Th
     }
 }
 
-/// The axis and the coordinate of a face that lies across an axis.
+/// Returns the axis and the coordinate of a face that lies across an axis.
 pub fn face(form: &Form, part: u8) -> Option<(usize, i64)> {
     match *form {
         Form::Triangle {

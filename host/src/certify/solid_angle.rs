@@ -19,7 +19,7 @@ pub struct Share<N> {
     pub half: N,
 }
 
-/// A length with 13 fraction bits of a unit, which are 5 of a step.
+/// Converts a length with 13 fraction bits of a unit, which are 5 fraction bits of a step.
 pub fn length<N: Enclosure>(q13: i64) -> N {
     N::scaled(q13, 5)
 }

@@ -15,7 +15,7 @@ use gridel_core::format::record::Material;
 use gridel_core::{Effects, RayKind};
 
 impl Tracer<'_, '_> {
-    /// The surface of a hit.
+    /// Returns the surface of a hit.
     ///
     /// # Errors
     /// If its bounds are too wide.

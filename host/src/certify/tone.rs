@@ -1,4 +1,4 @@
-//! From the mean of samples to display values, in exact arithmetic.
+//! Conversion of the mean of samples to display values, in exact arithmetic.
 
 use super::number::*;
 use gridel_core::Effects;
@@ -11,7 +11,7 @@ const DEVELOPING: [Effects; 3] = [
     Effects::ENVIRONMENT,
 ];
 
-/// The most of a sample's radiance that counts, 1 being display white.
+/// Returns the most of a sample's radiance that counts, 1 being display white.
 pub fn brightest(effects: Effects) -> i64 {
     if DEVELOPING.iter().any(|&it| effects.contains(it)) {
         16
@@ -20,7 +20,7 @@ pub fn brightest(effects: Effects) -> i64 {
     }
 }
 
-/// A channel of the mean of samples, as it is shown; `None` if it may be far below 0.
+/// Returns a channel of the mean of samples, as it is shown; `None` if it may be far below 0.
 pub fn developed<N: Enclosure>(encoding: u8, channel: N) -> Option<N> {
     if encoding < View::REINHARD {
         return Some(channel);

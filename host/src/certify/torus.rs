@@ -4,9 +4,9 @@
 //! which is h times the square of the distance from the axis. The surface is where `F = h G^2 - 4 R^2 S` is 0 and G is
 //! not negative. (Where G is negative lies the inner sheet of a spindle torus, which is inside of the solid.)
 //!
-//! Along a ray F is a quartic. Its roots are isolated by subdivision: coefficients of Bernstein's polynomials whose signs
-//! are known count the roots of a stretch, none or one. Newton's steps narrow each root, and halving where they do not.
-//! A stretch whose signs stay open, where the ray all but touches the surface, may be crossed or not.
+//! Along a ray F is a quartic. Its roots are isolated by subdivision: coefficients of Bernstein's polynomials whose
+//! signs are known count the roots of a stretch, none or one. Newton's steps narrow each root, and halving where they
+//! do not. A stretch whose signs stay open, where the ray all but touches the surface, may be crossed or not.
 
 use super::crossing::{Crossing, Grazes, Ray, exact};
 use super::number::*;
@@ -33,15 +33,16 @@ struct Stretch<N> {
     halvings: u32,
 }
 
-/// Where a quartic may be 0.
+/// An interval in which a quartic may be 0.
 enum Piece<N> {
-    /// Once, from below or from above.
+    /// One root, from below or from above.
     Root { between: N, rises: bool },
-    /// As often as may be.
+    /// Any number of roots.
     Open { first: N, last: N },
 }
 
-/// The crossings of the solid. `itself` says that the ray starts on its surface. Parts are numbered along the ray.
+/// Returns the crossings of the solid. `itself` says that the ray starts on its surface. Parts are numbered along the
+/// ray.
 pub fn crossings<N: Enclosure>(
     form: &Form,
     itself: bool,
@@ -197,7 +198,8 @@ fn halves<N: Enclosure>(coefficients: &Quartic<N>) -> [Quartic<N>; 2] {
     [left, right]
 }
 
-/// How often the coefficients' signs change: the roots within, if that is 0 or 1. `None` if it is open.
+/// Returns the number of sign changes of the coefficients: the number of roots within, if it is 0 or 1. `None` if it is
+/// open.
 fn changes<N: Enclosure>(coefficients: &Quartic<N>) -> Option<u32> {
     let mut changes = 0;
     let mut before = None;
@@ -328,7 +330,7 @@ fn narrowed<N: Enclosure>(quartic: &Quartic<N>, between: N) -> N {
     root
 }
 
-/// The outward normal; `None` where it is open, near the axis of a torus without a hole.
+/// Returns the outward normal; `None` where it is open, near the axis of a torus without a hole.
 pub fn normal<N: Enclosure>(form: &Form, point: Three<N>) -> Option<Three<N>> {
     let Form::Torus {
         center,

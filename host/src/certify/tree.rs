@@ -12,7 +12,7 @@ pub struct Bounds {
     pub high: [f64; 3],
 }
 
-/// By how much boxes are larger than what they hold, in steps: far more than the walk rounds.
+/// Margin of boxes around their contents, in steps: far more than the rounding of the walk.
 const MARGIN: f64 = 1.0;
 
 impl Bounds {
@@ -161,7 +161,7 @@ pub struct Slabs {
     inverse: [Option<[f64; 2]>; 3],
 }
 
-/// More than what one test of a box rounds, as a part of a t.
+/// Upper bound of the rounding of one test of a box, relative to t.
 const SLACK: f64 = 1e-14;
 
 impl Slabs {
@@ -175,7 +175,8 @@ impl Slabs {
         }
     }
 
-    /// At or before where the ray enters a box; `None` if it misses it, or enters it beyond the end.
+    /// Returns a lower bound of the distance at which the ray enters a box; `None` if it misses it, or enters it beyond
+    /// the end.
     fn enters(&self, bounds: &Bounds, end: f64) -> Option<f64> {
         let (mut near, mut far) = (0.0_f64, end);
         for k in 0..3 {

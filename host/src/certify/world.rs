@@ -36,7 +36,7 @@ pub const KNOWN: Effects = Effects::SHADOW
 /// No surface, and no instance.
 pub const NONE: u32 = u32::MAX;
 
-/// Why a scene cannot be certified.
+/// The reason why a scene cannot be certified.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum Unknown {
     #[error("certify does not know the effect `{0}` yet")]
@@ -97,7 +97,7 @@ pub enum Form {
         corners: [[i64; 3]; 3],
         /// A normal of any length, exactly.
         normal: [i64; 3],
-        /// Those of the corners, as they are stored.
+        /// The normals of the corners, as they are stored.
         smooth: Option<[[i16; 2]; 3]>,
     },
     Sphere {
@@ -119,7 +119,7 @@ pub enum Form {
     },
     Cone {
         base: [i64; 3],
-        /// From the base's center to that of the other cap.
+        /// The vector from the base's center to that of the other cap.
         axis: [i64; 3],
         base_radius: i64,
         apex_radius: i64,
@@ -153,7 +153,7 @@ pub enum Item {
 #[derive(Clone, Debug, Default)]
 pub struct Space {
     pub solids: Vec<Solid>,
-    /// Those without a box.
+    /// The primitives without a box.
     pub unbounded: Vec<u32>,
     pub tree: Tree<Item>,
     /// Surfaces and forms that light may pass: see [`Space::may_be_hidden`].
@@ -217,7 +217,7 @@ impl<'s> World<'s> {
         })
     }
 
-    /// The space of an instance, or the scene's own.
+    /// Returns the space of an instance, or the scene's own.
     pub fn space(&self, instance: u32) -> &Space {
         match self.placed.get(instance as usize) {
             Some(placed) => &self.parts[placed.part],

@@ -24,8 +24,8 @@ pub struct Blessed {
     pub left: Vec<String>,
 }
 
-/// Puts the figures that were found where the manifest has others that are broken. What holds
-/// stays as it is, and so do comments and layout.
+/// Replaces figures of the manifest that failed by those that were found. Figures that passed, comments and layout
+/// stay.
 ///
 /// ```
 /// use gridel_host::check::{Manifest, bless, run};
@@ -121,16 +121,21 @@ impl Blessed {
             let here = place(&new.path);
             let mut others = all().filter(|(_, other)| place(&other.path) == here);
             match others.find(|(_, other)| !other.is_like(&new.image)) {
-                Some((it, _)) => {
+                Some((it, other)) => {
                     let on = it.on.as_deref().unwrap_or_default();
+                    let (how, remedy) = match other.image.size == new.image.size {
+                        true => (
+                            "differs from another one by more than the `tolerance`",
+                            ", or allow more",
+                        ),
+                        false => ("has another size than another one", ""),
+                    };
                     let why = format!(
-                        "the reference is not recorded, because the picture on {on} differs from another one by more \
-                         than the `tolerance`; name a file for each, or allow more"
+                        "the reference is not recorded, because the picture on {on} {how}; name a file for each{remedy}"
                     );
                     self.mixed.push((here, why));
                     self.left.push(format!(
-                        "{}: {} on {on} (another picture has the same reference, and differs by more than the \
-                         `tolerance`; name a file for each)",
+                        "{}: {} on {on} (it {how} with the same reference; name a file for each)",
                         it.check, it.what
                     ));
                 }
@@ -144,7 +149,7 @@ impl Blessed {
         self.references.iter().any(|(path, _)| place(path) == here)
     }
 
-    /// Why a reference that there is not is left.
+    /// Returns the reason why a missing reference is not recorded.
     fn why_missing(&self, finding: &Finding) -> Option<String> {
         let Some(Record::Picture(picture)) = &finding.record else {
             return None;
@@ -176,7 +181,7 @@ impl Blessed {
         }
     }
 
-    /// The change of the manifest as a unified diff, and the references that are written; empty if
+    /// Returns the change of the manifest as a unified diff, and the references that are written; empty if
     /// nothing changes.
     pub fn diff(&self) -> String {
         let name = self.path.display().to_string();
@@ -187,7 +192,7 @@ impl Blessed {
         text
     }
 
-    /// The references and the manifest, complete: [`Files::keep`] gives them their names.
+    /// Returns the references and the manifest, complete: [`Files::keep`] gives them their names.
     ///
     /// # Errors
     /// If a file cannot be written, or the manifest has changed since it was read; with its path.
@@ -221,7 +226,7 @@ fn value(figure: &Figure) -> Value {
     }
 }
 
-/// Sets a value below a table. What is around it stays.
+/// Sets a value below a table. Comments and spaces around it stay.
 fn set(table: &mut Item, keys: &[Key], new: Value) {
     let [key, rest @ ..] = keys else {
         // Comments and spaces around the old value.

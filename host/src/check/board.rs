@@ -11,7 +11,7 @@ use std::path::{Path, PathBuf};
 use std::process::{Command, ExitStatus, Stdio};
 use std::time::{Duration, Instant};
 
-/// How a program ran.
+/// The outcome of a program's run.
 pub(super) enum BoardRun {
     /// It printed these figures, and wrote a picture if it should.
     Printed(BTreeMap<String, u64>, Result<Vec<u8>, String>),
@@ -24,13 +24,13 @@ pub(super) enum BoardRun {
 /// The figures and the picture of a program that ran.
 type Output = (BTreeMap<String, u64>, Result<Vec<u8>, String>);
 
-/// Why a program did not run to its end.
+/// The reason why a program did not run to its end.
 enum Obstacle {
     Missing(String),
     Failure(String),
 }
 
-/// How an ELF file begins.
+/// The first bytes of an ELF file.
 const ELF: [u8; 4] = *b"\x7fELF";
 
 /// Longest text of a failing program that is shown: its end.

@@ -13,7 +13,7 @@ pub struct Image {
     pub pixels: Vec<u8>,
 }
 
-/// How two pictures of one size differ.
+/// The difference of two pictures of one size.
 pub(super) struct Difference {
     /// The most that any channel differs, in codes of 255.
     pub(super) largest: u8,
@@ -87,7 +87,7 @@ impl Image {
         write_png(out, self.size, &self.pixels, None)
     }
 
-    /// How this picture differs from another; `None` if they have not the same size.
+    /// Returns the difference from another picture; `None` if the sizes differ.
     pub(super) fn difference(&self, other: &Self, allowed: u8) -> Option<Difference> {
         if self.size != other.size {
             return None;

@@ -38,7 +38,7 @@ pub struct Check {
     pub allow_outside: bool,
     /// The treatment of instances; `None` for a blob, which has them or not.
     pub instances: Option<Instances>,
-    /// Which assembly of a PDB or mmCIF file.
+    /// The assembly of a PDB or mmCIF file.
     pub assembly: Option<String>,
     pub formats: Vec<Format>,
     pub size: Option<[u16; 2]>,
@@ -179,17 +179,17 @@ impl Manifest {
         std::iter::once(self.path.as_path()).chain(named)
     }
 
-    /// All files that are read: the manifest, and those that it names.
+    /// Returns all files that are read: the manifest, and those that it names.
     pub fn inputs(&self) -> impl Iterator<Item = &Path> {
         self.sources().chain(self.pictures())
     }
 
-    /// The reference pictures, which may be recorded.
+    /// Returns the reference pictures, which may be recorded.
     pub fn pictures(&self) -> impl Iterator<Item = &Path> {
         self.references().map(|picture| picture.path.as_path())
     }
 
-    /// The names of all [evidence](super::Evidence) that a run may find; no two are equal.
+    /// Returns the names of all [evidence](super::Evidence) that a run may find; no two are equal.
     pub fn evidence(&self) -> impl Iterator<Item = &str> {
         let names = self.checks.iter().flat_map(|check| &check.evidence);
         names.map(String::as_str)
@@ -202,7 +202,7 @@ impl Manifest {
         SceneError::new(&self.path, cause, remedy).at_span(&self.text, start, end - start)
     }
 
-    /// How many steps [`run`](super::run) takes: pictures, and programs on boards.
+    /// Returns the number of steps of [`run`](super::run): pictures, and programs on boards.
     pub fn steps(&self) -> usize {
         let steps = |check: &Check| check.formats.len() + check.boards.len();
         self.checks.iter().map(steps).sum()

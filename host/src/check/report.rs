@@ -41,7 +41,7 @@ pub struct Finding {
     pub evidence: Option<Evidence>,
 }
 
-/// How a comparison ended.
+/// The outcome of a comparison.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 #[serde(tag = "outcome", content = "why", rename_all = "kebab-case")]
 pub enum Outcome {
@@ -139,17 +139,17 @@ impl Report {
             .count()
     }
 
-    /// The number of comparisons that passed.
+    /// Returns the number of comparisons that passed.
     pub fn passed(&self) -> usize {
         self.count(|outcome| *outcome == Outcome::Passed)
     }
 
-    /// The number of comparisons that failed.
+    /// Returns the number of comparisons that failed.
     pub fn failed(&self) -> usize {
         self.count(|outcome| matches!(outcome, Outcome::Failed(_)))
     }
 
-    /// How many were recorded.
+    /// Returns the number of findings that were recorded.
     pub fn recorded(&self) -> usize {
         self.count(|outcome| *outcome == Outcome::Recorded)
     }
@@ -160,12 +160,12 @@ impl Report {
         self.warnings.retain(|it| seen.insert(it.clone()));
     }
 
-    /// How many could not be measured.
+    /// Returns the number of findings that could not be measured.
     pub fn not_run(&self) -> usize {
         self.count(|outcome| matches!(outcome, Outcome::NotRun(_)))
     }
 
-    /// A line for each finding.
+    /// Returns a line for each finding.
     pub fn table(&self) -> Table {
         let mut table = Table::new([
             ("check", Align::Left),

@@ -56,7 +56,7 @@ pub(super) struct Run<'r> {
     index: usize,
     pub(super) check: &'r Check,
     report: &'r mut Report,
-    /// Where instances that move were copied, if they were.
+    /// The placements at which moving instances were copied, if they were.
     posed: Option<Posed>,
 }
 
@@ -281,18 +281,18 @@ impl Run<'_> {
         image: Image,
         name: &str,
     ) {
+        let has_folder = reference.picture.has_folder();
+        let not_found = |error: &io::Error| error.kind() == io::ErrorKind::NotFound;
         // A file that exists and is not a picture was not meant to become one.
-        let may_be_recorded = match &expected {
-            Ok(_) => true,
-            Err(error) => error.kind() == io::ErrorKind::NotFound,
-        };
-        let difference = expected
-            .as_ref()
-            .map(|expected| image.difference(expected, reference.channel));
+        let may_be_recorded = has_folder && expected.as_ref().map_or_else(not_found, |_| true);
+        let to_expected = |expected| image.difference(expected, reference.channel);
+        let difference = expected.as_ref().map(to_expected);
         let (found, outcome) = match difference {
             Err(error) => {
                 let remedy = if may_be_recorded {
                     "check the path, or let `gridel check --bless` record the picture there"
+                } else if !has_folder {
+                    "check the path, or create its folder, and let `gridel check --bless` record the picture there"
                 } else {
                     "write the path of an RGB or gray PNG with 8 bits per channel; `--bless` overwrites no others"
                 };

@@ -43,9 +43,9 @@ struct Printed<'t> {
     /// Pixels of an exact reference that are open.
     reference_open: usize,
     points: &'t [Point],
-    /// Which points nothing beats in cost and RMSE.
+    /// For each point, true if none beats it in cost and RMSE.
     frontier: Vec<bool>,
-    /// Which setting for a given error, the effect of the number format, what to leave out first.
+    /// Sentences about the setting for a given error, the effect of the number format, and what to leave out first.
     answers: Vec<String>,
     /// The worth of each effect, in the order in which to leave them out.
     effects: &'t [Worth],

@@ -15,7 +15,7 @@ use clap::Args;
 use gridel_core::{Format, Scene, Structure};
 use gridel_host::blob::is_blob;
 use gridel_host::compile::{
-    self, Builder, EnvironmentFigures, Figures, KeptNames, LeftOut, Report, TableStats,
+    self, Builder, EnvironmentFigures, Figures, KeptNames, LeftOut, Report, Supplied, TableStats,
     TextureFigures,
 };
 use gridel_host::emit::{self, Emitted};
@@ -123,21 +123,21 @@ struct Built<'r> {
     without_area: &'r LeftOut,
     sah_cost: Option<f64>,
     effects: Vec<CalledFor>,
-    /// How each image of a texture is stored.
+    /// The storage of each texture image.
     textures: &'r [TextureFigures],
-    /// How the environment is stored.
+    /// The storage of the environment.
     #[serde(skip_serializing_if = "Option::is_none")]
     environment: Option<EnvironmentFigures>,
-    supplied: &'r [String],
+    supplied: &'r [Supplied],
     tables: &'r [TableStats],
-    /// Where the scene has names that the blob is to have.
+    /// Present if the scene has names that the blob is to have.
     #[serde(skip_serializing_if = "Option::is_none")]
     names: Option<KeptNames>,
     warnings: &'r [String],
     /// Objects that some formats do not resolve.
     #[serde(skip_serializing_if = "<[_]>::is_empty")]
     unresolved: &'r [Unresolved],
-    /// Where a board is given.
+    /// Present if a board is given.
     #[serde(rename = "memory_report", skip_serializing_if = "Option::is_none")]
     memory: Option<&'r MemoryReport>,
 }
@@ -426,7 +426,7 @@ impl<'r> Built<'r> {
             );
         }
         for what in self.supplied {
-            line("supplied", what.clone());
+            line("supplied", what.to_string());
         }
         for name in self.collapsed.names(NAMED) {
             line("collapsed", name);

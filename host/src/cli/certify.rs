@@ -75,7 +75,7 @@ const MOST_PIXELS: usize = 1 << 22;
 /// The version of what is proved and how. Raise it with every change, so that older states are not continued.
 const RULES: u32 = 5;
 
-/// After how long the state is written first, and how often at most: each time after twice as long.
+/// Time until the state is first written. Each wait is twice as long as the last, up to `OFTEN`.
 const SOON: Duration = Duration::from_millis(250);
 const OFTEN: Duration = Duration::from_secs(5);
 

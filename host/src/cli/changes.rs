@@ -25,18 +25,18 @@ pub struct Changes {
     pub time: Option<i32>,
 }
 
-/// The error of values that are proved to be in their range.
+/// Returns the error of values that are proved to be in their range.
 pub fn fault(error: BlobError) -> Failure {
     Failure::failed(error.to_string(), "report this as a fault of gridel")
 }
 
 impl Changes {
-    /// The scene with these changes.
+    /// Returns the scene with these changes.
     pub fn apply<'a>(&'a self, scene: &Scene<'a>) -> Result<Scene<'a>, Failure> {
         self.of_scene(scene).map_err(fault)
     }
 
-    /// The scene with these changes, or why they do not fit it.
+    /// Returns the scene with these changes, or why they do not fit it.
     pub fn of_scene<'a>(&'a self, scene: &Scene<'a>) -> Result<Scene<'a>, BlobError> {
         let scene = match &self.morphed {
             Some(blob) => blob.scene()?,

@@ -82,7 +82,7 @@ struct Report<'r> {
     scene: String,
     #[serde(flatten)]
     comparison: &'r Comparison,
-    /// Where each structure is beaten.
+    /// Sentences about where each structure is beaten.
     findings: Vec<String>,
     #[serde(skip_serializing_if = "Option::is_none")]
     growth: Option<&'r Growth>,
@@ -272,7 +272,7 @@ fn tests(title: &str, comparison: &Comparison, of: fn(&Works) -> Option<Work>) -
         ("planes", Align::Right),
         ("boxes", Align::Right),
         ("cells", Align::Right),
-        ("objects", Align::Right),
+        ("primitives", Align::Right),
         ("instances", Align::Right),
         ("M rays/s", Align::Right),
         ("answers", Align::Left),
@@ -292,7 +292,7 @@ fn tests(title: &str, comparison: &Comparison, of: fn(&Works) -> Option<Work>) -
             figure(|work| work.planes),
             figure(|work| work.boxes),
             figure(|work| work.cells),
-            figure(|work| work.objects),
+            figure(|work| work.primitives),
         ];
         let outcome = [
             rate.map_or(String::from("-"), |rate| format!("{:.3}", rate / 1e6)),

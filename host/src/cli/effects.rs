@@ -23,7 +23,7 @@ pub struct CalledFor {
 }
 
 impl CalledFor {
-    /// The effects of a scene file, whose lights and materials have names.
+    /// Returns the effects of a scene file, whose lights and materials have names.
     pub fn in_report(report: &Report) -> Vec<Self> {
         let effects = report.effects.iter().cloned();
         effects
@@ -49,7 +49,7 @@ impl CalledFor {
         }
     }
 
-    /// The effects of a blob, whose lights and materials have numbers.
+    /// Returns the effects of a blob, whose lights and materials have numbers.
     pub fn in_blob(scene: &Scene<'_>) -> Vec<Self> {
         let callers = |effect: Effects| -> Vec<RequiringPart> {
             let lights = scene.lights().iter().map(Light::effects);

@@ -255,7 +255,7 @@ impl Intervals {
 struct Named {
     #[serde(flatten)]
     explanation: Explanation,
-    /// By number; those without a name are missing.
+    /// Names of objects by number; those without a name are missing.
     #[serde(skip_serializing_if = "BTreeMap::is_empty")]
     objects: BTreeMap<u32, ObjectNames>,
     /// Names of instances by number; those without a name are missing.

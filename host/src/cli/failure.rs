@@ -30,7 +30,7 @@ pub fn break_lines_at_spaces() {
     }));
 }
 
-/// Why a command ended early.
+/// The reason why a command ended early.
 #[derive(Debug)]
 pub enum Failure {
     /// An input is broken, or a file cannot be read or written.
@@ -52,7 +52,7 @@ struct Fault {
     remedy: String,
 }
 
-/// What cannot be done with a file.
+/// Returns a sentence about what cannot be done with a file.
 fn about(path: &Path, done: &str) -> String {
     shown(&format!("{} cannot be {done}", path.display())).into_owned()
 }
@@ -63,22 +63,22 @@ fn fault(cause: impl Into<String>, remedy: impl Into<String>) -> Report {
 }
 
 impl Failure {
-    /// A failure with its cause and remedy, sentences without capital and full stop.
+    /// Returns a failure with its cause and remedy, sentences without capital and full stop.
     pub fn failed(cause: impl Into<String>, remedy: impl Into<String>) -> Self {
         Self::Failed(fault(cause, remedy))
     }
 
-    /// A wrong command line.
+    /// Returns the error of a wrong command line.
     pub fn usage(cause: impl Into<String>, remedy: impl Into<String>) -> Self {
         Self::Usage(fault(cause, remedy))
     }
 
-    /// A budget that would be exceeded.
+    /// Returns the error of a budget that would be exceeded.
     pub fn rejected(cause: impl Into<String>, remedy: impl Into<String>) -> Self {
         Self::Rejected(fault(cause, remedy))
     }
 
-    /// A file that cannot be read.
+    /// Returns the error of a file that cannot be read.
     pub fn reading(path: &Path, error: &io::Error) -> Self {
         Self::failed(
             format!("{} cannot be read: {error}", path.display()),
@@ -86,7 +86,7 @@ impl Failure {
         )
     }
 
-    /// A file that cannot be written; what was there before still is.
+    /// Returns the error of a file that cannot be written; an older file is unchanged.
     pub fn writing(path: &Path, error: &io::Error) -> Self {
         let remedy = match error.kind() {
             io::ErrorKind::StorageFull | io::ErrorKind::QuotaExceeded => {
@@ -104,7 +104,7 @@ impl Failure {
         )
     }
 
-    /// An error about the content of a file, which its own text does not name.
+    /// Returns an error about the content of a file, which its own text does not name.
     pub fn in_file<E>(path: &Path, error: E) -> Self
     where
         E: Diagnostic + Send + Sync + 'static,
@@ -112,7 +112,7 @@ impl Failure {
         Self::Failed(Report::new(error).wrap_err(about(path, "used")))
     }
 
-    /// A scene that cannot be compiled.
+    /// Returns the error of a scene that cannot be compiled.
     pub fn compiling(path: &Path, error: CompileError) -> Self {
         let over_budget = matches!(
             error,

@@ -39,7 +39,7 @@ const TOPICS: [(&str, &str); 9] = [
     ("paper", include_str!("../../docs/PAPER.md")),
 ];
 
-/// The command `help` of a program with a command for each of its subjects, as completions of shells list them.
+/// Returns the command `help` of a program with a command for each of its subjects, as completions of shells list them.
 #[cfg(feature = "shell")]
 pub fn with_subjects(program: &Command) -> Command {
     let subject = |name: &'static str| Command::new(name).disable_help_flag(true);

@@ -54,7 +54,7 @@ impl Input {
         }
     }
 
-    /// The blob that it is, unchecked.
+    /// Returns it as a blob, unchecked.
     pub fn blob(&self) -> Result<Blob, Failure> {
         match &self.bytes {
             Some(bytes) => Ok(Blob::new(bytes)),
@@ -62,7 +62,7 @@ impl Input {
         }
     }
 
-    /// The scene that it is.
+    /// Returns it as a scene.
     pub fn scene(&self, options: &ImportOptions) -> Result<Imported, SceneError> {
         match &self.bytes {
             Some(bytes) => scene::read(&self.path, bytes.clone(), options),
@@ -71,7 +71,7 @@ impl Input {
     }
 }
 
-/// All of standard input.
+/// Returns all of standard input.
 ///
 /// # Errors
 /// If it is a terminal, cannot be read, or is too long.

@@ -25,11 +25,10 @@ use tracks::TrackList;
 
 /// Show the memory map of a blob, its limits and the RAM that it needs
 ///
-/// Compiles a scene file as `gridel build` does by default, without writing a blob. Working memory
-/// is what the caller provides besides the call stack: for pictures a workspace and, on boards, the
-/// RAM of parts, of meshes that deform and of instances that move. The workspace is exact for this
-/// machine, and for 32-bit boards that align an f64 to 8 bytes. A scene that does not fit the board of --target is shown,
-/// and the exit code is 3.
+/// Compiles a scene file as `gridel build` does by default, without writing a blob. Working memory is what the caller
+/// provides besides the call stack: for pictures a workspace and, on boards, the RAM of parts, of meshes that deform
+/// and of instances that move. The workspace is exact for this machine, and for 32-bit boards that align an f64 to 8
+/// bytes. A scene that does not fit the board of --target is shown, and the exit code is 3.
 #[derive(Args)]
 #[command(after_help = super::failure::EXIT_CODES)]
 pub struct Arguments {
@@ -56,23 +55,23 @@ struct Inspection {
     /// The parts that instances place.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     parts: Vec<PartLine>,
-    /// Where something moves.
+    /// Present if something moves.
     #[serde(skip_serializing_if = "Option::is_none")]
     tracks: Option<TrackList>,
     /// The joints that instances hang on.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     joints: Vec<JointLine>,
-    /// Where vertices have room to move.
+    /// The meshes whose vertices have room to move.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     deforming: Vec<Deforming>,
     /// Empty where the blob has none.
     names: NameLists,
     working_memory: Vec<WorkingMemory>,
-    /// RAM of a 32-bit board beside the workspace.
+    /// RAM of a 32-bit board besides the workspace.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     working_rows: Vec<WorkingRow>,
     effects: Vec<CalledFor>,
-    /// Where a board is given.
+    /// Present if a board is given.
     #[serde(rename = "memory_report", skip_serializing_if = "Option::is_none")]
     memory: Option<MemoryReport>,
 }
@@ -80,6 +79,8 @@ struct Inspection {
 #[derive(Serialize)]
 struct Limits {
     stack_depth: usize,
+    /// Places for rays that wait, at the ray depth of the blob.
+    work_depth: usize,
     longest_leaf: u16,
     lattice_bits: u8,
     /// Bits of a stored coordinate.
@@ -102,7 +103,7 @@ struct NameLists {
     objects: Vec<String>,
     materials: Vec<String>,
     lights: Vec<String>,
-    /// Those of a scene file; a blob does not hold them.
+    /// The names of a scene file's instances; a blob does not store them.
     instances: Vec<String>,
 }
 
@@ -143,7 +144,7 @@ fn first_names(names: &[String]) -> String {
 struct Contents {
     structures: Vec<&'static str>,
     objects: u32,
-    /// Those that collapsed on the lattice included.
+    /// Number of primitives, including those that collapsed on the lattice.
     primitives: u32,
     collapsed: usize,
     kinds: BTreeMap<&'static str, usize>,
@@ -210,16 +211,14 @@ fn limits(scene: &Scene<'_>) -> Limits {
     };
     Limits {
         stack_depth: scene.stack_depth(),
+        work_depth: scene.effects().work_depth(scene.view().depth),
         longest_leaf: longest_leaf(scene),
         lattice_bits: header.lattice_bits,
         storage_bits: header.storage_bits,
         unit,
         step: unit * f64::powi(2.0, 16 - i32::from(header.lattice_bits)),
         coordinate_step: f64::powi(2.0, header.coordinate_exponent()),
-        coordinate_origin: match header.coordinate_origin {
-            0 => header.origin,
-            _ => [0.0; 3],
-        },
+        coordinate_origin: header.coordinate_origin(),
         bounds: [corner(0), corner(1)],
     }
 }
@@ -384,6 +383,7 @@ impl Inspection {
             line("deforming mesh", mesh.to_string());
         }
         line("stack depth", limits.stack_depth.to_string());
+        line("work depth", limits.work_depth.to_string());
         line("longest leaf", limits.longest_leaf.to_string());
         line(
             "lattice",
@@ -400,7 +400,7 @@ impl Inspection {
         line(
             "coordinates",
             format!(
-                "steps of {} scene units from {}",
+                "coordinate steps of {} scene units from {}",
                 power_of_two(limits.coordinate_step),
                 corner(limits.coordinate_origin)
             ),
@@ -419,7 +419,7 @@ impl Inspection {
     }
 }
 
-/// What a 32-bit board needs for the scene beside a workspace.
+/// Returns the memory that a 32-bit board needs for the scene besides a workspace, as text.
 fn working_rows_text(rows: &[WorkingRow]) -> String {
     let line = |row: &WorkingRow| {
         let bytes = row.bytes.map_or(String::from("unknown"), grouped);

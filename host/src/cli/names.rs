@@ -32,7 +32,7 @@ struct ObjectRow {
 }
 
 impl NameTable {
-    /// The table of a scene.
+    /// Returns the table of a scene.
     pub fn of(scene: &Scene<'_>, names: &Names) -> Self {
         let header = scene.header();
         let mut counts = vec![0; header.objects as usize];
@@ -92,7 +92,7 @@ pub fn hits_by_name(hits: &[SceneHit], names: &Names) -> BTreeMap<String, usize>
 /// Objects that the table for a terminal names.
 const SHOWN: usize = 20;
 
-/// The names with the most hits as a table; the last line counts the others.
+/// Returns the names with the most hits as a table; the last line counts the others.
 pub fn most_hit(hits_by_name: &BTreeMap<String, usize>) -> String {
     let mut rows: Vec<_> = hits_by_name.iter().collect();
     // Equal counts stay in the order of names.

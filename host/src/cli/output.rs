@@ -1,4 +1,4 @@
-//! Where results go: files, and standard output.
+//! Destinations of results: files, and standard output.
 
 use super::failure::Failure;
 use super::input::is_standard;
@@ -128,7 +128,7 @@ pub fn check_extension(path: &Path, wanted: &[&str], what: &str) -> Result<(), F
     ))
 }
 
-/// The error of a file name whose extension names no format of such files.
+/// Returns the error of a file name whose extension names no format of such files.
 pub fn unsupported(path: &Path, what: &str, supported: &str) -> Failure {
     let shown = path.display();
     let cause = match path.extension() {
@@ -166,7 +166,7 @@ pub struct Warned<'w, T: Serialize> {
     pub warnings: &'w [String],
 }
 
-/// One JSON document.
+/// Returns a value as one JSON document.
 pub fn json(value: &impl Serialize) -> Result<String, Failure> {
     let text = serde_json::to_string_pretty(value);
     let text = text
@@ -190,7 +190,7 @@ fn to_standard_output(text: &[u8]) -> Result<(), Failure> {
     printed(out.write_all(text).and_then(|()| out.flush()))
 }
 
-/// The result of printing on standard output.
+/// Returns the result of printing on standard output.
 pub fn printed(written: io::Result<()>) -> Result<(), Failure> {
     match written {
         // A reader that closes the pipe early is no failure, and changes no finding.

@@ -7,7 +7,7 @@ use std::sync::mpsc::{RecvTimeoutError, Sender, channel};
 use std::thread::JoinHandle;
 use std::time::Duration;
 
-/// How long work may take unseen.
+/// Time after which progress is shown.
 const MOMENT: Duration = Duration::from_millis(500);
 
 /// A bar that appears after a moment and vanishes when it is dropped.

@@ -107,7 +107,7 @@ struct Stats {
     planes: u64,
     boxes: u64,
     cells: u64,
-    objects: u64,
+    primitives: u64,
     /// Instances that rays entered.
     instances: u64,
     rays_per_second: f64,
@@ -253,7 +253,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
 
 /// A picture in which motion is blurred.
 struct Blurred {
-    /// When the shutter opens, in ticks.
+    /// The time at which the shutter opens, in ticks.
     time: i32,
     exposure: Exposure,
     /// The changes at each moment.
@@ -283,7 +283,8 @@ fn blurred(
     }))
 }
 
-/// How the picture is rendered; an error for rows that it does not have, and for too many pixels at once.
+/// Returns the settings of the rendering; an error for rows that the picture does not have, and for too many pixels at
+/// once.
 fn job(
     arguments: &Arguments,
     (source, scene): (&Source, &Scene<'_>),
@@ -330,7 +331,7 @@ fn stats(arguments: &Arguments, picture: &Picture, time: Duration) -> Option<Sta
     let Counters {
         planes,
         boxes,
-        objects,
+        primitives,
         cells,
         instances,
         primary,
@@ -349,7 +350,7 @@ fn stats(arguments: &Arguments, picture: &Picture, time: Duration) -> Option<Sta
         planes,
         boxes,
         cells,
-        objects,
+        primitives,
         instances,
         rays_per_second: counters.rays() as f64 / time.as_secs_f64(),
     })
@@ -410,7 +411,7 @@ impl Stats {
             ("planes tested", self.planes),
             ("boxes tested", self.boxes),
             ("cells entered", self.cells),
-            ("primitives tested", self.objects),
+            ("primitives tested", self.primitives),
             ("instances entered", self.instances),
         ] {
             table.row([what.to_owned(), grouped(count), a_ray(count)]);

@@ -38,9 +38,9 @@ pub struct Source {
     for_pictures: Option<SceneOptions>,
     /// The names of a scene file.
     names: Option<Names>,
-    /// Where instances that move were copied, if they were.
+    /// The placements at which moving instances were copied, if they were.
     posed: Option<Posed>,
-    /// Whether the scene file has tracks that the blob has not: options replace them, or they move nothing.
+    /// True if the scene file has tracks that the blob has not: options replace them, or they move nothing.
     has_idle_tracks: bool,
     /// Number of instances of a scene file that were copied.
     pub copied: usize,
@@ -48,11 +48,11 @@ pub struct Source {
     without: Effects,
     /// The files that a scene file was read from.
     files: Vec<PathBuf>,
-    /// How a scene file was read and compiled.
+    /// The options with which a scene file was read and compiled.
     made_by: Option<(scene::ImportOptions, compile::Options)>,
 }
 
-/// What a scene file is compiled for.
+/// The options with which a scene file is compiled.
 pub struct Compiling {
     pub options: compile::Options,
     /// True if the user chose the structures. Otherwise a scene with morph targets gets those that can be refitted.
@@ -235,7 +235,7 @@ impl Source {
         }
     }
 
-    /// The tracks of a scene that moves; none where all of the scene file's do nothing.
+    /// Returns the tracks of a scene that moves; none where all of the scene file's do nothing.
     pub fn tracks(&self) -> Result<Tracks<'_>, Failure> {
         let tracks = Tracks::from_bytes(self.blob.bytes()).map_err(|error| self.invalid(error))?;
         if !tracks.is_empty() || self.has_idle_tracks {
@@ -324,7 +324,7 @@ impl Source {
         })
     }
 
-    /// The time that the scene is shown at, in ticks; `None` for one without a time.
+    /// Returns the time that the scene is shown at, in ticks; `None` for one without a time.
     pub fn time(&self) -> Option<i32> {
         self.changes.as_ref()?.time
     }
@@ -343,7 +343,7 @@ impl Source {
         checked.map_err(|error| self.invalid(error))
     }
 
-    /// The names of a scene file, or those in the blob.
+    /// Returns the names of a scene file, or those in the blob.
     pub fn names(&self, scene: &Scene<'_>) -> Names {
         let in_blob = || Names::of_blob(scene, self.blob.bytes()).unwrap_or_default();
         self.names.clone().unwrap_or_else(in_blob)

@@ -38,12 +38,11 @@ use std::time::Instant;
 /// pointing outward; 0 for a miss). Those of a scene with instances have a field more behind
 /// primitive: instance (u4, 0xffffffff for the scene's own objects).
 ///
-/// A ray is rejected if it has a NaN, if its direction is zero, or if its origin or direction is
-/// infinite. It is rejected, too, if tmin is greater than tmax, or if its origin is more than 2^37
-/// units of the lattice away, 2^21 times the lattice's width (`gridel inspect` shows the unit). A ray whose closest hit has a t beyond
-/// double precision is rejected; with --any, which needs no t, it is answered. t of a rejected ray is
-/// nan in the file. Rejected rays are counted separately from misses. The first one is printed with
-/// its row and the reason.
+/// A ray is rejected if it has a NaN, if its direction is zero, or if its origin or direction is infinite. It is
+/// rejected, too, if tmin is greater than tmax, or if its origin is more than 2^37 units of the lattice away, 2^21
+/// times the lattice's width (`gridel inspect` shows the unit). A ray whose closest hit has a t beyond double precision
+/// is rejected; with --any, which needs no t, it is answered. t of a rejected ray is nan in the file. Rejected rays are
+/// counted separately from misses. The first one is printed with its row and the reason.
 #[derive(Args)]
 #[command(after_help = super::failure::EXIT_CODES)]
 pub struct Arguments {
@@ -113,7 +112,7 @@ struct Traced {
     rays_per_second: f64,
     #[serde(skip_serializing_if = "Option::is_none")]
     counters: Option<Tests>,
-    /// Where names are written, and hits know their objects.
+    /// Number of hits of each object, by name. Present if names are written and hits have objects.
     #[serde(skip_serializing_if = "Option::is_none")]
     hits_by_name: Option<BTreeMap<String, usize>>,
 }
@@ -131,10 +130,14 @@ struct Rejected {
 struct Tests {
     planes: u64,
     boxes: u64,
-    objects: u64,
+    /// Cells that rays entered.
+    cells: u64,
+    primitives: u64,
+    /// Instances that rays entered.
+    instances: u64,
 }
 
-/// That files are named which can be read and written, all of them different.
+/// Checks that input and output files are distinct, and that outputs can be written.
 fn check_arguments(arguments: &Arguments) -> Result<(), Failure> {
     reject_same(&arguments.input, &arguments.output)?;
     reject_same(&arguments.rays, &arguments.output)?;
@@ -257,7 +260,9 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         counters: counters.map(|counters| Tests {
             planes: counters.planes,
             boxes: counters.boxes,
-            objects: counters.objects,
+            cells: counters.cells,
+            primitives: counters.primitives,
+            instances: counters.instances,
         }),
         hits_by_name: (arguments.names.is_some() && !query.any)
             .then(|| hits_by_name(&hits, &names)),

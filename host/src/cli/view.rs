@@ -17,8 +17,8 @@ use std::path::PathBuf;
 /// `gridel render`. Dragging with the left mouse button orbits, with another button it pans, and the wheel
 /// zooms. A click explains a pixel.
 ///
-/// A key changes among the structures that a blob was built with. A scene file is compiled for `wide`, `flagged` and
-/// `bvh`, or for the structure of `--accel` alone.
+/// A key changes among the structures that a blob was built with, and the list of all primitives. A scene file is
+/// compiled for `wide`, `flagged` and `bvh`, or for the structure of `--accel` alone.
 #[derive(Args)]
 #[command(after_help = format!("Keys:\n{}\n{}", key_help(), super::failure::EXIT_CODES))]
 pub struct Arguments {

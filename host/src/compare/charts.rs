@@ -23,7 +23,7 @@ pub fn charts(
         bar("planes", &|row| Some(row.work?.all.planes)),
         bar("boxes", &|row| Some(row.work?.all.boxes)),
         bar("cells", &|row| Some(row.work?.all.cells)),
-        bar("objects", &|row| Some(row.work?.all.objects)),
+        bar("primitives", &|row| Some(row.work?.all.primitives)),
     ];
     if comparison.keeps_instances() {
         tests.push(bar("instances entered", &|row| row.work?.all.instances));

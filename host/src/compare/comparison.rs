@@ -1,17 +1,17 @@
-//! How contenders compare.
+//! Comparisons of contenders.
 
 use super::judge::Mismatch;
 use crate::measure::InstanceCount;
 use crate::measure::rays::Works;
 use serde::Serialize;
 
-/// How the contenders compare on one scene.
+/// A comparison of the contenders on one scene.
 #[derive(Clone, Debug, Serialize)]
 pub struct Comparison {
     pub format: &'static str,
     /// Width and height of the picture.
     pub size: [u16; 2],
-    /// How often everything was timed.
+    /// Number of times that everything was timed.
     pub repeats: usize,
     /// Primitives of the blobs.
     pub primitives: usize,
@@ -41,7 +41,7 @@ impl Comparison {
 #[derive(Clone, Debug, Serialize)]
 pub struct Rejected {
     pub structure: &'static str,
-    /// With the bytes that it would take.
+    /// The reason, with the bytes that it would take.
     pub why: String,
 }
 
@@ -68,7 +68,7 @@ pub struct Row {
     pub setup_seconds: f64,
     /// The most memory at any time while the scene was compiled, beyond the scene itself.
     pub peak_bytes: Option<usize>,
-    /// By how much the blob is larger than one of the list alone.
+    /// Bytes by which the blob is larger than one of the list alone.
     pub own_bytes: usize,
     pub blob_bytes: usize,
     /// Primitives of the longest list that a ray can be led to.

@@ -1,4 +1,4 @@
-//! Where each structure is beaten, in plain words.
+//! Sentences about where each structure is beaten.
 
 use super::{Comparison, Row};
 use crate::table::grouped;
@@ -61,7 +61,7 @@ pub(super) fn bounced_rate(row: &Row) -> Option<f64> {
 /// Tests per ray, as [`gridel_core::Counters::tests`] counts them.
 fn tests(row: &Row) -> Option<f64> {
     let all = row.work?.all;
-    Some(all.boxes + all.cells + all.objects)
+    Some(all.boxes + all.cells + all.primitives)
 }
 
 /// Ratio below which figures count as equal: the noise of a shared machine.

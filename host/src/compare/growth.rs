@@ -1,4 +1,4 @@
-//! How structures fare as a scene grows: the same comparison on ever larger parts of it.
+//! Comparison of structures as a scene grows: the same comparison on ever larger parts of it.
 //!
 //! A scene grows by single primitives, so its instances are copied.
 
@@ -53,7 +53,7 @@ pub fn growth(
     Ok(Growth { instances, steps })
 }
 
-/// How often [`growth`] reports its next step.
+/// Returns the number of steps that [`growth`] reports.
 ///
 /// # Errors
 /// If the instances of the scene are too many to be copied.

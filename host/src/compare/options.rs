@@ -10,16 +10,16 @@ use peak_alloc::PeakAlloc;
 #[derive(Clone, Debug)]
 pub struct Options<'o> {
     pub structures: Vec<Structure>,
-    /// How hierarchies are built; a structure that takes one is a contender with each.
+    /// Builders of hierarchies. A structure that uses one is a contender with each.
     pub builders: Vec<Builder>,
-    /// How everything else is compiled.
+    /// Options for compiling everything else.
     pub compiling: compile::Options,
     pub format: Format,
     /// Width and height of the picture whose rays are traced; one sample per pixel.
     pub size: [u16; 2],
     /// Instances of the scene file that were [copied](crate::scene::Imported::copied), for the report.
     pub copied: usize,
-    /// How often everything is timed; 0 for counts alone.
+    /// Number of times that everything is timed; 0 for counts alone.
     pub repeats: usize,
     /// Tests of primitives that a row may spend on one pass over the rays. A row that would need more traces every
     /// second ray, or every third, and so on. Brute force decides about as many.
@@ -48,7 +48,8 @@ impl Default for Options<'_> {
 pub type Contender = (Structure, Option<Builder>);
 
 impl Options<'_> {
-    /// How often [`compare`](crate::compare::compare) reports progress, if all contenders can be built and are right.
+    /// Returns the number of times that [`compare`](crate::compare::compare) reports progress, if all contenders can be
+    /// built and are right.
     pub fn steps(&self) -> u64 {
         let contenders = self.contenders().len();
         (2 + contenders * (2 + self.repeats)) as u64
@@ -70,7 +71,7 @@ impl Options<'_> {
     }
 }
 
-/// Why nothing can be compared.
+/// An error of a comparison.
 #[derive(Debug, thiserror::Error, miette::Diagnostic)]
 pub enum CompareError {
     #[error(transparent)]

@@ -62,11 +62,11 @@ fn brute_force_tests_all_of_every_part_that_is_entered() {
     let entered = work.instances.expect("instances");
     assert!(entered > 0.1, "{entered}");
     // Those of the scene itself, and three for each instance.
-    assert!((work.objects - (2.0 + 3.0 * entered)).abs() < 1e-9);
+    assert!((work.primitives - (2.0 + 3.0 * entered)).abs() < 1e-9);
     // Two boxes and twelve planes for each pair of the hierarchy above instances.
     assert!((work.planes - 6.0 * work.boxes).abs() < 1e-9 && work.boxes >= 2.0);
     let other = dual_split.work.expect("right").primary;
-    assert!(other.boxes > work.boxes && other.objects < work.objects);
+    assert!(other.boxes > work.boxes && other.primitives < work.primitives);
     assert_eq!((list.sah_cost, dual_split.sah_cost), (None, None));
 }
 

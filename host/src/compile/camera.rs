@@ -9,7 +9,7 @@ use gridel_core::format::record::Header;
 use gridel_core::render::CameraError;
 use gridel_core::{Angle, Camera as Placed};
 
-/// The camera in the integer coordinates of a header.
+/// Returns the camera in the integer coordinates of a header.
 ///
 /// Its direction is that of the scene file's numbers, which can be finer than coordinates are. Where they are multiples
 /// of the step, it equals that of [`Placed::look_at`], bit for bit.
@@ -23,16 +23,13 @@ pub fn place(camera: &Camera, header: &Header) -> Result<Placed, CompileError> {
     placed.map_err(|source| match source {
         CameraError::EyeOutOfRange => CompileError::EyeOutOfReach {
             reach: exp2(31 + header.coordinate_exponent()),
-            from: match header.coordinate_origin {
-                0 => DVec3::from_array(header.origin),
-                _ => DVec3::ZERO,
-            },
+            from: DVec3::from_array(header.coordinate_origin()),
         },
         source => CompileError::Camera { source },
     })
 }
 
-/// A direction of 30 bits, scaled by a power of two, so that integers keep their ratios.
+/// Returns a direction of 30 bits, scaled by a power of two, so that integers keep their ratios.
 pub fn integers(direction: DVec3) -> [i32; 3] {
     let (_, exponent) = libm::frexp(direction.abs().max_element());
     let scaled = |x: f64| libm::ldexp(x, 30 - exponent).round() as i32;
@@ -54,7 +51,7 @@ mod tests {
     fn header() -> Header {
         Header {
             unit_exponent: -13,
-            coordinate_origin: 1,
+            counted_from: 1,
             ..Header::zeroed()
         }
     }

@@ -24,7 +24,7 @@ pub struct Cells {
     pub longest_list: usize,
 }
 
-/// The longest of the lists that begin where one's start is and end where the next one begins.
+/// Returns the longest of the lists that begin where one's start is and end where the next one begins.
 pub fn longest(starts: &[u32]) -> usize {
     let lengths = starts.windows(2).map(|pair| pair[1] - pair[0]);
     lengths.max().unwrap_or(0) as usize
@@ -46,7 +46,7 @@ fn usual_divisions(bounds: &UnitBox, cells: f64) -> [u32; 3] {
     })
 }
 
-/// The boxes of the primitives that have one, in the order of their slots.
+/// Returns the boxes of the primitives that have one, in the order of their slots.
 pub fn slot_boxes(flat: &Flat, boxes: &[super::hierarchy::Primitive]) -> Vec<UnitBox> {
     let mut of_kind = [const { Vec::new() }; Kind::ALL.len()];
     for primitive in boxes {

@@ -44,7 +44,7 @@ impl<'g> BuildContext<'g> {
         Some(Tree::new(root, self.flat, self.order, self.primitives))
     }
 
-    /// The share of a table's bytes that is for this blob: scene and parts share them by their primitives.
+    /// Returns the share of a table's bytes that is for this blob: scene and parts share them by their primitives.
     pub fn share(&self, bytes: u64) -> u64 {
         /// Enough for the table of a part of few primitives.
         const LEAST: u64 = 4096;

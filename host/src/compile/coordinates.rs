@@ -8,11 +8,10 @@ use gridel_core::Position;
 use gridel_core::format::limits::MAX_COORDINATE_SHIFT;
 use gridel_core::format::record::Header;
 
-/// How many times farther coordinates reach than the scene and its eye, so that both can move.
+/// Ratio of the reach of coordinates to that of the scene and its eye, so that both can move.
 const ROOM: f64 = 4.0;
 
-/// How many powers of two coarser the step may be for coordinates that are counted from the scene's own
-/// origin.
+/// Greatest exponent of the power of two by which the step may be coarser for coordinates from the scene's own origin.
 const COARSER: u8 = 4;
 
 /// Scene coordinates as integers.
@@ -61,19 +60,16 @@ impl Coordinates {
                 unit_exponent: lattice.unit_exponent,
                 origin: lattice.origin.to_array(),
                 coordinate_shift: own.unwrap_or(from_lattice),
-                coordinate_origin: own.is_some().into(),
+                counted_from: own.is_some().into(),
                 ..Header::zeroed()
             },
         }
     }
 }
 
-/// The nearest place in a scene's integer coordinates; `None` where they do not reach it.
+/// Returns the nearest place in a scene's integer coordinates; `None` where they do not reach it.
 pub fn position(header: &Header, place: DVec3) -> Option<Position> {
-    let origin = match header.coordinate_origin {
-        0 => DVec3::from_array(header.origin),
-        _ => DVec3::ZERO,
-    };
+    let origin = DVec3::from_array(header.coordinate_origin());
     let steps = ((place - origin) / exp2(header.coordinate_exponent())).round();
     // The farthest place of all is one step beyond the last coordinate, which is used for it.
     let reach = -f64::from(i32::MIN);

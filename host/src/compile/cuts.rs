@@ -30,7 +30,7 @@ fn edges([a, b, c]: [Point; 3]) -> impl Iterator<Item = Edge> {
     edges.into_iter().filter(|[low, high]| low < high)
 }
 
-/// Where edges are cut.
+/// The points at which edges are cut.
 #[derive(Debug, Default)]
 pub struct Cuts {
     /// For edges that are cut, the points between their ends, in ascending order.
@@ -38,7 +38,7 @@ pub struct Cuts {
 }
 
 impl Cuts {
-    /// The cuts that slivers make necessary.
+    /// Returns the cuts that slivers make necessary.
     pub fn around(slivers: &[Sliver]) -> Self {
         // For each edge, how many slivers have it, and one of them.
         let mut shared: HashMap<Edge, (usize, usize)> = HashMap::new();

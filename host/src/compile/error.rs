@@ -1,4 +1,4 @@
-//! Why a scene cannot be compiled.
+//! Errors of the compiler.
 
 use crate::scene::{SceneError, SourceSpan};
 use glam::DVec3;
@@ -6,7 +6,7 @@ use gridel_core::BlobError;
 use gridel_core::format::limits::MAX_MEDIA;
 use gridel_core::render::CameraError;
 
-/// Why a scene cannot be compiled.
+/// Errors of the compiler.
 #[derive(Debug, thiserror::Error, miette::Diagnostic)]
 pub enum CompileError {
     #[error(transparent)]

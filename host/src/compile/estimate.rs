@@ -20,7 +20,7 @@ pub fn ordinary_tests(primitives: usize) -> f64 {
 pub struct Rays {
     /// For each axis, how far the scene extends and the box that is divided, in units.
     extents: [[f64; 2]; 3],
-    /// How far beyond a cell rays still visit it, in units.
+    /// The distance beyond a cell at which rays still visit it, in units.
     margin: f64,
 }
 
@@ -36,7 +36,7 @@ impl Rays {
         }
     }
 
-    /// The share of them that visit one cell of the box divided so often along each axis.
+    /// Returns the share of them that visit one cell of the box divided so often along each axis.
     pub fn share(&self, divisions: [u32; 3]) -> f64 {
         let width = |k: usize| {
             let [scene, divided] = self.extents[k];

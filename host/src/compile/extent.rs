@@ -71,7 +71,7 @@ fn joined(faces: Vec<DVec3>) -> Vec<DVec3> {
 }
 
 impl<'s> Shapes<'s> {
-    /// The shapes of a scene.
+    /// Returns the shapes of a scene.
     pub fn of(scene: &'s Scene) -> Self {
         let bounded = |object: &Object| object.shape.is_bounded();
         let placed = |instance: &Instance| scene.parts[instance.part].objects.iter().any(bounded);
@@ -82,7 +82,7 @@ impl<'s> Shapes<'s> {
         }
     }
 
-    /// The scene.
+    /// Returns the scene.
     pub fn scene(&self) -> &'s Scene {
         self.scene
     }
@@ -207,7 +207,7 @@ mod tests {
         }
     }
 
-    /// As the definition has it, to the last bit.
+    /// The support equals its definition to the last bit.
     #[test]
     fn support_of_instances_is_the_largest_over_all_vertices() {
         let random = &mut Random(5);

@@ -24,7 +24,7 @@ pub struct Primitive {
 }
 
 impl Primitive {
-    /// The cost of its test; a triangle's is 1. Where tests are expensive, leaves are small.
+    /// Returns the cost of its test; a triangle's is 1. Where tests are expensive, leaves are small.
     pub const fn test_cost(&self) -> f64 {
         test_cost(self.kind)
     }
@@ -67,10 +67,10 @@ pub const LEAF_SIZE: usize = 4;
 /// Nodes with at most this many primitives are swept, others binned.
 const SWEEP_SIZE: usize = 4096;
 const BINS: usize = 32;
-/// From this many primitives on, the two halves are built in parallel.
+/// Least number of primitives whose two halves are built in parallel.
 const PARALLEL_SIZE: usize = 4096;
 
-/// Which splits of a node are tried.
+/// The splits of a node that are tried.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Splits {
     /// All of them where there are few primitives, those between bins where there are many.
@@ -91,12 +91,12 @@ pub fn build(primitives: &mut [Primitive], splits: Splits, leaf_size: usize) -> 
     Some(build_node(primitives, 0, MAX_LEVELS, splits, leaf_size))
 }
 
-/// The box of all primitives; `None` without any.
+/// Returns the box of all primitives; `None` without any.
 pub fn bounds(primitives: &[Primitive]) -> Option<UnitBox> {
     (!primitives.is_empty()).then(|| union(primitives))
 }
 
-/// The surface area heuristic's cost of a hierarchy, the root's area being 1.
+/// Returns the surface area heuristic's cost of a hierarchy, the root's area being 1.
 pub fn sah_cost(root: &Node) -> f64 {
     fn sum(node: &Node) -> f64 {
         match node {
@@ -115,7 +115,7 @@ pub fn halvings(count: usize) -> usize {
     usize::BITS as usize - count.leading_zeros() as usize + Kind::ALL.len()
 }
 
-/// A hierarchy of halves of equal count over primitives that lie from `first` on.
+/// Returns a hierarchy of halves of equal count over primitives that lie from `first` on.
 pub fn build_halved(primitives: &mut [Primitive], first: usize, levels: usize) -> Node {
     let levels = levels.min(halvings(primitives.len()));
     build_node(primitives, first, levels, Splits::Binned, 0)

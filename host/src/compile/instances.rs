@@ -26,9 +26,9 @@ const LEAST_SCALE: f64 = 1e-250;
 /// The purpose of a blob.
 #[derive(Clone, Copy, Debug)]
 pub enum Role<'p> {
-    /// To be loaded, with these parts in it.
+    /// A blob to be loaded, with these parts in it.
     Whole(&'p Parts),
-    /// To be a part of another, which knows its objects and materials.
+    /// A part of another blob, which knows its objects and materials.
     Part {
         /// Primitives of the scene and of all its parts.
         all: u64,
@@ -39,11 +39,11 @@ pub enum Role<'p> {
 #[derive(Debug, Default)]
 pub struct Parts {
     blobs: Vec<Blob>,
-    /// How far the lattice moves surfaces of each at most.
+    /// The largest displacement of each one's surfaces by the lattice.
     displacements: Vec<f64>,
     lattices: Vec<Lattice>,
     bounds: Vec<UnitBox>,
-    /// How far the instances move.
+    /// The reach of the instances' motion.
     pub reach: Reach,
     /// For each object of all parts, its first primitive, counted from that of the first part.
     pub object_first: Vec<u32>,
@@ -64,7 +64,7 @@ pub struct Placed {
     tree: Tree,
     /// The box around all.
     bounds: Option<UnitBox>,
-    /// How far maps of integers move a surface at most, in scene units.
+    /// The largest displacement of a surface by maps of integers, in scene units.
     pub displacement: f64,
 }
 
@@ -278,7 +278,7 @@ impl Parts {
 }
 
 impl Placed {
-    /// The sections of instances.
+    /// Returns the sections of instances.
     pub fn sections(&self) -> Vec<Section> {
         vec![
             section(SectionKind::Instances, &self.records),
@@ -287,7 +287,7 @@ impl Placed {
         ]
     }
 
-    /// The box around a box and all instances; that of the instances alone without one.
+    /// Returns the box around a box and all instances; that of the instances alone without one.
     pub fn around(&self, own: Option<UnitBox>) -> Option<UnitBox> {
         own.into_iter()
             .chain(self.bounds)

@@ -95,7 +95,7 @@ fn check_scales(scene: &Scene) -> Result<(), CompileError> {
     Ok(())
 }
 
-/// The tracks of a scene that a blob holds: those of joints only if instances can follow them.
+/// Returns the tracks of a scene that a blob holds: those of joints only if instances can follow them.
 pub fn kept_tracks(scene: &Scene) -> Vec<Track> {
     let has_instances = !scene.instances.is_empty();
     let kept = |track: &&Track| has_instances || !track.target.is_of_joint();
@@ -115,7 +115,7 @@ pub fn places(scene: &Scene) -> impl Iterator<Item = DVec3> {
     scene.joints.iter().map(|joint| joint.pivot).chain(shifted)
 }
 
-/// The section of joints; none where there is nothing to move.
+/// Returns the section of joints; none where there is nothing to move.
 pub fn sections(scene: &Scene, header: &Header) -> Result<Vec<Section>, CompileError> {
     if scene.instances.is_empty() || scene.joints.is_empty() {
         return Ok(Vec::new());

@@ -23,7 +23,7 @@ pub struct Layout {
 }
 
 impl Layout {
-    /// A structure over the leaves that hierarchies share, as deep as their pairs.
+    /// Returns a structure over the leaves that hierarchies share, as deep as their pairs.
     pub fn over_leaves(structure: Structure, sections: Vec<Section>, flat: &Flat) -> Self {
         Self {
             structure,

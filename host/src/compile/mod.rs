@@ -60,7 +60,7 @@ pub use primitives::LeftOut;
 pub use report::{Report, TableStats};
 pub use requirements::RequiringPart;
 pub(crate) use shading::light_record;
-pub use shading::{EnvironmentFigures, TextureFigures, radiance};
+pub use shading::{EnvironmentFigures, Shoulder, Supplied, TextureFigures, radiance};
 pub use structures::{takes_hierarchy, usual_budget};
 pub use warnings::scene_warnings;
 pub use wide::Quality;
@@ -367,7 +367,7 @@ fn snap(
     }
 }
 
-/// That coordinates are numbers, that items which are named exist, and that there are as many lattice bits as can be.
+/// Checks that coordinates are finite, that references are valid, and that the lattice bits are in range.
 fn check(scene: &Scene, options: &Options) -> Result<(), CompileError> {
     if !LATTICE_BITS.contains(&options.lattice_bits) {
         return Err(CompileError::LatticeBits {

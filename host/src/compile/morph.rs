@@ -71,7 +71,7 @@ pub fn with_tracks(scene: &Scene) -> Cow<'_, [MorphTarget]> {
     Cow::Owned(targets)
 }
 
-/// The box that a scene's own meshes sweep by morph targets.
+/// Returns the box that a scene's own meshes sweep by morph targets.
 pub fn swept(scene: &Scene) -> Swept {
     let targets = with_tracks(scene);
     let ways: Vec<[f64; 2]> = targets.iter().map(way).collect();
@@ -114,8 +114,8 @@ fn around(object: &Object, ways: &[[f64; 2]]) -> Option<[DVec3; 2]> {
     (corners[0].x <= corners[1].x).then_some(corners)
 }
 
-/// What a morph target does to a vertex: its number, the displacement in steps of the storage, and the change of the
-/// normal on its octahedron, halved.
+/// The effect of a morph target on a vertex: the target's number, the displacement in steps of the storage, and the
+/// change of the normal on its octahedron, halved.
 type Step = (u32, [i32; 3], [i16; 3]);
 
 /// The different motions of vertices.
@@ -196,7 +196,7 @@ impl Motions {
         })
     }
 
-    /// The sections of vertices, given the motion of each.
+    /// Returns the sections of vertices, given the motion of each.
     pub fn sections(&self, motions: &[u32]) -> Vec<Section> {
         let (mut vertices, mut targets) = (Vec::new(), Vec::new());
         let (mut long, mut normals) = (Vec::new(), Vec::new());
@@ -231,7 +231,7 @@ impl Motions {
     }
 }
 
-/// What a morph target does, among steps in the order of morph targets.
+/// Returns the step of a morph target, which is inserted if it is missing. Steps are in the order of morph targets.
 fn step_of(steps: &mut Vec<Step>, target: u32) -> &mut Step {
     let place = steps.partition_point(|it| it.0 < target);
     if steps.get(place).is_none_or(|it| it.0 != target) {
@@ -240,7 +240,7 @@ fn step_of(steps: &mut Vec<Step>, target: u32) -> &mut Step {
     &mut steps[place]
 }
 
-/// How morph targets displace a vertex.
+/// Returns the displacements of a vertex by morph targets.
 fn displaced(
     displacements: &[Displacements],
     vertex: u32,
@@ -267,7 +267,8 @@ fn displaced(
     Ok(steps)
 }
 
-/// How morph targets change a normal on its octahedron, halved; one that would leave the range is shortened.
+/// Returns the changes of a normal by morph targets on its octahedron, halved. A change that would leave the range is
+/// shortened.
 fn changed(normals: &Normals, number: u32) -> impl Iterator<Item = (u32, [i16; 3])> {
     let most = f64::from(i16::MAX);
     let normal = normals.vectors.get(number as usize);
@@ -282,7 +283,7 @@ fn changed(normals: &Normals, number: u32) -> impl Iterator<Item = (u32, [i16; 3
     })
 }
 
-/// The section of the weights at rest.
+/// Returns the section of the weights at rest.
 pub fn weights(scene: &Scene) -> Section {
     let weights = scene.morph_targets.iter();
     let weights: Vec<i32> = weights

@@ -52,7 +52,7 @@ pub struct KeptNames {
 }
 
 impl Names {
-    /// The names of a scene, each cut to 255 bytes.
+    /// Returns the names of a scene, each cut to 255 bytes.
     pub fn of_scene(scene: &Scene) -> Self {
         let mut names = Self::default();
         let mut shortened = 0;
@@ -78,7 +78,7 @@ impl Names {
         names
     }
 
-    /// The names of a blob that `scene` is the checked view of.
+    /// Returns the names of a blob that `scene` is the checked view of.
     ///
     /// # Errors
     /// If they are invalid.
@@ -105,27 +105,27 @@ impl Names {
         })
     }
 
-    /// The name of an object.
+    /// Returns the name of an object.
     pub fn object(&self, object: u32) -> Option<&str> {
         given(&self.objects, object)
     }
 
-    /// The name of an object's material.
+    /// Returns the name of an object's material.
     pub fn material_of(&self, object: u32) -> Option<&str> {
         self.material(*self.object_material.get(object as usize)?)
     }
 
-    /// The name of a material.
+    /// Returns the name of a material.
     pub fn material(&self, material: u32) -> Option<&str> {
         given(&self.materials, material)
     }
 
-    /// The name of a light.
+    /// Returns the name of a light.
     pub fn light(&self, light: u32) -> Option<&str> {
         given(&self.lights, light)
     }
 
-    /// The name of an instance.
+    /// Returns the name of an instance.
     pub fn instance(&self, number: u32) -> Option<&str> {
         given(&self.instances, number)
     }

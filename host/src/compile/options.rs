@@ -32,15 +32,15 @@ pub struct Options {
     /// [`Deformation`](gridel_core::Deformation). The box of a scene, and of each part, is wider by as much. Only the
     /// structure [`Bvh`](gridel_core::Bvh) can be refitted.
     pub room: f64,
-    /// Whether a closed mesh may lie in one plane once it is snapped. It has no inside then, and rays from within meet
-    /// nothing; otherwise it is an error.
+    /// True if a closed mesh may lie in one plane once it is snapped. It then has no inside, and rays from within miss
+    /// it. If false, such a mesh is an error.
     pub flat_meshes: bool,
     /// Primitives that make a leaf of a hierarchy whatever rays pay for it, at most
     /// [`LARGEST_LEAF`]: fewer nodes and more tests. With 0 the costs alone decide.
     pub leaf_size: usize,
     /// Time that the builder of the eight-wide hierarchy takes.
     pub quality: Quality,
-    /// How the hierarchy is built that all structures but the list, `wide`, the grid and the octree share.
+    /// Builder of the hierarchy that all structures but the list, `wide`, the grid and the octree share.
     pub builder: Builder,
     /// Directions of slabs: 3, 7 or 13.
     pub slab_directions: usize,

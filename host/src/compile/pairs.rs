@@ -10,7 +10,7 @@ use gridel_core::format::{Leaf, Link};
 pub struct Flat {
     pub pairs: Vec<Pair>,
     pub flagged: Vec<FlaggedPair>,
-    /// This hierarchy as dual-split nodes, if it was laid out as such.
+    /// The hierarchy as dual-split nodes, if it was laid out as such.
     pub dual: Vec<DualNode>,
     pub leaves: Vec<u32>,
     /// The primitives in the order of their slots, kind by kind.

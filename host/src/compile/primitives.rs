@@ -60,7 +60,7 @@ pub struct Primitives {
     sliver_motions: HashMap<[i32; 3], u32>,
     /// A primitive reaches beyond the lattice, because it had to be moved that far.
     pub needs_room: bool,
-    /// Whether closed meshes may lie in one plane.
+    /// True if closed meshes may lie in one plane.
     flat_meshes: bool,
 }
 
@@ -85,7 +85,7 @@ impl LeftOut {
         self.count += others.count - others.names.len();
     }
 
-    /// How many there are.
+    /// Returns their number.
     pub fn count(&self) -> usize {
         self.count
     }
@@ -155,7 +155,7 @@ impl Primitives {
         Ok(())
     }
 
-    /// The box of every primitive that has one, for the builder.
+    /// Returns the box of every primitive that has one, for the builder.
     pub fn boxes(&self) -> Vec<Primitive> {
         let of = |kind: Kind, count: usize, bounds: &dyn Fn(usize) -> UnitBox| -> Vec<Primitive> {
             (0..count)
@@ -182,7 +182,7 @@ impl Primitives {
         triangles.into_iter().chain(others).collect()
     }
 
-    /// A primitive in units.
+    /// Returns a primitive in units.
     pub fn solid(&self, kind: Kind, index: usize) -> Solid {
         self.records.solid(kind, index).unwrap_or_else(|| {
             let corners = self.triangles[index].map(|vertex| self.vertices[vertex as usize]);
@@ -321,7 +321,7 @@ impl Primitives {
         self.check_count()
     }
 
-    /// Whether corners of a triangle that are at one place at rest move apart, so that it has an area then.
+    /// Returns true if corners of a triangle that coincide at rest move apart, so that it then has an area.
     fn opens(&self, places: [[i32; 3]; 3], corners: [Corner; 3]) -> bool {
         let mut pairs = [(0, 1), (1, 2), (2, 0)].into_iter();
         pairs.any(|(one, other)| {

@@ -1,4 +1,4 @@
-//! How far instances move: a box that holds a placed part at all times of the tracks of its joints.
+//! Reach of moving instances: a box that holds a placed part at all times of the tracks of its joints.
 //!
 //! Each joint has a range of rotations, scales and shifts, and all of them are taken together, at rest and at any time.
 //! Keys bound the values between them: those of a spline together with its Bézier control points. Rotations about one
@@ -17,17 +17,17 @@ const SAME_AXIS: f64 = 1e-6;
 /// Bound of how far rounding takes the matrix and the scale of a joint off, in radians.
 const ROUNDING: f64 = 1.0 / (1 << 23) as f64;
 
-/// How far the instances of a scene move.
+/// The reach of a scene's instances.
 #[derive(Debug, Default)]
 pub struct Reach {
-    /// What instances sweep, and the room that the scene states.
+    /// The box that instances sweep, and the room that the scene states.
     pub swept: Swept,
     /// For each instance, its least and its greatest scale relative to that at rest.
     pub scales: Vec<[f64; 2]>,
 }
 
 impl Reach {
-    /// The reach of a scene whose parts lie in these boxes.
+    /// Returns the reach of a scene whose parts lie in these boxes.
     pub fn of(scene: &Scene, parts: &[[DVec3; 2]]) -> Self {
         let tracks = JointTracks::of(scene);
         let joints = scene.joints.iter().zip(&tracks);
@@ -218,7 +218,7 @@ impl Region {
         }
     }
 
-    /// Returns the region after a joint's motion. Of the margin, small rotations may take what is to `spare`.
+    /// Returns the region after a joint's motion. Small rotations may use up to `spare` of the margin.
     fn moved(&self, range: &Range, spare: &mut f64) -> Self {
         let Range {
             pivot,
@@ -260,8 +260,8 @@ impl Region {
         }
     }
 
-    /// Returns the region that small rotations about the origin, and the rounding of a joint's motion, sweep. What the
-    /// margin takes in is left out.
+    /// Returns the region that small rotations about the origin, and the rounding of a joint's motion, sweep. The part
+    /// that lies in the margin is left out.
     fn turned_off(&self, range: &Range, spare: &mut f64) -> Self {
         let rests = matches!(range.turns.turn, Turn::None) && range.turns.off == 0.0;
         let rounding = match rests && range.scale == [1.0; 2] {

@@ -49,7 +49,7 @@ macro_rules! registry {
                 }
             }
 
-            /// A primitive in units; `None` for a triangle.
+            /// Returns a primitive in units; `None` for a triangle.
             pub fn solid(&self, kind: Kind, index: usize) -> Option<Solid> {
                 Some(Solid::of(match kind {
                     Kind::Triangle => return None,
@@ -61,7 +61,7 @@ macro_rules! registry {
                 }))
             }
 
-            /// The box of a primitive; an empty one for a triangle.
+            /// Returns the box of a primitive; an empty one for a triangle.
             pub fn bounds(&self, kind: Kind, index: usize) -> UnitBox {
                 match kind {
                     Kind::Triangle => UnitBox([[0; 2]; 3]),
@@ -70,7 +70,7 @@ macro_rules! registry {
                 }
             }
 
-            /// The sections of all kinds, each in the order of its slots.
+            /// Returns the sections of all kinds, each in the order of its slots.
             pub fn sections(&self, bits: u8, slots: &[Vec<u32>]) -> Vec<Section> {
                 let slots = |kind: Kind| &slots[kind as usize][..];
                 vec![

@@ -1,5 +1,5 @@
-//! That the numbers by which a scene's items name each other lie within their lists. Importers make no other scenes, but
-//! programs can.
+//! Checks that the indices by which a scene's items refer to each other are in range. Importers make only such scenes,
+//! but programs can make others.
 
 use super::error::CompileError;
 use crate::scene::{
@@ -62,7 +62,7 @@ pub fn check(scene: &Scene) -> Result<(), CompileError> {
     Ok(())
 }
 
-/// What an object names that the scene lacks.
+/// Returns what an object refers to and the scene lacks.
 fn lost(object: &Object, scene: &Scene) -> Option<&'static str> {
     if object.material >= scene.materials.len() {
         return Some("a material");
@@ -107,13 +107,13 @@ fn lost(object: &Object, scene: &Scene) -> Option<&'static str> {
     }
 }
 
-/// Whether a morph target of the scene changes so many vectors.
+/// Returns true if the scene has the morph target, and it has `count` changes, all finite.
 fn is_whole((target, changes): (usize, &[DVec3]), count: usize, scene: &Scene) -> bool {
     let finite = changes.iter().all(|it| it.is_finite());
     target < scene.morph_targets.len() && changes.len() == count && finite
 }
 
-/// Whether a list is long enough for all corners but those of triangles that have none.
+/// Returns true if a list of this length has an item for all corners but those of triangles equal to `none`.
 fn holds(length: usize, triangles: &[[u32; 3]], none: Option<[u32; 3]>) -> bool {
     let mut named = triangles.iter().filter(|&&it| Some(it) != none).flatten();
     named.all(|&corner| (corner as usize) < length)

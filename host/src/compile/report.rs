@@ -4,7 +4,7 @@ use super::candidates::lists::Figures;
 use super::names::KeptNames;
 use super::primitives::LeftOut;
 use super::requirements::RequiringPart;
-use super::shading::{EnvironmentFigures, TextureFigures};
+use super::shading::{EnvironmentFigures, Supplied, TextureFigures};
 use std::time::Duration;
 
 /// The compiler's report.
@@ -35,12 +35,12 @@ pub struct Report {
     pub longest_list: usize,
     /// Effects and the parts that require each.
     pub effects: Vec<(String, Vec<RequiringPart>)>,
-    /// How each image of a texture is stored.
+    /// The storage of each texture image.
     pub textures: Vec<TextureFigures>,
-    /// How the environment is stored.
+    /// The storage of the environment.
     pub environment: Option<EnvironmentFigures>,
     /// Parts that the compiler supplied because the scene has none.
-    pub supplied: Vec<String>,
+    pub supplied: Vec<Supplied>,
     /// The time that the structures took to build, from primitives on the lattice to records.
     #[serde(skip)]
     pub setup: Duration,

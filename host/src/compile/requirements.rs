@@ -1,4 +1,4 @@
-//! Which effects a scene requires, and which of its parts require them.
+//! The effects that a scene requires, and the parts that require them.
 
 use crate::scene::SourceSpan;
 use gridel_core::Effects;
@@ -18,7 +18,7 @@ pub struct RequiringPart {
 }
 
 impl RequiringPart {
-    /// A part of a scene file.
+    /// Returns a part of a scene file.
     pub fn new(part: impl Into<String>, place: &SourceSpan) -> Self {
         Self {
             part: part.into(),
@@ -53,13 +53,13 @@ impl Requirements {
         self.0.extend_from_slice(&others.0);
     }
 
-    /// All effects that the scene requires.
+    /// Returns all effects that the scene requires.
     pub fn effects(&self) -> Effects {
         let effects = self.0.iter().map(|(effects, _)| *effects);
         effects.fold(Effects::NONE, Effects::with)
     }
 
-    /// The names of the effects, and the parts that require each.
+    /// Returns the names of the effects, and the parts that require each.
     pub fn by_effect(&self) -> Vec<(String, Vec<RequiringPart>)> {
         let parts = |effect| {
             let all = self.0.iter();

@@ -32,10 +32,10 @@ pub fn around(primitives: &[Primitive], room: f64) -> Option<UnitBox> {
     Some(own.union(&UnitBox(wider)))
 }
 
-/// By what part of its size a swept box is widened: for small rotations and the rounding of boxes.
+/// Margin of a swept box relative to its size: for small rotations and the rounding of boxes.
 pub const MARGIN: f64 = 1.0 / 4096.0;
 
-/// By how many units a swept box is widened at least: boxes of instances are up to five units larger than what they hold.
+/// Least margin of a swept box in units: boxes of instances are up to five units larger than their contents.
 const MARGIN_UNITS: f64 = 8.0;
 
 /// The box that something sweeps while it moves.
@@ -43,7 +43,7 @@ const MARGIN_UNITS: f64 = 8.0;
 pub struct Swept {
     /// Without a margin; `None` if nothing moves.
     pub corners: Option<[DVec3; 2]>,
-    /// How many more units it is widened by, for the rounding of what moves.
+    /// Number of units by which it is widened further, for the rounding of motion.
     pub rounding: f64,
 }
 
@@ -54,7 +54,7 @@ impl Swept {
         self.corners = Some([lowest.min(low), highest.max(high)]);
     }
 
-    /// The box around an extent and this, for a lattice of so many bits.
+    /// Returns the box around an extent and this, for a lattice with this number of bits.
     pub fn extent(&self, extent: (DVec3, DVec3), bits: u8) -> (DVec3, DVec3) {
         let Some([low, high]) = self.corners else {
             return extent;
@@ -66,7 +66,7 @@ impl Swept {
         (low.min(extent.0), high.max(extent.1))
     }
 
-    /// The box on a lattice with such units.
+    /// Returns the box on a lattice with such units.
     pub fn with_margin(&self, unit: f64) -> Option<[DVec3; 2]> {
         self.corners.map(|[low, high]| {
             let part = (high - low).max_element() * MARGIN;
@@ -75,7 +75,7 @@ impl Swept {
         })
     }
 
-    /// This box on a lattice; `None` if nothing moves.
+    /// Returns this box on a lattice; `None` if nothing moves.
     pub fn on_lattice(&self, lattice: &Lattice) -> Option<UnitBox> {
         let [low, high] = self.with_margin(lattice.unit())?;
         let units = |place: DVec3| (place - lattice.origin) / lattice.unit();

@@ -12,7 +12,7 @@ pub struct Section {
     pub bytes: Vec<u8>,
 }
 
-/// A section of records.
+/// Returns a section of records.
 pub fn section<T: bytemuck::NoUninit + Stored>(kind: SectionKind, records: &[T]) -> Section {
     Section {
         kind,
@@ -21,7 +21,7 @@ pub fn section<T: bytemuck::NoUninit + Stored>(kind: SectionKind, records: &[T])
     }
 }
 
-/// A section of integers, in as few bytes each as the largest needs, but at least `narrowest`.
+/// Returns a section of integers, in as few bytes each as the largest needs, but at least `narrowest`.
 pub fn indices(kind: SectionKind, values: &[u32], narrowest: usize) -> Section {
     let largest = values.iter().copied().max().unwrap_or(0);
     if narrowest == 1 && largest <= u8::MAX.into() {
@@ -40,7 +40,7 @@ pub fn indices(kind: SectionKind, values: &[u32], narrowest: usize) -> Section {
     }
 }
 
-/// The low three bytes.
+/// Returns the low three bytes.
 pub fn three_bytes(value: u32) -> [u8; 3] {
     let [low, middle, high, _] = value.to_le_bytes();
     [low, middle, high]

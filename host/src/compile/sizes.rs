@@ -22,7 +22,7 @@ pub struct Size {
 }
 
 impl Sizes {
-    /// The bytes of structures, and of leaves.
+    /// Returns the bytes of structures, and of leaves.
     pub fn of(layouts: &[Layout], leaves: usize) -> Self {
         let size = |layout: &Layout| {
             let sections = layout.sections.iter();

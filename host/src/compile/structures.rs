@@ -159,7 +159,7 @@ pub fn takes_hierarchy(structure: Structure) -> bool {
     )
 }
 
-/// The structure that another one leads on to.
+/// Returns the structure that another one leads on to.
 pub const fn leads_to(structure: Structure) -> Option<Structure> {
     match structure {
         Structure::CylinderCubeEntry | Structure::Apex | Structure::RayClasses => {

@@ -47,7 +47,7 @@ impl Item<'_> {
 }
 
 impl<'s> SupportTree<'s> {
-    /// The tree of shapes that have boxes. Vertices of no triangle do not count.
+    /// Returns the tree of shapes that have boxes. Vertices of no triangle do not count.
     pub fn of(shapes: impl Iterator<Item = &'s Shape>) -> Self {
         let mut items = Vec::new();
         for shape in shapes {
@@ -110,7 +110,7 @@ impl<'s> SupportTree<'s> {
         }
     }
 
-    /// The largest `point.dot(direction)` over all points; negative infinity without any.
+    /// Returns the largest `point.dot(direction)` over all points; negative infinity without any.
     pub fn support(&self, direction: DVec3) -> f64 {
         // More than the sums round.
         const ROUNDED: f64 = 16.0 * f64::EPSILON;

@@ -282,7 +282,7 @@ fn between(one: [f64; 4], other: [f64; 4]) -> i32 {
     part.round().min(exp2(30)) as i32
 }
 
-/// How the numbers of a scene file become words.
+/// The conversion of a scene file's numbers to words.
 enum Scale {
     /// Less an offset, times a factor.
     Linear {
@@ -305,10 +305,7 @@ impl Scale {
     fn of(kind: ValueKind, track: &Track, header: &Header) -> Self {
         match kind {
             ValueKind::Position => Self::Linear {
-                offset: match header.coordinate_origin {
-                    0 => DVec3::from_array(header.origin),
-                    _ => DVec3::ZERO,
-                },
+                offset: DVec3::from_array(header.coordinate_origin()),
                 factor: exp2(-header.coordinate_exponent()),
             },
             ValueKind::Direction => {

@@ -55,7 +55,7 @@ pub struct Vertices {
 }
 
 impl Vertices {
-    /// The number of a vertex.
+    /// Returns the number of a vertex.
     pub fn number(&mut self, place: Place, corner: Corner) -> u32 {
         let next = self.places.len() as u32;
         let number = if corner == Corner::PLAIN {
@@ -73,13 +73,13 @@ impl Vertices {
         number
     }
 
-    /// A vertex that was numbered.
+    /// Returns the vertex with a number.
     pub fn get(&self, number: u32) -> (Place, Corner) {
         let corner = self.corners.get(number as usize).copied();
         (self.places[number as usize], corner.unwrap_or_default())
     }
 
-    /// All places, and what all carry, or nothing.
+    /// Returns all places, and the corners' attributes at all of them, or none.
     pub fn into_parts(self) -> (Vec<Place>, Vec<Corner>) {
         (self.places, self.corners)
     }
@@ -97,11 +97,11 @@ pub struct Corners {
     pub motions: Vec<[u32; 3]>,
 }
 
-/// How far texture coordinates reach, so that the difference of two has 32 bits: 1024 repetitions.
+/// Greatest magnitude of texture coordinates, so that the difference of two has 32 bits: 1024 repetitions.
 pub const MOST_COORDINATE: f64 = 1024.0;
 
 impl Corners {
-    /// Those of a mesh, whose attributes are in place. `None` where texture coordinates are out of range.
+    /// Returns the corners of a mesh, whose attributes are in place. `None` if texture coordinates are out of range.
     pub fn of(normals: &Normals, attributes: &Attributes, display_values: bool) -> Option<Self> {
         let coordinates = attributes.coordinates.iter().map(|it| {
             let is_valid = it.abs().max_element() < MOST_COORDINATE;
@@ -136,7 +136,7 @@ impl Corners {
         !self.colors.is_empty()
     }
 
-    /// The corners of a triangle, given its number and vertices.
+    /// Returns the corners of a triangle, given its number and vertices.
     pub fn of_triangle(&self, number: usize, vertices: [u32; 3]) -> [Corner; 3] {
         let normals = self.normals.get(number).copied().flatten();
         let coordinates = self.coordinates.get(number).copied().flatten();

@@ -24,7 +24,7 @@ pub struct Tree<'t> {
 }
 
 impl<'t> Tree<'t> {
-    /// The hierarchy that was laid out as `flat`, over primitives in the order of its leaves.
+    /// Returns the hierarchy that was laid out as `flat`, over primitives in the order of its leaves.
     pub fn new(root: &'t Node, flat: &'t Flat, order: &[Primitive], snapped: &Primitives) -> Self {
         let reach = |primitive: &Primitive| match primitive.kind {
             Kind::Sphere => {

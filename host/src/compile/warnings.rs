@@ -1,4 +1,4 @@
-//! What the compiler changes of a scene that its author would want to know.
+//! Warnings about odd scenes, and about what the compiler changes of a scene.
 
 use super::LATTICE_BITS;
 use super::report::Report;
@@ -6,10 +6,10 @@ use crate::scene::{Scene, Shape};
 use crate::shape::unit;
 use crate::table::{counted, grouped, printable};
 
-/// How near a plane an eye lies in it, as a part of its distance from what it looks at.
+/// Distance from a plane within which an eye counts as in it, relative to the distance from the target.
 const IN_PLANE: f64 = 1e-9;
 
-/// What is odd about a scene's objects and its camera before it is compiled. A scene file's author would want to know.
+/// Returns warnings about a scene's objects and its camera before it is compiled.
 pub fn scene_warnings(scene: &Scene) -> Vec<String> {
     let mut warnings = Vec::new();
     if scene.objects.is_empty() && scene.instances.is_empty() {
@@ -39,7 +39,7 @@ pub fn scene_warnings(scene: &Scene) -> Vec<String> {
 const NAMED: usize = 3;
 
 impl Report {
-    /// All warnings of a scene that was compiled with so many lattice bits.
+    /// Returns all warnings of a scene that was compiled with this number of lattice bits.
     ///
     /// ```
     /// use gridel_host::compile::{Options, compile};

@@ -172,7 +172,7 @@ pub fn parts(context: &BuildContext<'_>, layouts: Vec<Layout>) -> Parts {
         bounds: context.bounds,
         stack_bytes: u32::from(stack_depth) * size_of::<Entry>() as u32,
         coordinate_shift: shading.coordinates.header.coordinate_shift,
-        coordinate_origin: shading.coordinates.header.coordinate_origin,
+        counted_from: shading.coordinates.header.counted_from,
         spare: [0; 3],
     };
     Parts { header, sections }

@@ -6,12 +6,12 @@ use gridel_core::observe::event::{QueryHit, Source};
 use gridel_core::{Event, RayKind, Scene};
 use serde::{Serialize, Serializer};
 
-/// A pixel, or a ray of one's own, explained. Colors are linear, 1 being display white.
+/// An explanation of a pixel or of a ray of the caller's own. Colors are linear, 1 being display white.
 #[derive(Clone, Debug, Default, Serialize)]
 pub struct Explanation {
-    /// From the picture's upper left corner; `None` for a ray of one's own.
+    /// The pixel, counted from the picture's upper left corner; `None` for a ray of the caller's own.
     pub pixel: Option<[u16; 2]>,
-    /// The picture's columns and rows; `None` for a ray of one's own.
+    /// The picture's columns and rows; `None` for a ray of the caller's own.
     pub picture: Option<[u16; 2]>,
     /// Number format.
     pub format: &'static str,
@@ -26,12 +26,12 @@ pub struct Explanation {
 }
 
 impl Explanation {
-    /// The pixel's linear color, 1 being display white.
+    /// Returns the pixel's linear color, 1 being display white.
     pub fn color(&self) -> [f64; 3] {
         ratios(&self.linear)
     }
 
-    /// The mean of the samples, which is the pixel's color before it is tone mapped or encoded for display.
+    /// Returns the mean of the samples, which is the pixel's color before it is tone mapped or encoded for display.
     pub fn mean(&self) -> [f64; 3] {
         let count = self.samples.len().max(1) as f64;
         let channel = |k: usize| self.samples.iter().map(|it| it.radiance[k]).sum::<f64>() / count;
@@ -50,7 +50,7 @@ fn as_ratios<S: Serializer>(linear: &[u16; 3], serializer: S) -> Result<S::Ok, S
 /// A ray from the camera, with all that it causes.
 #[derive(Clone, Debug, Default, Serialize)]
 pub struct Sample {
-    /// In pixels from the picture's upper left corner; `None` for a ray of one's own.
+    /// The place in pixels from the picture's upper left corner; `None` for a ray of the caller's own.
     pub place: Option<[f64; 2]>,
     /// In the order in which they were traced; the first is the one from the camera.
     pub rays: Vec<Ray>,
@@ -81,8 +81,8 @@ pub struct Ray {
     pub vertex_color: Option<[f64; 3]>,
     /// The texture that weights the diffuse color.
     pub texture: Option<Textured>,
-    /// The media with a priority on the near side and on the far side, by the numbers of their materials; `None` for the
-    /// surroundings.
+    /// The media with a priority on the near side and on the far side, by the numbers of their materials; `None` for
+    /// the surroundings.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub media: Option<[Option<u32>; 2]>,
     /// The part of the surface that is present, where the alpha of a texture says so.
@@ -123,12 +123,12 @@ pub struct Ray {
 /// A texture at a hit.
 #[derive(Clone, Debug, Serialize)]
 pub struct Textured {
-    /// Where the texture is looked up, u to the right and v down.
+    /// The coordinates of the texture lookup, u to the right and v down.
     pub coordinates: [f64; 2],
-    /// How often the image is halved for the lookup; a fraction lies between two of its levels.
+    /// Number of times that the image is halved for the lookup; a fraction lies between two of its levels.
     pub level: f64,
-    /// The nearest texel of the finer level, counted from the upper left one, or the upper left one of the four that are
-    /// mixed.
+    /// The nearest texel of the finer level, counted from the upper left one, or the upper left one of the four that
+    /// are mixed.
     pub texel: [u32; 2],
     /// Linear ratios.
     pub color: [f64; 3],
@@ -153,7 +153,7 @@ pub struct Weighted {
 /// A hit, in scene units.
 #[derive(Clone, Debug, Serialize)]
 pub struct Hit {
-    /// From the ray's origin, along it.
+    /// The distance from the ray's origin, along it.
     pub distance: f64,
     /// `origin + distance * direction` lies within this of the point.
     pub distance_error: f64,

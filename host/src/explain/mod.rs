@@ -29,11 +29,11 @@ use gridel_core::{
 pub enum Subject {
     /// A pixel of the picture of the settings, from its upper left corner.
     Pixel([u16; 2]),
-    /// A ray of one's own.
+    /// A ray of the caller's own.
     Ray(SceneRay),
 }
 
-/// Why there is no explanation.
+/// An error of an explanation.
 #[derive(Debug, thiserror::Error, miette::Diagnostic)]
 pub enum ExplainError {
     #[error(transparent)]
@@ -120,7 +120,7 @@ fn watch<N: Number>(scene: &Scene<'_>, settings: Settings, subject: Subject) -> 
 #[derive(Default)]
 struct Recorder {
     events: Vec<Event>,
-    /// Where the kernels count 0 on a ray of one's own, in units along its major axis.
+    /// The zero of the kernels' count on a ray of the caller's own, in units along its major axis.
     begin: f64,
     /// Recorded steps of the current query.
     steps: usize,

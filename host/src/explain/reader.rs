@@ -7,7 +7,7 @@ use crate::trace::Frame;
 use gridel_core::{Event, Format, RayKind, Scene};
 
 impl Explanation {
-    /// Puts events in order. `begin` is where the kernels count 0 on a ray of one's own: see [`Given::begin`].
+    /// Puts events in order. `begin` is where the kernels count 0 on a ray of the caller's own: see [`Given::begin`].
     pub(super) fn of(
         scene: &Scene<'_>,
         format: Format,

@@ -271,7 +271,7 @@ impl Shown<'_> {
         bounces(f, indent, ray)
     }
 
-    /// What the ray passes and loses on its way.
+    /// Writes what the ray passes and loses on its way.
     fn passage(&self, f: &mut Formatter<'_>, indent: &str, ray: &Ray) -> fmt::Result {
         if let Some([from, to]) = ray.media {
             let near = self.medium(from);
@@ -379,7 +379,7 @@ impl Shown<'_> {
     }
 }
 
-/// What the surface's maps and vertices say of the place that is hit.
+/// Writes what the surface's maps and vertices define at the hit.
 fn surface(f: &mut Formatter<'_>, indent: &str, ray: &Ray) -> fmt::Result {
     if let Some(normal) = ray.smooth {
         writeln!(

@@ -20,7 +20,7 @@ pub struct Walk {
     pub direction: [f64; 3],
     /// The interval of the ray that counts.
     pub interval: [f64; 2],
-    /// Where the kernels start: at `origin`, or where a ray from outside reaches the scene's box.
+    /// The start of the kernels: `origin`, or the point at which a ray from outside reaches the scene's box.
     pub start: [f64; 3],
     /// Distance of `start`: 0 unless the ray starts before the scene's box.
     pub moved: f64,
@@ -29,7 +29,7 @@ pub struct Walk {
     pub steps: Vec<Step>,
     /// Nodes, leaves and cells that were entered.
     pub opened: usize,
-    /// Those that were tested and left out.
+    /// Nodes, leaves and cells that were tested and not entered.
     pub culled: usize,
     /// Primitives that were tested.
     pub candidates: usize,
@@ -73,7 +73,7 @@ impl Given {
         }
     }
 
-    /// A ray along the kernels' own direction.
+    /// Returns a ray along the direction of the kernels.
     pub fn from_origin(origin: DVec3) -> Self {
         Self {
             origin,
@@ -100,17 +100,17 @@ struct InUnits {
     moved: f64,
     /// Scene units of a unit of t.
     scale: f64,
-    /// Where the kernels count 0: see [`Given::begin`].
+    /// The zero of the kernels' count: see [`Given::begin`].
     begin: f64,
-    /// How far the start is from the line of the ray as it was given, in scene units.
+    /// The distance of the start from the line of the ray as it was given, in scene units.
     aside: f64,
-    /// How much further it is for every scene unit of distance.
+    /// The increase of that distance per scene unit along the ray.
     turned: f64,
     /// The interval that counts.
     interval: [f64; 2],
     /// The nearest hit so far.
     limit: f64,
-    /// From where to where the ray is in the node that it went into last.
+    /// The interval of the ray in the node that it entered last.
     around: [f64; 2],
 }
 
@@ -149,12 +149,12 @@ pub struct Tested {
     pub place: String,
     /// Planes that were tested, in scene coordinates.
     pub planes: Vec<Plane>,
-    /// From where to where the ray is in it.
+    /// The interval of the ray in it.
     pub span: [f64; 2],
     /// The span in units, as the kernels compute it.
     #[serde(skip)]
     units: [f64; 2],
-    /// Why the ray does not go into it; `None` if it may.
+    /// The reason why the ray does not enter it; `None` if it may.
     pub culled: Option<Culled>,
 }
 
@@ -162,7 +162,7 @@ pub struct Tested {
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Plane {
     pub axis: char,
-    /// Which of the box's sides on the axis it is.
+    /// The side of the box on the axis.
     pub side: Side,
     pub at: f64,
     /// Infinite where the ray runs along the plane.
@@ -184,7 +184,7 @@ fn finite<S: serde::Serializer>(value: &f64, serializer: S) -> Result<S::Ok, S::
     value.is_finite().then_some(*value).serialize(serializer)
 }
 
-/// Why a ray does not go into a node.
+/// The reason why a ray does not enter a node.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 #[serde(tag = "reason", rename_all = "kebab-case")]
 pub enum Culled {
@@ -411,7 +411,7 @@ impl Walk {
         self.steps.push(step);
     }
 
-    /// The primitive that was the nearest when the walk ended.
+    /// Returns the primitive that was the nearest when the walk ended.
     pub fn met(&self) -> Option<&Candidate> {
         self.steps.iter().rev().find_map(|step| match step {
             Step::Candidate(candidate) if candidate.verdict == Verdict::Nearest => Some(candidate),

@@ -21,7 +21,7 @@ pub struct MemoryMap {
 #[derive(Clone, Debug, Serialize)]
 pub struct Part {
     pub kind: &'static str,
-    /// From the blob's first byte; `None` for padding, which lies between all others.
+    /// Offset from the blob's first byte; `None` for padding, which lies between all others.
     pub offset: Option<usize>,
     /// Number of records.
     pub count: usize,
@@ -35,7 +35,7 @@ pub struct Part {
 }
 
 impl MemoryMap {
-    /// The map of a blob that `scene` is the checked view of.
+    /// Returns the map of a blob that `scene` is the checked view of.
     ///
     /// ```
     /// # use gridel_host::compile::{Options, compile};
@@ -100,14 +100,14 @@ pub struct WorkingMemory {
     pub format: &'static str,
     /// Bits of a machine word: 32 as on boards, or what this machine has.
     pub word_bits: usize,
-    /// For rays of one's own: a [`Stack`](gridel_core::Stack) as deep as the blob needs.
+    /// Bytes for rays of the caller's own: a [`Stack`](gridel_core::Stack) as deep as the blob needs.
     pub stack: usize,
-    /// For pictures: a [`Workspace`](gridel_core::Workspace) for the blob's stack and the scene's ray depth, the stack
-    /// included.
+    /// Bytes for pictures: a [`Workspace`](gridel_core::Workspace) for the blob's stack and the scene's ray depth,
+    /// including the stack.
     pub workspace: usize,
 }
 
-/// The working memory of every format, on machines of 32 bits and on this one.
+/// Returns the working memory of every format, on machines of 32 bits and on this one.
 ///
 /// For 32 bits an `f64` is taken to be aligned to 8 bytes, as on Arm and RISC-V.
 ///
@@ -134,13 +134,13 @@ pub fn working_memory(scene: &Scene<'_>) -> Vec<WorkingMemory> {
     words.iter().flat_map(of).collect()
 }
 
-/// The working memory of one format on a board of 32 bits, for pictures of some ray depth.
+/// Returns the working memory of one format on a board of 32 bits, for pictures of some ray depth.
 pub fn board_memory(scene: &Scene<'_>, format: Format, depth: u8) -> WorkingMemory {
     WorkingMemory::new(scene, format, depth, 4)
 }
 
 impl WorkingMemory {
-    /// Where a machine word has `word` bytes.
+    /// Returns the memory for a machine word of `word` bytes.
     fn new(scene: &Scene<'_>, format: Format, depth: u8, word: usize) -> Self {
         let effects = scene.effects();
         let places = effects.work_depth(depth);
@@ -179,7 +179,7 @@ mod tests {
     use super::*;
     use gridel_core::{Effects, Stack, Workspace};
 
-    /// For the machine of the test the compiler knows the sizes.
+    /// The sizes equal the compiler's for the machine that runs the test.
     #[test]
     fn sizes_are_the_compilers() {
         let word = size_of::<usize>();

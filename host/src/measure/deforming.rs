@@ -25,7 +25,7 @@ impl Deforming {
     /// The structures that a deforming scene can hold.
     pub const STRUCTURES: [Structure; 2] = deform::STRUCTURES;
 
-    /// The meshes of a blob that were built with room to move, or with morph targets.
+    /// Returns the meshes of a blob that were built with room to move, or with morph targets.
     ///
     /// ```
     /// # let file = "[[object]]\nkind = 'mesh'\nvertices = [[0, 0, 0], [1, 0, 0], [0, 1, 0]]\nfaces = [[0, 1, 2]]";
@@ -56,7 +56,7 @@ impl Deforming {
             .collect()
     }
 
-    /// The mesh of a scene's own objects.
+    /// Returns the mesh of a scene's own objects.
     pub fn of_scene(scene: &Scene<'_>, blob: &[u8]) -> Option<Self> {
         Self::all(scene, blob)
             .into_iter()

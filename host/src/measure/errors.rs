@@ -91,7 +91,7 @@ impl Errors {
     }
 }
 
-/// The root of the mean square difference of display values of two pictures, and the largest difference.
+/// Returns the root of the mean square difference of display values of two pictures, and the largest difference.
 pub fn rmse_and_largest(reference: &[[u16; 3]], pixels: &[[u16; 3]]) -> [f64; 2] {
     let pairs = reference.iter().flatten().zip(pixels.iter().flatten());
     let (mut squares, mut largest) = (0.0, 0.0_f64);
@@ -104,7 +104,7 @@ pub fn rmse_and_largest(reference: &[[u16; 3]], pixels: &[[u16; 3]]) -> [f64; 2]
     [rmse, largest]
 }
 
-/// How display values differ, eight times enlarged, as sRGB pixels: black is the same.
+/// Returns the differences of display values, eight times enlarged, as sRGB pixels: black means equal.
 ///
 /// ```
 /// use gridel_host::measure::difference_picture;

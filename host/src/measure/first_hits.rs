@@ -55,7 +55,7 @@ impl FirstHit {
     }
 }
 
-/// The first hit of each pixel; `None` on a miss.
+/// Returns the first hit of each pixel; `None` on a miss.
 ///
 /// # Errors
 /// If the settings are out of their range, or the scene does not hold the structure.

@@ -1,4 +1,4 @@
-//! How different two pictures look when one flips to the other on a display: LDR-FLIP.
+//! LDR-FLIP: the visible difference of two pictures that alternate on a display.
 //!
 //! Andersson, Nilsson, Akenine-Möller, Oskarsson, Åström, Fairchild, "FLIP: A Difference Evaluator for Alternating
 //! Images", HPG 2020. Filters both pictures by what the eye can resolve, and compares them in a perceptual color space.
@@ -6,7 +6,7 @@
 
 use crate::srgb::linear_of_srgb;
 
-/// Pixels a degree of the field of view: a display of 3840 pixels, 0.7 m wide, seen from 0.7 m.
+/// Pixels per degree of the field of view: a display of 3840 pixels, 0.7 m wide, seen from 0.7 m.
 const PIXELS_PER_DEGREE: f64 = 67.020_64;
 
 /// An sRGB picture.
@@ -159,7 +159,7 @@ impl Planes {
     }
 }
 
-/// How much edges and points differ, 0 to 1.
+/// Returns the difference of edges and points, 0 to 1.
 fn features(reference: &Planes, test: &Planes) -> Vec<f64> {
     let deviation = 0.5 * 0.082 * PIXELS_PER_DEGREE;
     let radius = (3.0 * deviation).ceil() as i32;

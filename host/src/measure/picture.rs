@@ -38,7 +38,7 @@ impl Rendered {
         self.picture.counters.unwrap_or_default().rays()
     }
 
-    /// The [tests](gridel_core::Counters::tests) of all rays; 0 if they were not counted.
+    /// Returns the [tests](gridel_core::Counters::tests) of all rays; 0 if they were not counted.
     pub fn tests(&self) -> u64 {
         self.picture.counters.unwrap_or_default().tests()
     }

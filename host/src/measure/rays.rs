@@ -35,7 +35,7 @@ pub struct Questions<'q, N: Number> {
 type Group<'r, N> = (Question, &'r [Ray<N>]);
 
 impl Question {
-    /// The question by which answers are compared in a scene.
+    /// Returns the question by which answers are compared in a scene.
     pub fn of_scene(self, scene: &Scene<'_>) -> Self {
         match self {
             Self::Closest if !scene.instances().is_empty() => Self::ClosestPlaced,
@@ -59,7 +59,7 @@ pub struct Answer {
 const NO_INSTANCE: u32 = u32::MAX;
 
 impl Answer {
-    /// Nothing was met.
+    /// The answer for a ray that misses.
     const NOTHING: Self = Self {
         primitive: u32::MAX,
         instance: NO_INSTANCE,
@@ -107,7 +107,7 @@ impl<N: Number> Questions<'_, N> {
         ]
     }
 
-    /// All rays in one order.
+    /// Returns all rays in one order.
     pub fn all(&self) -> impl Iterator<Item = (Question, &Ray<N>)> {
         let groups = self.groups().into_iter();
         groups.flat_map(|(question, rays)| rays.iter().map(move |ray| (question, ray)))
@@ -178,11 +178,11 @@ pub struct Work {
     /// Cells entered a ray.
     pub cells: f64,
     /// Primitives tested a ray.
-    pub objects: f64,
+    pub primitives: f64,
     /// Instances entered a ray; `None` where the scene has none.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub instances: Option<f64>,
-    /// On one thread; `None` where nothing was timed.
+    /// Rays per second on one thread; `None` if nothing was timed.
     pub rays_per_second: Option<f64>,
 }
 
@@ -194,7 +194,7 @@ impl Work {
             planes: each(tests.planes),
             boxes: each(tests.boxes),
             cells: each(tests.cells),
-            objects: each(tests.objects),
+            primitives: each(tests.primitives),
             instances: (!scene.instances().is_empty()).then(|| each(tests.instances)),
             rays_per_second: seconds.map(|seconds| rays as f64 / seconds.max(1e-9)),
         }
@@ -212,10 +212,10 @@ pub struct Works {
     pub all: Work,
 }
 
-/// How much is measured.
+/// The amount of measurement.
 #[derive(Clone, Copy, Debug)]
 pub struct Amount {
-    /// How often everything is timed; 0 for counts alone.
+    /// Number of times that everything is timed; 0 for counts alone.
     pub repeats: usize,
     /// Primitives of the scene, with those of a part once per instance.
     pub primitives: usize,
@@ -307,7 +307,7 @@ pub fn measure<N: Number>(
     works.collect()
 }
 
-/// Every how many rays a structure traces, so that no row takes forever: only the list would.
+/// Returns the stride of the rays that a structure traces, so that no row takes forever: only the list would.
 pub fn stride(structure: Structure, rays: usize, primitives: usize, tests: u64) -> usize {
     if structure == Structure::List {
         let all = rays as u64 * primitives as u64;

@@ -1,6 +1,6 @@
 //! The median and the spread of repeats.
 
-/// The median; `None` without repeats.
+/// Returns the median; `None` without repeats.
 ///
 /// ```
 /// use gridel_host::measure::time::median;
@@ -38,7 +38,7 @@ pub fn is_below(seconds: &[f64], other: &[f64]) -> bool {
     both.is_some_and(|([_, largest], [least, _])| largest < least)
 }
 
-/// The largest less the least, as a part of the median.
+/// Returns the largest less the least, as a part of the median.
 pub fn spread(seconds: &[f64]) -> Option<f64> {
     let [least, largest] = interval(seconds)?;
     Some((largest - least) / median(seconds)?.max(f64::MIN_POSITIVE))

@@ -39,7 +39,7 @@ impl NumberedPicture {
     }
 }
 
-/// Why pictures make no animation; they are numbered in the order in which they were given.
+/// The reason why pictures do not make an animation. They are numbered in the order in which they were given.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum FramesError {
     /// Two are of different sizes.
@@ -54,7 +54,7 @@ pub enum FramesError {
     Missing(u32),
 }
 
-/// The order of an animation's pictures, as numbers of those given.
+/// Returns the order of an animation's pictures, as numbers of those given.
 ///
 /// # Errors
 /// If they are not all pictures from one to another of one animation.

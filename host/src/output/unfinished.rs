@@ -1,5 +1,5 @@
-//! What an interrupt must not leave behind: files that are being written, temporary folders, programs that run for this
-//! one, and a terminal that shows a scene.
+//! Cleanup after an interrupt: files that are being written, temporary folders, child processes, and a terminal that
+//! shows a scene.
 
 use std::fs;
 use std::io;
@@ -87,7 +87,7 @@ impl TemporaryFolder {
         Ok(Self(Some(folder)))
     }
 
-    /// Its path.
+    /// Returns its path.
     pub fn path(&self) -> &Path {
         self.0.as_ref().map_or(Path::new(""), TempDir::path)
     }
@@ -119,10 +119,10 @@ impl Running {
         Ok(Self(id))
     }
 
-    /// How it ended, if it has.
+    /// Returns its exit status, if it has ended.
     ///
     /// # Errors
-    /// If the system cannot tell.
+    /// If the system reports an error.
     pub fn ended(&self) -> io::Result<Option<ExitStatus>> {
         let mut unfinished = unfinished();
         let mut running = unfinished.running.iter_mut();

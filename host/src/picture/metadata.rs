@@ -1,4 +1,4 @@
-//! How a picture was made, as its file states it, so that parts and frames are only joined with their like.
+//! Metadata of pictures in their files, so that only parts and frames that were made alike are joined.
 
 use crate::render::{Job, Picture};
 use gridel_core::{Format, Scene};
@@ -17,22 +17,23 @@ pub struct RenderMetadata {
     pub samples: u16,
     pub depth: u8,
     pub dither: bool,
-    /// For a scene that moves.
+    /// The moment, for a scene that moves.
     pub moment: Option<Moment>,
-    /// For a picture in which motion is blurred.
+    /// The exposure, for a picture with motion blur.
     pub exposure: Option<Exposure>,
     /// True for a part of a picture that has all of its rows: its file states them as those of any other part.
     pub is_part: bool,
 }
 
-/// How long a shutter is open, in ticks of the blob's tracks, and at how many moments of that time samples are taken.
+/// The time that a shutter is open, in ticks of the blob's tracks, and the number of moments at which samples are
+/// taken.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Exposure {
     pub open: u32,
     pub moments: u16,
 }
 
-/// When a picture of a scene that moves is taken.
+/// The time at which a picture of a moving scene is taken.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Moment {
     /// A time in ticks of the blob's tracks.
@@ -107,7 +108,7 @@ fn write_pairs(f: &mut fmt::Formatter<'_>, first: &str, pairs: &[(String, String
 }
 
 impl RenderMetadata {
-    /// How a job's picture of a scene is made.
+    /// Returns the metadata of a job's picture of a scene.
     pub fn of(scene: &Scene<'_>, job: &Job) -> Self {
         Self {
             blob: scene.header().checksum,
@@ -201,7 +202,7 @@ pub struct Rows {
     pub part: Range<u16>,
     /// Height of the whole picture.
     pub height: u16,
-    /// How the picture was made: names and values, as [`RenderMetadata`] shows them.
+    /// Metadata of the picture: names and values, as [`RenderMetadata`] shows them.
     pub made: Vec<(String, String)>,
 }
 

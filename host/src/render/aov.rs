@@ -17,9 +17,11 @@ pub enum Aov {
     Normal,
     /// Diffuse reflectance, linear, of the cell where there is a checkerboard; 0 where nothing is hit.
     Albedo,
-    /// The object's number in scene-file order, `u32::MAX` where nothing is hit. Objects of parts follow the scene's own.
+    /// The object's number in scene-file order, `u32::MAX` where nothing is hit. Objects of parts follow the scene's
+    /// own.
     Object,
-    /// The primitive's number in scene-file order, `u32::MAX` where nothing is hit. Those of parts follow the scene's own.
+    /// The primitive's number in scene-file order, `u32::MAX` where nothing is hit. Those of parts follow the scene's
+    /// own.
     Primitive,
     /// Texture coordinates, u to the right and v down; infinite where nothing is hit and on what has none.
     Uv,
@@ -38,7 +40,7 @@ impl Aov {
         Self::Instance,
     ];
 
-    /// The name on the command line and in files.
+    /// Returns the name on the command line and in files.
     pub fn name(self) -> &'static str {
         match self {
             Self::Depth => "depth",

@@ -10,7 +10,7 @@ use rayon::prelude::*;
 /// The first hit of the ray through the middle of a pixel.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct PixelHit {
-    /// From the eye, in scene units.
+    /// The distance from the eye, in scene units.
     pub distance: f64,
     /// The shading normal, of length 1, on the side of the eye.
     pub normal: [f32; 3],
@@ -52,7 +52,7 @@ fn rows<N: Number>(scene: &Scene<'_>, job: &Job) -> Result<Vec<Option<PixelHit>>
             distance: N::far_to_f64(hit.t) * norm * unit,
             normal: hit.shading_normal(scene).map(|x| x.ratio_to_f64() as f32),
             uv: hit
-                .mapped_coordinates(scene)
+                .texture_coordinates(scene)
                 .map(|pair| pair.map(|it| it as f32)),
             object: hit.object,
             primitive: hit.primitive,

@@ -11,7 +11,7 @@ use crate::scene::{
 use glam::{DQuat, DVec3};
 use gridel_core::{Ray, Stack};
 
-/// From the right, at right angles to the view.
+/// The light comes from the right, at right angles to the view.
 const TO_LIGHT: DVec3 = DVec3::X;
 
 /// A sphere of triangles with computed normals, seen along -z, under one light.
@@ -71,7 +71,7 @@ fn normals<N: Number>(scene: &Scene<'_>, x: u16, y: u16) -> Option<[DVec3; 2]> {
     Some([vector(hit.normal), vector(hit.shading_normal(scene))])
 }
 
-/// How far the smooth and the flat normals of a sphere's hits are from the sphere's own at most, in radians.
+/// Returns the largest angles between the smooth or flat normals of a sphere's hits and the sphere's own, in radians.
 fn errors<N: Number>(levels: u32) -> [f64; 2] {
     let blob = blob(&ball(levels));
     let scene = blob.scene().expect("a scene");

@@ -7,7 +7,7 @@ use plotters::element::DashedPathElement;
 use plotters::prelude::*;
 use std::fmt::Display;
 
-/// Why a chart cannot be drawn: the drawing library's own words.
+/// An error of drawing a chart, in the drawing library's own words.
 #[derive(Debug, thiserror::Error)]
 #[error("a chart cannot be drawn: {0}")]
 pub struct ChartError(String);

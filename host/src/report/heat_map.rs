@@ -15,7 +15,7 @@ pub struct HeatMap<'p> {
 }
 
 impl<'p> HeatMap<'p> {
-    /// The map of a picture whose work was counted.
+    /// Returns the map of a picture whose work was counted.
     pub fn of(picture: &'p Picture) -> Self {
         let maximum = picture.work.iter().copied().max().unwrap_or(0);
         Self { picture, maximum }
@@ -41,7 +41,7 @@ impl<'p> HeatMap<'p> {
     }
 }
 
-/// The color of a pixel in a map.
+/// Returns the color of a pixel in a map.
 pub fn work_color(work: u32, maximum: u32) -> Rgb888 {
     let share = f64::from(work) / f64::from(maximum.max(1));
     Rgb888::encode(color(share.sqrt()), None)

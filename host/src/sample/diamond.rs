@@ -11,7 +11,7 @@ const LATTICE_CONSTANT: f64 = 3.567;
 pub const DIAMOND_2_800: f64 = 15.6;
 pub const DIAMOND_27_000: f64 = 33.2;
 
-/// A ball cut out of a diamond crystal around one of its atoms, space-filling; `radius` is in
+/// Returns a ball cut out of a diamond crystal around one of its atoms, space-filling; `radius` is in
 /// angstroms.
 pub fn diamond(radius: f64) -> Scene {
     // All atoms lie at whole quarters of the cell's edge. Where these are even, they form a

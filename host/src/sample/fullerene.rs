@@ -9,7 +9,7 @@ use glam::DVec3;
 const HEXAGON_HEXAGON: f64 = 1.40;
 const HEXAGON_PENTAGON: f64 = 1.46;
 
-/// The football of 60 atoms and 90 bonds, as balls and sticks.
+/// Returns the football of 60 atoms and 90 bonds, as balls and sticks.
 ///
 /// It is a truncated icosahedron. On each of its edges two atoms remain, and the atoms around a
 /// corner form a pentagon. The pentagon's edges are as long as the cut-off pieces, since the faces

@@ -7,7 +7,7 @@ use std::fmt::Write;
 /// The highest serial number that its five columns hold.
 const MOST_ATOMS: usize = 99_999;
 
-/// Why a scene does not fit into a PDB file.
+/// The reason why a scene does not fit into a PDB file.
 #[derive(Debug, PartialEq, thiserror::Error)]
 pub enum PdbError {
     #[error("the scene has no spheres, so there are no atoms to write")]

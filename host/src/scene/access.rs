@@ -1,4 +1,4 @@
-//! Which files a scene file may name: those in its own folder and below, unless more is allowed.
+//! Access to files that a scene file names: only those in its own folder and below, unless more is allowed.
 //!
 //! The folder is that of the file from which everything starts. So a scene may keep imports in
 //! folders, and these may name each other. All links are followed before a file's place is checked,
@@ -20,13 +20,13 @@ pub(super) struct Access {
     folder: Option<PathBuf>,
     /// The files in memory, which are all that there is; `None` for those of a disk.
     files: Option<Arc<Files>>,
-    /// Those of the images that were read so far.
+    /// The texels of images that were read so far.
     pub(super) texels: Texels,
     /// The files that were read so far, of all clones.
     read: Arc<Mutex<Vec<PathBuf>>>,
 }
 
-/// Why a file that a scene names cannot be used: `E` says it in words.
+/// The reason why a file that a scene names cannot be used. `E` is the error text.
 #[derive(Debug)]
 pub(super) enum FileError<E> {
     /// It cannot be read. Pictures are often left behind, so importers can go on without them.
@@ -45,7 +45,7 @@ impl<E> FileError<E> {
 }
 
 impl Access {
-    /// For the scene that begins with this file.
+    /// Returns the access for the scene that begins with this file.
     pub(super) fn of(scene: &Path, allow_outside: bool) -> Self {
         let folder = folder(scene);
         // A folder that cannot be resolved cannot be read from either, and reading says why.
@@ -58,7 +58,7 @@ impl Access {
         }
     }
 
-    /// For a scene among files in memory.
+    /// Returns the access for a scene among files in memory.
     pub(super) fn among(files: &Files) -> Self {
         Self {
             folder: None,

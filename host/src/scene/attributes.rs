@@ -21,7 +21,7 @@ pub struct Attributes {
     /// For each triangle which of the coordinates its corners have; [`Attributes::NONE`] for none. As many as the mesh
     /// has, or none.
     pub triangles: Vec<[u32; 3]>,
-    /// How morph targets displace vertices, at most once for each target.
+    /// Displacements of vertices by morph targets, at most one for each target.
     pub displacements: Vec<Displacements>,
 }
 

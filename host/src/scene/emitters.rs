@@ -203,8 +203,8 @@ impl Scene {
         Ok(())
     }
 
-    /// Names of objects that glow and do not light others, though they should: those of parts, and those with shapes that
-    /// no light has, with too many faces, or with alpha.
+    /// Names of objects that glow and do not light others, though they should: those of parts, and those with shapes
+    /// that no light has, with too many faces, or with alpha.
     pub fn emitters_without_light(&self) -> impl Iterator<Item = &str> {
         let lights = |object: &&Object| self.materials[object.material].lights_others();
         let own = self.objects.iter();
@@ -219,7 +219,7 @@ impl Scene {
 }
 
 impl Material {
-    /// Whether lights are to stand for its objects. None is cut out or blends as an object does.
+    /// Returns true if lights are to replace its objects. Lights are neither cut out nor blended as objects are.
     fn lights_others(&self) -> bool {
         self.lights && self.emission != BLACK
     }

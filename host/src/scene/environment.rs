@@ -38,8 +38,8 @@ pub struct Environment {
 /// The light from all directions.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Sky {
-    /// A picture of all directions. Its middle lies where a camera looks that begins an orbit: at -z, or at y where z points
-    /// up. Its right lies at x.
+    /// A picture of all directions. Its middle lies where a camera looks that begins an orbit: at -z, or at y where z
+    /// points up. Its right lies at x.
     Picture(Arc<Panorama>),
     /// Radiance that depends on the height alone. Above the horizon, the horizon's radiance blends into the zenith's by
     /// h (2 - h), with h the sine of the elevation.
@@ -62,7 +62,7 @@ pub struct Sun {
 }
 
 impl Environment {
-    /// A sky as it is, of 64 rows, without a sun.
+    /// Returns a sky as it is, of 64 rows, without a sun.
     pub const fn of(sky: Sky) -> Self {
         Self {
             sky,
@@ -75,7 +75,7 @@ impl Environment {
 }
 
 impl Sun {
-    /// The length from the middle to the edge, on a sphere with radius 1.
+    /// Returns the length from the middle to the edge, on a sphere with radius 1.
     pub fn radius(&self) -> f64 {
         2.0 * libm::sin(self.angle.to_radians() / 4.0)
     }
@@ -92,8 +92,8 @@ impl Sun {
         self.radius() * self.radius()
     }
 
-    /// Returns the factor from a radiance to the [color](Self::color): the light that falls on a surface which faces the
-    /// disc, over π. At the disc's edge it falls aslant.
+    /// Returns the factor from a radiance to the [color](Self::color): the light that falls on a surface which faces
+    /// the disc, over π. At the disc's edge it falls aslant.
     pub fn color_over_radiance(&self) -> f64 {
         let part = self.solid_angle_over_pi();
         part * (1.0 - part / 4.0)
@@ -103,7 +103,7 @@ impl Sun {
 /// A picture of all directions: columns are longitudes, and rows go from the zenith down.
 #[derive(Clone, PartialEq)]
 pub struct Panorama {
-    /// Where it comes from, for messages.
+    /// Its source, for messages.
     pub name: String,
     width: usize,
     height: usize,
@@ -123,8 +123,8 @@ impl fmt::Debug for Panorama {
 }
 
 impl Panorama {
-    /// Makes a picture from pixels row by row, the upper row first: linear radiance. `None` unless there are as many pixels
-    /// as that, and at least one, and all channels are finite numbers at or above 0.
+    /// Makes a picture from pixels row by row, the upper row first: linear radiance. `None` unless there are as many
+    /// pixels as that, and at least one, and all channels are finite numbers at or above 0.
     pub fn new(name: &str, width: usize, height: usize, pixels: Vec<[f32; 3]>) -> Option<Self> {
         let count = width.checked_mul(height)?;
         let mut channels = pixels.as_flattened().iter();
@@ -147,7 +147,7 @@ impl Panorama {
         self.pixels.chunks_exact(self.width)
     }
 
-    /// Reads a Radiance, OpenEXR, PNG or JPEG file, told apart by their content.
+    /// Reads a Radiance, OpenEXR, PNG or JPEG file. Its content decides which.
     pub(super) fn decode(name: &str, bytes: &[u8], texels: &Texels) -> Result<Self, Fault> {
         let check = |width, height| texels.add(width, height);
         let (width, height, pixels) = if bytes.starts_with(b"#?") {

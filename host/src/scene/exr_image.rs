@@ -2,7 +2,7 @@
 
 use super::image::{Fault, fault};
 
-/// How the files begin.
+/// The first bytes of the files.
 pub(super) const MAGIC: [u8; 4] = [0x76, 0x2f, 0x31, 0x01];
 
 /// Width, height and pixels.

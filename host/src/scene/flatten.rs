@@ -45,7 +45,7 @@ impl Scene {
         Ok(Cow::Owned(flat))
     }
 
-    /// As [`Self::flattened`], without a copy of the unchanged parts.
+    /// Like [`Self::flattened`], without a copy of the unchanged parts.
     pub(super) fn into_flattened(mut self) -> Result<Self, SceneError> {
         if !self.instances.is_empty() {
             self.check_flattened()?;

@@ -76,7 +76,7 @@ fn inflate_at_most(path: &Path, bytes: Vec<u8>, most: u64) -> Result<Vec<u8>, Sc
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scene::test_scenes::gzipped;
+    use crate::scene::tests::samples::gzipped;
 
     #[test]
     fn only_gzipped_bytes_change() {

@@ -16,7 +16,7 @@ const MOST_SIDE: usize = 1 << 15;
 /// An image of 8 bits per channel, in sRGB.
 #[derive(Clone, PartialEq, Eq)]
 pub struct Image {
-    /// Where it comes from, for messages.
+    /// Its source, for messages.
     pub name: String,
     width: u32,
     height: u32,
@@ -35,7 +35,7 @@ impl fmt::Debug for Image {
     }
 }
 
-/// Why an image cannot be read: the cause, and a remedy.
+/// The reason why an image cannot be read: the cause, and a remedy.
 pub(super) type Fault = [String; 2];
 
 impl Image {
@@ -58,7 +58,7 @@ impl Image {
         })
     }
 
-    /// One white pixel.
+    /// Returns an image of one white pixel.
     pub(crate) fn blank() -> Self {
         Self {
             name: String::new(),
@@ -115,7 +115,7 @@ impl Image {
         self.pixels.iter().all(|pixel| pixel[3] == 255)
     }
 
-    /// Reads a PNG or JPEG file, told apart by their content, for a scene whose images are counted.
+    /// Reads a PNG or JPEG file, by its content, for a scene whose images are counted.
     pub(super) fn decode(name: &str, bytes: &[u8], texels: &Texels) -> Result<Self, Fault> {
         let (width, height, pixels) = if bytes.starts_with(b"\x89PNG\r\n\x1a\n") {
             png(bytes, texels)?

@@ -67,7 +67,7 @@ impl Spot {
 /// The part of themselves by which lengths may differ that count as equal: more than a product of rotations rounds.
 const EVEN: f64 = 1e-6;
 
-/// By how much a transform lengthens, on the mean of all directions.
+/// Returns the geometric mean of a transform's scales.
 pub(super) fn scale_of(by: &DAffine3) -> f64 {
     by.matrix3.determinant().abs().cbrt()
 }
@@ -117,8 +117,8 @@ impl LightForm {
         }
     }
 
-    /// The form, moved by a transform that keeps it round. Ranges grow with the cube root of the volume. Surfaces keep the
-    /// side to which they shine, in mirror images too.
+    /// Returns the form, moved by a transform that keeps it round. Ranges grow with the cube root of the volume.
+    /// Surfaces keep the side to which they shine, in mirror images too.
     pub fn moved(&self, by: &DAffine3) -> Self {
         let scale = scale_of(by);
         let turned = |vector: DVec3| by.transform_vector3(vector);

@@ -7,10 +7,6 @@
 
 mod access;
 mod attributes;
-#[cfg(test)]
-mod bad;
-#[cfg(test)]
-mod damaged;
 mod emitters;
 mod environment;
 mod error;
@@ -23,8 +19,6 @@ mod image;
 mod importer;
 mod joint;
 mod light_form;
-#[cfg(test)]
-mod long_words;
 mod model;
 pub(crate) mod molecule;
 mod morph;
@@ -40,9 +34,7 @@ mod scale_range;
 mod size;
 mod source_span;
 #[cfg(test)]
-pub(crate) mod test_chains;
-#[cfg(test)]
-mod test_scenes;
+pub(crate) mod tests;
 mod text;
 mod texture;
 mod track;
@@ -96,7 +88,7 @@ importer::formats! {
     mod xyz;
 }
 
-/// The extensions of all scene formats in words.
+/// Returns the extensions of all scene formats in words.
 ///
 /// ```
 /// assert!(gridel_host::scene::extensions().contains(".toml"));

@@ -19,8 +19,7 @@ pub type Color = [f64; 3];
 /// Everything a scene file says.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Scene {
-    /// Where the picture is taken from; without one [the compiler frames](fn@crate::compile::framing) the
-    /// scene's bounds.
+    /// The camera of the picture; without one [the compiler frames](fn@crate::compile::framing) the scene's bounds.
     pub camera: Option<Camera>,
     /// The lens of the camera, in place of a pinhole.
     pub lens: Option<Lens>,
@@ -58,11 +57,12 @@ pub struct Scene {
     pub morph_targets: Vec<MorphTarget>,
     /// A box that the lattice also covers, for instances that programs place.
     pub room: Option<[DVec3; 2]>,
-    /// How camera, lights, materials, joints and weights of morph targets change with time, at most one track for each property.
+    /// Changes of camera, lights, materials, joints and weights of morph targets over time, at most one track for each
+    /// property.
     pub tracks: Vec<Track>,
     /// Defaults for rendering that the scene file states.
     pub render: RenderSettings,
-    /// Where files state lights and settings.
+    /// The places at which files state lights and settings.
     pub places: Places,
     /// True if the format has no names. Then all names are made of kinds and numbers, and blobs leave them out.
     pub unnamed: bool,
@@ -101,7 +101,7 @@ pub struct Camera {
 }
 
 impl Camera {
-    /// The direction of view, of any length.
+    /// Returns the direction of view, of any length.
     pub fn direction(&self) -> DVec3 {
         let direction = self.target - self.eye;
         if direction.is_finite() {
@@ -142,15 +142,15 @@ pub struct Material {
     pub shininess: u16,
     /// Weight of the mirrored ray; black for none.
     pub mirror: Color,
-    /// How rough a mirror or glass is: 0 for a smooth one, or [`LEAST_ROUGHNESS`](Self::LEAST_ROUGHNESS) to 1. Its
+    /// Roughness of a mirror or glass: 0 for a smooth one, or [`LEAST_ROUGHNESS`](Self::LEAST_ROUGHNESS) to 1. Its
     /// square is the α of GGX.
     pub roughness: f64,
     /// Weight of the light through glass (Fresnel-split reflection and refraction); black for opaque.
     pub transmit: Color,
     /// Index of refraction relative to the surroundings, 1 to 4; used when `transmit` is not black.
     pub ior: f64,
-    /// Which glass fills a place that several take: the one with the highest priority, 1 to 100. Glass without one is
-    /// independent of others.
+    /// Priority of glass, 1 to 100: where several overlap, the one with the highest priority fills the place. Glass
+    /// without one is independent of others.
     pub priority: Option<u8>,
     /// Absorption inside glass: the coefficient of Beer's law per scene unit of path length.
     pub absorption: Color,
@@ -163,7 +163,7 @@ pub struct Material {
     pub is_sampled: bool,
     /// The image that weights the diffuse color of meshes with texture coordinates.
     pub texture: Option<Texture>,
-    /// How the alpha of the texture is used; glass ignores it.
+    /// Use of the texture's alpha; glass ignores it.
     pub alpha: Option<Alpha>,
     /// The normals that meshes with texture coordinates are shaded with. It lies as the texture does, if there is one.
     pub normal_map: Option<NormalMap>,
@@ -171,15 +171,15 @@ pub struct Material {
     pub place: SourceSpan,
 }
 
-/// How the brightness of pixels is mapped to the range of a display.
+/// The mapping of the brightness of pixels to the range of a display.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum ToneMapping {
     /// No mapping: values brighter than white are white.
     #[default]
     None,
-    /// By x / (1 + x).
+    /// Maps by x / (1 + x).
     Reinhard,
-    /// By a curve like that of ACES.
+    /// Maps by a curve like that of ACES.
     Aces,
 }
 
@@ -187,7 +187,7 @@ impl ToneMapping {
     /// All of them.
     pub const ALL: [Self; 3] = [Self::None, Self::Reinhard, Self::Aces];
 
-    /// Its name in scene files.
+    /// Returns its name in scene files.
     pub const fn name(self) -> &'static str {
         match self {
             Self::None => "none",
@@ -197,12 +197,12 @@ impl ToneMapping {
     }
 }
 
-/// How the alpha of a texture is used.
+/// The use of a texture's alpha.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Alpha {
-    /// It is how much of the surface is there; times a factor, 0 to 1.
+    /// Alpha is the part of the surface that is there; times a factor, 0 to 1.
     Blend(f64),
-    /// Less than this, above 0, is not there, and the rest is opaque.
+    /// Alpha below this value, above 0, is transparent, and the rest is opaque.
     CutOut(f64),
 }
 
@@ -273,7 +273,7 @@ pub struct Instance {
     pub name: String,
     /// Index into [`Scene::parts`].
     pub part: usize,
-    /// Where it is at rest.
+    /// Its placement at rest.
     pub placement: Placement,
     /// Index into [`Scene::joints`]; `None` for one that stands still.
     pub joint: Option<usize>,
@@ -319,10 +319,10 @@ pub struct RenderSettings {
     pub height: u32,
     /// Samples a pixel: 1 to 4,096.
     pub samples: u16,
-    /// How many times a ray may be reflected or refracted: 0 to 32.
+    /// Maximum number of reflections and refractions of a ray: 0 to 32.
     pub depth: u8,
-    /// How many times light may be reflected diffusely on its way from a light to the eye, not counting the last time:
-    /// 0 to 32. 0 for surfaces that do not light each other.
+    /// Maximum number of diffuse reflections of light on its way from a light to the eye, not counting the last one: 0
+    /// to 32. 0 for surfaces that do not light each other.
     pub bounces: u8,
     /// A secondary ray that can change no channel by more than this (1.0 being display white) is
     /// not traced.
@@ -335,7 +335,7 @@ pub struct RenderSettings {
 }
 
 impl RenderSettings {
-    /// How many times as wide as high a picture can be.
+    /// Greatest ratio of a picture's width to its height.
     pub const MAX_ASPECT: u32 = 64;
 }
 

@@ -24,17 +24,17 @@ pub struct Normals {
     /// For each triangle, which of the vectors its corners have; [`Normals::FLAT`] for one that is flat. As many as the
     /// mesh has, or none.
     pub triangles: Vec<[u32; 3]>,
-    /// How morph targets change the vectors, at most once for each target.
+    /// Changes of the vectors by morph targets, at most one for each target.
     pub changes: Vec<NormalChanges>,
 }
 
-/// Which normals meshes are shaded with.
+/// The normals with which meshes are shaded.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub enum NormalsChoice {
-    /// Those of the file, where it has some.
+    /// The normals of the file, if it has some.
     #[default]
     File,
-    /// Those of the faces.
+    /// The normals of the faces.
     Flat,
     /// Computed ones, smooth where faces meet at less than this angle in degrees.
     Smooth(f64),
@@ -52,8 +52,8 @@ impl Normals {
         self.triangles.is_empty()
     }
 
-    /// The normals of a file: of any length, turned to the front of their triangles. A triangle is flat where a normal
-    /// is zero or not finite, or all are those of its face.
+    /// Returns the normals of a file: of any length, turned to the front of their triangles. A triangle is flat where a
+    /// normal is zero or not finite, or all are those of its face.
     pub fn given(
         vectors: Vec<DVec3>,
         corners: Vec<[u32; 3]>,
@@ -62,7 +62,7 @@ impl Normals {
         Self::kept(vectors, corners, mesh, false)
     }
 
-    /// As [`given`](Self::given); a mesh that `moves` keeps normals that are those of the face at rest.
+    /// Like [`given`](Self::given); a mesh that `moves` keeps normals that are those of the face at rest.
     pub(super) fn kept(
         vectors: Vec<DVec3>,
         mut corners: Vec<[u32; 3]>,
@@ -99,7 +99,7 @@ impl Normals {
         Self::computed_for((vertices, triangles), degrees, false)
     }
 
-    /// As [`computed`](Self::computed), for a mesh that may move.
+    /// Like [`computed`](Self::computed), for a mesh that may move.
     pub(super) fn computed_for(
         (vertices, triangles): (&[DVec3], &[[u32; 3]]),
         degrees: f64,

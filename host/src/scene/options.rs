@@ -9,9 +9,9 @@ use std::path::PathBuf;
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct MoleculeOptions {
     pub style: MoleculeStyle,
-    /// Which model of the file, counted from 1.
+    /// The model of the file, counted from 1.
     pub model: usize,
-    /// Which alternate location; without one the first that each residue has.
+    /// The alternate location; without one the first that each residue has.
     pub altloc: Option<char>,
 }
 
@@ -45,7 +45,7 @@ pub struct Imported {
     pub choices: bool,
     /// True if a file that can hold assemblies was read, to which [`ImportOptions::assembly`] applies.
     pub assemblies: bool,
-    /// Where instances that move were copied, if they were.
+    /// The placements at which moving instances were copied, if they were.
     pub posed: Option<Posed>,
     /// Number of instances that were copied, as [`ImportOptions::instances`] requires.
     pub copied: usize,
@@ -69,18 +69,18 @@ impl Imported {
     }
 }
 
-/// Where [copies](Instances::Flatten) of instances that move stand.
+/// The placements of [copies](Instances::Flatten) of moving instances.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Posed {
-    /// Where the instances are at rest.
+    /// The placements at rest.
     AtRest,
-    /// Where they are at [a time](ImportOptions::at).
+    /// The placements at [a time](ImportOptions::at).
     AtTime,
-    /// Where they are at any time: no instance hangs on the joints that tracks move.
+    /// The placements at any time: no instance hangs on the joints that tracks move.
     Always,
 }
 
-/// Which of a glTF file's cameras and animations is read.
+/// The choice among a glTF file's cameras and animations.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Choice {
     /// The name of a camera or of its node; without one the first that has a perspective.
@@ -100,21 +100,21 @@ pub enum Instances {
     Flatten,
 }
 
-/// How a scene file is read.
+/// Options for reading a scene file.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct ImportOptions {
     /// Choices that a molecule file leaves open.
     pub molecule: MoleculeOptions,
-    /// The assembly of a PDB or mmCIF file, by its number or name. Default: the asymmetric unit, which is the atoms as
-    /// the file lists them.
+    /// The assembly of a PDB or mmCIF file, by its number or name. Default: the atoms that the file
+    /// lists.
     pub assembly: Option<String>,
-    /// Which camera and animation.
+    /// The camera and the animation.
     pub choice: Choice,
     /// The treatment of instances.
     pub instances: Instances,
     /// The time in seconds at which instances are copied where they move; without one they are copied at rest.
     pub at: Option<f64>,
-    /// Which normals meshes are shaded with.
+    /// The normals with which meshes are shaded.
     pub normals: NormalsChoice,
     /// True if the file may name files outside of its folder: imports, materials, buffers. A scene from elsewhere could
     /// then read any file of the user.

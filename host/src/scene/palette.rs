@@ -6,7 +6,7 @@ use std::collections::HashMap;
 /// A color and its alpha, or another four numbers.
 type Rgba = [u8; 4];
 
-/// How far colors look apart, squared.
+/// Returns the squared perceived distance of two colors.
 pub(crate) fn distance(a: &Rgba, b: &Rgba) -> u32 {
     let apart = |k: usize| u32::from(a[k].abs_diff(b[k])).pow(2);
     // Green looks brightest, and blue darkest.

@@ -1,4 +1,4 @@
-//! Where instances place parts.
+//! Placements of parts by instances.
 
 use glam::{DAffine3, DMat3, DQuat, DVec3};
 
@@ -32,10 +32,10 @@ impl Placement {
         scale: 1.0,
     };
 
-    /// How far the entries of a matrix can be from those of a rotation, relative to the scale.
+    /// Largest difference of a matrix's entries from those of a rotation, relative to the scale.
     const TOLERANCE: f64 = 1e-6;
 
-    /// Returns where a point of the part lies in the scene.
+    /// Maps a point of the part to the scene.
     pub fn point(&self, point: DVec3) -> DVec3 {
         self.matrix() * point + self.translation
     }
@@ -45,7 +45,7 @@ impl Placement {
         self.turn() * direction
     }
 
-    /// The rotation times the scale.
+    /// Returns the rotation times the scale.
     pub fn matrix(&self) -> DMat3 {
         self.turn() * self.scale
     }

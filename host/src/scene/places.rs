@@ -2,7 +2,8 @@
 
 use super::source_span::SourceSpan;
 
-/// Where files state the lights and settings of a scene, for messages. A place that is not known is the default one.
+/// The places at which files state the lights and settings of a scene, for messages. An unknown place is the default
+/// one.
 /// Objects and materials have places of their own.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Places {

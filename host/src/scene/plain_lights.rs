@@ -19,7 +19,7 @@ fn brightness(shape: &LightShape) -> f64 {
     }
 }
 
-/// From the position of an area to its middle.
+/// Returns the vector from the position of an area to its middle.
 fn to_middle(shape: &LightShape) -> DVec3 {
     match *shape {
         LightShape::Rectangle { edges } => 0.5 * (edges[0] + edges[1]),

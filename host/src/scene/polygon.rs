@@ -11,8 +11,8 @@ use cells::Cells;
 use glam::DVec3;
 use robust::{Coord, orient2d};
 
-/// Concave polygons with more vertices are rejected, because clipping ears can take quadratic time. What is known of a
-/// corner is kept, so that outlines of this size take some milliseconds.
+/// Concave polygons with more vertices are rejected, because clipping ears can take quadratic time. Properties of
+/// corners are cached, so that outlines of this size take some milliseconds.
 pub(super) const MAX_CONCAVE: usize = 4_096;
 
 /// The triangles of a polygon, as indices into its vertices, in its own winding.
@@ -180,15 +180,15 @@ struct Clipper<'a> {
     left: usize,
     /// The vertices that are left.
     cells: Cells,
-    /// What is known of each corner while its neighbors stay.
+    /// Cached properties of each corner, valid while its neighbors stay.
     corners: Vec<Corner>,
     triangles: Vec<[u32; 3]>,
-    /// How often a corner was compared with a vertex.
+    /// Number of comparisons of a corner with a vertex.
     #[cfg(test)]
     tested: std::cell::Cell<usize>,
 }
 
-/// What is known of a corner.
+/// Cached properties of a corner.
 #[derive(Clone, Copy, Default)]
 struct Corner {
     /// Twice its signed area.

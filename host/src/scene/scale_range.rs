@@ -1,9 +1,9 @@
 //! Ranges of the scales of joints, and of joints that hang on each other.
 //!
-//! A program composes motions joint by joint, from the one that hangs on no other on, and moves each composed scale into
-//! its range. Where a scale is moved, all that hangs on the joint has another size than its tracks say. A scale moved up
-//! to the least one leaves at most 1/256: what follows grows at most as far as the largest scale, because each joint's
-//! range has the 1 of its rest.
+//! A program composes motions joint by joint, from the one that hangs on no other on, and moves each composed scale
+//! into its range. Where a scale is moved, all that hangs on the joint has another size than its tracks say. A scale
+//! moved up to the least one leaves at most 1/256: what follows grows at most as far as the largest scale, because each
+//! joint's range has the 1 of its rest.
 
 use super::joint::{LARGEST_SCALE, LEAST_SCALE};
 use super::track::{Interpolation, Key, control_points};
@@ -49,7 +49,7 @@ impl ScaleRange {
         }
     }
 
-    /// Why a program cannot compose the scales; `None` if it can.
+    /// Returns the reason why a program cannot compose the scales; `None` if it can.
     pub(crate) fn fault(&self) -> Option<String> {
         (self.greatest > LARGEST_SCALE * (1.0 + ROUNDING)).then(|| {
             format!(

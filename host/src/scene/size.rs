@@ -47,7 +47,8 @@ pub(super) struct Size {
 }
 
 impl Size {
-    /// One object; `name` is the length of its name. Displacements of a few vertices weigh as a triangle.
+    /// Returns the size of an object; `name` is the length of its name. Displacements of a few vertices count as a
+    /// triangle.
     pub(super) fn of(shape: &Shape, name: usize, attributes: &Attributes) -> Self {
         let displaced = attributes.displacements.iter().map(|it| it.vectors.len());
         let displaced = displaced.sum::<usize>().div_ceil(DISPLACED) as u64;

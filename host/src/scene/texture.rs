@@ -20,7 +20,7 @@ use std::sync::Arc;
 #[derive(Clone, Debug, PartialEq)]
 pub struct Texture {
     pub image: Arc<Image>,
-    /// Beyond the image, along u and v.
+    /// Wrapping beyond the image, along u and v.
     pub wrap: [Wrap; 2],
     /// True if four texels are mixed; otherwise the nearest one is used.
     pub bilinear: bool,
@@ -57,7 +57,7 @@ pub enum Wrap {
 }
 
 impl Texture {
-    /// A bilinear texture that repeats, without levels.
+    /// Returns a bilinear texture that repeats, without levels.
     pub fn of(image: Arc<Image>) -> Self {
         Self {
             image,

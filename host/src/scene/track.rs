@@ -25,7 +25,7 @@ pub struct Track {
     pub place: SourceSpan,
 }
 
-/// A value at a time. Of values with fewer than four components the others are 0.
+/// A value at a time. Values with fewer than four components have zeros for the others.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Key {
     pub seconds: f64,
@@ -37,7 +37,7 @@ pub struct Key {
 }
 
 impl Key {
-    /// A key of a vector, without tangents.
+    /// Returns a key of a vector, without tangents.
     pub fn of_vector(seconds: f64, vector: DVec3) -> Self {
         let [x, y, z] = vector.to_array();
         Self {
@@ -47,7 +47,7 @@ impl Key {
         }
     }
 
-    /// The first three components of the value.
+    /// Returns the first three components of the value.
     pub fn vector(&self) -> DVec3 {
         let [x, y, z, _] = self.value;
         DVec3::new(x, y, z)

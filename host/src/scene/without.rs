@@ -235,7 +235,7 @@ pub fn shown_without(effect: Effects) -> &'static str {
     row.map_or("", |(_, shown, _)| shown)
 }
 
-/// The effect of a name: the name of its Cargo feature.
+/// Returns the effect of a name: the name of its Cargo feature.
 pub fn effect_named(name: &str) -> Option<Effects> {
     let row = Effects::NAMED.into_iter().find(|(_, own)| *own == name);
     row.map(|(effect, _)| effect)

@@ -65,7 +65,7 @@ impl<'a> Words<'a> {
         rest.split_whitespace().count()
     }
 
-    /// How many words the next line has that has any.
+    /// Returns the number of words of the next line that has any.
     pub(super) fn count_of_next_line(&mut self) -> usize {
         let count = |line: &str| plain(line).split_whitespace().count();
         while self.lines.next_if(|(_, line)| count(line) == 0).is_some() {}

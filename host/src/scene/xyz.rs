@@ -182,7 +182,7 @@ fn atom<'a>(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scene::test_scenes::{self, load};
+    use crate::scene::tests::samples::{self, load};
     use crate::scene::{ImportOptions, MoleculeOptions, MoleculeStyle, Shape, read};
     use crate::shape::Sphere;
     use std::path::Path;
@@ -317,7 +317,7 @@ mod tests {
             ("fullerene", 60, 0),
             ("trajectory", 9, 1),
         ] {
-            let Some(path) = test_scenes::find(&format!("molecules/{name}.xyz")) else {
+            let Some(path) = samples::find(&format!("molecules/{name}.xyz")) else {
                 continue;
             };
             let imported = load(&path).unwrap();

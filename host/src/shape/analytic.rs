@@ -114,7 +114,7 @@ pub trait Geometric {
     }
 }
 
-/// How to change the numbers of a shape: functions of points, directions and lengths.
+/// A change of a shape's numbers: functions of points, directions and lengths.
 pub struct Map<'m> {
     pub point: &'m dyn Fn(DVec3) -> DVec3,
     pub direction: &'m dyn Fn(DVec3) -> DVec3,

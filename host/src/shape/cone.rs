@@ -95,7 +95,7 @@ impl Geometric for Cone {
         Some(height.min(2.0 * self.base_radius.max(self.apex_radius)))
     }
 
-    /// On the axis.
+    /// Returns a random point on the axis.
     fn point(&self, _: DVec3, random: &mut Random) -> DVec3 {
         self.base.lerp(self.apex, random.unit())
     }

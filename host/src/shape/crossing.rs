@@ -1,11 +1,11 @@
-//! Where a line crosses planes, layers and quadrics, by textbook formulas in arithmetic as good as exact.
+//! Crossings of lines with planes, layers and quadrics, by textbook formulas in almost exact arithmetic.
 
 use super::exact::{Line, Real, Vector, dot, minus, norm};
 
 /// The t where a line enters and leaves.
 pub type Span = Option<(Real, Real)>;
 
-/// Beyond everything.
+/// Returns a t beyond everything.
 pub fn far() -> Real {
     Real::of(1e300)
 }
@@ -16,7 +16,7 @@ pub fn overlap(a: Span, b: Span) -> Span {
     (enter <= leave).then_some((enter, leave))
 }
 
-/// Where `-half <= y + t rise <= half`.
+/// Returns the interval of t in which `-half <= y + t rise <= half`.
 pub fn slab(y: &Real, rise: &Real, half: &Real) -> Span {
     if rise.is_zero() {
         return (y.abs() <= *half).then(|| (-far(), far()));
@@ -42,7 +42,7 @@ pub fn roots(a: &Real, b: &Real, c: &Real) -> Span {
     })
 }
 
-/// Where a line crosses a plane, and the cosine between them times the slope's length.
+/// Returns the t at which a line crosses a plane, and the cosine between them times the slope's length.
 pub fn plane_crossing(line: &Line, normal: &Vector, point: &Vector) -> Option<(Real, Real)> {
     let tilt = dot(normal, &line.slope);
     if tilt.is_zero() {
@@ -51,7 +51,7 @@ pub fn plane_crossing(line: &Line, normal: &Vector, point: &Vector) -> Option<(R
     Some((dot(normal, &minus(point, &line.origin)) / &tilt, tilt.abs()))
 }
 
-/// The span of a flat shape on a line along its plane: none, or with a thickness perhaps anywhere.
+/// Returns the span of a flat shape on a line along its plane: none, or with a thickness perhaps anywhere.
 pub fn within_plane(line: &Line, normal: &Vector, point: &Vector, grow: &Real) -> Span {
     let apart = dot(normal, &minus(point, &line.origin)).abs();
     (grow.is_positive() && apart <= *grow).then(|| (-far(), far()))

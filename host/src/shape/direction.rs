@@ -9,12 +9,12 @@ pub const TOLERANCE: f64 = 1.0 / (1_u64 << 30) as f64;
 /// Largest magnitude of a component.
 const MOST: u64 = 1 << 24;
 
-/// The vector at length 1, also where its square is out of range.
+/// Returns the vector at length 1, also where its square is out of range.
 pub fn unit(vector: DVec3) -> DVec3 {
     (vector / vector.abs().max_element()).normalize()
 }
 
-/// The direction of a vector as integers of at most 2^24 in magnitude. `vector` is finite and not
+/// Returns the direction of a vector as integers of at most 2^24 in magnitude. `vector` is finite and not
 /// zero.
 ///
 /// The integers have the ratios of the components where such integers exist, up to what an `f64`

@@ -15,7 +15,7 @@ pub struct Real(FBig<HalfEven, 2>);
 pub type Vector = [Real; 3];
 
 impl Real {
-    /// A finite float, exactly.
+    /// Converts a finite float exactly.
     pub fn of(value: f64) -> Self {
         let exact = FBig::<HalfEven, 2>::try_from(value).expect("a finite number");
         Self(exact.with_precision(PRECISION).value())
@@ -125,7 +125,7 @@ impl Neg for Real {
     }
 }
 
-/// A vector of finite floats, exactly.
+/// Converts a vector of finite floats exactly.
 pub fn vector(v: impl Into<[f64; 3]>) -> Vector {
     v.into().map(Real::of)
 }
@@ -155,7 +155,7 @@ pub fn scaled(v: &Vector, s: &Real) -> Vector {
     [0, 1, 2].map(|k| &v[k] * s)
 }
 
-/// A vector of length 1; a zero vector stays zero.
+/// Returns a vector of length 1; a zero vector stays zero.
 pub fn unit(v: &Vector) -> Vector {
     let length = norm(v);
     if length.is_zero() {

@@ -30,7 +30,7 @@ impl ExactMap {
         }
     }
 
-    /// A line in the part; its t stays.
+    /// Converts a line to the part; its t stays.
     pub fn line(&self, line: &Line) -> Line {
         let from_center = minus(&line.origin, &self.center);
         Line {
@@ -39,18 +39,18 @@ impl ExactMap {
         }
     }
 
-    /// A place of the scene in the part, in double precision.
+    /// Converts a place of the scene to the part, in double precision.
     pub fn point(&self, place: [f64; 3]) -> [f64; 3] {
         self.direction([0, 1, 2].map(|k| place[k] - self.middle[k]))
     }
 
-    /// A direction of the scene in the part, with the part's length.
+    /// Converts a direction of the scene to the part, with the part's length.
     pub fn direction(&self, way: [f64; 3]) -> [f64; 3] {
         self.linear
             .map(|row| (0..3).map(|k| row[k] * way[k]).sum::<f64>())
     }
 
-    /// A place of the part in the scene, in double precision.
+    /// Converts a place of the part to the scene, in double precision.
     pub fn back(&self, place: [f64; 3]) -> [f64; 3] {
         let square = self.scale * self.scale;
         [0, 1, 2].map(|k| {
@@ -59,17 +59,17 @@ impl ExactMap {
         })
     }
 
-    /// A length of the part in the scene.
+    /// Converts a length of the part to the scene.
     pub fn length(&self, length: f64) -> f64 {
         length / self.scale
     }
 
-    /// A length of the scene in the part.
+    /// Converts a length of the scene to the part.
     pub fn own_length(&self, length: f64) -> f64 {
         length * self.scale
     }
 
-    /// The largest coordinate of a place of the scene, as seen from the instance's center.
+    /// Returns the largest coordinate of a place of the scene, as seen from the instance's center.
     pub fn reach(&self, place: [f64; 3]) -> f64 {
         let from_center = [0, 1, 2].map(|k| (place[k] - self.middle[k]).abs());
         from_center.into_iter().fold(0.0, f64::max)

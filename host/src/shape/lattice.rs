@@ -30,28 +30,28 @@ impl Lattice {
         exp2(24 - i32::from(self.bits))
     }
 
-    /// A point in units of the core, not snapped.
+    /// Converts a point to units of the core, not snapped.
     pub fn in_units(&self, point: DVec3) -> DVec3 {
         (point - self.origin) / self.unit()
     }
 
-    /// A point in 1/256 unit, not snapped.
+    /// Converts a point to 1/256 unit, not snapped.
     pub fn in_fine(&self, point: DVec3) -> DVec3 {
         self.in_units(point) * 256.0
     }
 
-    /// A length in 1/256 unit, not snapped.
+    /// Converts a length to 1/256 unit, not snapped.
     pub fn length_in_fine(&self, length: f64) -> f64 {
         length / self.unit() * 256.0
     }
 
-    /// A point in 1/256 unit, snapped.
+    /// Converts a point to 1/256 unit, snapped.
     pub fn snap(&self, point: DVec3) -> [i32; 3] {
         let steps = ((point - self.origin) / self.step()).round() * self.fine_steps();
         steps.to_array().map(|x| x as i32)
     }
 
-    /// A length in 1/256 unit, snapped.
+    /// Converts a length to 1/256 unit, snapped.
     pub fn snap_length(&self, length: f64) -> i32 {
         ((length / self.step()).round() * self.fine_steps()) as i32
     }

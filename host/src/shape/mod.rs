@@ -100,7 +100,7 @@ macro_rules! registry {
                 None
             }
 
-            /// The shape of other numbers.
+            /// Returns the shape of other numbers.
             pub fn map(&self, by: &Map<'_>) -> Self {
                 match self {
                     Self::Mesh {
@@ -162,7 +162,7 @@ macro_rules! registry {
                 }
             }
 
-            /// A primitive of a blob.
+            /// Returns a primitive of a blob.
             pub fn of(geometry: Geometry) -> Self {
                 match geometry {
                     Geometry::Triangle(corners) => Self::Triangle(corners.map(snapped::units)),

@@ -42,7 +42,7 @@ impl Geometric for Plane {
         None
     }
 
-    /// As far as the box of a scene reaches.
+    /// Returns the reach of a scene's box.
     fn size(&self) -> f64 {
         f64::from(u16::MAX)
     }
@@ -117,7 +117,7 @@ impl Analytic for Plane {
         })
     }
 
-    /// Within the range of box coordinates.
+    /// Returns the largest displacement within the range of box coordinates.
     fn displacement(&self, other: &Self) -> f64 {
         // Scaled, so that squares stay in range.
         let [n, m] = [self.normal, other.normal].map(|it| it / it.abs().max_element());

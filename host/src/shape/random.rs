@@ -13,27 +13,27 @@ impl Random {
         z ^ z >> 31
     }
 
-    /// An integer in `0..count`.
+    /// Returns an integer in `0..count`.
     pub fn below(&mut self, count: usize) -> usize {
         ((u128::from(self.bits()) * count as u128) >> 64) as usize
     }
 
-    /// An integer in `low..=high`.
+    /// Returns an integer in `low..=high`.
     pub fn within(&mut self, low: i32, high: i32) -> i32 {
         low + self.below((i64::from(high) - i64::from(low) + 1) as usize) as i32
     }
 
-    /// A number in [0, 1).
+    /// Returns a number in [0, 1).
     pub fn unit(&mut self) -> f64 {
         (self.bits() >> 11) as f64 / (1_u64 << 53) as f64
     }
 
-    /// A number in [-1, 1).
+    /// Returns a number in [-1, 1).
     pub fn signed(&mut self) -> f64 {
         2.0 * self.unit() - 1.0
     }
 
-    /// A magnitude in [low, high), its logarithm evenly spread.
+    /// Returns a magnitude in [low, high), its logarithm evenly spread.
     pub fn magnitude(&mut self, low: f64, high: f64) -> f64 {
         (low.ln() + self.unit() * (high.ln() - low.ln())).exp()
     }
@@ -43,7 +43,7 @@ impl Random {
         self.below(count) == 0
     }
 
-    /// A direction of length 1, evenly spread.
+    /// Returns a direction of length 1, evenly spread.
     pub fn direction(&mut self) -> [f64; 3] {
         loop {
             let v = [self.signed(), self.signed(), self.signed()];

@@ -3,7 +3,7 @@
 use glam::DVec3;
 use gridel_core::format::record::UnitBox;
 
-/// More than the arithmetic of displacements is off, relative.
+/// Factor that makes a computed displacement an upper bound in spite of rounding.
 pub const ROUNDED_UP: f64 = 1.0 + 1e-12;
 
 /// A shape on the lattice.
@@ -24,12 +24,12 @@ pub fn integers(point: DVec3) -> [i32; 3] {
     point.to_array().map(|x| x as i32)
 }
 
-/// A point in 1/256 unit, in units.
+/// Converts a point from 1/256 unit to units.
 pub fn units(fine: [i32; 3]) -> DVec3 {
     real(fine) / 256.0
 }
 
-/// How far a unit disc with a normal reaches along each axis.
+/// Returns the reach of a unit disc with a normal along each axis.
 pub fn disc_reach(normal: DVec3) -> DVec3 {
     let normal = (normal / normal.abs().max_element()).normalize();
     (DVec3::ONE - normal * normal)
@@ -55,7 +55,7 @@ pub fn around(points: &[([i32; 3], DVec3)]) -> (UnitBox, bool) {
     (UnitBox::around(integers(lowest), integers(highest)), fits)
 }
 
-/// How far a point is moved at most.
+/// Returns an upper bound of the distance that a point is moved.
 pub fn displacement(given: DVec3, snapped: [i32; 3]) -> f64 {
     given.distance(real(snapped)) * ROUNDED_UP
 }

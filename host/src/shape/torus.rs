@@ -31,7 +31,7 @@ impl Torus {
         }
     }
 
-    /// How far it reaches from its center along each axis of coordinates.
+    /// Returns its reach from its center along each axis of coordinates.
     fn reach(&self) -> DVec3 {
         disc_reach(self.axis) * self.major_radius + self.minor_radius
     }
@@ -79,7 +79,7 @@ impl Geometric for Torus {
         }]
     }
 
-    /// Where it meets its axis: the axis, either way.
+    /// Returns the normals where it meets its axis: the axis, in both directions.
     fn normals_within(&self, point: [f64; 3], off: f64) -> Option<Vec<Normal>> {
         let axis = self.ring().axis_within(&vector(point), off)?;
         Some(vec![
@@ -114,7 +114,7 @@ impl Analytic for Torus {
         }
     }
 
-    /// With a major radius of 0 it is a sphere.
+    /// Returns true if the minor radius is above 0. With a major radius of 0 the torus is a sphere.
     fn has_extent(&self) -> bool {
         self.minor_radius > 0.0
     }
@@ -189,7 +189,7 @@ struct Ring {
 }
 
 impl Ring {
-    /// How far a point is from the circle.
+    /// Returns the distance of a point from the circle.
     fn distance(&self, point: &Vector) -> Real {
         let (y, outward) = self.parts(point);
         let beyond = norm(&outward) - &self.major;
@@ -210,7 +210,7 @@ impl Ring {
         (norm(&outward) <= Real::of(off)).then(|| self.axis.clone())
     }
 
-    /// How far a point is from the axis.
+    /// Returns the distance of a point from the axis.
     fn distance_from_axis(&self, point: &Vector) -> f64 {
         let (_, outward) = self.parts(point);
         norm(&outward).to_f64().max(f64::MIN_POSITIVE)
@@ -223,7 +223,7 @@ impl Ring {
         unit(&minus(point, &circle))
     }
 
-    /// Where a line is inside of the torus with its minor radius changed to one above 0, in order.
+    /// Returns the spans of a line inside of the torus with this minor radius, above 0, in order.
     fn spans(&self, line: &Line, minor: &Real) -> Vec<(Real, Real)> {
         let d = &line.slope;
         let square = dot(d, d);

@@ -6,7 +6,7 @@ use glam::{DAffine3, DMat3, DVec3};
 /// Vertices and triangles.
 pub type Mesh = (Vec<DVec3>, Vec<[u32; 3]>);
 
-/// Why a shape cannot be transformed: the cause, without its subject, and the remedy.
+/// The reason why a shape cannot be transformed: the cause, without its subject, and the remedy.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Misfit {
     pub cause: &'static str,
@@ -26,7 +26,7 @@ pub const UNEVEN: Misfit = Misfit {
     remedy: "scale it, and the groups it is in, by the same number on every axis, or use a mesh",
 };
 
-/// The largest entry's size, and the matrix divided by it, which cannot overflow when multiplied.
+/// Returns the largest entry's size, and the matrix divided by it, which cannot overflow when multiplied.
 pub fn to_size_one(matrix: DMat3) -> (f64, DMat3) {
     let DMat3 {
         x_axis: x,
@@ -38,7 +38,7 @@ pub fn to_size_one(matrix: DMat3) -> (f64, DMat3) {
     (size, DMat3::from_cols(x / size, y / size, z / size))
 }
 
-/// The determinant of the matrix at size 1; negative for a mirror.
+/// Returns the determinant of the matrix at size 1; negative for a mirror.
 pub fn orientation(matrix: DMat3) -> Result<f64, Misfit> {
     let determinant = to_size_one(matrix).1.determinant();
     if determinant == 0.0 {
@@ -50,7 +50,7 @@ pub fn orientation(matrix: DMat3) -> Result<f64, Misfit> {
     }
 }
 
-/// How much longer everything gets, if that is the same in every direction.
+/// Returns the scale of a matrix, if it is the same in every direction.
 pub fn similarity(matrix: DMat3) -> Result<f64, Misfit> {
     orientation(matrix)?;
     let (
@@ -72,7 +72,7 @@ pub fn similarity(matrix: DMat3) -> Result<f64, Misfit> {
     }
 }
 
-/// The matrix without its rounding errors, if it takes axes to axes.
+/// Returns the matrix without its rounding errors, if it takes axes to axes.
 pub fn axis_aligned(matrix: DMat3) -> Option<DMat3> {
     let clean = |column: DVec3| {
         let longest = column.abs().max_element();
@@ -88,7 +88,7 @@ pub fn axis_aligned(matrix: DMat3) -> Option<DMat3> {
     (orientation(clean).is_ok()).then_some(clean)
 }
 
-/// A vector in the direction that a matrix gives another.
+/// Returns a vector in the direction that a matrix gives another.
 pub fn turned(matrix: DMat3, vector: DVec3) -> DVec3 {
     to_size_one(matrix).1 * unit(vector)
 }

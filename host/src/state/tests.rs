@@ -2,7 +2,7 @@
 
 use super::{Instance as Record, *};
 use crate::compile::{Options, compile};
-use crate::scene::test_chains::{Random, chain};
+use crate::scene::tests::chains::{Random, chain};
 use crate::scene::{Instance, Part, Scene as SceneFile, TICKS_PER_SECOND};
 use crate::shape::exp2;
 use glam::{DMat3, DVec3};

@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 
-/// From here on, 16 times the width of a scene, an origin's last digit is coarser than a hit's bound.
+/// The distance from which an origin's last digit is coarser than a hit's bound: 16 times the width of a scene.
 pub(super) const FAR: f64 = (1_u64 << 20) as f64;
 
 /// `a + b`, rounded, and what that lacks to the sum.

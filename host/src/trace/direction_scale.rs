@@ -1,4 +1,4 @@
-//! From multiples of a direction to lengths in the core, and back.
+//! Conversion of multiples of a direction to lengths in the core, and back.
 
 use super::Rejection;
 use glam::DVec3;
@@ -67,12 +67,12 @@ impl DirectionScale {
         self.begin
     }
 
-    /// From now on lengths of hits count from so far along the ray.
+    /// Sets the length along the ray from which lengths of hits count.
     pub(super) fn begin_at(&mut self, begin: f64) {
         self.begin = begin;
     }
 
-    /// From now on multiples of hits count from so much earlier, in multiples of the direction.
+    /// Moves the start from which multiples of hits count by `t`, in multiples of the direction.
     pub fn count_from(&mut self, t: f64) {
         self.begin += self.length(t);
     }

@@ -74,7 +74,7 @@ impl Four {
         self.is_ordinary = is_ordinary.bits();
     }
 
-    /// A ray, and by how much its t is larger than in the scene. `None` if [`Frame::ray`] must make it ready.
+    /// Returns a ray, and by how much its t is larger than in the scene. `None` if [`Frame::ray`] must make it ready.
     #[inline(always)]
     pub fn get(&self, lane: usize) -> Option<(&ReadyRay, DirectionScale)> {
         if self.is_ordinary >> lane & 1 == 0 {

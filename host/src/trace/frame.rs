@@ -5,7 +5,7 @@ use super::{DirectionScale, Ready, Rejection, SceneRay, UnitRay};
 use glam::DVec3;
 use gridel_core::{Number, Ray, RayError, Scene};
 
-/// How a scene's coordinates relate to the core's.
+/// The relation of a scene's coordinates to the core's.
 #[derive(Clone, Copy, Debug)]
 pub struct Frame {
     pub(super) origin: DVec3,
@@ -16,7 +16,7 @@ pub struct Frame {
 }
 
 impl Frame {
-    /// The frame of a blob.
+    /// Returns the frame of a blob.
     pub fn of(scene: &Scene<'_>) -> Self {
         let header = scene.header();
         let exponent = i32::from(header.unit_exponent);
@@ -27,17 +27,17 @@ impl Frame {
         }
     }
 
-    /// A point in scene coordinates, from units.
+    /// Converts a point from units to scene coordinates.
     pub fn place(&self, units: [f64; 3]) -> DVec3 {
         self.origin + DVec3::from_array(units) * self.unit
     }
 
-    /// A length in scene units, from units.
+    /// Converts a length from units to scene units.
     pub fn length(&self, units: f64) -> f64 {
         units * self.unit
     }
 
-    /// A ray in scene units, from one in units.
+    /// Converts a ray from units to scene units.
     pub fn scene_ray(&self, ray: &UnitRay) -> SceneRay {
         let direction = DVec3::from_array(ray.direction);
         let (direction_scale, _) = DirectionScale::of(direction, self.unit, self.per_unit);
@@ -71,7 +71,7 @@ impl Frame {
         ));
     }
 
-    /// A ray in the core's form, and by how much its t is larger.
+    /// Returns a ray in the core's form, and by how much its t is larger.
     ///
     /// # Errors
     /// As [`Ray::from_f64`].
@@ -158,7 +158,7 @@ fn is_near(origin: DVec3) -> bool {
     origin.abs().max_element() <= carry::FAR
 }
 
-/// Where a ray starts, and its interval, in units.
+/// The start of a ray, and its interval, in units.
 #[derive(Clone, Copy, Debug)]
 struct Start {
     origin: DVec3,

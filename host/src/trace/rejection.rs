@@ -3,7 +3,7 @@
 use super::SceneHit;
 use gridel_core::RayError;
 
-/// Why a ray is not answered.
+/// The reason why a ray is not answered.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 pub enum Rejection {
     #[error(transparent)]
@@ -21,7 +21,7 @@ pub enum Rejection {
 }
 
 impl Rejection {
-    /// What to do about it.
+    /// Returns advice on how to fix it.
     pub fn remedy(&self) -> &'static str {
         match self {
             Self::Ray(RayError::Direction) => "give a finite direction that is not 0 0 0",

@@ -12,7 +12,7 @@ pub struct UnitRay {
 }
 
 impl UnitRay {
-    /// A ray with tmin 0 and without an end.
+    /// Returns a ray with tmin 0 and without an end.
     pub fn new(origin: [f64; 3], direction: [f64; 3]) -> Self {
         Self {
             origin,

@@ -67,7 +67,7 @@ pub struct StructureAnswer<N: Number> {
 #[derive(Clone, Debug, Default)]
 pub struct Outcome {
     pub faults: Vec<Fault>,
-    /// By how many steps t is off, against the same ray in double precision.
+    /// Error of t in steps, against the same ray in double precision.
     pub error: f64,
     /// True if the ray grazes the surface that it hits, see [`GRAZING`].
     pub grazes: bool,

@@ -11,7 +11,7 @@ use std::sync::Arc;
 #[derive(Clone, Debug)]
 pub struct ClosedMesh {
     pub object: u32,
-    /// Where it is placed.
+    /// Its instance, if it is placed by one.
     instance: Option<Placed>,
     /// In units of the blob or the part that holds it.
     triangles: Arc<Vec<[[f64; 3]; 3]>>,
@@ -30,7 +30,7 @@ struct Placed {
 const MOST_PLACED: usize = 64;
 
 impl ClosedMesh {
-    /// The closed meshes of a scene, as they lie on its lattice: the scene's own, and some of instances.
+    /// Returns the closed meshes of a scene, as they lie on its lattice: the scene's own, and some of instances.
     pub fn all(scene: &Scene<'_>) -> Vec<Self> {
         let mut all = of_objects(scene, |primitive| scene.object(primitive));
         let of_parts: Vec<Vec<Self>> = (0..)
@@ -63,7 +63,7 @@ impl ClosedMesh {
         self.triangles.len()
     }
 
-    /// The corners of a triangle, in units of the scene.
+    /// Returns the corners of a triangle, in units of the scene.
     pub fn triangle(&self, index: usize) -> [[f64; 3]; 3] {
         let corners = self.triangles[index];
         match &self.instance {
@@ -81,7 +81,7 @@ impl ClosedMesh {
         self.instance.as_ref().map(|placed| placed.index)
     }
 
-    /// Its primitives, as hits name them.
+    /// Returns its primitives, as hits name them.
     pub fn hits<'a>(&'a self, scene: &'a Scene<'_>) -> impl Iterator<Item = HitId> + 'a {
         let instances = scene.instances();
         let part = self.index().and_then(|it| instances.get(it as usize));

@@ -9,20 +9,20 @@ use gridel_core::format::limits;
 use gridel_core::format::record::UnitBox;
 use gridel_core::{Format, Kind, Scene};
 
-/// How many rounding steps an answer may be off by. It is right for a shape that is larger or smaller by at most that.
+/// Largest error of an answer in rounding steps. It is right for a shape that is larger or smaller by at most that.
 pub const STEPS: f64 = 8.0;
 
 /// The cosine between a surface's normal and a ray below which the ray grazes. There, t is off by more than [`STEPS`]
 /// steps if the surface is off by one.
 pub const GRAZING: f64 = 1.0 / STEPS;
 
-/// How far it is through a scene at the most, in units.
+/// Greatest distance through a scene, in units.
 const FARTHEST: f64 = 131_072.0;
 
-/// How far away shapes without bounds are met at the most, in units.
+/// Greatest distance of a hit with a shape without bounds, in units.
 const FARTHEST_HIT: f64 = (limits::FARTHEST_HIT >> 13) as f64;
 
-/// Why an answer is wrong.
+/// The reason why an answer is wrong.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Mismatch {
     /// The primitive is not met, or not there.
@@ -76,7 +76,7 @@ impl Judge {
         }
     }
 
-    /// The shape of a primitive, or of a piece of it.
+    /// Returns the shape of a primitive, or of a piece of it.
     pub fn solid(&self, hit: HitId) -> Option<PlacedSolid<'_>> {
         self.pieces(hit).next()
     }
@@ -230,8 +230,8 @@ impl Nearest<'_> {
     }
 }
 
-/// Where a ray may cross a shape that is known only up to a length. Any shape that is larger or smaller by at most that
-/// length counts.
+/// The crossings that a ray may have with a shape that is known only up to a length. Any shape that is larger or
+/// smaller by at most that length counts.
 ///
 /// A ray hits a solid where it enters it. A ray that starts inside hits it where it leaves it.
 #[derive(Clone, Debug)]

@@ -56,7 +56,7 @@ pub struct FormatReport {
     pub worst_grazing: Worst,
 }
 
-/// By how much t was off at worst against the same ray in double precision.
+/// Largest error of t against the same ray in double precision.
 #[derive(Clone, Debug, Default, Serialize)]
 pub struct Worst {
     /// In steps: units of rounding times the largest coordinate, and sub-steps of `fixed`.
@@ -82,7 +82,7 @@ impl Worst {
     }
 }
 
-/// How often a property was tested, and how often it was violated.
+/// Number of tests of a property, and of its violations.
 #[derive(Clone, Debug, Serialize)]
 pub struct PropertyReport {
     pub property: Property,
@@ -99,7 +99,7 @@ pub struct PropertyReport {
 pub struct Example {
     pub format: &'static str,
     pub structure: &'static str,
-    /// As `explain --ray` takes it.
+    /// The ray as `explain --ray` takes it.
     pub ray: String,
     pub what: String,
 }
@@ -449,7 +449,7 @@ impl Tally {
     }
 }
 
-/// A ray as `explain --ray` takes it.
+/// Returns a ray as `explain --ray` takes it.
 pub fn as_argument(ray: &SceneRay) -> String {
     let [ox, oy, oz] = ray.origin.to_array();
     let [dx, dy, dz] = ray.direction.to_array();

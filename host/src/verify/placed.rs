@@ -6,11 +6,11 @@ use crate::shape::{ExactMap, Solid};
 use gridel_core::format::record::UnitBox;
 use gridel_core::{Format, Hit, Number, Scene};
 
-/// How many times a step counts at an instance. The maps of a ray into the part and of its hit out of it round as well.
+/// Factor of a step at an instance. The maps of a ray into the part and of its hit out of it round as well.
 pub const PLACED: f64 = 4.0;
 
 impl HitId {
-    /// The primitive and the instance of a hit.
+    /// Returns the primitive and the instance of a hit.
     pub fn of<N: Number>(hit: &Hit<N>) -> Self {
         Self {
             primitive: hit.primitive,
@@ -35,7 +35,7 @@ impl HitId {
         }
     }
 
-    /// A primitive of the scene's own objects.
+    /// Returns a primitive of the scene's own objects.
     pub fn own(primitive: u32) -> Self {
         Self {
             primitive,
@@ -55,7 +55,7 @@ pub struct PlacedPart {
 }
 
 impl PlacedPart {
-    /// All instances of a scene, in the order of its blob.
+    /// Returns all instances of a scene, in the order of its blob.
     pub fn all(scene: &Scene<'_>) -> Vec<Self> {
         let instances = scene.instances().iter();
         let placed = instances.filter_map(|instance| {
@@ -80,7 +80,7 @@ pub struct PlacedSolid<'j> {
 }
 
 impl PlacedSolid<'_> {
-    /// How far the surface would have to grow to hold a point, in units of the scene.
+    /// Returns the distance by which the surface would have to grow to contain a point, in units of the scene.
     pub fn excess(&self, point: [f64; 3]) -> f64 {
         match self.map {
             None => self.solid.excess(point),
@@ -88,17 +88,17 @@ impl PlacedSolid<'_> {
         }
     }
 
-    /// A ray's line in the shape's coordinates.
+    /// Converts a ray's line to the shape's coordinates.
     pub fn line(&self, line: &Line) -> Line {
         self.map.map_or_else(|| line.clone(), |map| map.line(line))
     }
 
-    /// A length of the scene in the shape's coordinates.
+    /// Converts a length of the scene to the shape's coordinates.
     pub fn own_length(&self, length: f64) -> f64 {
         self.map.map_or(length, |map| map.own_length(length))
     }
 
-    /// The step of a format where a ray meets the shape, in units of the scene.
+    /// Returns the step of a format where a ray meets the shape, in units of the scene.
     pub fn step(&self, format: Format, ray: &RoundedRay, t: f64) -> f64 {
         let Some(map) = self.map else {
             return ray.step(format, t, self.solid);

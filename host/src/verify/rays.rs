@@ -60,7 +60,7 @@ impl Targets {
         SORTS[number % SORTS.len()](self, random)
     }
 
-    /// The targets of a scene: of many primitives of a kind, some thousands.
+    /// Returns the targets of a scene: of many primitives of a kind, some thousands.
     pub fn of(scene: &Scene<'_>) -> Self {
         const MOST: usize = 4000;
         let chosen = |kind: Kind| {
@@ -305,7 +305,7 @@ fn grazing(targets: &Targets, random: &mut Random) -> UnitRay {
     UnitRay::new(origin, direction)
 }
 
-/// From a vertex, an edge or a face of a triangle, or else of a box, in any direction.
+/// Returns a ray from a vertex, an edge or a face of a triangle, or else of a box, in any direction.
 fn from_on_a_surface(targets: &Targets, random: &mut Random) -> UnitRay {
     let origin = if targets.triangles.is_empty() {
         let mut place = targets.target(random);
@@ -348,7 +348,7 @@ fn in_a_cells_plane(targets: &Targets, random: &mut Random) -> UnitRay {
     at(origin, target)
 }
 
-/// From the eye or a light, or from close by.
+/// Returns a ray from the eye or a light, or from close by.
 fn from_a_point(targets: &Targets, random: &mut Random) -> UnitRay {
     let point = targets.points[random.below(targets.points.len())];
     let aside = [0.0, 0.0, 1e-3, 3.0, 5.0, 100.0][random.below(6)];
@@ -369,7 +369,7 @@ fn from_a_point(targets: &Targets, random: &mut Random) -> UnitRay {
     ray
 }
 
-/// To the eye or a light, and seldom beyond.
+/// Returns a ray to the eye or a light, and seldom beyond.
 fn to_a_point(targets: &Targets, random: &mut Random) -> UnitRay {
     let point = targets.points[random.below(targets.points.len())];
     let aside = [0.0, 0.0, 1e-3, 3.0, 5.0, 100.0][random.below(6)];

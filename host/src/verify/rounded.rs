@@ -67,7 +67,7 @@ impl RoundedRay {
         Line::new(self.start, self.slope)
     }
 
-    /// The largest magnitude among the coordinates of a ray up to a t.
+    /// Returns the largest magnitude among the coordinates of a ray up to a t.
     pub fn magnitude(&self, t: f64) -> f64 {
         largest(self.start).max(t.abs()).max(self.moved.abs())
     }
@@ -100,7 +100,7 @@ pub struct HitId {
 /// An answer of a kernel.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Answer {
-    /// From the ray's start.
+    /// The t of the hit from the ray's start.
     pub t: f64,
     pub hit: HitId,
 }

@@ -11,7 +11,7 @@ use gridel_core::format::instance::Instance;
 use gridel_core::format::record::Light;
 use gridel_core::{Effects, Format, Hit, Kind, List, Number, Ray, Scene, Structure};
 
-/// A ray at a place that an object keeps a light from: from somewhere above the place, in units. `None`
+/// Returns a ray at a place that an object keeps a light from: from somewhere above the place, in units. `None`
 /// where what was chosen at random throws its shadow on nothing.
 pub fn at_a_shadow(scene: &Scene<'_>, random: &mut Random) -> Option<UnitRay> {
     if !scene.effects().contains(Effects::SHADOW) || scene.lights().is_empty() {

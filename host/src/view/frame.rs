@@ -13,7 +13,7 @@ pub struct Frame {
     values: Vec<u32>,
     /// The longer side of the block that filled each pixel of this picture, 255 where none has.
     sides: Vec<u8>,
-    /// For a heat map, the most that any pixel had tested.
+    /// For a heat map, the greatest number of tests of a pixel.
     maximum: Option<u32>,
 }
 
@@ -49,7 +49,7 @@ impl Frame {
         }
     }
 
-    /// The colors of all pixels, row by row, as 0x00RRGGBB.
+    /// Returns the colors of all pixels, row by row, as 0x00RRGGBB.
     pub fn colors(&self) -> impl Iterator<Item = u32> + '_ {
         let color = |work, maximum: u32| packed(work_color(work, maximum));
         let looked_up: Vec<u32> = match self.maximum {

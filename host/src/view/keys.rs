@@ -128,7 +128,7 @@ pub fn action(key: Key) -> Option<Action> {
     Some(line.2)
 }
 
-/// The keys as lines of text.
+/// Returns the keys as lines of text.
 pub fn key_help() -> String {
     let line = |(_, name, _, text): &Line| format!("  {name:<7}{text}\n");
     KEYS.iter().map(line).collect()

@@ -3,11 +3,11 @@
 use crate::scene::Camera;
 use glam::{DQuat, DVec3};
 
-/// How near to the direction that points up a camera may look, in radians.
+/// Smallest angle between a camera's direction and the up direction, in radians.
 const NEAREST_TO_POLE: f64 = 0.017;
 
 impl Camera {
-    /// This camera turned around its target, in radians: to the right of the scene, and upwards. It stays
+    /// Returns this camera turned around its target, in radians: to the right of the scene, and upwards. It stays
     /// upright, and stops a degree before it looks straight up or down.
     pub fn orbited(&self, right: f64, up: f64) -> Self {
         let pole = self.up.normalize();
@@ -101,7 +101,7 @@ mod tests {
         }
     }
 
-    /// Where an orbit upwards or downwards ends.
+    /// Returns the angle at which an orbit upwards or downwards ends.
     fn end_angle(up: f64) -> f64 {
         (FRAC_PI_2 - NEAREST_TO_POLE) * up.signum()
     }

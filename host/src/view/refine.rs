@@ -14,10 +14,10 @@ use std::sync::{Condvar, Mutex, MutexGuard, PoisonError};
 use std::thread;
 use std::time::{Duration, Instant};
 
-/// How long coarse blocks may keep the next picture waiting.
+/// Longest time for which coarse blocks may keep the next picture waiting.
 const PATIENCE: Duration = Duration::from_millis(250);
 
-/// How long a thread draws before it delivers its pixels, and looks for a newer picture.
+/// Time that a thread draws before it delivers its pixels and looks for a newer picture.
 const TURN: Duration = Duration::from_millis(2);
 
 /// Draws pictures of a scene, one after the other, from coarse to fine.
@@ -28,7 +28,7 @@ pub struct Refiner<'s> {
     changed: Condvar,
 }
 
-/// How far the drawing is.
+/// The progress of the drawing.
 struct Progress {
     /// The picture that is drawn, and its number.
     shot: Option<Shot>,
@@ -38,7 +38,7 @@ struct Progress {
     order: CoarseToFine,
     taken: usize,
     drawn: usize,
-    /// How many blocks are of the coarsest size.
+    /// Number of blocks of the coarsest size.
     coarsest: usize,
     frame: Frame,
     error: Option<ViewError>,

@@ -15,7 +15,7 @@ pub struct Shot {
     pub heat_map: bool,
 }
 
-/// Why there is no picture.
+/// The reason why there is no picture.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum ViewError {
     #[error(transparent)]

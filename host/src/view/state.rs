@@ -40,7 +40,7 @@ pub enum Effect {
 }
 
 impl<'s> State<'s> {
-    /// The scene as it is rendered with these settings.
+    /// Returns the scene as it is rendered with these settings.
     pub fn new(
         scene: &'s Scene<'s>,
         format: Format,
@@ -66,7 +66,7 @@ impl<'s> State<'s> {
         self
     }
 
-    /// The picture to draw.
+    /// Returns the picture to draw.
     pub fn shot(&self) -> Shot {
         Shot {
             view: self.view,
@@ -85,7 +85,7 @@ impl<'s> State<'s> {
         self.settings
     }
 
-    /// The settings that keys change, for a title or a line below the picture.
+    /// Returns the settings that keys change, for a title or a line below the picture.
     pub fn description(&self) -> String {
         let samples = crate::table::counted(self.settings.samples.into(), "sample");
         let format = self.format.name();

@@ -36,7 +36,7 @@ pub fn fitting_size(shape: [u16; 2]) -> [u16; 2] {
     fitted(shape, [columns, height])
 }
 
-/// The largest size of a shape within limits, at least one pixel.
+/// Returns the largest size of a shape within limits, at least one pixel.
 pub fn fitted([width, height]: [u16; 2], limits: [u16; 2]) -> [u16; 2] {
     let shape = [width, height].map(|side| f64::from(side.max(1)));
     let scales = [0, 1].map(|k| f64::from(limits[k].max(1)) / shape[k]);
@@ -45,7 +45,7 @@ pub fn fitted([width, height]: [u16; 2], limits: [u16; 2]) -> [u16; 2] {
     shape.map(|side| ((side * scale).round() as u16).max(1))
 }
 
-/// A frame as lines of half blocks: the upper pixel is the character's color, the lower one its background.
+/// Returns a frame as lines of half blocks: the upper pixel is the character's color, the lower one its background.
 pub fn half_blocks(frame: &Frame) -> String {
     let colors: Vec<u32> = frame.colors().collect();
     let rows: Vec<&[u32]> = colors.chunks(usize::from(frame.width.max(1))).collect();
@@ -71,7 +71,7 @@ pub fn half_blocks(frame: &Frame) -> String {
     text
 }
 
-/// One frame of a picture, whole.
+/// Returns one whole frame of a picture.
 ///
 /// # Errors
 /// If there is no such picture.

@@ -46,7 +46,7 @@ pub struct Viewed<'v> {
     pub title: &'v str,
 }
 
-/// Why there is no window.
+/// The reason why there is no window.
 #[derive(Debug, thiserror::Error)]
 pub enum WindowError {
     #[error("{}", without_place(.0))]
@@ -128,7 +128,7 @@ struct App<'a, 'scope, 'env> {
     scope: &'scope Scope<'scope, 'env>,
     proxy: EventLoopProxy<Wake>,
     shown: Option<Canvas>,
-    /// When the window was last drawn.
+    /// The time at which the window was last drawn.
     last: Instant,
     mouse: Mouse,
     /// Shown in the title in place of the settings, until something changes.

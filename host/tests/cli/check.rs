@@ -297,19 +297,36 @@ fn findings_are_not_lost_with_a_report() {
     folder.done(&["check", "check.toml"]);
 }
 
-/// Failures that cannot be recorded stay failures, and nothing of them is recorded.
+/// A reference without a folder stays a failure; all else is recorded.
 #[test]
-fn all_is_recorded_or_nothing() {
+fn a_reference_needs_a_folder() {
     let folder = folder();
     let manifest = format!("{MANIFEST}reference = \"nodir/quick.png\"\n");
     folder.write("check.toml", manifest.as_bytes());
     let run = folder.run(&["check", "check.toml", "--bless"]);
     assert_eq!(run.code, Some(1));
-    assert!(
-        run.stderr.contains("create the folder first"),
-        "{}",
-        run.stderr
-    );
+    for words in [
+        "or create its folder, and let `gridel check --bless` record",
+        "2 passed, 3 recorded, 2 failed",
+    ] {
+        assert!(run.stdout.contains(words), "{}", run.stdout);
+    }
+    assert!(folder.read("check.toml") != manifest.as_bytes());
+    std::fs::create_dir(folder.path("nodir")).unwrap();
+    folder.done(&["check", "check.toml", "--bless"]);
+    folder.done(&["check", "check.toml"]);
+}
+
+/// Where a file cannot be written, nothing is recorded.
+#[test]
+#[cfg(target_os = "linux")]
+fn all_is_recorded_or_nothing() {
+    let folder = folder();
+    let manifest = format!("{MANIFEST}reference = \"/proc/quick.png\"\n");
+    folder.write("check.toml", manifest.as_bytes());
+    let run = folder.run(&["check", "check.toml", "--bless"]);
+    assert_eq!(run.code, Some(1));
+    assert!(run.stderr.contains("/proc/quick.png"), "{}", run.stderr);
     assert!(
         run.stdout.contains("2 passed, 0 recorded, 5 failed"),
         "{}",

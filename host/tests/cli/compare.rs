@@ -20,7 +20,7 @@ fn every_structure_has_a_row_with_the_lists_answers() {
     let list = &rows[0];
     assert_eq!(list["structure"], "list");
     assert_eq!(list["own_bytes"], 0);
-    assert_eq!(list["work"]["all"]["objects"], 17.0);
+    assert_eq!(list["work"]["all"]["primitives"], 17.0);
     assert_eq!(report["findings"].as_array().unwrap().len(), rows.len());
 }
 

@@ -86,7 +86,7 @@ fn compare_keeps_instances_or_copies_them() {
     let text = folder.done(&[&COMPARE[..6], &["--accel", "bvh"]].concat());
     for words in [
         "6 instances of 4 parts kept: 9 primitives stored, 12 placed",
-        "objects  instances  M rays/s",
+        "primitives  instances  M rays/s",
     ] {
         assert!(text.contains(words), "{words}: {text}");
     }
@@ -121,7 +121,7 @@ fn compare_counts_what_render_does() {
             ];
             let stats = &folder.json(&[&render[..], &options].concat())["stats"];
             assert_eq!(all["rays"], stats["rays"]);
-            for count in ["planes", "boxes", "cells", "objects"] {
+            for count in ["planes", "boxes", "cells", "primitives"] {
                 let counted = all[count].as_f64().unwrap() * all["rays"].as_f64().unwrap();
                 assert_eq!(
                     counted.round(),
@@ -222,7 +222,7 @@ fn accuracy_measures_the_picture_that_render_draws() {
         let stats = &folder.json(&[&render[..], option].concat())["stats"];
         let count = |name: &str| stats[name].as_u64().unwrap();
         assert_eq!(cost["rays"], stats["rays"]);
-        assert_eq!(cost["tests"], count("boxes") + count("objects"));
+        assert_eq!(cost["tests"], count("boxes") + count("primitives"));
         let measured = pixels(&folder, &format!("{to}/pictures/{base}.png"));
         assert!(measured == pixels(&folder, "render.png"), "{choice}");
         // All objects of the reference are met, and none for another one.

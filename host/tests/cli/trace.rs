@@ -243,7 +243,7 @@ fn the_report_has_counts_times_and_counters() {
     let seconds = report["seconds"].as_array().unwrap();
     assert_eq!(seconds.len(), 3);
     assert!(seconds.iter().all(|s| s.as_f64().unwrap() > 0.0));
-    for counter in ["planes", "boxes", "objects"] {
+    for counter in ["planes", "boxes", "primitives"] {
         assert!(
             report["counters"][counter].as_u64().unwrap() > 0,
             "{counter}"

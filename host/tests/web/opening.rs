@@ -32,6 +32,8 @@ pub fn files_open(page: &Page) {
     };
     assert!(shown(&browser) == of_program(&["tree.toml"]));
     // The other file that is a scene of its own.
+    let is_named = "return !document.getElementById('scene-name').hidden";
+    assert_eq!(browser.text(is_named), "false");
     choose(&browser, "main", "leaf.obj");
     assert!(shown(&browser) == of_program(&["leaf.obj"]));
 
@@ -46,6 +48,8 @@ pub fn files_open(page: &Page) {
     }
     settle(&browser);
     assert!(content(&browser, "status").contains("drop.gridel"));
+    assert_eq!(browser.text(is_named), "true");
+    assert_eq!(content(&browser, "scene-name"), "File: drop.gridel");
     assert!(
         shown(&browser) == page.rendered(&["drop.gridel", "--format", "f32", "--accel", "bvh"])
     );
@@ -103,6 +107,17 @@ pub fn files_open(page: &Page) {
         error.contains("lost.toml:3") && error.contains("none.obj"),
         "{error}"
     );
+    // Two files of one name: neither would be found by it.
+    browser.script(
+        "document.documentElement.dataset.state = 'wait';
+         const dataTransfer = new DataTransfer();
+         for (const text of ['', 'two']) dataTransfer.items.add(new File([text], 'same.toml'));
+         document.body.dispatchEvent(new DragEvent('drop', { bubbles: true, dataTransfer }))",
+    );
+    browser.wait("document.documentElement.dataset.state === 'error'");
+    let error = content(&browser, "error-text");
+    let both = "same.toml (0 bytes) and same.toml (3 bytes)";
+    assert!(error.contains(both), "{error}");
     // The scene that was shown still is.
     browser.click("//*[@id='error-close']");
     assert!(
@@ -179,6 +194,71 @@ pub fn scene_stays(page: &Page) {
     assert_eq!(browser.text(is_noted), "true");
     choose(&browser, "sample", "quick.toml");
     assert_eq!(browser.text(is_noted), "false");
+    assert!(shown(&browser) == first);
+    assert_no_message(&browser);
+}
+
+pub fn compiling_stops(page: &Page) {
+    let browser = page.open();
+    let first = shown(&browser);
+    browser.script(
+        "window.begun = 0;
+         window.Worker = class extends Worker {
+           constructor(name) { super(name); window.begun += 1; }
+         }",
+    );
+    let set = |id: &str, value: &str| {
+        browser.script(&format!(
+            "document.documentElement.dataset.state = 'wait';
+             const it = document.getElementById('{id}');
+             it.value = '{value}';
+             it.dispatchEvent(new Event('change', {{ bubbles: true }}))"
+        ));
+    };
+    let begun = || browser.text("return window.begun");
+    let slow = || {
+        set("structure", "cylinder-cube-entry");
+        browser.wait("document.getElementById('status').textContent.startsWith('Compiling')");
+    };
+    // Another structure, and what waits for it.
+    slow();
+    browser.script("document.getElementById('explain').click()");
+    let status = content(&browser, "status");
+    let waits = "The pixel will be explained when the scene is compiled";
+    assert!(status.contains(waits), "{status}");
+    set("structure", "dual-split");
+    settle(&browser);
+    assert_eq!(begun(), "1");
+    assert!(shown(&browser) == first);
+    browser.wait("!document.getElementById('explanation').hidden");
+    let setting = ["--format", "f32", "--accel", "dual-split"];
+    let explain = ["explain", "glass-chess.toml", "--pixel", "0,0"];
+    let explained = page.files.done(&[&explain[..], &setting].concat());
+    assert_eq!(content(&browser, "explanation").trim(), explained.trim());
+
+    // Another scene: what waits for the first one is given up.
+    slow();
+    for button in ["explain", "save-blob"] {
+        browser.script(&format!("document.getElementById('{button}').click()"));
+    }
+    browser.script("document.getElementById('summary').textContent = ''");
+    choose(&browser, "sample", "quick.toml");
+    assert_eq!(begun(), "2");
+    assert!(shown(&browser) == page.rendered(&[&["quick.toml"][..], &setting].concat()));
+    assert!(content(&browser, "summary").starts_with("Click"));
+    let status = content(&browser, "status");
+    assert!(!status.contains("will be"), "{status}");
+
+    // One that cannot be opened: the scene before is shown again.
+    choose(&browser, "sample", "glass-chess.toml");
+    slow();
+    page.files
+        .write("broken.toml", b"[[object]]\nkind = 'none'\n");
+    open(page, &browser, "broken.toml");
+    browser.wait("!document.getElementById('error').hidden");
+    assert_eq!(begun(), "3");
+    set("structure", "dual-split");
+    settle(&browser);
     assert!(shown(&browser) == first);
     assert_no_message(&browser);
 }

@@ -2,7 +2,7 @@
 
 import { at } from "./controls.js";
 import { setState, showError, state } from "./state.js";
-import { askLoaded } from "./loading.js";
+import { askLoaded, saying } from "./loading.js";
 import { update } from "./picture.js";
 
 let isMoving = false;
@@ -52,8 +52,10 @@ export async function home({ keepsError = false } = {}) {
 
 async function turn(by, { isHome = false } = {}) {
   const mine = returns;
-  const { answer } = await askLoaded(() => ({ do: "move", slot: 0, camera: state.camera, ...by }));
-  if (mine !== returns) return;
+  const moved = askLoaded(() => ({ do: "move", slot: 0, camera: state.camera, ...by }));
+  const made = await (isHome ? moved : saying("The camera moves when the scene is compiled", moved));
+  if (!made || mine !== returns) return;
+  const { answer } = made;
   at("camera").textContent = answer.toml;
   if (isHome) return;
   state.camera = answer.camera;

@@ -2,9 +2,10 @@
 
 import { USUAL, at, offer } from "./controls.js";
 import { candidates, isBlob } from "./files.js";
-import { checkSize, inTurn, setState, showError, sizeOf, state, workers } from "./state.js";
-import { compile, forget, showCompiled } from "./loading.js";
-import { Problem } from "./workers.js";
+import { Abandoned, Problem } from "./workers.js";
+import { checkSize, inTurn, setState, settlePicture, showError, sizeOf, state, statusDuring, workers } from "./state.js";
+import { compile, forget, giveUp, showCompiled } from "./loading.js";
+import { bytesText } from "./table.js";
 import { home } from "./camera.js";
 import { update } from "./picture.js";
 
@@ -30,6 +31,9 @@ export async function open(read, { main, sample, keepsError = false } = {}) {
   const own = state.opening;
   state.change += 1;
   workers.stop();
+  giveUp();
+  settlePicture(false);
+  statusDuring("Reading files");
   if (!keepsError) at("error").hidden = true;
   setState("opening");
   try {
@@ -47,7 +51,7 @@ export async function open(read, { main, sample, keepsError = false } = {}) {
     document.title = `${opened.name}: what accuracy costs`;
     home({ keepsError });
   } catch (error) {
-    if (before === what) before = null;
+    if (before === what && !(error instanceof Abandoned)) before = null;
     if (isStale()) return;
     current = null;
     showError(error);
@@ -80,11 +84,28 @@ async function load(files, main = candidates(files)[0], sample, number) {
   if (!main) {
     throw Problem.of("there are no files to open: the folder is empty", "open a scene file and the files that it names, or a blob");
   }
+  rejectSame(files);
+  const begun = performance.now();
   const opened = { files, main, sample, name: main.path, number, blob: isBlob(main) ? main.bytes : null };
   await compile(opened, { bits: 24, structure: USUAL, without: [] });
   opened.first = opened.info;
+  // It was compiled as the reference is.
+  opened.reference = opened.bytes;
+  opened.time = performance.now() - begun;
   checkSize(sizeOf(opened.info, 0.5), false);
   return opened;
+}
+
+/** Throws if two files have the same path: scenes name files by it. */
+function rejectSame(files) {
+  const sizes = new Map();
+  for (const { path, bytes } of files) {
+    if (sizes.has(path)) {
+      const both = [sizes.get(path), bytes.length].map((it) => `${path} (${bytesText(it)})`).join(" and ");
+      throw Problem.of(`two files have the same name: ${both}`, "open one of them, or rename one");
+    }
+    sizes.set(path, bytes.length);
+  }
 }
 
 /** Shows which sample and which file was chosen. */
@@ -93,6 +114,8 @@ function showChosen() {
   // Without one, each sample can be chosen.
   at("sample").value = sample ?? "";
   const all = candidates(files);
+  at("scene-name").hidden = !main || Boolean(sample) || all.length > 1;
+  at("scene-name").textContent = `File: ${main?.path}`;
   at("main-label").hidden = all.length < 2;
   at("main").replaceChildren(...all.map((it) => new Option(it.path, it.path, false, it === main)));
 }

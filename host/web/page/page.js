@@ -14,7 +14,7 @@
 // | `workers.js`, `worker.js` | workers, and what runs in each |
 
 import { at, choose, correct, cycle, offerAll, offerFormats, settings, step, sweep, view } from "./controls.js";
-import { explain, memory, saveBlob, saveMemory, savePicture } from "./reports.js";
+import { explain, explainFields, memory, saveBlob, saveMemory, savePicture } from "./reports.js";
 import { fromDrop, fromList } from "./files.js";
 import { home, move } from "./camera.js";
 import { look, update } from "./picture.js";
@@ -44,32 +44,46 @@ const actions = {
   },
 };
 
-/** Draws all values of one setting, one after the other. */
+/** Ends the measurement of all values; null if none runs. */
+let stop = null;
+
+/** Draws all values of one setting, one after the other; stops if it does that. */
 async function measure() {
-  const button = at("measure");
-  // A button that is disabled would lose the focus.
-  if (!state.scene || state.opening || button.ariaDisabled === "true") return;
+  if (stop) {
+    stop();
+    return;
+  }
+  if (!state.scene || state.opening) return;
+  const { scene } = state;
   const first = settings();
-  const isBlobs = state.scene.blob && ["bits", "effects"].includes(at("sweep").value);
-  if (isBlobs) {
+  const setting = at("sweep").value;
+  if (scene.blob && ["bits", "effects"].includes(setting)) {
     status("A blob has its lattice bits and effects: open its scene file to change them.");
     return;
   }
-  button.ariaDisabled = "true";
+  const key = setting === "effects" ? "without" : setting;
+  let last = first;
+  const end = () => {
+    if (stop !== end) return null;
+    stop = null;
+    at("measure").textContent = "Measure all";
+    if (state.scene !== scene) return null;
+    // What was changed meanwhile stays.
+    const now = settings();
+    if (String(now[key]) === String(last[key])) choose({ ...now, [key]: first[key] });
+    return update();
+  };
+  stop = end;
+  at("measure").textContent = "Stop";
   document.querySelector("[name=view][value=picture]").checked = true;
-  try {
-    for (const chosen of sweep(at("sweep").value, first, state.scene, state.about)) {
-      choose(chosen);
-      const before = state.change + 1;
-      await update();
-      // Somebody changed something: that comes first.
-      if (state.change !== before) return;
-    }
-    choose(first);
+  for (last of sweep(setting, first, scene, state.about)) {
+    choose(last);
+    const before = state.change + 1;
     await update();
-  } finally {
-    button.ariaDisabled = "false";
+    // Somebody changed something: that comes first.
+    if (stop !== end || state.change !== before) break;
   }
+  await end();
 }
 
 function connect() {
@@ -94,7 +108,7 @@ function connect() {
   for (const radio of document.querySelectorAll("[name=view]")) radio.onchange = guarded(look);
   at("home").onclick = () => home();
   at("measure").onclick = guarded(measure);
-  at("explain").onclick = () => explain(correct(at("pixel-x")), correct(at("pixel-y")));
+  at("explain").onclick = explainFields;
   at("board").onchange = () => {
     offerFormats(state.about);
     memory();

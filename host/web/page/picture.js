@@ -3,8 +3,10 @@
 import { USUAL, at, choose, count, nameOf, settings, view } from "./controls.js";
 import { Table, bytesText, errorText, secondsText } from "./table.js";
 import { bytesOf, packed } from "./workers.js";
-import { compile, referenceSlot } from "./loading.js";
-import { describe, frameOf, inTurn, mark, setDone, setState, shot, showError, state, status, workers } from "./state.js";
+import { compile, giveUpFor, referenceSlot } from "./loading.js";
+import {
+  describe, frameOf, inTurn, mark, setDone, setState, settlePicture, shareOf, shot, showError, state, statusDuring, workers,
+} from "./state.js";
 import { memory } from "./reports.js";
 
 const context = at("canvas").getContext("2d", { alpha: false, willReadFrequently: true });
@@ -31,16 +33,19 @@ export async function update({ moved = false, keepsError = false } = {}) {
   clearFigures();
   try {
     const chosen = settings();
+    giveUpFor(scene, chosen, isStale);
     await inTurn(() => isStale() || compile(scene, chosen));
     if (isStale()) return;
     const wanted = { ...shot(chosen), heatMap: view() === "work" };
     if (state.frame.width !== wanted.width || state.frame.height !== wanted.height) resize(wanted);
+    [at("pixel-x").max, at("pixel-y").max] = [wanted.width - 1, wanted.height - 1];
     if (moved || table.key !== tableKey()) table.clear(tableKey());
     describe(chosen, "drawing");
     const seconds = await workers.draw(wanted, state.frame, { onchange: paint });
     if (isStale() || seconds === undefined) return;
     mark("picture");
     state.finished = { chosen, wanted, seconds, linear: state.frame.linear };
+    settlePicture(true);
     // Counting takes time.
     if (!wanted.heatMap) at("time").textContent = secondsText(seconds);
     at("bytes").textContent = bytesText(scene.info.bytes);
@@ -83,10 +88,10 @@ async function compare(chosen, isStale) {
   const wanted = { ...shot(chosen), slot, format: "f64", structure: scene.blob ? chosen.structure : USUAL, samples, depth };
   const key = JSON.stringify([scene.number, wanted]);
   if (state.reference?.key !== key) {
-    status("Drawing the reference");
     state.reference = null;
     const drawn = frameOf([wanted.width, wanted.height], at("size").value !== "0.5");
-    const onchange = () => { at("progress").value = drawn.drawn / (drawn.width * drawn.height); };
+    statusDuring(`Drawing the reference, ${count(samples, "sample")}`, () => shareOf(drawn));
+    const onchange = () => { at("progress").value = shareOf(drawn); };
     const seconds = await workers.draw(wanted, drawn, { onchange, isBackground: true });
     if (isStale() || seconds === undefined) return;
     state.reference = { key, linear: drawn.linear, seconds };
@@ -112,8 +117,7 @@ function tableKey() {
 
 /** Paints soon what was drawn so far. */
 function paint() {
-  const { frame } = state;
-  at("progress").value = frame.drawn / (frame.width * frame.height);
+  at("progress").value = shareOf(state.frame);
   if (isPainting) return;
   isPainting = true;
   if (view() === "work") {

@@ -54,7 +54,7 @@ export function listen(canvas, { move, key, click }) {
     down.delete(event.pointerId);
     if (!pointer || isDrag || pointer.pans) return;
     const box = canvas.getBoundingClientRect();
-    const pixel = (place, size, pixels) => Math.max(0, Math.floor(place / size * pixels));
+    const pixel = (place, size, pixels) => Math.min(Math.max(0, Math.floor(place / size * pixels)), pixels - 1);
     click(pixel(event.clientX - box.left, box.width, canvas.width), pixel(event.clientY - box.top, box.height, canvas.height));
   };
 

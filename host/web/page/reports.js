@@ -1,27 +1,44 @@
 // A pixel explained, the memory of boards, and files to save.
 
 import { USUAL, at, settings } from "./controls.js";
-import { askCompiled, compileOf } from "./loading.js";
-import { shot, showError, size, state, workers } from "./state.js";
-import { bytesOf } from "./workers.js";
+import { Problem, bytesOf } from "./workers.js";
+import { askCompiled, askLoaded, compileOf, saying } from "./loading.js";
+import { shot, showError, state, status, statusWaiting } from "./state.js";
 import { save } from "./files.js";
 
 export async function explain(x, y) {
   if (!state.scene && !state.opening) return;
   try {
-    const made = await askCompiled(() => {
-      const [width, height] = size();
-      const pixel = [Math.min(x, width - 1), Math.min(y, height - 1)];
-      [at("pixel-x").value, at("pixel-y").value] = pixel;
-      return { do: "explain", shot: shot(), pixel, compile: compileOf(state.scene, settings()) };
-    });
+    const asked = askCompiled(() => ({ do: "explain", shot: shot(), pixel: [x, y], compile: compileOf(state.scene, settings()) }));
+    const made = await saying("The pixel will be explained when the scene is compiled", asked);
     if (!made) return;
+    [at("pixel-x").value, at("pixel-y").value] = [x, y];
     at("summary").textContent = made.answer.summary;
     at("explanation").textContent = made.answer.text;
     at("explanation").hidden = false;
   } catch (error) {
-    showError(error);
+    if (error instanceof Problem) noExplanation(error.help ? `${error.message}: ${error.help}` : error.message);
+    else showError(error);
   }
+}
+
+function noExplanation(why) {
+  at("summary").textContent = why;
+  at("explanation").hidden = true;
+}
+
+/** Explains the pixel of the fields. */
+export function explainFields() {
+  const fields = [at("pixel-x"), at("pixel-y")];
+  const wrong = fields.find((field) => !field.checkValidity());
+  if (wrong) {
+    const name = wrong === fields[0] ? "Column" : "Row";
+    const what = wrong.value ? `${wrong.value} is not in the picture` : "has no number";
+    noExplanation(`${name} ${what}: write a whole number from 0 to ${wrong.max || 0}.`);
+    wrong.focus();
+    return;
+  }
+  explain(...fields.map(({ valueAsNumber }) => valueAsNumber));
 }
 
 /** Asks what the scene takes on a board, as the controls say, and shows it. Returns nothing if they say otherwise now. */
@@ -29,17 +46,22 @@ async function reported() {
   const board = at("board").value;
   const format = at("board-format").value || null;
   if (!board) return null;
+  let structure, isOther;
   const made = await askCompiled(() => {
     const chosen = settings();
-    const { structure } = chosen;
-    const measured = state.about.boardStructures.includes(structure) ? structure : USUAL;
-    const compile = compileOf(state.scene, { ...chosen, structure: measured });
+    ({ structure } = chosen);
+    // The report is of the blob that is saved, if boards can use that.
+    isOther = !state.scene.blob && !state.about.boardStructures.includes(structure);
+    const compile = isOther ? compileOf(state.scene, { ...chosen, structure: USUAL }) : undefined;
     return { do: "memory", board, format, structure, compile };
   });
   if (!made || board !== at("board").value) return null;
   const { answer } = made;
-  at("fits").textContent = answer.fits ? `The scene fits on ${board}, through ${answer.report.structure} in ${answer.report.format}.`
-    : `${answer.why[0].toUpperCase()}${answer.why.slice(1)}.`;
+  const sentences = [answer.fits ? `The scene fits on ${board}, through ${answer.report.structure} in ${answer.report.format}.`
+    : `${answer.why[0].toUpperCase()}${answer.why.slice(1)}.`];
+  if (isOther) sentences.push(`This is for a blob with ${USUAL}: ${structure} was not measured on boards.`);
+  if (!answer.fits && !state.scene.blob) sentences.push(`\`gridel build --target ${board}\` leaves out names.`);
+  at("fits").textContent = sentences.join(" ");
   at("memory").textContent = answer.text;
   at("memory").hidden = false;
   return { board, text: answer.text };
@@ -58,21 +80,28 @@ export async function memory() {
 const stem = () => state.scene.name.split("/").at(-1).replace(/\.gz$/, "").replace(/\.[^.]*$/, "");
 
 export async function saveMemory() {
-  const made = await reported();
+  const made = await saying("The memory report will be saved when the scene is compiled", reported());
   if (made) save(`${stem()}-${made.board}.txt`, made.text, "text/plain");
 }
 
 export async function saveBlob() {
-  await askCompiled();
-  if (state.scene) save(`${stem()}.gridel`, state.scene.bytes, "application/octet-stream");
+  const scene = await saying("The blob will be saved when it is compiled", askCompiled());
+  if (scene) save(`${stem()}.gridel`, scene.bytes, "application/octet-stream");
 }
 
-/** Saves the picture that is finished. */
+/** Saves the picture, once it is finished. */
 export async function savePicture() {
-  const { finished } = state;
-  if (!finished) return;
-  const { width, height } = finished.wanted;
+  if (!state.finished) {
+    if (state.onpicture) return;
+    if (!["opening", "drawing"].includes(document.documentElement.dataset.state)) {
+      status("There is no picture to save");
+      return;
+    }
+    const finished = new Promise((resolve) => { state.onpicture = resolve; });
+    if (!await statusWaiting("The picture will be saved when it is finished", finished)) return;
+  }
+  const { linear, wanted: { width, height } } = state.finished;
   const name = `${stem()}.png`;
-  const made = await workers.ask({ do: "png", width, height }, bytesOf(finished.linear));
-  save(name, made.bytes, "image/png");
+  const made = await askLoaded(() => ({ do: "png", width, height }), bytesOf(linear));
+  if (made) save(name, made.bytes, "image/png");
 }

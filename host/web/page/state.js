@@ -1,7 +1,7 @@
 // What the page shows, which its parts share, and how they say it.
 
-import { at, nameOf, settings, view } from "./controls.js";
-import { Frame, Problem, Workers } from "./workers.js";
+import { Abandoned, Frame, Problem, Workers } from "./workers.js";
+import { at, count, nameOf, settings, view } from "./controls.js";
 import { errorText, secondsText } from "./table.js";
 
 export const state = {
@@ -20,6 +20,8 @@ export const state = {
   change: 0,
   /** Settles when the files that are being opened are shown, or cannot be; null if none are. */
   opening: null,
+  /** Takes whether a picture was finished, for what waits for one; null if nothing does. */
+  onpicture: null,
 };
 
 const module = WebAssembly.compileStreaming(fetch("gridel.wasm")).catch(async () =>
@@ -49,8 +51,60 @@ export function mark(what) {
   document.documentElement.dataset[what] ??= Math.round(performance.now());
 }
 
+// The status line. A screen reader reads each of its texts.
+
+/** Work is first announced after this time, in milliseconds: most of it is done sooner. */
+const FIRST_STATUS = 300;
+/** Between two shares of the same work, in milliseconds. */
+const STATUS_PAUSE = 5000;
+
+let said = "Loading";
+const notes = new Set();
+let progress = null;
+let timer = null;
+
+function say(text = said) {
+  said = text;
+  at("status").textContent = [text, ...notes].join(". ");
+}
+
+/** Says what is shown, or what went wrong. */
 export function status(text) {
-  at("status").textContent = text;
+  clearTimeout(timer);
+  progress = timer = null;
+  say(text);
+}
+
+/** Says what is being done, and every few seconds its share. */
+export function statusDuring(what, share = () => 0) {
+  const isSame = progress?.what === what;
+  progress = { what, share };
+  if (isSame) return;
+  clearTimeout(timer);
+  const tell = () => {
+    const percent = Math.floor(100 * progress.share());
+    say(percent > 0 ? `${what}: ${percent} %` : what);
+    timer = setTimeout(tell, STATUS_PAUSE);
+  };
+  timer = setTimeout(tell, FIRST_STATUS);
+}
+
+/** Says what waits, until it is done. */
+export async function statusWaiting(note, work) {
+  notes.add(note);
+  say();
+  try {
+    return await work;
+  } finally {
+    notes.delete(note);
+    say();
+  }
+}
+
+/** Answers what waits for a picture. */
+export function settlePicture(isFinished) {
+  state.onpicture?.(isFinished);
+  state.onpicture = null;
 }
 
 /** Says what is drawn, or was. */
@@ -68,12 +122,21 @@ export function describe(chosen, name) {
     setDone();
   } else {
     setState(name);
+    statusDuring(`Drawing, ${count(chosen.samples, "sample")}`, () => shareOf(state.frame));
   }
   at("canvas").setAttribute("aria-label", `Picture of ${text}`);
 }
 
+/** The share of a frame's pixels that is drawn. */
+export function shareOf({ drawn, width, height }) {
+  return drawn / (width * height);
+}
+
 /** Shows an error of the program, or a fault of the page. */
 export function showError(error) {
+  // What was given up has something else in its place.
+  if (error instanceof Abandoned) return;
+  settlePicture(false);
   let problem = error;
   if (error instanceof RangeError) {
     problem = Problem.of(`the browser has not enough memory for this: ${error.message}`, "choose a smaller picture, or use the program");

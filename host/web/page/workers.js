@@ -17,6 +17,9 @@ export class Problem extends Error {
   }
 }
 
+/** What was asked of a worker that was ended. */
+export class Abandoned extends Error {}
+
 /** Pixels so far. A finer block is never drawn over by a coarser one that comes late. */
 export class Frame {
   constructor(width, height) {
@@ -66,19 +69,38 @@ export class Workers {
     /** The picture that is drawn, and the one that waits for it. */
     this.current = null;
     this.next = null;
-    this.all = Array.from({ length: count }, (_, index) => {
-      const worker = new Worker("worker.js");
-      worker.onmessage = ({ data }) => this.receive(index, data);
-      worker.onerror = (event) => this.onfault?.(new Problem({ message: event.message, help: "reload the page", report: event.message }));
-      return worker;
+    this.all = Array.from({ length: count }, (_, index) => this.started(index));
+    this.ready = module.then((it) => {
+      this.module = it;
+      return Promise.all(this.all.map((_, index) => this.send(index, { module: it })));
     });
-    this.ready = module.then((it) => Promise.all(this.all.map((_, index) => this.send(index, { module: it }))));
+  }
+
+  started(index) {
+    const worker = new Worker("worker.js");
+    worker.onmessage = ({ data }) => this.receive(index, data);
+    worker.onerror = (event) => this.onfault?.(new Problem({ message: event.message, help: "reload the page", report: event.message }));
+    return worker;
+  }
+
+  /** Ends the first worker and starts another, which holds nothing. What the first was asked is rejected. */
+  restart() {
+    this.stop();
+    this.all[0].terminate();
+    this.all[0] = this.started(0);
+    for (const [id, [, reject, index]] of this.answers) {
+      if (index !== 0) continue;
+      this.answers.delete(id);
+      reject(new Abandoned("given up"));
+    }
+    this.onlost?.();
+    this.send(0, { module: this.module });
   }
 
   send(index, message, transfer = []) {
     const id = this.id += 1;
     return new Promise((resolve, reject) => {
-      this.answers.set(id, [resolve, reject]);
+      this.answers.set(id, [resolve, reject, index]);
       this.all[index].postMessage({ id, ...message }, transfer);
     });
   }

@@ -4,7 +4,7 @@ use miette::{Diagnostic, GraphicalReportHandler, GraphicalTheme, Report};
 use serde_json::{Value, json};
 use std::fmt::Display;
 
-/// Why a request cannot be answered.
+/// The reason why a request cannot be answered.
 pub struct Problem {
     message: String,
     help: Option<String>,

@@ -44,7 +44,7 @@ pub enum Request {
     Png { width: u16, height: u16 },
 }
 
-/// How a scene is compiled.
+/// Options for compiling a scene.
 #[derive(Clone, Deserialize)]
 #[serde(rename_all = "camelCase")]
 pub struct Compile {
@@ -61,13 +61,13 @@ pub struct Compile {
 pub struct Memory {
     pub board: String,
     pub format: Option<FormatName>,
-    /// What is chosen; another takes its place if it was not measured on boards.
+    /// The chosen structure; another replaces it if it was not measured on boards.
     pub structure: StructureName,
-    /// How the scene is compiled for it; without this it is the blob of the picture.
+    /// Options for compiling the scene for it; without them it is the blob of the picture.
     pub compile: Option<Compile>,
 }
 
-/// How a camera moves.
+/// A motion of the camera.
 #[derive(Deserialize)]
 pub struct Move {
     pub slot: usize,

@@ -8,7 +8,9 @@ use crate::{Answer, pictures};
 use gridel_core::format::limits::MAX_RAY_DEPTH;
 use gridel_core::{Effects, Format, Scene as Checked, Settings, Structure};
 use gridel_host::blob::Blob;
-use gridel_host::compile::{Compiled, LATTICE_BITS, Names, Options, compile, scene_warnings};
+use gridel_host::compile::{
+    Compiled, LATTICE_BITS, Names, Options, Supplied, compile, scene_warnings,
+};
 use gridel_host::explain::{Shown, Subject, explain};
 use gridel_host::measure::board::{BOARDS, Board, Fit, MemoryReport, Rendering, Target};
 use gridel_host::scene::{
@@ -96,7 +98,7 @@ impl Session {
 
     /// Compiles a scene file.
     fn compile(&mut self, how: &Compile) -> Answer {
-        let Compiled { blob, report } = self.compiled(how, true)?;
+        let Compiled { blob, report } = self.compiled(how)?;
         let imported = self.imported(&how.name)?;
         let mut warnings = imported.warnings.clone();
         let mut sentences = report.warnings(how.lattice_bits);
@@ -104,17 +106,17 @@ impl Session {
         warnings.extend(sentences.iter().map(|it| format!("{}: {it}", how.name)));
         // It depends on the camera, and the program places it by the camera that it is given.
         let mut supplied = report.supplied.iter();
-        let has_own_light = !supplied.any(|it| it.starts_with("a directional light"));
+        let has_own_light = !supplied.any(|it| matches!(it, Supplied::Light(_)));
         let answer = json!({"warnings": warnings, "hasOwnLight": has_own_light});
         Ok((answer, blob.bytes().to_vec()))
     }
 
-    fn compiled(&mut self, how: &Compile, names: bool) -> Result<Compiled, Problem> {
+    fn compiled(&mut self, how: &Compile) -> Result<Compiled, Problem> {
         let scene = self.scene(how)?;
         let options = Options {
             structures: vec![how.structure.0],
             lattice_bits: how.lattice_bits,
-            names,
+            names: true,
             ..Options::default()
         };
         let cannot = format!("{} cannot be compiled", how.name);
@@ -218,9 +220,8 @@ impl Session {
             flash: board.flash,
             ram: board.ram,
         };
-        // Blobs for boards have no names.
         let own = match &of.compile {
-            Some(how) => Some(Loaded::new(self.compiled(how, false)?.blob, None)?),
+            Some(how) => Some(Loaded::new(self.compiled(how)?.blob, None)?),
             None => None,
         };
         let loaded = match &own {

@@ -8,8 +8,8 @@ pub const FRAMES: u32 = 8;
 /// The joint on which the hand hangs; its fingers hang on joints behind it.
 const WRIST: usize = 3;
 
-/// Writes the motions of all joints in a frame: the first turns about the axis that points up, the others up to the wrist
-/// bend.
+/// Writes the motions of all joints in a frame: the first turns about the axis that points up, the others up to the
+/// wrist bend.
 pub fn bend(tracks: &Tracks<'_>, frame: u32, motions: &mut [Motion]) -> Result<(), BlobError> {
     for ((number, joint), motion) in (0..).zip(tracks.joints()).zip(motions.iter_mut()) {
         let axis = if number == 0 { [0, 1, 0] } else { [0, 0, 1] };
@@ -20,7 +20,7 @@ pub fn bend(tracks: &Tracks<'_>, frame: u32, motions: &mut [Motion]) -> Result<(
     tracks.chain(motions)
 }
 
-/// Where the range finder in the hand is, beyond its fingers, and where it points: straight down.
+/// Returns the position of the range finder in the hand, beyond its fingers, and its direction: straight down.
 pub fn hand(tracks: &Tracks<'_>, motions: &[Motion]) -> Option<(Position, [i32; 3])> {
     let [elbow, wrist] = [WRIST - 1, WRIST].map(|number| tracks.joints().get(number));
     let [from, to] = [elbow?.pivot, wrist?.pivot];

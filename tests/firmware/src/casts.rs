@@ -1,4 +1,4 @@
-//! Ray casts between points of one's own, without a camera or a picture.
+//! Ray casts between given points, without a camera or a picture.
 
 use gridel_core::{Accel, NoCount, Number, Ray, Scene, StackView, closest_primitive};
 
@@ -8,7 +8,7 @@ pub const RAYS: u32 = 4096;
 /// The results of casts.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Casts {
-    /// Those that met something.
+    /// Number of rays that hit something.
     pub hits: u32,
     /// The length and the primitive of each hit, all in one word that depends on their order, too.
     pub sum: u32,

@@ -14,7 +14,7 @@ pub fn direction(number: i32) -> [i32; 3] {
     ]
 }
 
-/// Where the fan begins: above the middle of the scene's box, by half of its height.
+/// Returns the origin of the fan: above the middle of the scene's box, by half of its height.
 pub fn place(scene: &Scene<'_>) -> Position {
     let [x, y, z] = scene.bounds().0.map(|side| side.map(i64::from));
     // Units with 13 fraction bits.

@@ -57,8 +57,8 @@ unsafe extern "C" {
 pub static __INTERRUPTS: [unsafe extern "C" fn(); scene::INTERRUPTS] =
     [DefaultHandler; scene::INTERRUPTS];
 
-/// Makes a function the whole program: it is given the program's memory, which lies beside the
-/// stack, so that the linker knows of it.
+/// Makes a function the whole program. It gets the program's memory, which lies outside the stack, so that the linker
+/// counts it.
 #[macro_export]
 macro_rules! program {
     ($run:path, $memory:ty) => {

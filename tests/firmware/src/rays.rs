@@ -9,26 +9,26 @@ use gridel_core::{Hit, NoCount, Ray, Scene, StackView, any_hit, closest_primitiv
 /// The results of tracing.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Rays {
-    /// One a pixel.
+    /// Number of rays: one per pixel.
     pub rays: u32,
-    /// Those that met something.
+    /// Number of rays that hit something.
     pub hits: u32,
-    /// Those of the hits that face the first light.
+    /// Number of hits that face the first light.
     pub facing: u32,
-    /// Those of them that it does not reach.
+    /// Number of these that are in shadow.
     pub shadows: u32,
 }
 
-/// How far pixels are followed.
+/// The last step to which pixels are followed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Until {
     /// The primary ray, which is not traced.
     Camera,
     /// The first hit of the primary ray.
     Primitive,
-    /// How the surface lies there, and the ray from it to the first light, which is not traced.
+    /// The surface at the hit, and the ray from it to the first light, which is not traced.
     Surface,
-    /// Whether anything is in that light's way.
+    /// The shadow ray to that light.
     Light,
 }
 

@@ -24,14 +24,14 @@ pub fn pose<V: Vertex>(rest: &[V], vertices: &mut [V], number: u32) {
     }
 }
 
-/// One word that depends on all normals and their order.
+/// Returns a word that depends on all normals and their order.
 pub fn sum_of_normals(normals: &[[i16; 2]]) -> u32 {
     normals.iter().flatten().fold(0, |sum: u32, x| {
         sum.rotate_left(5).wrapping_mul(0x9e37_79b1) ^ *x as u32
     })
 }
 
-/// One word that depends on all boxes and their order.
+/// Returns a word that depends on all boxes and their order.
 pub fn sum(pairs: &[Pair]) -> u32 {
     let planes = pairs.iter().flat_map(|pair| pair.planes);
     planes.flatten().flatten().fold(0, |sum: u32, plane| {

@@ -210,7 +210,7 @@ pub struct Forger {
     random: Random,
     /// Forgeries made.
     pub made: u64,
-    /// Those that loaded.
+    /// Number of blobs that loaded.
     pub loaded: u64,
 }
 

@@ -7,7 +7,7 @@ use gridel_host::shape::exact::Real;
 impl Sample for Cuboid {
     const NAMES: &[Named] = &[Named {
         name: "box",
-        crossing: (8.0, "one difference and one quotient an axis"),
+        crossing: (8.0, "one difference and one quotient per axis"),
         normal: (0.0, "exact"),
     }];
 

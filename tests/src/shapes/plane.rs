@@ -53,7 +53,7 @@ impl Sample for Plane {
         (point - self.point).dot(self.normal.normalize()).abs()
     }
 
-    /// It has no end.
+    /// Returns the largest number, because a plane has no end.
     fn reach(&self, _: usize, _: f64) -> Real {
         Real::of(f64::MAX)
     }

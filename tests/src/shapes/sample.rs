@@ -13,12 +13,12 @@ pub struct Named {
     pub normal: (f64, &'static str),
 }
 
-/// How large a random shape is, and where.
+/// The size and the place of a random shape.
 #[derive(Clone, Copy)]
 pub struct Room {
     pub center: DVec3,
     pub size: f64,
-    /// How many times longer than wide.
+    /// Ratio of length to width.
     pub stretch: f64,
 }
 
@@ -46,14 +46,14 @@ pub trait Sample: Sized {
     /// A point of the surface, often at an edge.
     fn surface_point(&self, random: &mut Random) -> DVec3;
 
-    /// How far a point lies from the surface.
+    /// Returns the distance of a point from the surface.
     fn distance(&self, point: DVec3) -> f64;
 
-    /// How far it reaches along a direction of an axis, exactly.
+    /// Returns its exact reach along a direction of an axis.
     fn reach(&self, axis: usize, sign: f64) -> Real;
 }
 
-/// On the storage lattice, inside the scene.
+/// Rounds a coordinate to the storage lattice, inside the scene.
 pub fn lattice(x: f64) -> f64 {
     (x * 256.0).round().clamp(-8_380_000.0, 8_380_000.0) / 256.0
 }
@@ -67,7 +67,7 @@ pub fn length(x: f64) -> f64 {
     lattice(x).max(1.0 / 256.0)
 }
 
-/// Along an axis of the lattice, or anywhere.
+/// Returns a random direction, along an axis of the lattice or any.
 pub fn direction(random: &mut Random) -> DVec3 {
     if random.one_in(3) {
         DVec3::AXES[random.below(3)]
@@ -76,14 +76,14 @@ pub fn direction(random: &mut Random) -> DVec3 {
     }
 }
 
-/// Such a direction as the compiler rounds it, so that it stays as it is.
+/// Returns a random direction that is rounded as by the compiler, so that compiling does not change it.
 pub fn rounded_direction(random: &mut Random) -> DVec3 {
     let direction = direction(random);
     let direction = direction / direction.abs().max_element() * f64::from(1 << 24);
     direction.round() / f64::from(1 << 24)
 }
 
-/// A vector at right angles to an axis.
+/// Returns a random vector at right angles to an axis.
 pub fn around(random: &mut Random, axis: DVec3, radius: f64) -> DVec3 {
     let side = axis.any_orthonormal_vector();
     let angle = std::f64::consts::TAU * random.unit();
@@ -95,7 +95,7 @@ pub fn part(random: &mut Random, at_end: bool) -> f64 {
     if at_end { 1.0 } else { random.unit() }
 }
 
-/// How far a vector goes along an axis, and away from it.
+/// Returns a vector's length along an axis, and its distance from it.
 pub fn cylindrical(vector: DVec3, axis: DVec3) -> (f64, f64) {
     let axis = axis.normalize();
     let along = vector.dot(axis);
@@ -108,7 +108,7 @@ pub fn from_segment(point: DVec3, from: DVec3, to: DVec3) -> f64 {
     point.distance(from + way * part.clamp(0.0, 1.0))
 }
 
-/// How far a ball reaches along a direction of an axis.
+/// Returns the reach of a sphere along a direction of an axis.
 pub fn end(place: f64, sign: f64, radius: f64) -> Real {
     Real::of(sign * place) + Real::of(radius)
 }

@@ -14,7 +14,7 @@ use gridel_core::{
 use gridel_host::scene::{self, Shape};
 use gridel_host::shape::{Cuboid, Disc, Plane, Sphere, Torus};
 use gridel_host::verify::rays::rays;
-use gridel_tests::effort::{part_of, third_of};
+use gridel_tests::effort::{part_of, sixth_of};
 use gridel_tests::every_format;
 use gridel_tests::query::{HitBits, UnitRay};
 use gridel_tests::random::Random;
@@ -150,7 +150,7 @@ fn every_structure_lists_the_same_hits_in_lists_of_any_size() {
     for (name, scene) in [("soup", soup), ("ball", scenes::of([ball]))] {
         let blob = every_structure(&scene);
         let scene = blob.scene().expect("a scene");
-        every_format!(compare(name, &scene, part_of(third_of(900), 100_000)));
+        every_format!(compare(name, &scene, part_of(sixth_of(900), 100_000)));
     }
 }
 
@@ -189,7 +189,7 @@ fn the_first_of_all_hits_is_the_closest_one() {
     }
     let blob = every_structure(&scenes::soup(4, 200, 0.5));
     let scene = blob.scene().expect("a scene");
-    every_format!(compare(&scene, part_of(third_of(30_000), 1_000_000)));
+    every_format!(compare(&scene, part_of(sixth_of(30_000), 1_000_000)));
 }
 
 /// Solids are entered and left in turn; a torus twice.
@@ -233,7 +233,7 @@ fn rays_leave_each_solid_as_often_as_they_enter_it() {
     });
     let blob = scenes::blob(&scenes::of(shapes), 24);
     let scene = blob.scene().expect("a scene");
-    every_format!(solids(&scene, part_of(third_of(3000), 100_000)));
+    every_format!(solids(&scene, part_of(sixth_of(3000), 100_000)));
 }
 
 #[test]
@@ -441,7 +441,7 @@ fn closed_meshes_are_crossed_an_even_number_of_times() {
             let blob = scenes::blob_with_gridels(&scenes::of([shape.clone()]), bits, 1);
             let scene = blob.scene().expect("a scene");
             let name = format!("{name}, {bits}");
-            every_format!(parity(&name, &scene, part_of(third_of(12_000), 1_250_000)));
+            every_format!(parity(&name, &scene, part_of(sixth_of(12_000), 1_250_000)));
         }
     }
 }

@@ -86,7 +86,7 @@ fn points_are_contained_where_geometry_says_so() {
     ];
     let blob = scenes::blob(&scenes::of(shapes), 24);
     let scene = blob.scene().expect("a scene");
-    every_format!(contained(&scene, part_of(third_of(6000), 300_000)));
+    every_format!(contained(&scene, part_of(sixth_of(6000), 300_000)));
     let outside = containment_ray::<f64>(&scene, [1e9, 0.0, 0.0]);
     assert!(matches!(outside, Ok(None)));
     assert!(containment_ray::<f64>(&scene, [f64::NAN, 0.0, 0.0]).is_err());

@@ -88,7 +88,7 @@ fn odd_but_finite_origins_are_harmless() {
     }
 }
 
-/// Where a section lies, and its entry's place in the table.
+/// Returns the offset of a section's entry in the table, and the entry.
 pub fn section(bytes: &[u8], kind: SectionKind) -> (usize, SectionEntry) {
     let header: Header = bytemuck::pod_read_unaligned(&bytes[..size_of::<Header>()]);
     let entries = bytes[size_of::<Header>()..].chunks_exact(size_of::<SectionEntry>());
@@ -105,7 +105,7 @@ pub fn section(bytes: &[u8], kind: SectionKind) -> (usize, SectionEntry) {
         .expect("the section")
 }
 
-/// Where a field of a record lies, given its offset in the record.
+/// Returns the offset of a field of a record in the blob, given its offset in the record.
 pub fn field(section: &SectionEntry, record: usize, offset: usize) -> usize {
     section.offset as usize + record * usize::from(section.stride) + offset
 }

@@ -251,7 +251,7 @@ fn walks_end<N: Number>(scene: &Scene<'_>, leaves: u32, rays_each: usize) {
                 let leaves = u64::from(leaves);
                 assert!(count.boxes <= 1 + 8 * leaves, "{count:?}");
                 assert!(
-                    count.objects <= u64::from(Leaf::MAX_COUNT) * leaves,
+                    count.primitives <= u64::from(Leaf::MAX_COUNT) * leaves,
                     "{count:?}"
                 );
             }
@@ -270,21 +270,21 @@ fn demands_are_those_of_the_scene() {
             };
             let blob = compile(&scene, &options).expect("compiles").blob;
             let scene = blob.scene().expect("a scene");
-            let (demand, view) = (
+            let (required, view) = (
                 Requirements::of(blob.bytes()).expect("a whole blob"),
                 scene.view(),
             );
-            assert_eq!(demand.stack_depth, scene.stack_depth(), "{name}");
-            assert_eq!(demand.effects, scene.effects(), "{name}");
+            assert_eq!(required.stack_depth, scene.stack_depth(), "{name}");
+            assert_eq!(required.effects, scene.effects(), "{name}");
             let work_depth = scene.effects().work_depth(view.depth);
-            assert_eq!(demand.work_depth, work_depth, "{name}");
+            assert_eq!(required.work_depth, work_depth, "{name}");
             let size = [view.width, view.height].map(usize::from);
-            assert_eq!([demand.width, demand.height], size, "{name}");
+            assert_eq!([required.width, required.height], size, "{name}");
             for structure in Structure::ALL {
-                assert_eq!(demand.holds(structure), scene.holds(structure), "{name}");
+                assert_eq!(required.holds(structure), scene.holds(structure), "{name}");
             }
             // This build has every feature.
-            assert_eq!(demand.missing(), None, "{name}");
+            assert_eq!(required.missing(), None, "{name}");
         }
     }
 }

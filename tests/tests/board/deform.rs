@@ -61,7 +61,7 @@ fn a_mesh_deforms(board: &'static Board, format: Format, compiled: &Compiled, tr
 /// A program that moves a mesh and casts rays at each pose.
 pub struct Moving {
     pub program: &'static str,
-    /// What is measured of each pose.
+    /// The step that is measured for each pose.
     pub step: &'static str,
     /// Instructions of it at most, for 1,000 triangles on a Cortex-M4F.
     pub most: u64,
@@ -110,7 +110,7 @@ impl Moving {
     }
 }
 
-/// What the programs cast, on the host.
+/// Casts the programs' rays on the host.
 pub fn cast(format: Format, moved: &Scene<'_>) -> Casts {
     let (mut casts, mut stack) = (Casts::default(), Stack::<48>::new());
     match format {

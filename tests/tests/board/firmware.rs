@@ -169,7 +169,7 @@ impl<'b> Build<'b> {
         (self.board, self.format, self.structure)
     }
 
-    /// How it is built.
+    /// Returns the profile with which it is built.
     pub fn profile(&self) -> Profile {
         match self.small {
             true => Profile::Small,

@@ -136,7 +136,7 @@ fn an_arm_bends(board: &'static Board, format: Format, compiled: &Compiled) {
     figures.check();
 }
 
-/// How far a ray goes, in units with 13 fraction bits; 0 if it meets nothing.
+/// Returns the length of a ray up to its hit, in units with 13 fraction bits; 0 if it misses.
 fn range<N: Number>(scene: &Scene<'_>, place: Position, direction: [i32; 3]) -> u64 {
     let ray = scene.ray_from::<N>(place, direction).expect("a direction");
     let mut stack = Stack::<MAX_STACK_DEPTH>::new();

@@ -31,7 +31,7 @@ pub fn quick() -> Compiled {
     fixture("quick", [48, 36])
 }
 
-/// That scene with every structure, small tables among them.
+/// Returns that scene with every structure, including small tables.
 pub fn quick_through_everything() -> Compiled {
     let options = Options {
         structures: Structure::ALL.to_vec(),
@@ -374,7 +374,7 @@ impl Compiled {
     }
 }
 
-/// A scene's picture as the host renders it: three bytes a pixel.
+/// Returns a scene's picture as the host renders it: three bytes per pixel.
 pub fn picture(scene: &gridel_core::Scene<'_>, structure: Structure, format: Format) -> Vec<u8> {
     picture_of(from_ref(scene), structure, format, Settings::of(scene))
 }
@@ -402,7 +402,7 @@ pub fn fixture_path(name: &str) -> PathBuf {
     path.with_extension("toml")
 }
 
-/// Where a real scene lies, if it is there.
+/// Returns the path of a real scene, which need not exist.
 pub fn real(name: &str) -> PathBuf {
     let folder = env::var_os("GRIDEL_SCENES")
         .map_or_else(|| repository().join("../shared/scenes"), PathBuf::from);
@@ -425,7 +425,7 @@ pub fn by_default(name: &'static str, path: &Path) -> Compiled {
     }
 }
 
-/// With all hierarchies, so that they can be compared.
+/// Compiles a scene with all hierarchies, so that they can be compared.
 fn compile(name: &'static str, scene: Scene, size: [u32; 2]) -> Compiled {
     let options = Options {
         structures: vec![Structure::Bvh, Structure::Flagged, Structure::DualSplit],

@@ -210,7 +210,7 @@ const TRAPS: [&str; 3] = ["_start_trap", "_default_start_trap", "_default_abort"
 /// The steps of riscv-rt's start-up code, which jumps through registers from one to the next.
 const STEPS: [&str; 2] = ["_abs_start", "_start_rust"];
 
-/// By function, the functions whose address it takes, so that it might call them through a register.
+/// Returns, for each function, the functions whose address it takes: it might call them through a register.
 ///
 /// # Errors
 /// If data holds the address of a function.

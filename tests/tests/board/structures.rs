@@ -86,7 +86,7 @@ fn lists_of_candidates(name: &str, format: Format, is_measured: fn(&str) -> bool
 /// The smaller crystal.
 const SMALLER: &str = scenes::PAPERS[1];
 
-/// Where the paper's scenes are measured.
+/// The boards and number formats on which the paper's scenes are measured.
 const PAPER_BOARDS: [(&str, Format); 2] =
     [("mps2-an386", Format::F32), ("mps2-an385", Format::Fixed)];
 

@@ -13,7 +13,7 @@ use gridel_host::shape::exact::{Line, Real, Vector, along, dot, norm, scaled, un
 
 /// The dimension of random points for the facet of a rough surface.
 const FACET: u16 = 0x1010;
-/// That for the direction of indirect light.
+/// The dimension of random points for the direction of indirect light.
 const DIRECTION: u16 = 0x1030;
 
 /// A scene.

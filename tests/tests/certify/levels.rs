@@ -16,7 +16,7 @@ fn of_ratio(ratio: &Real) -> i32 {
     log2(floor(&(ratio * real(f64::powi(2.0, 30)))).unsigned_abs()) - log2_of_power(30)
 }
 
-/// How much longer lengths are in a part than where it stands.
+/// Returns the logarithm of the ratio of lengths in a part to lengths in its surroundings.
 pub fn stretch(instance: &Instance) -> i32 {
     let row = log2_of_length(instance.matrix[0].map(i64::from));
     row + log2_of_power(i32::from(instance.exponent) - MATRIX_BITS as i32)

@@ -1,4 +1,4 @@
-//! Where lights are from a surface, and how their light falls off.
+//! Directions and distances of lights from a surface, and the falloff of their light.
 
 use super::exact::Exact;
 use super::numbers::{black, color, fraction, limited, mixed, one, real};
@@ -18,9 +18,9 @@ pub struct Share {
 /// The way to a point of a light.
 pub struct Aim {
     pub way: Vector,
-    /// How far along the way the light is; `None` for infinitely far.
+    /// The distance of the light along the way; `None` for infinitely far.
     pub end: Option<Real>,
-    /// Where the point was drawn by solid angle.
+    /// Present if the point was drawn by solid angle.
     pub share: Option<Share>,
     /// Its radiance, before it falls off.
     pub brought: Vector,

@@ -7,11 +7,9 @@ use super::numbers::{black, color, decay, fraction, limited, one, peak, product,
 use super::placed::Met;
 use super::surface::Surface;
 use gridel_core::Effects;
+use gridel_core::format::limits::MAX_SHADOW_SURFACES;
 use gridel_core::format::record::{Light, Material};
 use gridel_host::shape::exact::{Line, Real, Vector, dot, minus, norm, scaled, unit};
-
-/// How many surfaces light passes at most.
-const SURFACES: usize = 128;
 
 /// The part of the lights that a highlight adds.
 fn highlight(surface: &Surface<'_>, to_light: &Vector) -> Vector {
@@ -119,7 +117,7 @@ impl Exact<'_> {
         mut inside: Inside,
     ) -> Vector {
         let mut left = [one(), one(), one()];
-        for _ in 0..SURFACES {
+        for _ in 0..=MAX_SHADOW_SURFACES {
             let Some(blocker) = self.nearest(&line, end.as_ref()) else {
                 return match (end, self.around(inside)) {
                     (Some(end), Some(medium)) => {

@@ -10,7 +10,7 @@ use gridel_host::shape::exact::{Real, Vector, along, dot, scaled};
 /// The glass that a ray is inside of.
 #[derive(Clone, Copy, Default)]
 pub struct Inside {
-    /// How often it is inside of each medium, the one with the highest priority first.
+    /// Number of times that it is inside of each medium, the one with the highest priority first.
     counts: [u8; MAX_MEDIA],
     /// The material of the glass without a priority that it came into last.
     plain: Option<u32>,
@@ -43,7 +43,7 @@ pub struct Interface {
 }
 
 impl Interface {
-    /// Between the surroundings and glass.
+    /// Returns the passage between the surroundings and glass.
     fn of(material: &Material, enters: bool) -> Self {
         Self {
             k: fraction(material.inverse_ior, 30),
@@ -51,7 +51,7 @@ impl Interface {
         }
     }
 
-    /// From one medium to another, `None` for the surroundings.
+    /// Returns the passage from one medium to another, `None` for the surroundings.
     fn between(from: Option<&Material>, to: Option<&Material>) -> Self {
         let inverse = |it: Option<&Material>| it.map_or(1 << 30, |it| it.inverse_ior);
         let (from, to) = (inverse(from), inverse(to));
@@ -66,8 +66,8 @@ impl Interface {
         self.k != one()
     }
 
-    /// The part of a ray that is reflected, and the direction of the rest, at a normal that has this cosine with the way
-    /// back.
+    /// The part of a ray that is reflected, and the direction of the rest, at a normal that has this cosine with the
+    /// way back.
     pub fn split(&self, direction: &Vector, normal: &Vector, cos: &Real) -> (Real, Option<Vector>) {
         let k = &self.k;
         if *k == one() {

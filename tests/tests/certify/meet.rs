@@ -1,4 +1,4 @@
-//! Where lines meet the shapes of `verify`, one after the other.
+//! Crossings of lines with the shapes of `verify`, one after the other.
 
 use super::exact::Exact;
 use super::numbers::{nothing, real, sum};

@@ -68,7 +68,7 @@ impl Exact<'_> {
         diffuse
     }
 
-    /// How much of a surface is there.
+    /// Returns the part of a surface that is there.
     pub fn alpha(&self, met: &Met<'_>, material: &Material) -> Real {
         // Glass lets light through by itself.
         if material.transmit != [0; 3] {

@@ -1,4 +1,4 @@
-//! Where rays of the camera start, and how their light becomes a pixel.
+//! Camera rays, and the conversion of their light to a pixel.
 
 use super::exact::Exact;
 use super::numbers::{color, fraction, limited, mixed, one, real, sum};

@@ -22,7 +22,7 @@ pub struct Placed {
     pub coordinates: Option<[[i32; 2]; 3]>,
     /// In units of its part.
     pub bounds: Option<[[f64; 2]; 3]>,
-    /// Where its part stands, if it belongs to one.
+    /// The placement of its part, if it belongs to one.
     pub map: Option<Map>,
 }
 
@@ -54,7 +54,7 @@ impl Map {
         }
     }
 
-    /// By the transposed matrix.
+    /// Maps a vector by the transposed matrix.
     pub fn turned_back(&self, v: &Vector) -> Vector {
         let column = |k: usize| [0, 1, 2].map(|row: usize| self.rows[row][k].clone());
         [0, 1, 2].map(|k| dot(&column(k), v))

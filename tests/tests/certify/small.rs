@@ -61,7 +61,7 @@ fn smooth() -> String {
     )
 }
 
-/// Such balls, diffuse and rough, under a map, a sun and an area light.
+/// Returns a scene of such balls, diffuse and rough, under a map, a sun and an area light.
 fn smooth_under_a_sky() -> String {
     format!(
         "{CAMERA}tone_mapping = 'reinhard'\n\
@@ -187,7 +187,8 @@ fn within_media() -> String {
     )
 }
 
-/// Normals of an image: on mirrors and glass, seen from both sides and mirrored, on flat meshes alone or on balls as well.
+/// Normals of an image: on mirrors and glass, seen from both sides and mirrored, on flat meshes alone or on balls as
+/// well.
 fn bumps(has_balls: bool) -> String {
     let mapped =
         "coordinates = [[0, 0], [1, 0.25], [0.75, 1], [0, 0.75], [0.5, 0.25], [0.25, 0.5]]\n";

@@ -11,10 +11,10 @@ use gridel_host::shape::exact::{Line, Vector};
 #[derive(Clone, Copy)]
 pub struct Trail {
     pub pixel: [u16; 2],
-    /// How many bounces led to it.
+    /// Number of bounces that led to it.
     pub depth: u8,
     pub kind: RayKind,
-    /// How many of them were diffuse.
+    /// Number of diffuse ones among them.
     pub reflections: u8,
     pub inside: Inside,
     /// The logarithm of the length of the rays that led to it, where textures have levels.

@@ -64,7 +64,7 @@ fn readme_shows_recorded_memory_on_boards() {
         ("torus-mesh", "mesh, 2,048 triangles", "microbit", "fixed"),
         ("glass-chess", "glass chessboard", "sifive_e", "fixed"),
         ("glass-chess", "glass chessboard", "mps2-an386", "f32"),
-        ("quick", "every effect, 10 objects", "mps2-an500", "f64"),
+        ("quick", "six effects, 10 objects", "mps2-an500", "f64"),
     ] {
         let figure = on_board(scene, board, format);
         let figures = cells(

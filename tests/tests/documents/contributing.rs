@@ -1,6 +1,7 @@
-//! CONTRIBUTING.md names files, features and commits that exist.
+//! CONTRIBUTING.md names files, features and commits that exist, and where effects attach.
 
 use super::{repository, text};
+use gridel_core::Effects;
 
 /// Words in capitals that the reader replaces by a name.
 const PLACEHOLDERS: [&str; 6] = ["SHAPE", "EFFECT", "FAMILY", "NAME", "FORMAT", "SCENE"];
@@ -39,6 +40,36 @@ fn contributing_page_names_paths_that_exist() {
         .filter(|path| !repository().join(path).exists())
         .collect();
     assert!(missing.is_empty(), "{missing:?}");
+}
+
+/// Effects stand in the order of their registry, in which they act.
+#[test]
+fn contributing_page_lists_the_effects_at_every_place() {
+    let sources = Effects::NAMED.map(|(_, name)| {
+        let path = format!("core/src/shade/{}.rs", name.replace('-', "_"));
+        (name.replace('-', " "), text(&path))
+    });
+    let page = text("CONTRIBUTING.md");
+    let (_, table) = page
+        .split_once("\n| place | what happens | effects |\n")
+        .expect("the table");
+    let rows = table.lines().skip(1);
+    let mut places = 0;
+    for row in rows.take_while(|line| line.starts_with('|')) {
+        let cells: Vec<_> = row.split('|').map(str::trim).collect();
+        let [_, place, _, listed, _] = cells[..] else {
+            panic!("{row}")
+        };
+        let place = place.trim_matches('`');
+        let method = format!("    fn {place}<'s, N: Number, X: Tracer<'s, N>>(");
+        let acting = sources.iter().filter(|(_, code)| code.contains(&method));
+        let acting: Vec<_> = acting.map(|(name, _)| name.as_str()).collect();
+        assert_eq!(listed, acting.join(", "), "{place}");
+        places += 1;
+    }
+    let interface = text("core/src/shade/effect.rs");
+    let (_, declared) = interface.split_once("\nplaces! {\n").expect("places");
+    assert_eq!(places, declared.matches("    fn ").count());
 }
 
 #[test]

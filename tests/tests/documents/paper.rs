@@ -83,7 +83,7 @@ fn paper_page_shows_recorded_counts() {
     holds_table(PAPER, "paper-cube", &cubes);
 }
 
-/// Where the paper's scenes are measured, and what of a ray of theirs.
+/// The boards and number formats on which rays of the paper's scenes are measured.
 const PAPER_BOARDS: [(&str, &str); 2] = [("mps2-an385", "fixed"), ("mps2-an386", "f32")];
 
 /// Instructions of a primary ray without the camera, of a shadow ray without the surface that it
@@ -118,6 +118,7 @@ fn paper_page_shows_recorded_instructions() {
         hierarchies += &format!(" {core}, `{format}`: `bvh` : `flagged` : `dual-split` | ratios |");
     }
     hierarchies += "\n|---|---|---|---|---|---|\n";
+    let mut most: f64 = 1.0;
     for (scene, name) in [
         ("paper-150", "glass-chess"),
         ("paper-2800", "diamond"),
@@ -138,6 +139,7 @@ fn paper_page_shows_recorded_instructions() {
             });
             let [plain, flagged, dual] = pictures;
             let ahead = [flagged, dual].map(|other| plain as f64 / other as f64);
+            most = most.max(ahead[1]);
             hierarchies += &format!(
                 " {} | {:.2}, {:.2} |",
                 pictures.map(millions).join(" : "),
@@ -147,7 +149,12 @@ fn paper_page_shows_recorded_instructions() {
         }
         hierarchies += "\n";
     }
-    holds_table(PAPER, "board-hierarchies", &hierarchies);
+    let conclusion = format!(
+        "Conclusion: `dual-split` is the fastest in every row, up to {most:.2} times as fast as `bvh`. \
+         On the chessboard in `fixed` a cone costs as much as a dozen pairs of boxes, so structures \
+         differ least there.\n\n"
+    );
+    holds_table(PAPER, "board-hierarchies", &(conclusion + &hierarchies));
 
     for place in PAPER_BOARDS {
         let mut cubes = String::from(

@@ -6,7 +6,7 @@ use crate::all_hits::all_agree;
 use gridel_core::format::limits::MAX_STACK_DEPTH;
 use gridel_core::{Number, Scene, Solid, Stack, Structure};
 use gridel_host::scene::{Scene as Model, Shape};
-use gridel_tests::effort::{part_of, third_of};
+use gridel_tests::effort::{part_of, sixth_of};
 use gridel_tests::every_format;
 use gridel_tests::query::UnitRay;
 use gridel_tests::random::Random;
@@ -39,7 +39,7 @@ fn instances_are_listed_alike_through_every_structure() {
         let model = random_scene(&mut random, own, instances);
         let blob = blob(&model, &Structure::ALL);
         let scene = blob.scene().expect("a scene");
-        let count = part_of(third_of(300), 20_000);
+        let count = part_of(sixth_of(300), 20_000);
         every_format!(compare(&scene, count));
     }
 }
@@ -93,5 +93,5 @@ fn placed_closed_meshes_are_crossed_an_even_number_of_times() {
     };
     let blob = blob(&model, &[Structure::DualSplit, Structure::Wide]);
     let scene = blob.scene().expect("a scene");
-    every_format!(parity(&scene, part_of(third_of(6000), 1_000_000)));
+    every_format!(parity(&scene, part_of(sixth_of(6000), 1_000_000)));
 }

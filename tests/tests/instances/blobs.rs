@@ -56,7 +56,7 @@ pub fn patched(blob: &Blob, change: impl FnOnce(&mut Header, &mut [Record])) -> 
     sealed(bytes)
 }
 
-/// Where a section lies.
+/// Returns the byte range of a section.
 fn section(bytes: &[u8], kind: SectionKind) -> Range<usize> {
     let entries = bytes[size_of::<Header>()..].chunks_exact(size_of::<SectionEntry>());
     let mut entries = entries.map(bytemuck::pod_read_unaligned::<SectionEntry>);

@@ -51,7 +51,7 @@ fn normal([a, b, c]: [[i32; 3]; 3]) -> [i128; 3] {
     })
 }
 
-/// How many rays from points inside meet nothing: at vertices, at edges, and anywhere.
+/// Returns the number of rays from points inside that miss: at vertices, at edges, and anywhere.
 fn leaks<N: Number>(
     scene: &Scene<'_>,
     inside: &(dyn Fn(&mut Random) -> DVec3 + Sync),

@@ -92,7 +92,7 @@ fn grid_and_octree_test_at_most_ten_times_as_many_primitives_as_bvh() {
                     let ray = ray.ready::<f64>(&scene).expect("a ray");
                     closest::<f64, DynAccel>(&chosen, &ray, &mut count);
                 }
-                count.objects as f64 / RAYS as f64
+                count.primitives as f64 / RAYS as f64
             });
             let [bvh, grid, octree] = tests;
             eprintln!("{name:18} {sort}: {bvh:7.1} {grid:7.1} {octree:7.1}");

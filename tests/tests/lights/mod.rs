@@ -415,3 +415,28 @@ fn lamps_behind_glass_do_not_shadow_themselves() {
         assert!(wrong <= 2, "{format:?}: {wrong} of 768 pixels");
     }
 }
+
+/// Light passes as many clear surfaces as the format's documentation states, and not one more.
+#[test]
+fn light_passes_128_surfaces() {
+    for (panes, arrives) in [(1, true), (128, true), (129, false)] {
+        let mut objects = String::from(FLOOR);
+        objects += "\n[material.clear]\ntransmit = 1\nior = 1\n";
+        for pane in 0..panes {
+            let y = 50 + 2 * pane;
+            objects += &format!(
+                "[[object]]\nkind = 'disc'\ncenter = [0, {y}, 0]\nnormal = [0, 1, 0]\nradius = 100\n\
+                 material = 'clear'\n"
+            );
+        }
+        let light = "[[light]]\nkind = 'directional'\ndirection = [0, -1, 0]\ncolor = 0.5";
+        let blob = scene(light, "[0, 20, 1]", "[0, 0, 0]", &objects);
+        let expected = if arrives { 0.5 } else { 0.0 };
+        for format in Format::ALL {
+            let (found, _) = measured(&blob, format, 1);
+            let off = (found - expected).abs();
+            assert!(off < ROUNDING, "{panes}, {format:?}: {found}");
+            assert_eq!(wrong_pixels(&blob, format), 0, "{panes}, {format:?}");
+        }
+    }
+}

@@ -111,7 +111,7 @@ fn far_rays_keep_their_place() {
     eprintln!("far rays are off by {worst:?} steps at worst");
 }
 
-/// Where the lattice's zero has as many digits as a number, and the difference to a far origin has more.
+/// Tests a lattice whose zero has as many digits as a number; the difference to a far origin has more.
 #[test]
 fn far_rays_of_scenes_off_centre_keep_their_place() {
     let blob = ball(DVec3::new(0.1, -1.0 / 3.0, 123.456_789));

@@ -77,7 +77,7 @@ fn frusta_and_rays_of_every_sort() {
     of_every_sort(6);
 }
 
-/// At the tip from everywhere, at distances of magnitudes from it, and from the tip itself.
+/// Rays aim at the tip from everywhere, pass it at distances of many magnitudes, and start at the tip itself.
 #[test]
 fn rays_at_the_tip() {
     let cases = cones("tip", 20, |random, base, apex, radius| {
@@ -94,7 +94,7 @@ fn rays_at_the_tip() {
     hold_all("tips of cones", "cone", &cases);
 }
 
-/// Through the mirrored nappe beyond the tip, and past the tip: not hits.
+/// Rays through the mirrored nappe beyond the tip, and past the tip, miss.
 #[test]
 fn the_mirrored_nappe_is_not_there() {
     fn judge<N: Number>() {
@@ -113,7 +113,7 @@ fn the_mirrored_nappe_is_not_there() {
     every_format!(judge());
 }
 
-/// Along lines of the mantle, exactly and within angles of any magnitude, on either side of it.
+/// Rays run along lines of the mantle, exactly and within angles of any magnitude, on either side of it.
 #[test]
 fn rays_along_lines_of_the_mantle() {
     let cases = cones("generator", 22, |random, base, apex, radius| {
@@ -153,7 +153,7 @@ fn tangents_of_the_mantle() {
     hold_all("tangents of cones", "cone", &cases);
 }
 
-/// In through the cap and out through the mantle, or the other way, at every angle.
+/// Rays enter through the cap and leave through the mantle, or the other way, at every angle.
 #[test]
 fn in_and_out_through_the_cap() {
     let cases = cones("cap", 24, |random, base, apex, radius| {
@@ -168,7 +168,7 @@ fn in_and_out_through_the_cap() {
     hold_all("caps of cones", "cone", &cases);
 }
 
-/// From inside: always a hit, and the ray leaves (D24).
+/// A ray from inside always has a hit, where it leaves (D24).
 #[test]
 fn from_inside_a_cone() {
     fn judge<N: Number>() {

@@ -42,7 +42,7 @@ fn cylinders_and_rays_of_every_sort() {
     of_every_sort(4);
 }
 
-/// Along the axis, from outside through both caps, from inside through one, and past it (D12).
+/// Rays run along the axis, from outside through both caps, from inside through one, and past it (D12).
 #[test]
 fn rays_parallel_to_the_axis_meet_the_caps() {
     fn judge<N: Number>() {
@@ -112,7 +112,7 @@ fn needles_and_coins() {
     hold_all("needles and coins", "cylinder", &cases);
 }
 
-/// At rims, in the planes of caps, and along lines of the mantle (D14).
+/// Rays aim at rims, run in the planes of caps, and run along lines of the mantle (D14).
 #[test]
 fn rims_and_planes_of_caps() {
     let mut random = Random(12);

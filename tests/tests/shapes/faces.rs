@@ -11,7 +11,7 @@ use gridel_tests::query::held;
 use gridel_tests::random::Random;
 use gridel_tests::scenes;
 
-/// How far the shapes reach from the middle of the face, and how high those are that are solid.
+/// The reach of the shapes from the middle of the face, and the height of solid ones.
 const REACH: f64 = 0.9;
 const HEIGHT: f64 = 1.3;
 

@@ -60,7 +60,7 @@ fn enters_elsewhere<N: Number>(
     apart > least * hit.error.length_to_f64() && crossings.may_be_met_at(&Real::of(t), &begin)
 }
 
-/// How many rays left a solid, went on inside of it, and could not because it is too thin.
+/// Number of rays that left a solid, that went on inside of it, and that could not because it is too thin.
 #[derive(Default)]
 struct Left {
     away: usize,

@@ -115,7 +115,7 @@ fn tangents() {
     every_format!(exact());
 }
 
-/// From inside, always the far side, which is left (D24); from behind, nothing (D15).
+/// Rays from inside always hit the far side, where they leave (D24); rays from behind miss (D15).
 #[test]
 fn from_inside_and_from_behind() {
     fn judge<N: Number>() {

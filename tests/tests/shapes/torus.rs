@@ -160,7 +160,7 @@ fn rays_in_the_plane_of_the_circle_and_tangents_of_its_equators() {
     hold_all("equators of tori", "torus", &cases);
 }
 
-/// On the circle at the top, inside and outside, at all slants; a saddle's tangents among them.
+/// Rays are tangents on the circle at the top, inside and outside, at all slants, among them tangents of a saddle.
 #[test]
 fn tangents_of_tori() {
     let cases = tori("tangent", 72, any, |random, target| {
@@ -176,7 +176,7 @@ fn tangents_of_tori() {
     hold_all("tangents of tori", "torus", &cases);
 }
 
-/// From inside: always a hit, and the ray leaves.
+/// A ray from inside always has a hit, where it leaves.
 #[test]
 fn from_inside_a_torus() {
     fn judge<N: Number>() {

@@ -257,7 +257,7 @@ fn coordinates_are_interpolated<N: Number>(scene: &Scene<'_>) {
         compared += 1;
         let point = point_of(&hit);
         let place = [0, 1].map(|axis: usize| header.origin[axis] + point[axis] * unit);
-        let found = hit.mapped_coordinates(scene).expect("a texture");
+        let found = hit.texture_coordinates(scene).expect("a texture");
         let expected = interpolated(place, SQUARE.map(|[.., u, v]| [u, v]));
         for (found, expected) in found.into_iter().zip(expected) {
             // Coordinates of this square are stored with 14 fraction bits.

@@ -76,7 +76,7 @@ impl Gridels {
         [column, column + 1].map(|column| low.saturating_add(first(column)).min(high))
     }
 
-    /// The two axes of a face across an axis, in the order in which its gridels are numbered.
+    /// Returns the two axes of a face across an axis, in the order in which its gridels are numbered.
     pub const fn across(axis: usize) -> [usize; 2] {
         [axis.wrapping_add(1) % 3, axis.wrapping_add(2) % 3]
     }
@@ -92,7 +92,7 @@ impl Gridels {
         ((inside * u64::from(pick(self.scale, axis))) >> 44) as u32
     }
 
-    /// The cell of two gridels, each given by its face and its number on it. Face `2 k` is the lower
+    /// Returns the cell of two gridels, each given by its face and its number on it. Face `2 k` is the lower
     /// one across axis `k`, `2 k + 1` the upper one; the lower face comes first.
     #[inline(always)]
     pub fn cell(&self, from: (u32, u32), to: (u32, u32)) -> u32 {
@@ -144,7 +144,7 @@ pub struct Passage {
     pub cell: u32,
     /// True if the ray runs from the pair's second gridel to its first.
     pub backward: bool,
-    /// Where it enters and leaves, in lengths along the major axis with 13 fraction bits.
+    /// The lengths along the major axis at which it enters and leaves, with 13 fraction bits.
     enter: i32,
     leave: i32,
 }

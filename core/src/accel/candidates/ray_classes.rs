@@ -41,7 +41,7 @@ pub enum RayClasses {}
 pub struct ClassRange(pub [[i64; 2]; ClassNode::DIMENSIONS]);
 
 impl ClassRange {
-    /// All rays of a face.
+    /// Returns all rays of a face.
     pub fn whole(bounds: &UnitBox) -> Self {
         let side = |axis: usize| {
             let [low, high] = bounds.0[axis].map(i64::from);
@@ -52,14 +52,14 @@ impl ClassRange {
         Self([side(0), side(1), side(2), SLOPES, SLOPES])
     }
 
-    /// The value at which a dimension is halved.
+    /// Returns the value at which a dimension is halved.
     #[inline(always)]
     pub fn middle(&self, dimension: usize) -> i64 {
         let [low, high] = self.0.get(dimension).copied().unwrap_or_default();
         low + (high - low) / 2
     }
 
-    /// The lower or the upper half.
+    /// Returns the lower or the upper half.
     #[inline(always)]
     pub fn half(mut self, dimension: usize, upper: bool) -> Self {
         let middle = self.middle(dimension);

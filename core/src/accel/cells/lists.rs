@@ -87,7 +87,7 @@ impl Divisions {
     }
 }
 
-/// The divisions of all axes.
+/// Returns the divisions of all axes.
 pub fn divide(bounds: &UnitBox, counts: [u32; 3]) -> [Divisions; 3] {
     let axis = |k: usize| Divisions::of(bounds.0[k], counts[k]);
     [axis(0), axis(1), axis(2)]
@@ -107,7 +107,7 @@ fn volume(range: &Range) -> u64 {
 /// Lists of slots, one after the other in one array.
 #[derive(Clone, Copy, Debug)]
 pub(in crate::accel) struct Lists<'a> {
-    /// Where each list begins, and where the last one ends.
+    /// The start of each list, then the end of the last one.
     starts: Indices<'a>,
     /// Slots, counted over all kinds.
     slots: Indices<'a>,
@@ -222,7 +222,7 @@ pub fn cells_of(divisions: &[Divisions; 3], bounds: &UnitBox, margin: i32) -> Ra
     })
 }
 
-/// Where the slots of each kind end, counted over all kinds.
+/// Returns the end of each kind's slots, counted over all kinds.
 #[inline(always)]
 fn kind_ends(shapes: &Shapes<'_>) -> [u32; Kind::ALL.len()] {
     let mut ends = [0; Kind::ALL.len()];
@@ -234,7 +234,7 @@ fn kind_ends(shapes: &Shapes<'_>) -> [u32; Kind::ALL.len()] {
     ends
 }
 
-/// One slot as a leaf of its kind.
+/// Returns one slot as a leaf of its kind.
 #[inline(always)]
 fn locate(ends: &[u32; Kind::ALL.len()], slot: u32) -> Option<Leaf> {
     let mut first = 0;

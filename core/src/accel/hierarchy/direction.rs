@@ -16,7 +16,7 @@ impl Direction {
         Self { signs, halvings }
     }
 
-    /// The sum of coordinates with the direction's signs, not halved.
+    /// Returns the sum of coordinates with the direction's signs, not halved.
     pub fn dot(self, point: [i64; 3]) -> i64 {
         let terms = point.iter().zip(self.signs);
         terms.map(|(&x, sign)| x * i64::from(sign)).sum()

@@ -89,7 +89,7 @@ impl<P: BoxPair> PairRecord for &P {
 
 /// The pairs of a hierarchy, by number.
 pub(in crate::accel) trait PairArray: Copy {
-    /// One of the pairs.
+    /// The record of a pair.
     type Pair: PairRecord;
     /// The volume around everything below a pair: see [`Tree`].
     type Volume: Copy;
@@ -97,7 +97,7 @@ pub(in crate::accel) trait PairArray: Copy {
     /// Number of pairs.
     fn len(self) -> usize;
 
-    /// One of them.
+    /// Returns a pair by its number.
     fn pair(self, number: usize) -> Option<Self::Pair>;
 
     /// The volumes of a pair's children, given the pair's own.

@@ -89,7 +89,7 @@ pub struct SlabPairs<'a, const FLAGGED: bool> {
     words: &'a [u32],
 }
 
-/// One of the records.
+/// A record of a pair.
 #[derive(Clone, Copy, Debug)]
 pub(in crate::accel) struct SlabPair<'a, const FLAGGED: bool>(&'a [u32]);
 

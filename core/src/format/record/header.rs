@@ -56,13 +56,13 @@ records! {
         pub bounds: UnitBox,
         /// Bytes of the traversal stack: 12 times `stack_depth`.
         pub stack_bytes: u32,
-        /// One step of scene coordinates (see [`Position`](crate::Position)) is a unit times 2 to the power of
+        /// A coordinate step (see [`Position`](crate::Position)) is a unit times 2 to the power of
         /// this less 13.
         #[valid(CoordinateShift: 0..=MAX_COORDINATE_SHIFT as i64)]
         pub coordinate_shift: u8,
         /// What scene coordinates are counted from: 0 for the lattice's origin, 1 for the scene's.
         #[valid(CoordinateOrigin: 0..=1)]
-        pub coordinate_origin: u8,
+        pub counted_from: u8,
         /// Zero.
         pub spare: [u16; 3],
     }

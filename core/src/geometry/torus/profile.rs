@@ -38,7 +38,7 @@ pub(super) struct Profile<N: Arithmetic> {
     gap: N,
     major: N,
     minor: N,
-    /// More than rounding moves a position.
+    /// An upper bound of the rounding of a position.
     slack: N,
 }
 

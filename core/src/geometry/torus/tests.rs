@@ -465,7 +465,7 @@ fn leave_all<N: Arithmetic>() {
     }
 }
 
-/// Along the axis into pits, on the axis and next to it.
+/// Rays run along the axis into pits, on the axis and next to it.
 #[test]
 fn rays_that_leave_a_torus_do_not_meet_it_from_inside() {
     leave_all::<Fixed>();

@@ -100,7 +100,7 @@ pub(super) const fn leading_zeros_by_shifts(x: u32) -> u32 {
     zeros
 }
 
-/// By Newton's iteration.
+/// Returns the quotient by Newton's iteration.
 #[inline(always)]
 pub(super) fn quotient_by_products(d: u32) -> u32 {
     // 2^16 (48 / 17 - 32 / 17 x) is 1 / x, for x from 1/2 to 1, to a part in 17.

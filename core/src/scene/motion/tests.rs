@@ -148,7 +148,7 @@ proptest! {
         let header = Header {
             coordinate_shift,
             origin: [origin; 3],
-            coordinate_origin: 1,
+            counted_from: 1,
             ..Header::zeroed()
         };
         let rest = Instance { matrix: [[1 << 23, 0, 0], [0, 1 << 23, 0], [0, 0, 1 << 23]], center, ..Instance::zeroed() };
@@ -232,7 +232,7 @@ fn rest_moves_nothing() {
     let header = Header {
         coordinate_shift: 3,
         origin: [12.5, -1e6, 0.0],
-        coordinate_origin: 1,
+        counted_from: 1,
         ..Header::zeroed()
     };
     let rest = Instance {

@@ -38,13 +38,13 @@ impl Level {
 }
 
 impl Footprint {
-    /// A point, without an area.
+    /// Returns a point, without an area.
     #[inline(always)]
     pub fn point() -> Self {
         Self(TextureLevelsOnly::new(|| i32::MIN))
     }
 
-    /// An area whose root has this binary logarithm, with [`LOG2_BITS`] fraction bits, as a part of the image.
+    /// Returns an area whose root has this binary logarithm, with [`LOG2_BITS`] fraction bits, as a part of the image.
     #[inline(always)]
     pub fn of_log2(side: i32) -> Self {
         Self(TextureLevelsOnly::new(|| side))
@@ -68,8 +68,8 @@ impl Footprint {
             .cast_unsigned()
     }
 
-    /// The two levels of a texture between which this lies, with weights whose sum is 256; the second counts only if the
-    /// first has less.
+    /// The two levels of a texture between which this lies, with weights whose sum is 256; the second counts only if
+    /// the first has less.
     #[inline(always)]
     pub(super) fn levels(self, texture: &Texture) -> [(Level, u32); 2] {
         let place = self.level(texture);

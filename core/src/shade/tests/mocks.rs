@@ -225,8 +225,7 @@ impl Effect for Trail {
     }
 }
 
-/// Paints surfaces green where their second texture coordinate is above 0, and black elsewhere, and removes the normal
-/// for shading.
+/// Paints surfaces green where x is above 0, and black elsewhere, and removes the normal for shading.
 pub(crate) struct Print;
 
 impl Effect for Print {
@@ -240,8 +239,8 @@ impl Effect for Print {
         _: &Ray<N>,
         surface: &mut Surface<'_, N>,
     ) {
-        let [_, v] = surface.hit.texture_coordinates();
-        let green = if v > N::ZERO { N::ONE } else { N::ZERO };
+        let [x, ..] = surface.hit.point;
+        let green = if x > N::ZERO { N::ONE } else { N::ZERO };
         surface.diffuse = Color([N::ZERO, green, N::ZERO]);
         surface.shading_normal = [N::ZERO; 3];
     }

@@ -1,6 +1,6 @@
 """Native code of the package gridel: see :class:`gridel.Scene`."""
 
-from typing import Optional, Tuple
+from typing import Optional, Tuple, TypedDict
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,9 +14,28 @@ _HitArrays = Tuple[
     NDArray[np.float32],
 ]
 
+#: Fewest and most bits of a lattice.
+LATTICE_BITS: Tuple[int, int]
+
+class LoadOptions(TypedDict):
+    """Options of :meth:`gridel.Scene.load`; None where none is given. A type for checkers alone."""
+
+    accel: Optional[list[str]]
+    lattice_bits: Optional[int]
+    camera: Optional[str]
+    animation: Optional[str]
+    time: Optional[float]
+    instances: Optional[str]
+    normals: Optional[str]
+    assembly: Optional[str]
+    style: Optional[str]
+    model: Optional[int]
+    altloc: Optional[str]
+    allow_outside: bool
+
 class NativeScene:
     @staticmethod
-    def load(path: str, accel: list[str], lattice_bits: int) -> NativeScene: ...
+    def load(path: str, given: LoadOptions) -> NativeScene: ...
     @staticmethod
     def from_blob(bytes: bytes) -> NativeScene: ...
     @staticmethod

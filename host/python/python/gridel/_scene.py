@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import decimal
+import math
 import numbers
 import operator
 import os
@@ -11,12 +12,16 @@ from typing import Any, NamedTuple, Optional, Sequence, Tuple, Union
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ._gridel import NativeScene
+from ._gridel import LATTICE_BITS, NativeScene
 
-#: Object, primitive and instance of a ray that meets nothing, and instance of what is in none.
+#: Stands for "none": the object, primitive and instance of a ray that hits nothing, and also the instance of a hit on an
+#: object that is part of no instance. ``instance == MISS`` therefore does not mean that the ray missed.
 MISS = 0xFFFFFFFF
 
 Accel = Union[str, Sequence[str]]
+
+#: The largest number that is an option.
+_LARGEST = 0xFFFFFFFF
 
 
 class Hits(NamedTuple):
@@ -28,12 +33,13 @@ class Hits(NamedTuple):
     object: NDArray[np.uint32]
     #: (n,) uint32: the primitive, counted over all objects; :data:`MISS` on a miss.
     primitive: NDArray[np.uint32]
-    #: (n,) uint32: the instance; :data:`MISS` on a miss and for objects of no instance.
+    #: (n,) uint32: the instance; :data:`MISS` on a miss, and on a hit where the object is part of no instance.
     instance: NDArray[np.uint32]
     #: (n, 3) float32: the geometric normal, of length 1: outward, or to where corners run counter-clockwise.
     normal: NDArray[np.float32]
-    #: (n, 2) float32: weights of a triangle's second and third corner; 0 on a miss. nan where the scene's meshes are not
-    #: available (scenes from blobs, instances), and for other shapes.
+    #: (n, 2) float32: barycentric weights of a triangle's second and third corner; the first one's weight is 1 - u - v.
+    #: These are no texture coordinates. 0 on a miss. nan where the scene's meshes are not available (scenes from blobs,
+    #: instances), and for other shapes.
     uv: NDArray[np.float32]
 
 
@@ -48,11 +54,11 @@ class AllHits(NamedTuple):
     object: NDArray[np.uint32]
     #: (m,) uint32: the primitive, counted over all objects.
     primitive: NDArray[np.uint32]
-    #: (m,) uint32: the instance; :data:`MISS` for objects of no instance.
+    #: (m,) uint32: the instance; :data:`MISS` where the object is part of no instance.
     instance: NDArray[np.uint32]
     #: (m, 3) float32: the geometric normal.
     normal: NDArray[np.float32]
-    #: (m, 2) float32: as of :class:`Hits`.
+    #: (m, 2) float32: barycentric weights, as of :class:`Hits`.
     uv: NDArray[np.float32]
     #: (m,) bool: whether the ray leaves a solid such as a sphere; never of triangles.
     leaves: NDArray[np.bool_]
@@ -75,7 +81,46 @@ def _integer(value: Any, what: str, least: int, most: int) -> int:
 
 def _bits(value: Any) -> int:
     """Bits of a lattice."""
-    return _integer(value, "lattice_bits", 16, 24)
+    return _integer(value, "lattice_bits", *LATTICE_BITS)
+
+
+def _text(value: Any, what: str, *, or_number: bool = False) -> Optional[str]:
+    """A text, or None; some options may be a number from 0 in its place."""
+    if value is None or isinstance(value, str):
+        return value
+    try:
+        if or_number:
+            return str(_integer(value, what, 0, _LARGEST))
+    except TypeError:
+        pass
+    kinds = "a string or an integer" if or_number else "a string"
+    raise TypeError(f"{what} is {value!r}; it must be {kinds}")
+
+
+def _character(value: Any, what: str) -> Optional[str]:
+    """A single character, or None."""
+    text = _text(value, what)
+    if text is not None and len(text) != 1:
+        raise ValueError(f"{what} is {text!r}; it must be one character")
+    return text
+
+
+def _flag(value: Any, what: str) -> bool:
+    """True or False."""
+    if not isinstance(value, (bool, np.bool_)):
+        raise TypeError(f"{what} is {value!r}; it must be True or False")
+    return bool(value)
+
+
+def _seconds(value: Any, what: str) -> Optional[float]:
+    """A time in seconds, or None."""
+    if value is None:
+        return None
+    if not isinstance(value, numbers.Real):
+        raise TypeError(f"{what} is {value!r}; it must be a number of seconds")
+    if not math.isfinite(value):
+        raise ValueError(f"{what} is {value}; it must be finite")
+    return float(value)
 
 
 def _threads(value: Any, what: str = "threads") -> int:
@@ -164,15 +209,61 @@ class Scene:
 
     @classmethod
     def load(
-        cls, path: Union[str, bytes, os.PathLike], *, accel: Accel = "wide", lattice_bits: int = 24
+        cls,
+        path: Union[str, bytes, os.PathLike],
+        *,
+        accel: Optional[Accel] = None,
+        lattice_bits: Optional[int] = None,
+        camera: Optional[str] = None,
+        animation: Union[str, int, None] = None,
+        time: Optional[float] = None,
+        instances: Optional[str] = None,
+        normals: Optional[str] = None,
+        assembly: Union[str, int, None] = None,
+        style: Optional[str] = None,
+        model: Optional[int] = None,
+        altloc: Optional[str] = None,
+        allow_outside: bool = False,
     ) -> "Scene":
         """Reads a scene file of any format that ``gridel`` reads, or a scene blob.
 
-        ``accel`` names the structures to build and ``lattice_bits`` (16 to 24) the precision of coordinates; a blob is
-        taken as it is. Warns (UserWarning) of what the file's importer leaves out, and of primitives that are too small
-        for the lattice. Raises FileNotFoundError, IsADirectoryError, and ValueError with file, place, cause and remedy.
+        A scene file is compiled. The options are those of the command line; for a blob, each of them is an error.
+
+        :param accel: the structures to build, one name or several. Default: ``"wide"``.
+        :param lattice_bits: bits of the lattice for coordinates, 10 to 24. Default: 24.
+        :param camera: camera of a glTF file, by its name or that of its node. Default: the first with a perspective.
+        :param animation: animation of a glTF file, by its name or its number from 0. Default: the first.
+        :param time: seconds at which copies of instances that move stand; needs ``instances="flatten"``. Camera, lights,
+            materials and vertices stay as they are at rest. Default: the instances at rest.
+        :param instances: ``"keep"`` keeps parts that are placed several times as instances; ``"flatten"`` copies their
+            objects. Default: ``"keep"``.
+        :param normals: normals with which :meth:`render` shades meshes: ``"file"``, ``"flat"``, or smooth where faces meet
+            at less than an angle in degrees, such as ``"smooth=40"``. Normals of hits do not change. Default: ``"file"``.
+        :param assembly: biological assembly of a PDB or mmCIF file, by its number or name. Default: the asymmetric unit.
+        :param style: style of molecules: ``"space-filling"`` or ``"ball-and-stick"``. Default: ``"space-filling"``.
+        :param model: model of a molecule file, counted from 1. Default: 1.
+        :param altloc: alternate location of atoms, one character. Default: the first of each residue.
+        :param allow_outside: whether the scene file may name files outside of its folder. Default: False.
+
+        Warns (UserWarning) of what the file's importer leaves out, and of primitives that are too small for the lattice.
+        Raises FileNotFoundError and IsADirectoryError, and ValueError with file, place, cause and remedy. An option that
+        does not apply to the file is a ValueError as well.
         """
-        return cls(NativeScene.load(os.fsdecode(path), _names(accel), _bits(lattice_bits)))
+        given = {
+            "accel": None if accel is None else _names(accel),
+            "lattice_bits": None if lattice_bits is None else _bits(lattice_bits),
+            "camera": _text(camera, "camera"),
+            "animation": _text(animation, "animation", or_number=True),
+            "time": _seconds(time, "time"),
+            "instances": _text(instances, "instances"),
+            "normals": _text(normals, "normals"),
+            "assembly": _text(assembly, "assembly", or_number=True),
+            "style": _text(style, "style"),
+            "model": None if model is None else _integer(model, "model", 1, _LARGEST),
+            "altloc": _character(altloc, "altloc"),
+            "allow_outside": _flag(allow_outside, "allow_outside"),
+        }
+        return cls(NativeScene.load(os.fsdecode(path), given))
 
     @classmethod
     def from_arrays(
@@ -185,13 +276,13 @@ class Scene:
     ) -> "Scene":
         """Compiles a triangle mesh: vertices (n, 3) of numbers, faces (m, 3) of integers.
 
-        Vertices are centered in float64 before they are rounded to the lattice, whose step is about 1e-7 of the mesh's
-        size at 24 bits, wherever the mesh lies within 2.6e8 times its size of the origin; :attr:`displacement` says how far
-        they moved. Farther away, subtract a place near the mesh from vertices and rays, or use fewer ``lattice_bits``. Its
-        size is 1e-250 to 1e250. Vertices of no face do not count. A face that is there twice counts twice. A closed mesh
-        thinner than a step becomes flat: rays hit it, and it contains nothing. Warns (UserWarning) of triangles that are
-        too small for the lattice. Raises ValueError for faces that name no vertex, or one that is not finite, and for
-        meshes that lie too far away.
+        Vertices are centered in float64 and then rounded to the lattice, which has 10 to 24 ``lattice_bits``. At 24 bits
+        its step is about 1e-7 of the mesh's size; :attr:`displacement` says how far surfaces moved. The mesh may lie within
+        2.6e8 times its size of the origin. Farther away, subtract a place near the mesh from vertices and rays, or use
+        fewer ``lattice_bits``. Its size is 1e-250 to 1e250. Vertices that no face uses are ignored. A face that the array
+        has twice counts twice. A closed mesh thinner than a step becomes flat: rays hit it, and it contains nothing. Warns
+        (UserWarning) of triangles that are too small for the lattice. Raises ValueError for faces that name no vertex, or
+        one that is not finite, and for meshes that lie too far away.
         """
         return cls._from_meshes([(vertices, faces)], accel, lattice_bits)
 
@@ -221,11 +312,14 @@ class Scene:
         ``uv`` and ``normal`` of triangles are computed from the vertices as they were given, in float64; those of
         instances and of blobs are computed from the lattice. ``t`` is never outside of tmin and tmax.
 
-        tmin and tmax are compared with the ``t`` that is returned: a hit at a limit counts, so that a ray limited to the t
-        of its hit still hits. Two cases are uncertain. A tmin of 0 is compared with the surface on the lattice: a ray that
-        starts nearer to a surface than :attr:`displacement`, divided by the cosine between ray and normal, may hit it or
-        not, so start rays from surfaces with a small tmin above 0. And a surface that the ray meets at less than a degree
-        may be missed where its t is within the displacement, divided by the cosine, of a limit.
+        tmin and tmax are compared with the ``t`` that is returned. A hit at a limit counts, so a ray whose tmax is the t of
+        its hit still hits. There are two exceptions, in which a ray may hit or miss:
+
+        - tmin is 0, and the ray starts at a surface. Here tmin is compared with the surface on the lattice. The result is
+          uncertain if the origin is nearer to the surface than :attr:`displacement`, divided by the cosine between ray and
+          normal. Give rays that start on surfaces a small tmin above 0.
+        - The angle between ray and surface is less than one degree, and the t of the hit is near tmin or tmax: within the
+          same distance, measured along the ray.
         """
         rays = _rows(rays, (6, 8), "rays")
         shape = rays.shape[:-1]

@@ -129,7 +129,7 @@ fn crossings_hold_those_of_320_bits() {
     assert!(deep_sure * 1000 >= all * 999, "{deep_sure} of {all} are");
 }
 
-/// From a point of the surface, which no lattice has: 3-4-5 triangles give some of integers.
+/// The rays start at points exactly on the surface: 3-4-5 triangles give some with integer coordinates.
 #[test]
 fn rays_from_the_surface_do_not_meet_it_where_they_start() {
     let (center, axis, [major, minor]) = ([0; 3], [0, 0, 1], [1000, 250]);

@@ -24,7 +24,7 @@ pub struct Board {
     pub budget: BTreeMap<String, u64>,
 }
 
-/// Where a board's program comes from.
+/// The origin of a board's program.
 #[derive(Clone, Debug)]
 pub enum Program {
     /// It was built before.

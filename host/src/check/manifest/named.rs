@@ -19,4 +19,11 @@ impl Named {
             span: value.span(),
         })
     }
+
+    /// Returns true if the folder of the file exists.
+    pub fn has_folder(&self) -> bool {
+        // The folder of a name alone is empty: the current one.
+        let folder = self.path.parent();
+        folder.is_none_or(|it| it.as_os_str().is_empty() || it.is_dir())
+    }
 }

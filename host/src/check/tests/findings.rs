@@ -229,7 +229,7 @@ fn formats_that_differ_are_named_where_their_reference_is_not_recorded() {
     }
 }
 
-/// Of two that differ, neither would pass with the other as its reference.
+/// If two pictures differ, neither would pass with the other as its reference.
 #[test]
 fn pictures_that_differ_are_not_recorded_as_one_reference() {
     let folder = Folder::new();

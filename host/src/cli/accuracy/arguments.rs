@@ -12,10 +12,11 @@ use std::path::PathBuf;
 
 /// Show what accuracy costs in time
 ///
-/// Changes six settings, each alone and in combinations: number format, lattice bits (10, 12, 16, 20,
-/// 24), samples per pixel (1 to 64, and those of the scene up to 2048), ray depth, the cutoff below which a secondary ray is not traced, and the
-/// effects that the scene calls for, each of which is left out. Builds and renders the scene with every setting, and compares the picture with a reference:
-/// f64, or the exact picture with --reference exact; 24 bits, ray depth 16, and the samples of
+/// Changes six settings, each alone and in combinations: number format, lattice bits (10, 12, 16, 20, 24), samples per
+/// pixel (1 to 64, and those of the scene up to 2048), ray depth, the cutoff below which a secondary ray is not traced,
+/// and the effects that the scene calls for, each of which is left out. Builds and renders the scene with every
+/// setting, and compares the picture with a reference: f64, or the exact picture with --reference exact; 24 bits, ray
+/// depth 16, and the samples of
 /// --reference-samples.
 ///
 /// Errors, of display values (sRGB) from 0 to 1:
@@ -87,8 +88,8 @@ pub struct Arguments {
         value_parser = clap::value_parser!(u16).range(1..=1000))]
     pub repeat: u16,
 
-    /// What errors are measured against: pictures of f64, or the exact pictures that `certify` proves,
-    /// which take 10 to 40 times as long
+    /// Reference for errors: pictures of f64, or the exact pictures that `certify` proves, which take 10 to 40 times as
+    /// long
     #[arg(long, value_name = "NAME", value_parser = truth(), default_value = Truth::F64.name())]
     pub reference: Truth,
 

@@ -14,7 +14,7 @@ pub struct Choice {
     pub name: String,
     pub rmse: f64,
     pub rays_per_pixel: f64,
-    /// How certain it is that the setting is the cheapest, where time on this machine decides.
+    /// The certainty that the setting is the cheapest, if time on this machine decides.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub noise: Option<String>,
     pub build: String,

@@ -15,7 +15,7 @@ pub const PAGE: &str = "page.html";
 pub const CSV: &str = "results.csv";
 pub const PLOT: &str = "rmse.svg";
 
-/// The pixels of a picture as a display takes them.
+/// Returns the pixels of a picture as a display takes them.
 pub fn encoded(pixels: &[[u16; 3]]) -> Vec<u8> {
     let pixels = pixels
         .iter()
@@ -83,7 +83,7 @@ pub fn write_picture(
     })
 }
 
-/// The reference, and the pictures of all settings.
+/// Returns the reference, and the pictures of all settings.
 pub fn pictures(
     folder: &Path,
     size: [u16; 2],

@@ -7,7 +7,7 @@ use gridel_host::table::{Align, Table, counted, grouped, significant};
 use std::fmt::Write;
 use std::path::Path;
 
-/// The results for people.
+/// Returns the results for people.
 pub fn text(folder: &Path, size: [u16; 2], results: &Results, choice: Option<&Choice>) -> String {
     let best = frontier(&results.points);
     let mut table = Table::new([
@@ -122,7 +122,7 @@ fn effects(results: &Results) -> String {
     )
 }
 
-/// The results for spreadsheets.
+/// Returns the results for spreadsheets.
 pub fn csv(points: &[Point]) -> String {
     let mut csv = String::from(
         "name,format,lattice_bits,samples,depth,cutoff,without,rmse,sampling,arithmetic,largest,pixels_off,ssim,flip,\

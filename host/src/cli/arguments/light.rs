@@ -85,7 +85,7 @@ impl LightChange {
         changed.map_err(|cause| Failure::usage(cause, "change the object in the scene file"))
     }
 
-    /// The light's number.
+    /// Returns the light's number.
     pub fn number(&self) -> usize {
         self.number
     }

@@ -75,7 +75,7 @@ pub struct PictureOptions {
 }
 
 impl PictureOptions {
-    /// The name of an option that a ray of one's own has nothing to do with, if one was given.
+    /// Returns the name of an option that has no effect on a ray of the user's own, if one was given.
     pub fn of_pixels(&self) -> Option<&'static str> {
         first_given([
             (self.size.is_some(), "--size"),
@@ -83,7 +83,7 @@ impl PictureOptions {
         ])
     }
 
-    /// The settings for a scene's picture, without dither.
+    /// Returns the settings for a scene's picture, without dither.
     pub fn settings(&self, scene: &Scene<'_>) -> Settings {
         let stated = Settings::of(scene);
         let [width, height] = self.size.unwrap_or([stated.width, stated.height]);

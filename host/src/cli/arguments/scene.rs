@@ -1,4 +1,4 @@
-//! How a scene file is read and compiled.
+//! Options for reading and compiling scene files.
 
 use super::light::{LightChange, light};
 use super::values::{cutoff, exposure, first_given, quoted, vector};
@@ -27,7 +27,7 @@ pub fn scene_long_help() -> String {
     )
 }
 
-/// How a scene file is read and compiled, for commands that make pictures of it.
+/// Options for reading and compiling a scene file, for commands that make pictures of it.
 #[derive(Args, Clone, Debug, Default)]
 #[command(next_help_heading = "Options for camera and lights")]
 pub struct SceneOptions {
@@ -59,12 +59,13 @@ pub struct SceneOptions {
     #[arg(skip)]
     pub time: Option<f64>,
 
-    /// When a shutter opens, in seconds: copies of instances stand where they are then, and what else moves is blurred.
+    /// The time at which a shutter opens, in seconds. Copies of instances are placed for this time, and all else that
+    /// moves is blurred.
     #[arg(skip)]
     pub opening: Option<f64>,
 }
 
-/// How the geometry of a scene file is read and compiled.
+/// Options for reading and compiling the geometry of a scene file.
 #[derive(Args, Clone, Debug, Default)]
 #[command(next_help_heading = "Options for scene files")]
 pub struct GeometryOptions {
@@ -104,7 +105,7 @@ impl GeometryOptions {
     }
 }
 
-/// How a scene file is read.
+/// Options for reading a scene file.
 #[derive(Args, Clone, Debug, Default)]
 #[command(next_help_heading = "Options for scene files")]
 pub struct ImportOptions {
@@ -116,8 +117,9 @@ pub struct ImportOptions {
     #[arg(long, value_name = "NAME")]
     camera: Option<String>,
 
-    /// Animation of a glTF file, by its name or its number from 0; moves objects, cameras and lights [default: the first]
-    #[arg(long, value_name = "NAME")]
+    /// Animation of a glTF file, by its name or its number from 0; moves objects, cameras and lights [default: the
+    /// first]
+    #[arg(long, value_name = "ID")]
     animation: Option<String>,
 
     /// Keep parts that are placed several times as instances, or copy their objects [default: keep]
@@ -129,7 +131,7 @@ pub struct ImportOptions {
     #[arg(long, value_name = "file|flat|smooth=DEG", value_parser = normals)]
     normals: Option<NormalsChoice>,
 
-    /// Biological assembly of a PDB or mmCIF file, by its number or name [default: the asymmetric unit]
+    /// Biological assembly of a PDB or mmCIF file, by its number or name [default: the atoms that the file lists]
     #[arg(long, value_name = "ID")]
     assembly: Option<String>,
 
@@ -142,7 +144,7 @@ pub struct ImportOptions {
     pub molecule: MoleculeOptions,
 }
 
-/// How molecules are read.
+/// Options for reading molecules.
 #[derive(Args, Clone, Debug, Default)]
 #[command(next_help_heading = "Options for scene files")]
 pub struct MoleculeOptions {
@@ -160,7 +162,7 @@ pub struct MoleculeOptions {
 }
 
 impl SceneOptions {
-    /// The name of an option that was given, if one was.
+    /// Returns the name of an option that was given, if one was.
     pub fn given(&self) -> Option<&'static str> {
         self.geometry.given().or(self.given_for_pictures())
     }
@@ -178,7 +180,7 @@ impl SceneOptions {
 }
 
 impl GeometryOptions {
-    /// The name of an option that was given, if one was.
+    /// Returns the name of an option that was given, if one was.
     pub fn given(&self) -> Option<&'static str> {
         first_given([
             (self.lattice_bits.is_some(), "--lattice-bits"),
@@ -196,7 +198,7 @@ impl GeometryOptions {
 }
 
 impl SceneOptions {
-    /// The options for importers.
+    /// Returns the options for importers.
     pub fn for_import(&self) -> scene::ImportOptions {
         scene::ImportOptions {
             at: self.time.or(self.opening),
@@ -266,7 +268,7 @@ impl ImportOptions {
         format!("{outside}{camera}{animation}{instances}{assembly}{normals}{without}{molecule}")
     }
 
-    /// The name of an option for glTF files, if one was given.
+    /// Returns the name of an option for glTF files, if one was given.
     pub fn given_choice(&self) -> Option<&'static str> {
         first_given([
             (self.camera.is_some(), "--camera"),
@@ -274,12 +276,12 @@ impl ImportOptions {
         ])
     }
 
-    /// The name of an option for files with assemblies, if one was given.
+    /// Returns the name of an option for files with assemblies, if one was given.
     pub fn given_assembly(&self) -> Option<&'static str> {
         first_given([(self.assembly.is_some(), "--assembly")])
     }
 
-    /// The effects to leave out.
+    /// Returns the effects to leave out.
     pub fn left_out(&self) -> Effects {
         let each = self.without.iter();
         each.fold(Effects::NONE, |all, effect| all.with(*effect))
@@ -303,7 +305,7 @@ impl ImportOptions {
 }
 
 impl MoleculeOptions {
-    /// The name of an option that was given, if one was.
+    /// Returns the name of an option that was given, if one was.
     pub fn given(&self) -> Option<&'static str> {
         first_given([
             (self.style.is_some(), "--style"),
@@ -337,15 +339,15 @@ impl MoleculeOptions {
 #[derive(Args, Clone, Debug, Default)]
 #[command(next_help_heading = "Options for camera and lights")]
 pub struct TargetPoint {
-    /// Look at this point. With a track `camera.orbit` the orbit of a scene file turns about it, that of a blob does not
-    /// [default: the file's, or the middle of the scene]
+    /// Look at this point. With a track `camera.orbit` the orbit of a scene file turns about it, that of a blob does
+    /// not [default: the file's, or the middle of the scene]
     #[arg(long, value_name = "X,Y,Z", value_parser = vector, allow_hyphen_values = true,
         display_order = 101)]
     target: Option<DVec3>,
 }
 
 impl TargetPoint {
-    /// The options for scene files, with this point.
+    /// Returns the options for scene files, with this point.
     pub fn with_target(&self, options: &SceneOptions) -> SceneOptions {
         let mut options = options.clone();
         options.view.target = self.target;

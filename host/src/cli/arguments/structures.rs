@@ -1,4 +1,4 @@
-//! How structures are built.
+//! Options for building structures.
 
 use super::values::bytes;
 use crate::cli::failure::Failure;
@@ -9,7 +9,7 @@ use gridel_core::shared::DIRECTION_COUNTS;
 use gridel_host::compile::{self, Quality, takes_hierarchy};
 use gridel_host::measure::Deforming;
 
-/// How structures are built.
+/// Options for building structures.
 #[derive(Args, Clone, Debug)]
 #[command(next_help_heading = "Options for structures")]
 pub struct StructureOptions {
@@ -39,7 +39,7 @@ pub struct StructureOptions {
 }
 
 impl StructureOptions {
-    /// The options for the compiler.
+    /// Returns the options for the compiler.
     ///
     /// # Errors
     /// If an option was given that none of the options' structures takes.

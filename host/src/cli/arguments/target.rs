@@ -31,7 +31,7 @@ pub struct TargetOptions {
 }
 
 impl TargetOptions {
-    /// The memory, if any of it is given.
+    /// Returns the memory, if any of it is given.
     pub fn target(&self) -> Option<Target> {
         let board = self.target.iter().find_map(BoardOrPoint::board);
         if board.is_none() && self.ram.is_none() && self.flash.is_none() {
@@ -45,7 +45,7 @@ impl TargetOptions {
         })
     }
 
-    /// The options for scene files, with the point that the camera is to look at.
+    /// Returns the options for scene files, with the point that the camera is to look at.
     ///
     /// # Errors
     /// If two boards or two points were given.

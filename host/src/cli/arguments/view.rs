@@ -9,8 +9,8 @@ use gridel_core::format::record::View;
 use gridel_host::compile;
 use gridel_host::scene::{Camera, Color, Scene, TrackTarget};
 
-/// From where a scene is seen, in place of what its file or blob states. Help lists these options last, in their
-/// order, with `--target` behind `--eye`.
+/// Options for the view, in place of what a scene's file or blob states. Help lists these options last, in their order,
+/// with `--target` behind `--eye`.
 #[derive(Args, Clone, Debug, Default)]
 #[command(next_help_heading = "Options for camera and lights")]
 pub struct ViewOptions {
@@ -28,8 +28,9 @@ pub struct ViewOptions {
     #[arg(skip)]
     pub size: Option<[u16; 2]>,
 
-    /// Point this direction up. With a track `camera.orbit` the orbit of a scene file turns about it, that of a blob does
-    /// not [default: the file's, or y; z for STL and NFF; for a blob the picture's, or an axis that it is upright on]
+    /// Point this direction up. With a track `camera.orbit` the orbit of a scene file turns about it, that of a blob
+    /// does not [default: the file's, or y; z for STL and NFF; for a blob the picture's, or an axis that it is upright
+    /// on]
     #[arg(long, value_name = "X,Y,Z", value_parser = vector, allow_hyphen_values = true,
         display_order = 102)]
     up: Option<DVec3>,
@@ -47,7 +48,7 @@ pub struct ViewOptions {
 }
 
 impl ViewOptions {
-    /// Which options were given, and their names.
+    /// Returns for each option whether it was given, and its name.
     pub fn given(&self) -> [(bool, &'static str); 5] {
         [
             (self.eye.is_some(), "--eye"),
@@ -90,7 +91,7 @@ impl ViewOptions {
         Ok(())
     }
 
-    /// The view of a blob with another camera and background.
+    /// Returns the view of a blob with another camera and background.
     ///
     /// # Errors
     /// As [`apply`](Self::apply), and if the camera is out of the blob's reach.

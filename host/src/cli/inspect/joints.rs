@@ -13,12 +13,12 @@ pub struct JointLine {
     parent: Option<u32>,
     /// In scene units.
     pivot: [f64; 3],
-    /// How many instances hang on it and on no joint below it.
+    /// Number of instances that hang on it and on no joint below it.
     instances: usize,
 }
 
 impl JointLine {
-    /// The joints of a blob, in their order.
+    /// Returns the joints of a blob, in their order.
     pub fn all(scene: &Scene<'_>, blob: &[u8]) -> Vec<Self> {
         // They were checked with the scene.
         let Ok(tracks) = Tracks::from_bytes(blob) else {
@@ -31,10 +31,7 @@ impl JointLine {
             }
         }
         let header = scene.header();
-        let origin = match header.coordinate_origin {
-            0 => DVec3::from_array(header.origin),
-            _ => DVec3::ZERO,
-        };
+        let origin = DVec3::from_array(header.coordinate_origin());
         let step = f64::powi(2.0, header.coordinate_exponent());
         let joints = tracks.joints().iter().zip(instances);
         let line = |(joint, instances): (&Joint, usize)| Self {

@@ -61,7 +61,7 @@ fn frames(text: &str) -> Result<Range<u32>, String> {
     }
 }
 
-/// The error of settings that nothing is rendered with.
+/// Returns the error of settings that nothing is rendered with.
 pub fn rejected(error: &RenderError) -> Failure {
     Failure::usage(
         error.to_string(),
@@ -69,7 +69,7 @@ pub fn rejected(error: &RenderError) -> Failure {
     )
 }
 
-/// Where frames go.
+/// The destination of frames.
 pub enum Output {
     Animation(AnimationFormat),
     Numbered(NumberedName, PictureFormat),
@@ -82,7 +82,7 @@ impl TimeOptions {
 }
 
 impl Output {
-    /// All files that are written; `path` is the requested one.
+    /// Returns all files that are written; `path` is the requested one.
     pub fn files(&self, path: &Path, frames: &Range<u32>) -> Vec<PathBuf> {
         match self {
             Self::Animation(_) => vec![path.to_owned()],
@@ -90,7 +90,7 @@ impl Output {
         }
     }
 
-    /// The output of some frames; an error for names that cannot be written to.
+    /// Returns the output of some frames; an error for names that cannot be written to.
     pub fn of(
         options: &TimeOptions,
         frames: &Range<u32>,

@@ -30,7 +30,7 @@ const FORMATS: &str = if cfg!(feature = "exr") {
     ".png, .ppm, .rgb565 or .npy"
 };
 
-/// What is written.
+/// Options for output files.
 #[derive(Args)]
 pub struct OutputOptions {
     /// Picture to write: .png, .ppm, or .rgb565 (two bytes per pixel, little-endian, without a
@@ -70,7 +70,7 @@ pub struct HeatMapFile {
     pub maximum: u32,
 }
 
-/// How the picture is stored.
+/// The storage of the picture.
 #[derive(Clone, Copy, PartialEq)]
 enum Stored {
     /// As a display shows it.
@@ -83,7 +83,7 @@ enum Stored {
 #[derive(Clone, Debug, Serialize)]
 pub struct AovFile {
     pub name: &'static str,
-    /// That of the picture itself, if it holds layers.
+    /// The file of the layer: that of the picture itself, if it holds layers.
     pub file: PathBuf,
     #[serde(skip)]
     aov: Aov,
@@ -104,7 +104,7 @@ pub enum Image {
 }
 
 impl Image {
-    /// The picture with what was counted, if it is one for displays.
+    /// Returns the picture with what was counted, if it is one for displays.
     pub fn shown(&self) -> Option<&Picture> {
         match self {
             Self::Shown(picture) => Some(picture),
@@ -177,7 +177,7 @@ impl<'a> Outputs<'a> {
         Ok(())
     }
 
-    /// All files that are written.
+    /// Returns all files that are written.
     pub fn files(&self) -> impl Iterator<Item = &Path> {
         let aovs = self.own_files().iter().map(|it| &*it.file);
         [self.picture].into_iter().chain(self.heat_map).chain(aovs)

@@ -12,7 +12,7 @@ use gridel_host::picture::Exposure;
 use gridel_host::state::{exposed, ticks};
 use gridel_host::table::{counted, grouped};
 
-/// How long the shutter is open.
+/// Options for the time that the shutter is open.
 #[derive(Args, Clone, Debug)]
 pub struct ShutterOptions {
     /// Blur what moves: the shutter is open for so many seconds from each time on
@@ -45,7 +45,7 @@ fn usual(samples: u16) -> u16 {
     enough.or_else(more).unwrap_or(USUAL.min(samples))
 }
 
-/// What is wrong with moments that do not have the same number of samples; `None` if they have.
+/// Returns an error text if the moments do not have the same number of samples; `None` if they have.
 fn unevenness(samples: u16, moments: u16) -> Option<String> {
     if samples.is_multiple_of(moments) {
         return None;
@@ -68,7 +68,8 @@ fn unevenness(samples: u16, moments: u16) -> Option<String> {
 const MOST_BYTES: usize = 1 << 30;
 
 impl ShutterOptions {
-    /// For how many ticks the shutter is open, and over how many moments; `None` without one, or where nothing moves.
+    /// Returns the ticks for which the shutter is open, and the number of moments; `None` without one, or if nothing
+    /// moves.
     ///
     /// # Errors
     /// If it is open for less than a tick.
@@ -137,7 +138,7 @@ pub fn changes(
         .collect()
 }
 
-/// The scene with each of some changes.
+/// Returns the scene with each of some changes.
 pub fn scenes<'a>(changes: &'a [Changes], scene: &Scene<'a>) -> Result<Vec<Scene<'a>>, Failure> {
     changes.iter().map(|it| it.apply(scene)).collect()
 }

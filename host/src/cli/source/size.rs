@@ -24,8 +24,8 @@ impl Source {
         }
     }
 
-    /// The bytes of the blob if instances were copied in place of kept, or the other way round; `None` for a blob, and
-    /// for more copies than are worth the time.
+    /// Returns the bytes of the blob if instances were copied in place of kept, or the other way round; `None` for a
+    /// blob, and for more copies than are worth the time.
     pub fn bytes_otherwise(&self, instances: &InstanceCount) -> Option<usize> {
         let (importing, compiling) = self.made_by.as_ref()?;
         if instances.placed_primitives as u64 > MOST_COPIED {

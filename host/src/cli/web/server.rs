@@ -5,7 +5,7 @@ use std::net::{Ipv4Addr, Shutdown, SocketAddr, TcpListener, TcpStream};
 use std::path::{Component, Path, PathBuf};
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::thread;
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
 /// Bytes of a request's lines at the most. Browsers send the cookies of all servers on this machine.
 const MOST_REQUEST: usize = 64 << 10;
@@ -13,13 +13,13 @@ const MOST_REQUEST: usize = 64 << 10;
 /// Bytes that are read at the most, so that an answer to too many of them arrives.
 const MOST_READ: u64 = 1 << 20;
 
-/// How long the rest of a refused request may take.
+/// Longest time for the rest of a rejected request.
 const REST_PATIENCE: Duration = Duration::from_secs(1);
 
-/// How long to wait after a connection could not be accepted: there may be too many of them.
+/// Time to wait after a connection could not be accepted: there may be too many of them.
 const PAUSE: Duration = Duration::from_millis(50);
 
-/// How long a browser may take over a request, or over reading the answer.
+/// Longest time for a browser to send a request, or to read the answer.
 const PATIENCE: Duration = Duration::from_secs(20);
 
 const TEXT: &str = "text/plain; charset=utf-8";
@@ -61,6 +61,8 @@ type Refusal = (u16, &'static str);
 
 const BAD_REQUEST: Refusal = (400, "Bad Request");
 const NOT_FOUND: Refusal = (404, "Not Found");
+/// The answer to a request under another host name: another site could read the files under it.
+const MISDIRECTED: Refusal = (421, "Misdirected Request");
 
 /// Serves files until the program ends.
 pub struct Server {
@@ -85,7 +87,7 @@ impl Server {
         })
     }
 
-    /// Where it listens.
+    /// Returns the address at which it listens.
     pub fn address(&self) -> SocketAddr {
         self.address
     }
@@ -116,7 +118,7 @@ impl Server {
     fn answer(&self, stream: &TcpStream) -> io::Result<()> {
         stream.set_read_timeout(Some(PATIENCE))?;
         stream.set_write_timeout(Some(PATIENCE))?;
-        let request = read_request(stream)?;
+        let request = read_request(Timed::new(stream))?;
         let is_head = request.as_ref().is_ok_and(|it| it.starts_with("HEAD "));
         let answer = request.and_then(|it| self.find(&it));
         let is_refused = answer.is_err();
@@ -169,11 +171,36 @@ fn path_of(target: &str) -> &str {
     }
 }
 
-/// Reads the first line of a request; the others do not matter here.
-fn read_request(stream: &TcpStream) -> io::Result<Result<String, Refusal>> {
+/// A connection that is read until a time, however slowly its bytes come.
+struct Timed<'s> {
+    stream: &'s TcpStream,
+    end: Instant,
+}
+
+impl<'s> Timed<'s> {
+    fn new(stream: &'s TcpStream) -> Self {
+        let end = Instant::now() + PATIENCE;
+        Self { stream, end }
+    }
+}
+
+impl Read for Timed<'_> {
+    fn read(&mut self, bytes: &mut [u8]) -> io::Result<usize> {
+        let left = self.end.saturating_duration_since(Instant::now());
+        if left.is_zero() {
+            return Err(io::ErrorKind::TimedOut.into());
+        }
+        self.stream.set_read_timeout(Some(left))?;
+        self.stream.read(bytes)
+    }
+}
+
+/// Reads the first line of a request, and checks that it names this machine as its host.
+fn read_request(stream: impl Read) -> io::Result<Result<String, Refusal>> {
     let mut reader = BufReader::new(stream.take(MOST_READ));
     let (mut first, mut line) = (Vec::new(), Vec::new());
     let mut length = reader.read_until(b'\n', &mut first)?;
+    let mut is_for_this_machine = true;
     loop {
         line.clear();
         let read = reader.read_until(b'\n', &mut line)?;
@@ -181,11 +208,32 @@ fn read_request(stream: &TcpStream) -> io::Result<Result<String, Refusal>> {
         if read <= 2 {
             break;
         }
+        is_for_this_machine &= host_of(&line).is_none_or(is_loopback);
     }
     Ok(match String::from_utf8(first) {
         _ if length > MOST_REQUEST => Err((431, "Request Header Fields Too Large")),
+        _ if !is_for_this_machine => Err(MISDIRECTED),
         Ok(first) => Ok(first),
         Err(_) => Err(BAD_REQUEST),
+    })
+}
+
+/// The value of a header's line, if it is `Host`.
+fn host_of(line: &[u8]) -> Option<&[u8]> {
+    let colon = line.iter().position(|&byte| byte == b':')?;
+    let (name, value) = (&line[..colon], &line[colon + 1..]);
+    name.eq_ignore_ascii_case(b"host")
+        .then(|| value.trim_ascii())
+}
+
+/// Returns true for a name of this machine, with a port or without.
+fn is_loopback(host: &[u8]) -> bool {
+    let host = host.to_ascii_lowercase();
+    ["localhost", "127.0.0.1", "[::1]"].iter().any(|name| {
+        let port = host.strip_prefix(name.as_bytes());
+        port.is_some_and(|it| {
+            it.is_empty() || it[0] == b':' && it[1..].iter().all(u8::is_ascii_digit)
+        })
     })
 }
 
@@ -276,6 +324,43 @@ mod tests {
         assert!(get(&server, "/scenes/a%20b.toml").ends_with("\r\n\r\na"));
         let head = ask(&server, "HEAD /gridel.wasm HTTP/1.1\r\n\r\n");
         assert!(head.contains("Content-Length: 4") && head.ends_with("\r\n\r\n"));
+    }
+
+    #[test]
+    fn only_names_of_this_machine_are_served() {
+        let outer = folder();
+        let server = Server::new(&outer.path().join("page"), 0).unwrap();
+        for (host, code) in [
+            ("localhost", 200),
+            ("LOCALHOST:8000", 200),
+            ("127.0.0.1:8000", 200),
+            ("[::1]:8000", 200),
+            ("example.org", 421),
+            ("localhost.example.org", 421),
+            ("127.0.0.1.example.org:8000", 421),
+            ("localhost:80:80", 421),
+            ("", 421),
+            ("localhost\r\nHost: example.org", 421),
+        ] {
+            let answer = ask(&server, format!("GET / HTTP/1.1\r\nhost: {host}\r\n\r\n"));
+            let expected = format!("HTTP/1.1 {code} ");
+            assert!(answer.starts_with(&expected), "{host}: {answer}");
+        }
+    }
+
+    #[test]
+    fn requests_that_come_byte_by_byte_end() {
+        let listener = TcpListener::bind((Ipv4Addr::LOCALHOST, 0)).unwrap();
+        let mut slow = TcpStream::connect(listener.local_addr().unwrap()).unwrap();
+        let (stream, _) = listener.accept().unwrap();
+        slow.write_all(b"GET").unwrap();
+        let end = Instant::now();
+        let error = read_request(Timed {
+            stream: &stream,
+            end,
+        })
+        .unwrap_err();
+        assert_eq!(error.kind(), io::ErrorKind::TimedOut);
     }
 
     #[test]

@@ -59,7 +59,7 @@ fn insert(tree: &mut Tree, place: usize, bounds: UnitBox) {
     }
 }
 
-/// By how much a node's volume grows, and its surface, which decides where volumes are equal.
+/// Returns the growth of a node's volume and of its surface, which decides if volumes are equal.
 fn increase(tree: &Tree, number: usize, bounds: &UnitBox) -> (f64, f64) {
     let before = tree.nodes[number].bounds;
     let after = before.union(bounds);

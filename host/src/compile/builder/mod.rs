@@ -28,9 +28,9 @@ pub enum Builder {
     /// where there are many.
     #[default]
     Sah,
-    /// As [`Sah`](Self::Sah), with bins throughout.
+    /// Like [`Sah`](Self::Sah), with bins throughout.
     Binned,
-    /// That of [`Sah`](Self::Sah), improved by reinsertion: takes longest, and is best for boxes.
+    /// The hierarchy of [`Sah`](Self::Sah), improved by reinsertion: takes longest, and is best for boxes.
     Reinsertion,
     /// The paper's: each primitive enters at the root and goes where it adds least volume.
     Insertion,
@@ -54,7 +54,7 @@ impl Builder {
         Builder::Modelled,
     ];
 
-    /// The name that command lines and tables use.
+    /// Returns the name that command lines and tables use.
     pub const fn name(self) -> &'static str {
         match self {
             Builder::Sah => "sah",

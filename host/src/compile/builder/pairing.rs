@@ -23,7 +23,7 @@ pub fn random(primitives: &[Primitive]) -> Tree {
     tree
 }
 
-/// On how many neighbors of either side along the curve the nearest is sought.
+/// Number of neighbors on either side along the curve among which the nearest is sought.
 const NEIGHBORS: usize = 16;
 
 /// Pairs the nearest two: those whose common box has the least surface.

@@ -15,7 +15,7 @@ const PASSES: usize = 12;
 /// A pass that gains less is the last.
 const LEAST_GAIN: f64 = 0.001;
 
-/// The improved tree.
+/// Returns the improved tree.
 pub fn improve(root: &Node) -> Tree {
     let mut tree = Tree::default();
     tree.root = copy(root, &mut tree);
@@ -116,7 +116,7 @@ fn refit(tree: &mut Tree, mut number: usize) {
 
 /// A node that waits to be examined, the cheapest first.
 struct Candidate {
-    /// By how much all nodes above would grow.
+    /// The growth of all nodes above.
     growth: f64,
     number: usize,
 }

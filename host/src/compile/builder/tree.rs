@@ -68,7 +68,7 @@ impl Tree {
         order
     }
 
-    /// The hierarchy, and the primitives in the order of its leaves.
+    /// Returns the hierarchy, and the primitives in the order of its leaves.
     ///
     /// Few primitives of one kind become one leaf where the surface area heuristic says so. Ranges
     /// that would lie too deep are halved.
@@ -158,7 +158,7 @@ struct Facts {
     count: usize,
     /// The cost of the tests of its primitives.
     tests: f64,
-    /// By the surface area heuristic.
+    /// The cost by the surface area heuristic.
     cost: f64,
     /// Levels of inner nodes.
     height: usize,

@@ -24,7 +24,7 @@ pub struct Apexes {
 
 /// Apexes that a blob has room for: more lights than these are left to the hierarchy.
 const MOST_POINTS: usize = 64;
-/// How much less the next try takes, where lists exceed the budget.
+/// Ratio of the next try's size to the last one's, if lists exceed the budget.
 const COARSER: f64 = 0.85;
 
 /// Builds the lists of all apexes, which together take at most the budget of each.

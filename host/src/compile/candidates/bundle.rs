@@ -14,7 +14,7 @@ pub struct Bundle {
     pub axis: usize,
     /// True if the axis increases away from the apex.
     pub up: bool,
-    /// Where the rays begin on their major axis: the point, or a plane beyond the scene.
+    /// The start of the rays on their major axis: the point, or a plane beyond the scene.
     pub start: f64,
     pub rays: Rays,
 }
@@ -48,7 +48,7 @@ impl Bundle {
         [near.max(0.0), far]
     }
 
-    /// Which rays can meet a target; `None` if none can.
+    /// Returns the ranges of the rays that can meet a target; `None` if none can.
     pub fn ranges_to(&self, target: &Target) -> Option<Ranges> {
         let bounds = target.bounds();
         let [near, far] = self.depths(bounds);
@@ -92,7 +92,7 @@ impl Bundle {
         (DVec3::from_array(from), DVec3::from_array(way))
     }
 
-    /// The volume in which rays of some ranges can meet anything, up to a depth.
+    /// Returns the volume in which rays of some ranges can meet anything, up to a depth.
     pub fn shaft(&self, ranges: Ranges, last: f64) -> Shaft {
         let mut shaft = Shaft {
             low: [self.start; 3],

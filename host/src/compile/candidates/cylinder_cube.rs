@@ -39,7 +39,7 @@ const SIZES: [u32; 19] = [
 /// The paper's.
 const PAPER_SIZE: u32 = 4;
 
-/// How the candidates of a pair of gridels are found.
+/// A method of finding the candidates of a pair of gridels.
 pub trait Form: Sync {
     const STRUCTURE: Structure;
     /// True if lists are sorted along the ray and have keys.
@@ -59,7 +59,7 @@ pub trait Form: Sync {
 pub struct Pair(pub [[[f64; 2]; 3]; 2]);
 
 impl Pair {
-    /// The gridels of a cell.
+    /// Returns the gridels of a cell.
     pub fn of(gridels: &Gridels, cell: u64) -> Self {
         let square = u64::from(gridels.count) * u64::from(gridels.count);
         let faces = FACES[(cell / (square * square)) as usize];
@@ -207,7 +207,7 @@ struct Cylinder {
     radius: f64,
 }
 
-/// More than what rounding can take from a radius.
+/// Factor that is larger than the loss of a radius by rounding.
 const ROUNDING: f64 = 1.0 + 8.0 * f64::EPSILON;
 
 impl Cylinder {

@@ -1,4 +1,4 @@
-//! Which nodes of the hierarchy a ray between two gridels enters at.
+//! Chooses the nodes at which a ray between two gridels enters the hierarchy.
 //!
 //! A node is replaced by its children that lead to candidates, as long as that lowers the estimated cost. It saves the
 //! test of their boxes, and costs the rays that each child's box would have culled. A few sample rays of the pair

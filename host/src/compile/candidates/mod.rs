@@ -57,7 +57,7 @@ fn sections_of(kinds: ListSections, lists: Lists) -> Vec<Section> {
 }
 
 impl Layout {
-    /// The tree over rays and its lists.
+    /// Returns the tree over rays and its lists.
     pub fn of_classes(classes: Classes) -> Self {
         let figures = classes.lists.figures;
         let mut sections = vec![section(SectionKind::ClassNodes, &classes.nodes)];
@@ -72,7 +72,7 @@ impl Layout {
         }
     }
 
-    /// The lists of apexes.
+    /// Returns the lists of apexes.
     pub fn of_apexes(apexes: Apexes) -> Self {
         let figures = apexes.lists.figures;
         let mut sections = vec![
@@ -91,7 +91,7 @@ impl Layout {
         }
     }
 
-    /// A table over pairs of gridels, in the sections of gridels and lists.
+    /// Returns a table over pairs of gridels, in the sections of gridels and lists.
     pub fn of_cube(
         structure: Structure,
         (gridels, lists): (SectionKind, ListSections),

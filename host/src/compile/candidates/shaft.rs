@@ -17,7 +17,7 @@ pub struct Shaft {
 }
 
 impl Shaft {
-    /// The convex hull of two boxes, λ being 0 in the first and 1 in the second.
+    /// Returns the convex hull of two boxes, λ being 0 in the first and 1 in the second.
     pub fn between(first: [[f64; 2]; 3], second: [[f64; 2]; 3]) -> Self {
         let rate = |side: usize| [0, 1, 2].map(|k| second[k][side] - first[k][side]);
         Self {
@@ -29,7 +29,7 @@ impl Shaft {
         }
     }
 
-    /// The first and the last λ at which a box is met.
+    /// Returns the first and the last λ at which a box is met.
     #[inline]
     pub fn meets(&self, bounds: &[[f64; 2]; 3]) -> Option<[f64; 2]> {
         let (mut from, mut to) = (0.0, self.last);
@@ -52,7 +52,7 @@ impl Shaft {
         (from <= to).then_some([from, to])
     }
 
-    /// The square of the least distance of a point from the volume between two λ.
+    /// Returns the square of the least distance of a point from the volume between two λ.
     pub fn distance2(&self, point: [f64; 3], [from, to]: [f64; 2]) -> f64 {
         // A point is outside of the box by `low(λ) - point` or `point - high(λ)`, if positive.
         // These are linear, so the square of the distance is quadratic between the λ where one of
@@ -90,7 +90,7 @@ impl Shaft {
         pieces.fold(f64::INFINITY, f64::min).max(0.0)
     }
 
-    /// The least and the largest value of `normal . x` over the volume.
+    /// Returns the least and the largest value of `normal . x` over the volume.
     pub fn along(&self, normal: [f64; 3]) -> [f64; 2] {
         let end = |place: f64| {
             let mut reach = [0.0; 2];

@@ -37,7 +37,7 @@ enum Surface {
 }
 
 impl Target {
-    /// Where along a shaft the primitive can be met.
+    /// Returns the interval along a shaft in which the primitive can be met; `None` if it cannot.
     #[inline]
     pub fn met_by(&self, shaft: &Shaft) -> Option<[f64; 2]> {
         let span = shaft.meets(&self.bounds)?;
@@ -63,12 +63,12 @@ impl Target {
         (room >= 0.0 && middle > 0.0).then(|| (middle - room.sqrt()) / length2)
     }
 
-    /// The widened box.
+    /// Returns the widened box.
     pub fn bounds(&self) -> &[[f64; 2]; 3] {
         &self.bounds
     }
 
-    /// The sphere around the primitive: its own, or that of its box.
+    /// Returns the sphere around the primitive: its own, or that of its box.
     pub fn bounding_sphere(&self) -> ([f64; 3], f64) {
         if let Surface::Sphere { center, radius2 } = self.surface {
             return (center, radius2.sqrt() + Gridels::SPARE);
@@ -143,7 +143,7 @@ impl<'f> Targets<'f> {
         }
     }
 
-    /// The root of the hierarchy; none without primitives.
+    /// Returns the root of the hierarchy; none without primitives.
     pub fn root(&self) -> Option<Node> {
         match (self.flat.pairs.is_empty(), self.flat.leaves.is_empty()) {
             (true, true) => None,
@@ -172,7 +172,7 @@ impl<'f> Targets<'f> {
         }
     }
 
-    /// The children of a node with their boxes, widened; `None` for a leaf.
+    /// Returns the children of a node with their boxes, widened; `None` for a leaf.
     pub fn children(&self, node: Node) -> Option<[(Node, [[f64; 2]; 3]); 2]> {
         if node & LEAF != 0 {
             return None;
@@ -186,7 +186,7 @@ impl<'f> Targets<'f> {
         Some([(children[0], bounds(0)), (children[1], bounds(1))])
     }
 
-    /// The slots of a leaf.
+    /// Returns the slots of a leaf.
     pub fn slots(&self, node: Node) -> std::ops::Range<usize> {
         let leaf = Leaf::from_word(self.flat.leaves[(node & !LEAF) as usize]);
         leaf.map_or(0..0, |leaf| {
@@ -200,7 +200,7 @@ impl<'f> Targets<'f> {
         (self.flat.pairs.len() + self.flat.leaves.len()) as u32
     }
 
-    /// A node's number.
+    /// Returns a node's number.
     pub fn node_number(&self, node: Node) -> u32 {
         match node & LEAF {
             0 => node,

@@ -1,5 +1,5 @@
 use super::*;
-use crate::scene::test_chains::{Random, chain};
+use crate::scene::tests::chains::{Random, chain};
 use crate::scene::{Key, SourceSpan, TrackTarget};
 
 #[test]
@@ -95,7 +95,7 @@ fn reach_of_shifts_and_hinges_is_tight() {
     near(of_tracks(axle), [1.0, -round, -round], [2.0, round, round]);
 }
 
-/// Where the pivot lies far away, small rotations and small differences of axes move a part far.
+/// With a distant pivot, small rotations and small differences of axes move a part far.
 #[test]
 fn reach_holds_small_rotations_about_distant_pivots() {
     for (first, second) in [

@@ -42,7 +42,7 @@ pub struct EnvironmentData {
     pub figures: EnvironmentFigures,
 }
 
-/// How an environment is stored.
+/// The storage of an environment.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct EnvironmentFigures {
     /// Rows of the map.
@@ -64,7 +64,7 @@ impl fmt::Display for EnvironmentFigures {
 }
 
 impl EnvironmentFigures {
-    /// A warning where light is lost.
+    /// Returns a warning where light is lost.
     pub fn warning(&self) -> Option<String> {
         (self.lost > 0.0).then(|| {
             format!(
@@ -151,7 +151,7 @@ impl EnvironmentData {
         })
     }
 
-    /// Its sections.
+    /// Returns its sections.
     pub fn sections(&self) -> [Section; 4] {
         [
             section(SectionKind::Environment, &[self.record]),

@@ -19,7 +19,7 @@ impl Exposure {
         }
     }
 
-    /// A color, as records have it.
+    /// Converts a color to that of records.
     pub fn of_color(
         &self,
         color: Color,
@@ -37,7 +37,7 @@ impl Exposure {
         Ok(exposed)
     }
 
-    /// A light whose color is all that says how bright it is.
+    /// Converts the color of a light whose brightness is stated by its color alone.
     pub fn of_light(&self, light: &Light, number: usize) -> Result<Light, CompileError> {
         let mut light = *light;
         let (Light::Point { color, .. } | Light::Directional { color, .. }) = &mut light;

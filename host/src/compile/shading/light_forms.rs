@@ -13,7 +13,7 @@ const LONGEST: f64 = (1 << 17) as f64;
 const LONGEST_EDGE: f64 = (1 << 16) as f64;
 /// The brightest color of a record.
 const BRIGHTEST: f64 = 2047.0;
-/// How far light may vary across the scene by a range that is too long for a record.
+/// Largest variation of light across the scene by a range that is too long for a record.
 const UNEVEN: f64 = 0.05;
 
 /// Steps of the lattice by which light starts above a surface of the scene. More than the lattice moves the surface,
@@ -60,8 +60,8 @@ pub struct FormedLight<'a> {
     pub has_color_track: bool,
 }
 
-/// The record of a form, and the light's color in it: brought to the range where it is most precise, unless a track
-/// gives the light other colors.
+/// Returns the record of a form, and the light's color in it: brought to the range where it is most precise, unless a
+/// track gives the light other colors.
 pub fn form_record(
     light: &FormedLight<'_>,
     lattice: &Lattice,

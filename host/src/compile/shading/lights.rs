@@ -33,7 +33,7 @@ pub struct Space<'a> {
 }
 
 impl Space<'_> {
-    /// The longest side of the scene's box.
+    /// Returns the longest side of the scene's box.
     pub fn size(&self) -> f64 {
         (self.extent.1 - self.extent.0).max_element()
     }
@@ -141,7 +141,7 @@ fn check_stays(scene: &Scene, number: usize) -> Result<(), CompileError> {
     }
 }
 
-/// A place that may lie beyond the scene, in units with 13 fraction bits.
+/// Returns a place that may lie beyond the scene, in units with 13 fraction bits.
 pub fn on_lattice(
     lattice: &Lattice,
     size: f64,
@@ -169,7 +169,7 @@ fn label(scene: &Scene, number: usize) -> String {
     }
 }
 
-/// A light of a scene of some size.
+/// Returns a light of a scene of some size.
 pub fn light_record(
     light: &Light,
     lattice: &Lattice,

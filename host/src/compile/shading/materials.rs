@@ -1,4 +1,4 @@
-//! Materials as records, and what only some of them have beside.
+//! Materials as records, and the data that only some of them have.
 
 use super::checkerboard::{LARGEST_CELL, checker_origin, has_large_cells};
 use super::exposure::Exposure;
@@ -29,7 +29,7 @@ pub struct MaterialData {
     /// The materials with a priority, from the highest on.
     media: Vec<u32>,
     textures: Vec<Section>,
-    /// How each texture is stored.
+    /// The storage of each texture.
     pub texture_figures: Vec<TextureFigures>,
 }
 
@@ -92,12 +92,12 @@ impl MaterialData {
         Ok(data)
     }
 
-    /// Whether a material is rough.
+    /// Returns true if a material is rough.
     pub fn are_rough(&self) -> bool {
         !self.roughnesses.is_empty()
     }
 
-    /// The sections of a blob that tells so many objects apart.
+    /// Returns the sections of a blob that distinguishes this number of objects.
     pub fn sections(&self, objects: u32) -> Vec<Section> {
         let mut sections = vec![
             section(SectionKind::Materials, &self.records),

@@ -9,7 +9,7 @@ use gridel_core::format::limits::MAX_MEDIA;
 use std::cmp::Reverse;
 
 /// Returns the numbers of the materials with a priority, from the highest on. `numbers` are the materials that objects
-/// have. Of equal ones the first of the scene file comes first.
+/// have. Equal ones keep the order of the scene file.
 pub fn media(
     scene: &Scene,
     numbers: &[Option<u32>],

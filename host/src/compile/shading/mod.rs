@@ -38,6 +38,7 @@ use gridel_core::format::record::{self, View};
 use lights::{LightData, Space, on_lattice};
 use materials::MaterialData;
 use setting::Setting;
+pub use setting::{Shoulder, Supplied};
 
 /// Everything of a blob that is not geometry.
 #[derive(Debug)]
@@ -46,14 +47,14 @@ pub struct ShadingData {
     pub coordinates: Coordinates,
     pub requirements: Requirements,
     /// Parts that the scene lacks and the compiler supplied.
-    pub supplied: Vec<String>,
+    pub supplied: Vec<Supplied>,
     materials: MaterialData,
     lights: LightData,
     /// The light around the scene.
     environment: Option<EnvironmentData>,
     /// The lens of the camera, in place of a pinhole: one, or none.
     lens: Vec<Lens>,
-    /// How often light may be reflected diffusely: one number, or none.
+    /// Maximum number of diffuse reflections of light: one number, or none.
     bounces: Vec<u32>,
     /// Tracks and joints.
     motion: Vec<Section>,
@@ -146,22 +147,22 @@ impl ShadingData {
         })
     }
 
-    /// The lights, those of the environment included.
+    /// Returns the lights, those of the environment included.
     pub fn lights(&self) -> &[record::Light] {
         &self.lights.records
     }
 
-    /// How each texture is stored.
+    /// Returns the storage of each texture.
     pub fn texture_figures(&self) -> &[TextureFigures] {
         &self.materials.texture_figures
     }
 
-    /// How the environment is stored.
+    /// Returns the storage of the environment.
     pub fn environment_figures(&self) -> Option<EnvironmentFigures> {
         self.environment.as_ref().map(|it| it.figures)
     }
 
-    /// The sections of a blob that tells so many objects apart.
+    /// Returns the sections of a blob that distinguishes this number of objects.
     pub fn sections(&self, objects: u32) -> Vec<Section> {
         let mut sections = vec![
             section(SectionKind::View, &[self.view]),

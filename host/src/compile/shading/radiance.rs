@@ -2,7 +2,7 @@
 
 use crate::scene::Color;
 
-/// A color of light as a blob's records hold it: 20 fraction bits, 0 to 2,047.999999; saturates.
+/// Converts a color of light to that of a blob's records: 20 fraction bits, 0 to 2,047.999999; saturates.
 ///
 /// ```
 /// assert_eq!(gridel_host::compile::radiance([1.0, 0.5, 0.0]), [1 << 20, 1 << 19, 0]);

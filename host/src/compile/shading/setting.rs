@@ -5,18 +5,59 @@ use crate::compile::framing::{BACKGROUND, framing_of};
 use crate::scene::{Camera, Color, Light};
 use crate::shape::unit;
 use glam::DVec3;
+use serde::{Serialize, Serializer};
+use std::fmt;
 
 /// The ambient light that is supplied with a light, so that shadows are not black.
 const AMBIENT: f64 = 0.15;
 
-/// What a picture needs beside objects.
+/// A part that the compiler supplies because the scene has none.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Supplied {
+    /// A camera.
+    Camera,
+    /// A directional light, and ambient light.
+    Light(Shoulder),
+    /// A background.
+    Background,
+}
+
+/// A shoulder of the camera, above which a light is supplied.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Shoulder {
+    Left,
+    Right,
+}
+
+impl fmt::Display for Supplied {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let shoulder = match self {
+            Self::Camera => return f.write_str("a camera that shows the whole scene"),
+            Self::Background => return f.write_str("a light background"),
+            Self::Light(Shoulder::Left) => "left",
+            Self::Light(Shoulder::Right) => "right",
+        };
+        write!(
+            f,
+            "a directional light from above the camera's {shoulder} shoulder, and some light from everywhere"
+        )
+    }
+}
+
+impl Serialize for Supplied {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        serializer.collect_str(self)
+    }
+}
+
+/// The data that a picture needs besides objects.
 pub struct Setting {
     pub camera: Camera,
     pub background: Color,
     pub lights: Vec<Light>,
     pub ambient: Color,
-    /// What the compiler supplied.
-    pub supplied: Vec<String>,
+    /// Parts that the compiler supplied.
+    pub supplied: Vec<Supplied>,
 }
 
 impl Setting {
@@ -24,7 +65,7 @@ impl Setting {
         let scene = shapes.scene();
         let mut supplied = Vec::new();
         let camera = scene.camera.unwrap_or_else(|| {
-            supplied.push(String::from("a camera that shows the whole scene"));
+            supplied.push(Supplied::Camera);
             framing_of(shapes, None)
         });
         let background = scene.background.unwrap_or(match scene.camera {
@@ -34,10 +75,7 @@ impl Setting {
         let (mut lights, mut ambient) = (scene.lights.clone(), scene.ambient);
         if !scene.is_lit() && !scene.is_dark {
             let (direction, shoulder) = over_a_shoulder(shapes, &camera);
-            supplied.push(format!(
-                "a directional light from above the camera's {shoulder} shoulder, and some light from \
-                 everywhere"
-            ));
+            supplied.push(Supplied::Light(shoulder));
             lights.push(Light::Directional {
                 direction,
                 // With what comes from everywhere, white stays white and is not cut off.
@@ -46,7 +84,7 @@ impl Setting {
             ambient = [AMBIENT; 3];
         }
         if scene.camera.is_none() && scene.background.is_none() && scene.environment.is_none() {
-            supplied.push(String::from("a light background"));
+            supplied.push(Supplied::Background);
         }
         Self {
             camera,
@@ -58,10 +96,10 @@ impl Setting {
     }
 }
 
-/// Returns the direction of a light from above the camera's left shoulder, and the shoulder's name. The light comes
-/// from the right one where flat surfaces that face the camera would otherwise be dark.
-fn over_a_shoulder(shapes: &Shapes<'_>, camera: &Camera) -> (DVec3, &'static str) {
-    /// By how many times more the right one must light.
+/// Returns the direction of a light from above the camera's left shoulder, and the shoulder. The light comes from
+/// the right one where flat surfaces that face the camera would otherwise be dark.
+fn over_a_shoulder(shapes: &Shapes<'_>, camera: &Camera) -> (DVec3, Shoulder) {
+    /// Least ratio of the right one's light to that of the left one.
     const CLEARLY: f64 = 2.0;
     let view = unit(camera.target - camera.eye);
     let up = unit(camera.up);
@@ -74,8 +112,8 @@ fn over_a_shoulder(shapes: &Shapes<'_>, camera: &Camera) -> (DVec3, &'static str
         sum
     };
     if lit(right) > CLEARLY * lit(left) {
-        (right, "right")
+        (right, Shoulder::Right)
     } else {
-        (left, "left")
+        (left, Shoulder::Left)
     }
 }

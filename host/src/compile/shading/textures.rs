@@ -19,10 +19,10 @@ use std::fmt;
 use std::sync::Arc;
 use stored::{Stored, UsedImage};
 
-/// How a texture is stored.
+/// The storage of a texture.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct TextureFigures {
-    /// Where it comes from.
+    /// The source of the image.
     pub name: String,
     pub width: u32,
     pub height: u32,
@@ -64,7 +64,7 @@ pub fn root(linear: f64, display_values: bool) -> u8 {
     (libm::sqrt(channel) * 255.0).round() as u8
 }
 
-/// How a texture is looked up, as its record says it.
+/// Returns the lookup flags of a texture's record.
 fn filter(texture: &Texture) -> u8 {
     let bit = |bit, is_set| if is_set { bit } else { 0 };
     bit(record::Texture::BILINEAR, texture.bilinear) | bit(record::Texture::LEVELS, texture.levels)
@@ -163,7 +163,7 @@ impl Textures {
         })
     }
 
-    /// The sections, and how each image is stored.
+    /// Returns the sections, and how each image is stored.
     pub fn sections(
         self,
         display_values: bool,

@@ -12,11 +12,11 @@ const FORESTS: usize = LANES - 1;
 /// The cost of a leaf's test; that of a node's is 1.
 const LEAF_COST: f64 = 1.0;
 
-/// How each subtree is cut into forests.
+/// The cuts of each subtree into forests.
 pub struct Forests {
     /// For 1 to 7 trees: the least cost, the root's area being left as it is.
     costs: Vec<[f64; FORESTS]>,
-    /// For 2 to 8 trees: how many of them are the left child's; 0 where fewer trees cost no more.
+    /// For 2 to 8 trees: the number of them that are the left child's; 0 where fewer trees cost no more.
     lefts: Vec<[u8; FORESTS]>,
 }
 
@@ -58,7 +58,7 @@ impl Forests {
         forests
     }
 
-    /// The children of the wide node at a node of the tree; an item is its own and only one.
+    /// Returns the children of the wide node at a node of the tree; an item is its own and only one.
     pub fn children(&self, tree: &Tree, node: u32) -> Vec<u32> {
         let mut children = Vec::with_capacity(LANES);
         self.cut(tree, node, LANES, &mut children);

@@ -12,7 +12,7 @@ pub struct Hull {
 }
 
 impl Hull {
-    /// The box around two.
+    /// Returns the box around two.
     pub fn union(&self, other: &Hull) -> Hull {
         Hull {
             sides: std::array::from_fn(|lane| self.sides[lane].max(other.sides[lane])),

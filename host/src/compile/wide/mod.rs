@@ -31,7 +31,7 @@ use packs::Pack;
 use strips::Strip;
 use tree::{Tree, inverse};
 
-/// How much time the builder takes.
+/// The time that the builder takes.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, ValueEnum)]
 pub enum Quality {
     /// No reinsertion.
@@ -62,9 +62,9 @@ pub struct Wide {
     packs: Vec<Pack>,
     /// The primitives that are in no cluster, in the order of their slots, kind by kind.
     pub slots: [Vec<u32>; Kind::ALL.len()],
-    /// Where other structures share the primitives: for each slot, where it lies in the hierarchy.
+    /// If other structures share the primitives: for each slot, its place in the hierarchy.
     locations: Vec<u32>,
-    /// Where other structures share the primitives: for each kind, the slot of each primitive.
+    /// If other structures share the primitives: for each kind, the slot of each primitive.
     shared: Option<[Vec<u32>; Kind::ALL.len()]>,
     pub stack_depth: usize,
 }
@@ -245,7 +245,7 @@ impl Wide {
         strips.chain(packs).max().unwrap_or(0).max(singles)
     }
 
-    /// The hierarchy's sections in a blob.
+    /// Returns the hierarchy's sections in a blob.
     pub fn sections(&self, primitives: &Primitives, lattice_bits: u8) -> Vec<Section> {
         let (strips, packs) = (self.strip_rows(primitives), self.pack_rows(primitives));
         let (strips, packs, radii) = if lattice_bits <= 16 {

@@ -41,7 +41,7 @@ pub fn find(vertices: &[[i32; 3]], triangles: &[[u32; 3]]) -> Vec<Strip> {
 }
 
 impl Strip {
-    /// The arrangement of the corners at every place, as a blob writes it.
+    /// Returns the arrangement of the corners at every place, as a blob writes it.
     pub fn arrangements(&self, triangles: &[[u32; 3]]) -> [Option<u32>; STRIP_TRIANGLES] {
         let mut arrangements = [None; STRIP_TRIANGLES];
         for (place, triangle) in self.triangles.iter().enumerate() {

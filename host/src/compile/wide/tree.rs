@@ -20,10 +20,10 @@ pub struct Tree {
     children: Vec<[u32; 2]>,
 }
 
-/// From this many items on, the two halves are built in parallel.
+/// Least number of items whose two halves are built in parallel.
 const PARALLEL_SIZE: usize = 2048;
-/// Places that are looked at for one node at most. Meshes and molecules take up to 150; where all items overlap, it would
-/// be all places for each node.
+/// Places that are looked at for one node at most. Meshes and molecules take up to 150; where all items overlap, it
+/// would be all places for each node.
 const MOST_LOOKED_AT: usize = 512;
 /// Below this depth nodes are halved, so that no scene makes the builder recurse without end.
 const DEEP: usize = 96;
@@ -74,7 +74,7 @@ impl Tree {
         })
     }
 
-    /// The children of a node, unless it is an item.
+    /// Returns the children of a node, unless it is an item.
     pub fn children(&self, node: u32) -> Option<[u32; 2]> {
         let inner = (node as usize).checked_sub(self.items)?;
         Some(self.children[inner])
@@ -93,7 +93,7 @@ impl Tree {
         self.bounds[node as usize]
     }
 
-    /// All nodes, children before their parents.
+    /// Returns all nodes, children before their parents.
     pub fn bottom_up(&self) -> Vec<u32> {
         let mut order = vec![self.root];
         let mut next = 0;
@@ -235,7 +235,7 @@ impl Tree {
     }
 }
 
-/// Where each item comes along an axis.
+/// Returns the rank of each item along an axis.
 fn places(items: &[Hull], axis: usize) -> Vec<u32> {
     let mut order: Vec<(i32, u32)> = (0..)
         .zip(items)
@@ -251,7 +251,7 @@ fn places(items: &[Hull], axis: usize) -> Vec<u32> {
 
 struct Builder<'b> {
     items: &'b [Hull],
-    /// Where each item comes along each axis.
+    /// The rank of each item along each axis.
     places: &'b [Vec<u32>; 3],
     /// True if halves are of equal count at any cost, so that the tree is not deep.
     balanced: bool,
@@ -350,7 +350,7 @@ fn partition(
     order.split_at_mut(left_count)
 }
 
-/// Where each value lies.
+/// Returns the place of each value: the inverse of a permutation.
 pub fn inverse(values: &[u32]) -> Vec<u32> {
     let mut places = vec![0; values.len()];
     for (place, &value) in (0..).zip(values) {

@@ -43,7 +43,7 @@ impl InUnits {
         }
     }
 
-    /// Why a span is empty, by the planes that were tested.
+    /// Returns the reason why a span is empty, by the planes that were tested.
     fn reason(&self, planes: &[Plane], span: [f64; 2]) -> Culled {
         let interval = self.interval.map(|t| t * self.scale);
         if planes.is_empty() {

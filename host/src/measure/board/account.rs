@@ -43,7 +43,7 @@ impl Account {
         self.used.map(|used| self.available.saturating_sub(used))
     }
 
-    /// The items that are not known.
+    /// Returns the items that are not known.
     pub fn unknown(&self) -> impl Iterator<Item = &str> {
         let unknown = self.items.iter().filter(|item| item.bytes.is_none());
         unknown.map(|item| item.what.as_str())

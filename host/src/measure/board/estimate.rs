@@ -8,7 +8,7 @@ use gridel_core::{Format, Structure};
 /// The parts of a program that was built for every board, besides that of all parts.
 pub const FEW: [&str; 3] = ["triangle", "sphere", "shadow"];
 
-/// How items of code begin.
+/// Prefix of items of code.
 pub const CODE: &str = "code: ";
 
 pub const PROFILES: [Profile; 2] = [Profile::Fast, Profile::Small];
@@ -17,7 +17,7 @@ pub const PROFILES: [Profile; 2] = [Profile::Fast, Profile::Small];
 /// to code that was measured with others, so the estimate adds this part.
 const OWN_SIZES: u64 = 100;
 
-/// By how much they change the call stack: the bytes to which frames are aligned.
+/// The bytes by which they change the call stack: the alignment of frames.
 const FRAME_ALIGNMENT: u64 = 8;
 
 /// The program of a scene on a board, estimated from measured programs.

@@ -52,14 +52,14 @@ pub fn instructions(board: &str, format: Format, rays_per_pixel: f64) -> Option<
     Some(cost.per_ray.map(|per_ray| per_ray * rays_per_pixel))
 }
 
-/// The cores that were measured.
+/// Returns the cores that were measured.
 pub fn core_names() -> Vec<&'static str> {
     let mut names: Vec<_> = PICTURE_COSTS.iter().map(|cost| cost.core).collect();
     names.dedup();
     names
 }
 
-/// The boards that were measured, and their cores.
+/// Returns the boards that were measured, and their cores.
 pub fn names() -> Vec<&'static str> {
     let mut names: Vec<_> = PICTURE_COSTS.iter().map(|cost| cost.machine).collect();
     names.dedup();

@@ -204,7 +204,7 @@ impl MemoryReport {
         item.and_then(|item| item.bytes)
     }
 
-    /// The builds that the figures hold for.
+    /// Returns the builds that the figures hold for.
     pub fn holds_for(&self) -> String {
         let Self { fast, small, .. } = self;
         let bytes = |bytes: Option<u64>| bytes.map_or(String::from("unknown"), grouped);
@@ -306,7 +306,7 @@ mod tests {
 
     const STRUCTURE: Structure = Structure::DualSplit;
 
-    /// A ball under a light, on the smallest board, with programs of one's own.
+    /// A ball under a light, on the smallest board, with programs made for this test.
     fn report(programs: &Programs, flash: u64) -> MemoryReport {
         let text = "light = [{ kind = \"directional\", direction = [0, 0, -1] }]\n\
                     object = [{ kind = \"sphere\", center = [0, 0, 0], radius = 1 }]\n";

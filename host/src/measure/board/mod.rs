@@ -197,7 +197,7 @@ pub const BOARDS: [Board; 15] = [
 ];
 
 impl Board {
-    /// The board of a name, in capitals or not.
+    /// Returns the board of a name, in capitals or not.
     pub fn named(name: &str) -> Option<&'static Self> {
         BOARDS
             .iter()
@@ -209,12 +209,12 @@ impl Board {
         self.name == self.measured
     }
 
-    /// The board on whose core programs were built and measured: this one, or one with a core of the same kind.
+    /// Returns the board on whose core programs were built and measured: this one, or one with a core of the same kind.
     pub fn measured_on(&self) -> &'static Self {
         Self::named(self.measured).unwrap_or(&BOARDS[0])
     }
 
-    /// The board and number format on which parts and structures were measured, each alone: these, or
+    /// Returns the board and number format on which parts and structures were measured, each alone: these, or
     /// those of a similar core.
     pub fn similar(&self, format: Format) -> (&'static Self, Format) {
         let [m3, m0, risc_v, _, m4f, ..] = &BOARDS;

@@ -29,7 +29,7 @@ pub struct Footprint {
     pub part_view: Option<u64>,
 }
 
-/// How a program is built.
+/// The build profile of a program.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Profile {
     /// `opt-level = 3`.
@@ -66,7 +66,7 @@ type Built = BTreeMap<String, Program>;
 #[serde(transparent)]
 pub struct Programs(BTreeMap<String, Built>);
 
-/// Where a program runs, and through which structure.
+/// The board, the number format and the structure of a program.
 pub type ProgramKey<'p> = (&'p Board, Format, Structure);
 
 /// A figure of a program.
@@ -78,12 +78,12 @@ pub struct Known {
 }
 
 impl Programs {
-    /// Those that the tests recorded.
+    /// Returns the programs that the tests recorded.
     pub fn recorded() -> Self {
         serde_json::from_str(RECORDED).unwrap_or_default()
     }
 
-    /// A program that was built with code for some parts and no others.
+    /// Returns the program that was built with code for some parts and no others.
     pub fn get(&self, program_key: ProgramKey<'_>, parts: &[&str]) -> Option<&Program> {
         self.at(program_key)?.get(&key(parts))
     }
@@ -115,7 +115,7 @@ impl Programs {
         self.0.get(&key_text(program_key))
     }
 
-    /// A figure of a program with code for some parts: measured, or bounded by the programs with code
+    /// Returns a figure of a program with code for some parts: measured, or bounded by the programs with code
     /// for more. `None` if there is no such program.
     pub fn figure(
         &self,
@@ -183,18 +183,18 @@ impl Programs {
     }
 }
 
-/// All that a program can have code for, in the order of the report.
+/// Returns all that a program can have code for, in the order of the report.
 pub fn parts() -> impl Iterator<Item = &'static str> {
     let kinds = Kind::ALL.map(Kind::name);
     kinds.into_iter().chain(FORMS).chain(Effects::ALL.names())
 }
 
-/// All of them but instances: what the firmware's feature `everything` has code for.
+/// Returns all of them but instances: what the firmware's feature `everything` has code for.
 pub fn everything() -> impl Iterator<Item = &'static str> {
     parts().filter(|&part| part != INSTANCES)
 }
 
-/// How a program is called: its parts in their order.
+/// Returns the name of a program: its parts in their order.
 fn key(required: &[&str]) -> String {
     let required = parts().filter(|part| required.contains(part));
     required.collect::<Vec<_>>().join(" ")

@@ -1,8 +1,8 @@
-//! What a program on a board renders.
+//! Renderings by programs on boards.
 
 use gridel_core::{Format, Scene, Structure};
 
-/// How a program on a board renders a scene.
+/// The settings with which a program on a board renders a scene.
 #[derive(Clone, Copy, Debug)]
 pub struct Rendering {
     /// One of the board's number formats.
@@ -14,7 +14,7 @@ pub struct Rendering {
 }
 
 impl Rendering {
-    /// Through the best structure of the blob, as wide as the scene file says.
+    /// Returns the rendering through the best structure of the blob, as wide as the scene file says.
     pub fn of(scene: &Scene<'_>, format: Format) -> Self {
         Self {
             format,

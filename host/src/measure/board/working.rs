@@ -1,4 +1,4 @@
-//! The RAM of a board for parts, meshes that deform, and instances that move, beside workspace and call stack.
+//! The RAM of a board for parts, meshes that deform, and instances that move, besides workspace and call stack.
 
 use super::programs::Programs;
 use crate::measure::bytes::board_memory;
@@ -7,10 +7,10 @@ use crate::table::counted;
 use gridel_core::{Format, Motion, Poses, Scene, Tracks};
 use serde::Serialize;
 
-/// RAM of a board that a program takes for a scene, beside workspace and call stack.
+/// RAM of a board that a program takes for a scene, besides workspace and call stack.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct WorkingRow {
-    /// What it holds.
+    /// A description of its content.
     pub what: String,
     /// `None` where no program with parts was measured.
     pub bytes: Option<u64>,

@@ -68,7 +68,7 @@ fn chosen_structures_count_what_their_own_code_does() {
             let own = structure.visit(Count(scene, question, &rays.primary));
             let name = structure.name();
             assert_eq!(counters, own, "{name}");
-            assert!(counters.instances > 0 && counters.objects > 0, "{name}");
+            assert!(counters.instances > 0 && counters.primitives > 0, "{name}");
         }
     });
 }

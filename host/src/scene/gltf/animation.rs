@@ -25,7 +25,7 @@ const MOST_SAMPLES: f64 = 65_536.0;
 /// Most samples of all curves of a file.
 const MOST_SAMPLES_OF_ALL: usize = 1 << 20;
 
-/// Why curves cannot be sampled: cause and remedy.
+/// The reason why curves cannot be sampled: cause and remedy.
 type Fault = [String; 2];
 
 /// The moving properties of a node.
@@ -55,7 +55,7 @@ pub(super) struct Motion {
     rest: Vec<Rest>,
     /// Channels that are not read, and why.
     pub(super) left_out: Vec<String>,
-    /// How many samples were taken of all curves.
+    /// Number of samples of all curves.
     samples: usize,
     /// The least samples per second of a curve, if any was sampled.
     pub(super) least_rate: Option<f64>,
@@ -372,7 +372,7 @@ impl Motion {
         Some([eye, rotation])
     }
 
-    /// Whether no node above a node moves.
+    /// Returns true if no node above a node moves.
     fn moves_alone(&self, node: usize) -> bool {
         !self.chain(node).skip(1).any(|it| self.moves_itself(it))
     }
@@ -383,8 +383,8 @@ impl Motion {
         self.moves_alone(node) && self.nodes.get(&node).is_some_and(is_kept)
     }
 
-    /// Returns the direction in which a node shines with its own keys, if it turns in steps and nothing else changes it.
-    /// (A smooth turn is not the straight way between two directions, so that it is sampled.)
+    /// Returns the direction in which a node shines with its own keys, if it turns in steps and nothing else changes
+    /// it. (A smooth turn is not the straight way between two directions, so that it is sampled.)
     fn own_direction(&self, node: usize) -> Option<Curve> {
         let moves = self.nodes.get(&node).filter(|it| it.scale.is_none())?;
         let rotation = moves.rotation.as_ref()?;
@@ -463,7 +463,7 @@ impl Rest {
     }
 }
 
-/// How many morph targets the mesh of a node has.
+/// Returns the number of morph targets of a node's mesh.
 fn targets_of(node: &Node<'_>) -> usize {
     let parts = node.mesh().into_iter().flat_map(|mesh| mesh.primitives());
     parts.map(|it| it.morph_targets().len()).max().unwrap_or(0)

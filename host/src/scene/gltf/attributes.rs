@@ -14,7 +14,7 @@ use gltf::{Primitive, Semantic};
 use std::borrow::Cow;
 use std::sync::Arc;
 
-/// How an image lies on a mesh: its set of texture coordinates, and their transform.
+/// The placement of an image on a mesh: its set of texture coordinates, and their transform.
 #[derive(Clone, Copy, PartialEq)]
 struct Placed {
     set: u32,
@@ -22,7 +22,7 @@ struct Placed {
 }
 
 impl Placed {
-    /// How the images of a material lie; `None` without one.
+    /// Returns the placement of a material's images; `None` without one.
     fn of(material: &gltf::Material<'_>, transforms: &NormalTransforms) -> Option<Self> {
         Self::of_color(material).or_else(|| Self::of_normals(material, transforms))
     }

@@ -328,7 +328,7 @@ fn narrow<const N: usize>(bytes: &[u8]) -> u32 {
     bytes.fold(0, |number, &byte| number << 8 | u32::from(byte))
 }
 
-/// Reads a URI: bytes in base 64, or a file beside the scene's.
+/// Reads a URI: bytes in base 64, or a file in the scene's folder.
 pub(super) fn fetch(
     path: &Path,
     what: &str,

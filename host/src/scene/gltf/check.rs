@@ -159,7 +159,7 @@ impl Importer<'_> {
     }
 }
 
-/// What follows where a number of an attribute is not finite, as part of a sentence.
+/// Returns the consequence of a number of an attribute that is not finite, as part of a sentence.
 fn without_number(semantic: Option<&Semantic>) -> &'static str {
     match semantic {
         Some(Semantic::Normals) => "triangles with such a normal are shaded flat",

@@ -6,7 +6,7 @@ use crate::scene::{Interpolation, Key, SceneError, TICKS_PER_SECOND};
 use glam::{DAffine3, DMat3, DVec3, DVec4};
 use gltf::animation::Property;
 
-/// How a property of a node moves.
+/// The motion of a node's property.
 #[derive(Clone, Debug)]
 pub(super) struct Curve {
     pub(super) interpolation: Interpolation,
@@ -146,9 +146,9 @@ impl Curve {
         curve
     }
 
-    /// Moves keys to the nearest tick, so that a sample there does not see what was before it. Of two keys that share a
-    /// tick, with which programs write a jump, one moves to the tick beside it. Where it has a key, they keep their
-    /// times, which errors show.
+    /// Moves keys to the nearest tick, so that a sample there does not see the value before it. Programs write a jump
+    /// as two keys, which may share a tick. One of them then moves to the adjacent tick. If that has a key, they keep
+    /// their times, which errors show.
     pub(super) fn round_times(&mut self) {
         let mut ticks: Vec<i64> = self.keys.iter().map(|key| tick(key.seconds)).collect();
         for second in 1..ticks.len() {
@@ -218,7 +218,7 @@ fn interpolation(sampler: &gltf::animation::Sampler<'_>) -> Interpolation {
     }
 }
 
-/// How many values a key has: a spline's has a change before and behind it.
+/// Returns the number of values per key: a spline's key has a change before and behind it.
 fn values_of_key(interpolation: Interpolation) -> usize {
     match interpolation {
         Interpolation::Cubic => 3,

@@ -70,7 +70,7 @@ fn is_there(material: &gltf::Material<'_>) -> bool {
     alpha >= material.alpha_cutoff().unwrap_or(0.5)
 }
 
-/// How the alpha of a texture is used that is not opaque everywhere.
+/// Returns the use of the alpha of a texture that is not opaque everywhere.
 pub(super) fn alpha(material: &gltf::Material<'_>) -> Option<Alpha> {
     let [.., factor] = material.pbr_metallic_roughness().base_color_factor();
     let factor = f64::from(factor).clamp(0.0, 1.0);

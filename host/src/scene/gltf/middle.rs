@@ -4,7 +4,7 @@ use crate::scene::{Object, Part, Scene, Shape};
 use glam::{DAffine3, DVec3};
 use std::collections::HashMap;
 
-/// By what part of its size a range is widened before it counts as one that cannot matter.
+/// Margin of a range relative to its size, before it counts as one that cannot matter.
 const SLACK: f64 = 1e-9;
 
 /// The middle of the box around all meshes, and the length of its diagonal.
@@ -29,8 +29,8 @@ fn vertices(objects: &[Object]) -> impl Iterator<Item = DVec3> + Clone {
 
 /// The meshes of a scene.
 ///
-/// One coordinate of a placed vertex is a row of the placement times the vertex, plus a number. So the range of each row
-/// over a part's vertices is computed once, and only where the part's box reaches beyond what is known.
+/// One coordinate of a placed vertex is a row of the placement times the vertex, plus a number. So the range of each
+/// row over a part's vertices is computed once, and only where the part's box reaches beyond what is known.
 struct Meshes<'s> {
     scene: &'s Scene,
     /// The box of each part.
@@ -129,7 +129,7 @@ impl<'s> Meshes<'s> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scene::test_chains::{Random, chain};
+    use crate::scene::tests::chains::{Random, chain};
     use crate::scene::{Instance, Placement};
     use glam::DQuat;
 

@@ -158,7 +158,7 @@ struct Importer<'a> {
     place: SourceSpan,
     buffers: Buffers<'a>,
     access: &'a Access,
-    /// By where they lie.
+    /// Images by their path or URI.
     images: HashMap<String, Option<Arc<Image>>>,
     scene: Scene,
     /// Materials in use, by their number in the file; the default has none.

@@ -14,7 +14,7 @@ use glam::{DMat3, DMat4, DVec3};
 use gltf::mesh::MorphTarget as Target;
 use gltf::{Accessor, Mesh, Node, Semantic};
 
-/// What a morph target changes.
+/// A function that returns what a morph target changes.
 pub(super) type Changed<'t> = fn(&Target<'t>) -> Option<Accessor<'t>>;
 
 impl Importer<'_> {

@@ -1,4 +1,4 @@
-//! Where nodes stand, and the meshes that they place.
+//! The transforms of nodes, and the meshes that they place.
 
 use glam::{DMat4, DQuat, DVec3, DVec4};
 use gltf::scene::Transform;

@@ -1,4 +1,4 @@
-//! Which meshes become parts, and their triangles.
+//! The meshes that become parts, and their triangles.
 
 use crate::scene::Placement;
 use glam::{DMat3, DMat4};
@@ -17,7 +17,7 @@ pub(super) type Placed<'d> = (Node<'d>, DMat4);
 pub(super) struct Shared {
     /// The part of each; `None` for a mesh without triangles.
     pub(super) parts: HashMap<usize, Option<usize>>,
-    /// Where the nodes of these meshes stand, by the number of the node.
+    /// The placements of the nodes of these meshes, by the number of the node.
     pub(super) placements: HashMap<usize, Placement>,
 }
 

@@ -26,7 +26,7 @@ pub(super) struct View {
     aspect: Option<f64>,
     /// The node of the camera.
     camera_node: usize,
-    /// How well the camera has the requested name: see [`View::fit`].
+    /// The quality of the match of the camera with the requested name: see [`View::fit`].
     camera_fit: u8,
     cameras: usize,
     /// A camera was left out that is requested, or comes before what is used.

@@ -1,11 +1,11 @@
 use super::*;
-use crate::scene::test_scenes::{self, gzipped};
+use crate::scene::tests::samples::{self, gzipped};
 use crate::scene::{IMPORTERS, extensions};
 use crate::scene::{ImportOptions, SceneError};
 use std::collections::BTreeSet;
 
 fn read(name: &str, bytes: &[u8]) -> Result<Imported, SceneError> {
-    test_scenes::read(name, bytes)
+    samples::read(name, bytes)
 }
 
 #[test]
@@ -87,7 +87,7 @@ fn every_format_may_be_gzipped_whatever_the_name_is() {
 fn real_files_are_recognized_by_their_content() {
     let mut seen = 0;
     for folder in ["meshes", "molecules", "spd"] {
-        let Some(folder) = test_scenes::find(folder) else {
+        let Some(folder) = samples::find(folder) else {
             return;
         };
         for entry in std::fs::read_dir(folder).unwrap() {

@@ -1,6 +1,6 @@
 //! Tables of CIF, row by row.
 
-/// Where a column is.
+/// The index of a column.
 pub(super) type Column = Option<usize>;
 
 /// The category of a tag.
@@ -23,7 +23,7 @@ impl<'a> Table<'a> {
             .is_some_and(|tag| category(tag).eq_ignore_ascii_case(wanted))
     }
 
-    /// Where a column is.
+    /// The index of a column.
     pub(super) fn column(&self, name: &str) -> Option<usize> {
         self.tags.iter().position(|tag| {
             tag.split_once('.')

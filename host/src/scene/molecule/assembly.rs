@@ -11,7 +11,7 @@ use crate::table::shortened;
 use std::collections::hash_map::Entry;
 use std::collections::{BTreeSet, HashMap, HashSet};
 
-/// How many names a message lists.
+/// Number of names that a message lists.
 const LISTED: usize = 20;
 
 /// Atoms that are copied together.
@@ -21,7 +21,7 @@ pub(super) struct Copied {
     /// The chains in words.
     pub(super) name: String,
     pub(super) line: usize,
-    /// Where they stand, with names.
+    /// Their placements, with names.
     pub(super) places: Vec<(String, Placement)>,
 }
 

@@ -1,4 +1,4 @@
-//! How many atoms and bonds fit into memory.
+//! Limits of the number of atoms and bonds, so that they fit into memory.
 
 use crate::scene::SceneError;
 use crate::scene::size::Size;

@@ -77,7 +77,7 @@ pub(super) fn select<'p, 'a>(
     Ok(selected)
 }
 
-/// How a file numbers its models, for files that do.
+/// Returns a text with a file's own numbers of its models, for files that number them.
 fn own_numbers(models: &[Model<'_>]) -> String {
     const NAMED: usize = 20;
     let numbers = models.iter().take(NAMED).map(|model| model.number);

@@ -90,7 +90,7 @@ struct Importer<'a> {
     material: Option<usize>,
     /// Ambient light that a material states.
     ambient: HashMap<usize, f64>,
-    /// How many spheres, cones and polygons there are, for their names.
+    /// Number of spheres, cones and polygons, for their names.
     counts: [usize; 3],
 }
 

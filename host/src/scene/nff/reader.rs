@@ -19,7 +19,7 @@ impl<'a> Line<'a> {
         self.words.get(index).copied().unwrap_or("")
     }
 
-    /// How many numbers follow each other from word `from` on.
+    /// Returns the number of consecutive numbers from word `from` on.
     pub(super) fn numbers_from(&self, from: usize) -> usize {
         self.words
             .iter()

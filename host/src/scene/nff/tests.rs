@@ -1,11 +1,11 @@
 use super::*;
-use crate::scene::test_scenes::{self, load};
+use crate::scene::tests::samples::{self, load};
 use crate::scene::{Imported, Shape};
 use crate::shape::{Cone, Sphere};
 use std::collections::BTreeMap;
 
 fn read(text: &str) -> Result<Imported, SceneError> {
-    test_scenes::read("t.nff", text)
+    samples::read("t.nff", text)
 }
 
 fn fault(text: &str) -> String {
@@ -208,7 +208,7 @@ fn dialects_are_read_with_warnings() {
 
 #[test]
 fn bytes_that_are_not_utf8_are_harmless_in_comments_alone() {
-    let read = |bytes: &[u8]| test_scenes::read("t.nff", bytes);
+    let read = |bytes: &[u8]| samples::read("t.nff", bytes);
     assert!(read(b"# caf\xe9\ns 0 0 0 1\n").is_ok());
     let error = read(b"# caf\xe9\ns 0 0 \xe9 1\n").unwrap_err();
     assert_eq!(error.line, Some(2));
@@ -249,7 +249,7 @@ fn standard_procedural_databases() {
         ("tetra.nff", &[('p', 4096), ('l', 1)]),
     ];
     for (name, expected) in facts {
-        let Some(path) = test_scenes::find(&format!("spd/{name}")) else {
+        let Some(path) = samples::find(&format!("spd/{name}")) else {
             continue;
         };
         let Imported {
@@ -290,7 +290,7 @@ fn standard_procedural_databases() {
 #[test]
 fn pictures_are_as_bright_as_the_databases_own() {
     for name in ["balls", "gears", "mount", "teapot", "tetra"] {
-        let paths = ["nff", "png"].map(|end| test_scenes::find(&format!("spd/{name}.{end}")));
+        let paths = ["nff", "png"].map(|end| samples::find(&format!("spd/{name}.{end}")));
         let [Some(scene), Some(picture)] = paths else {
             continue;
         };

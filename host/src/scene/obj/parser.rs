@@ -58,7 +58,7 @@ const MISSING_NORMAL: u32 = NO_NORMAL - 1;
 
 pub(super) struct Face {
     pub(super) line: usize,
-    /// How many, at least 3.
+    /// Number of corners, at least 3.
     pub(super) corners: usize,
 }
 

@@ -1,11 +1,11 @@
 use super::*;
-use crate::scene::test_scenes::{self, load, load_allowing_outside, mesh};
+use crate::scene::tests::samples::{self, load, load_allowing_outside, mesh};
 use crate::scene::{Diffuse, Imported, Wrap};
 use crate::srgb::linear_of_srgb;
 use std::path::Path;
 
 fn read(text: &str) -> Result<Imported, SceneError> {
-    test_scenes::read("t.obj", text)
+    samples::read("t.obj", text)
 }
 
 fn fault(text: &str) -> String {
@@ -184,7 +184,7 @@ fn measure(scene: &Scene) -> (usize, [f64; 6], f64) {
 
 #[test]
 fn real_meshes_have_the_triangles_box_and_area_that_trimesh_finds() {
-    let Some(facts) = test_scenes::find("reference/mesh_facts_by_trimesh.csv") else {
+    let Some(facts) = samples::find("reference/mesh_facts_by_trimesh.csv") else {
         return;
     };
     let text = std::fs::read_to_string(facts).unwrap();
@@ -195,7 +195,7 @@ fn real_meshes_have_the_triangles_box_and_area_that_trimesh_finds() {
     {
         let fields: Vec<&str> = line.split(',').collect();
         let name = fields[0].trim_start_matches("dev/");
-        let Some(path) = test_scenes::find(name) else {
+        let Some(path) = samples::find(name) else {
             continue;
         };
         let (count, bounds, area) = measure(&load(&path).unwrap().scene);
@@ -237,7 +237,7 @@ fn known_meshes() {
         ("stanford-bunny.obj", 1, 69_451, 0),
         ("cornell_box.obj", 8, 36, 0),
     ] {
-        let Some(path) = test_scenes::find(&format!("meshes/{name}")) else {
+        let Some(path) = samples::find(&format!("meshes/{name}")) else {
             continue;
         };
         let Imported {

@@ -1,10 +1,10 @@
 use super::*;
-use crate::scene::test_scenes::{self, load, mesh};
+use crate::scene::tests::samples::{self, load, mesh};
 
 const SQUARE: &str = "4 1 4\n0 0 0\n1 0 0\n1 1 0\n0 1 0\n4 0 1 2 3\n";
 
 fn read(text: &str) -> Result<Imported, SceneError> {
-    test_scenes::read("thing.off", text)
+    samples::read("thing.off", text)
 }
 
 #[track_caller]
@@ -169,7 +169,7 @@ fn real_meshes_have_the_vertices_and_triangles_that_trimesh_finds() {
         ("decimated-knight", 502, 1000, 0.90702354),
         ("planexy", 25, 32, 4.0),
     ] {
-        let Some(path) = test_scenes::find(&format!("meshes/{name}.off")) else {
+        let Some(path) = samples::find(&format!("meshes/{name}.off")) else {
             continue;
         };
         let imported = load(&path).unwrap();

@@ -1,5 +1,5 @@
 use super::*;
-use crate::scene::test_scenes::{self, load, mesh};
+use crate::scene::tests::samples::{self, load, mesh};
 
 /// A square and a line, with colors and an unknown element.
 pub(in crate::scene) const SQUARE: &str = "\
@@ -26,7 +26,7 @@ end_header
 ";
 
 fn read(bytes: &[u8]) -> Result<Imported, SceneError> {
-    test_scenes::read("thing.ply", bytes)
+    samples::read("thing.ply", bytes)
 }
 
 #[test]
@@ -157,7 +157,7 @@ fn numbers_are_read_as_c_reads_them() {
     }
 }
 
-/// As programs write the normals of points that have none.
+/// Programs write such normals for points that have none.
 #[test]
 fn normals_that_are_not_numbers_are_none() {
     let properties = "property float nx\nproperty float ny\nproperty float nz\n";
@@ -267,7 +267,7 @@ fn real_files() {
         "meshes/fuze_ascii.ply",
         "meshes/octagonal_pocket.ply",
     ] {
-        let Some(path) = test_scenes::find(name) else {
+        let Some(path) = samples::find(name) else {
             continue;
         };
         let imported = load(&path).unwrap();

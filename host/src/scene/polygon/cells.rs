@@ -13,7 +13,7 @@ pub(super) struct Cells {
     width: usize,
     /// Cells per row.
     row: usize,
-    /// Where each cell begins in `items`, and how many vertices it has.
+    /// The start of each cell in `items`, and its number of vertices.
     cells: Vec<[u32; 2]>,
     items: Vec<u32>,
     /// The cell of each vertex, and its place in `items`.
@@ -88,8 +88,8 @@ impl Cells {
         self.places[last as usize][1] = place;
     }
 
-    /// The vertices that are left in the cells of a box, at least those in the box, where this is less work than to look
-    /// at so many vertices.
+    /// The vertices that are left in the cells of a box, at least those in the box, where this is less work than to
+    /// look at so many vertices.
     pub(super) fn around(
         &self,
         bounds: [[f64; 2]; 2],

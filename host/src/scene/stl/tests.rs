@@ -1,5 +1,5 @@
 use super::*;
-use crate::scene::test_scenes::{self, load, mesh};
+use crate::scene::tests::samples::{self, load, mesh};
 
 /// Two solids, the second with a name of two words and keywords in capitals.
 pub(in crate::scene) const TWO_SOLIDS: &str = "\
@@ -31,7 +31,7 @@ ENDSOLID The Other
 ";
 
 fn read(bytes: &[u8]) -> Result<Imported, SceneError> {
-    test_scenes::read("thing.stl", bytes)
+    samples::read("thing.stl", bytes)
 }
 
 /// A binary file of triangles.
@@ -206,7 +206,7 @@ fn real_files() {
         ("meshes/two_objects_mixed_case_names.stl", 2, 24),
         ("meshes/featuretype.STL", 1, 3476),
     ] {
-        let Some(path) = test_scenes::find(name) else {
+        let Some(path) = samples::find(name) else {
             continue;
         };
         let scene = load(&path).unwrap().scene;
@@ -222,6 +222,6 @@ fn real_files() {
 #[test]
 fn text_with_a_byte_order_mark_is_read() {
     let marked = [b"\xef\xbb\xbf", TWO_SOLIDS.as_bytes()].concat();
-    let scene = test_scenes::read("thing.stl", marked).unwrap().scene;
+    let scene = samples::read("thing.stl", marked).unwrap().scene;
     assert_eq!(scene.objects.len(), 2);
 }

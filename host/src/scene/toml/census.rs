@@ -8,7 +8,7 @@ use crate::scene::{Object, Scene, SceneError};
 use crate::table::shortened;
 use std::collections::{BTreeMap, HashMap};
 
-/// How deep groups may be nested; reading and placing them takes stack.
+/// Greatest depth of nested groups; reading and placing them takes stack.
 pub(super) const MAX_NESTING: usize = 64;
 
 /// The cost of placing some objects.
@@ -17,7 +17,7 @@ struct Cost {
     /// Primitives, or an equivalent of their memory.
     primitives: u64,
     size: Size,
-    /// How many groups are nested inside each other.
+    /// The depth of nested groups.
     nesting: usize,
 }
 

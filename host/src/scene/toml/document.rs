@@ -155,7 +155,7 @@ pub(super) fn read(input: Input<'_>, imports: &mut Imports) -> Result<Scene, Sce
     Ok(scene)
 }
 
-/// What the document itself states, which no import replaces.
+/// Settings that the document itself states, which no import replaces.
 struct Given {
     render: Option<RenderSettings>,
     lights: bool,

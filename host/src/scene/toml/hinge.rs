@@ -14,7 +14,7 @@ const MOST_KEYS: usize = 65_536;
 /// Degrees from a key to the next one of a linear track.
 const LINEAR_STEP: f64 = 90.0;
 
-/// How far a spline of quaternions may be from that of the angles, in radians.
+/// Largest distance of a spline of quaternions from that of the angles, in radians.
 const TOLERANCE: f64 = 2e-5;
 
 /// Degrees that are certainly less than half a turn.
@@ -99,7 +99,7 @@ struct Segment {
     duration: f64,
     /// The coefficients by rising powers.
     angles: [f64; 4],
-    /// How many keys follow the first one.
+    /// Number of keys that follow the first one.
     pieces: f64,
     interpolation: Interpolation,
 }

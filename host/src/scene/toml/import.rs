@@ -10,7 +10,7 @@ use std::collections::HashMap;
 use std::path::PathBuf;
 use std::rc::Rc;
 
-/// How many files may be open inside each other; each takes stack.
+/// Maximum number of files that are open inside each other; each takes stack.
 const MAX_OPEN: usize = 16;
 
 /// Reads a file of this format.
@@ -21,22 +21,22 @@ pub(super) struct Imports {
     /// The function that reads files of this format, and the format's name.
     own: (&'static str, Read),
     importers: Importers,
-    /// Which files may be imported.
+    /// The files that may be imported.
     access: Access,
     /// Canonical paths, the outermost file first.
     open: Vec<PathBuf>,
-    /// How many groups are open inside each other, in all open files together.
+    /// Number of groups that are open inside each other, in all open files together.
     pub(super) nesting: usize,
     /// A scene may import a file many times, but with few different options.
     done: HashMap<PathBuf, Vec<(Molecules, Done)>>,
     pub(super) warnings: Vec<String>,
-    /// Which cameras and animations are read.
+    /// The choice of cameras and animations.
     choice: Choice,
     /// The kinds of the files.
     pub(super) kinds: Kinds,
 }
 
-/// How an import reads molecules.
+/// Options with which an import reads molecules.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Molecules {
     pub(super) options: MoleculeOptions,

@@ -25,7 +25,8 @@ pub(super) enum Content {
     Group(Vec<Item>),
     /// The group of this name.
     Instance(Name),
-    /// Another scene file, which of our materials each of its materials is, and which of our morph targets is its first.
+    /// Another scene file, which of our materials each of its materials is, and which of our morph targets is its
+    /// first.
     Import {
         scene: Rc<Scene>,
         materials: Vec<usize>,
@@ -49,10 +50,10 @@ pub(super) struct PartItem {
 /// An `[[instance]]`.
 pub(super) struct InstanceItem {
     pub(super) name: String,
-    /// Which part of the list.
+    /// Index of the part in the list.
     pub(super) part: usize,
     pub(super) placement: Placement,
-    /// Which joint of the list.
+    /// Index of the joint in the list.
     pub(super) joint: Option<usize>,
     pub(super) span: Span,
 }
@@ -60,7 +61,7 @@ pub(super) struct InstanceItem {
 /// A `[[joint]]`.
 pub(super) struct JointItem {
     pub(super) name: Name,
-    /// Which joint of the list, before this one.
+    /// Index of the parent in the list, before this one.
     pub(super) parent: Option<usize>,
     pub(super) pivot: DVec3,
     pub(super) span: Span,

@@ -151,7 +151,7 @@ fn material(table: Value<'_>, images: &mut Images<'_>) -> Result<Material, Scene
     })
 }
 
-/// Which glass fills a place that several take.
+/// Reads the priority of glass where several overlap.
 fn priority(fields: &Fields<'_>) -> Result<Option<u8>, SceneError> {
     let Some(value) = fields.get("priority") else {
         return Ok(None);
@@ -165,7 +165,7 @@ fn priority(fields: &Fields<'_>) -> Result<Option<u8>, SceneError> {
     Ok(Some(value.integer_in(1..=100)? as u8))
 }
 
-/// How rough a mirror or glass is.
+/// Reads the roughness of a mirror or glass.
 fn roughness(fields: &Fields<'_>) -> Result<f64, SceneError> {
     let Some(value) = fields.get("roughness") else {
         return Ok(Material::default().roughness);
@@ -186,7 +186,7 @@ fn roughness(fields: &Fields<'_>) -> Result<f64, SceneError> {
     Ok(roughness)
 }
 
-/// How the alpha of the texture is used, which glass ignores.
+/// Reads the use of the texture's alpha, which glass ignores.
 fn alpha(fields: &Fields<'_>) -> Result<Option<Alpha>, SceneError> {
     let cutoff = fields.get("cutoff");
     let Some(value) = fields.get("alpha") else {

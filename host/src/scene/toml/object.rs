@@ -26,7 +26,7 @@ const KINDS: [&str; 5] = ["triangle", "mesh", "group", "instance", "import"];
 pub(super) struct Reader<'r> {
     pub(super) source: &'r Source,
     pub(super) imports: &'r mut Imports,
-    /// How molecules are read, and which assembly, where an import does not say it.
+    /// Options for molecules, and the assembly, for imports that state none.
     pub(super) molecule: &'r MoleculeOptions,
     pub(super) assembly: Option<&'r str>,
     /// Takes in the materials of imports.

@@ -41,16 +41,16 @@ pub(super) struct Placed {
     pub(super) instances: Vec<Instance>,
     /// The file's own, then those of imports.
     pub(super) joints: Vec<Joint>,
-    /// Those of the joints of imports.
+    /// The tracks of the joints of imports.
     pub(super) tracks: Vec<Track>,
     pub(super) warnings: Vec<String>,
 }
 
-/// Where the objects of a list go.
+/// The transform, material and so on with which the objects of a list are placed.
 #[derive(Clone, Copy)]
 struct Site<'s> {
     transform: DAffine3,
-    /// For objects that name no material.
+    /// The material of objects that name none.
     material: Option<usize>,
     /// Names of the groups around, each followed by a slash.
     path: &'s str,

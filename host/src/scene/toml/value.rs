@@ -257,7 +257,7 @@ impl<'a> Value<'a> {
         })
     }
 
-    /// One of a few words.
+    /// Returns the value as one of a few words.
     pub(crate) fn word(self, words: &[&'static str]) -> Result<&'static str, SceneError> {
         let text = self.text()?;
         words

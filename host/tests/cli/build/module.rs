@@ -91,7 +91,7 @@ fn a_module_asserts_the_number_of_parts() {
     let module = String::from_utf8(folder.read("src/scene.rs")).unwrap();
     for line in [
         "pub const PARTS: usize = 1;",
-        "demand.parts <= PARTS",
+        "required.parts <= PARTS",
         "gridel_core::Parts<'static, PARTS>",
         "\"torus\"",
         "\"instances\"",

@@ -12,7 +12,7 @@ type Picture<'s> = Renderer<'s, 'static, f32, DualSplit, { Effects::ALL.0 }>;
 
 #[entry]
 fn main() -> ! {
-    // The sizes are those that `gridel inspect` prints, and the ray depth plus one.
+    // The stack depth and the work depth that `gridel inspect` prints.
     static mut SPACE: Workspace<f32, 12, 7> = Workspace::new();
     static mut ROW: [Rgb565; 320] = [Rgb565(0); 320];
     let scene = Scene::from_bytes(BLOB).unwrap_or_else(|_| halt());

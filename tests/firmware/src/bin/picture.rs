@@ -17,7 +17,7 @@ const PART: usize = 16;
 struct Memory {
     space: Space,
     row: [Rgb888; WIDTH],
-    /// For rays without shading.
+    /// The stack for rays without shading.
     stack: Stack<STACK_DEPTH>,
 }
 

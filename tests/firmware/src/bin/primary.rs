@@ -31,7 +31,7 @@ fn run(stack: &'static mut Memory) {
     cost("ray-instructions", "ray-stack-bytes", trace.each(rays.rays));
 }
 
-/// Every ray of the picture, the set-up of the camera included.
+/// Traces every ray of the picture, including the set-up of the camera.
 fn trace(scene: &Scene<'static>, stack: &mut Memory, rays: &mut rays::Rays) {
     let settings = Settings::of(scene);
     let Ok(renderer) = SceneRenderer::with_settings(scene, settings) else {

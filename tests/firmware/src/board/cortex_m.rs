@@ -14,7 +14,7 @@ const CURRENT: *mut u32 = 0xe000_e018 as *mut u32;
 const RUN: u32 = 1 << 2 | 1;
 /// Control: the timer has reached 0 since it was last asked.
 const WRAPPED: u32 = 1 << 16;
-/// Where the timer starts to count down: its largest value.
+/// The value from which the timer counts down: its largest value.
 const START: u32 = 0x00ff_ffff;
 
 /// Instructions of the loop that calibrates the counter.
@@ -60,7 +60,7 @@ fn ticks_of(phase: impl FnOnce()) -> Option<u32> {
     (read(CONTROL) & WRAPPED == 0).then_some(start.wrapping_sub(end))
 }
 
-/// Two instructions a round.
+/// Counts down, two instructions per round.
 #[inline(never)]
 fn count_down(rounds: u32) {
     // SAFETY: changes nothing but the register that is named as an output, and the flags.

@@ -1,11 +1,11 @@
-//! How deep the stack grew: the memory below it is painted, and looked at afterwards.
+//! Measures the depth of the stack: the memory below it is painted, and checked afterwards.
 
 use core::hint::black_box;
 use core::ptr;
 
 unsafe extern "C" {
-    /// Where the stack begins, and what it must not reach: from the linker scripts of cortex-m-rt
-    /// and riscv-rt alike.
+    /// The start of the stack, and the limit that it must not reach, from the linker scripts of cortex-m-rt and
+    /// riscv-rt alike.
     static _stack_start: u32;
     static __sheap: u32;
 }

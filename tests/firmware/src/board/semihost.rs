@@ -9,9 +9,9 @@ const OPEN: usize = 0x01;
 const WRITE_CHARACTER: usize = 0x03;
 const WRITE: usize = 0x05;
 const EXIT_EXTENDED: usize = 0x20;
-/// How to open: for writing, empty, as bytes.
+/// Mode of opening a file: for writing, empty, as bytes.
 const WRITE_BINARY: usize = 5;
-/// Why to exit: because the application ends.
+/// Reason of an exit: the application ends.
 const APPLICATION_EXIT: usize = 0x2_0026;
 
 /// Asks the host for an operation.
@@ -20,7 +20,7 @@ const APPLICATION_EXIT: usize = 0x2_0026;
 /// The parameter is what the operation wants, mostly the address of its arguments.
 unsafe fn call(operation: usize, parameter: usize) -> usize {
     let result;
-    // SAFETY: the host reads memory that the caller vouches for, and writes the result alone.
+    // SAFETY: the host reads only memory that is valid by the caller's contract, and writes only the result.
     unsafe {
         #[cfg(target_arch = "arm")]
         asm!("bkpt #0xab", inout("r0") operation => result, in("r1") parameter, options(nostack));

@@ -62,7 +62,7 @@ pub(super) fn headers() -> Errors {
         it.header().coordinate_shift = 20
     });
     errors.field(header, Field::CoordinateOrigin, |it| {
-        it.header().coordinate_origin = 2
+        it.header().counted_from = 2
     });
     for word in 0..3 {
         errors.reason(header, Reason::SpareNotZero, |it| {

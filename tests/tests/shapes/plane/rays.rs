@@ -119,7 +119,7 @@ fn axis_parallel_planes_are_exact_from_everywhere() {
     every_format!(judge(-20_000.0));
 }
 
-/// On which side of a plane of small integers a point of the lattice lies, no format rounds.
+/// No format rounds the side of a plane of small integers on which a point of the lattice lies.
 #[test]
 fn planes_of_small_integers_have_exact_sides() {
     const STEP: f64 = 1.0 / 256.0;
@@ -243,7 +243,7 @@ fn rays_that_leave_a_plane_do_not_meet_it_again() {
     }
 }
 
-/// From 2^20 times the width of the largest scene: above, below and at a slant.
+/// Rays start at 2^20 times the width of the largest scene: above, below and at a slant.
 #[test]
 fn planes_are_met_from_two_to_the_twentieth_scene_widths() {
     fn judge<N: Number>(normal: DVec3) {

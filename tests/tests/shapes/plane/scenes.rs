@@ -45,7 +45,7 @@ fn all_structures_agree_on_scenes_with_planes() {
     every_format!(one("planes and tables", &blob.scene().expect("a scene")));
 }
 
-/// Where planes and boxes coincide, the first in the scene file counts.
+/// If planes and boxes coincide, the first in the scene file counts.
 #[test]
 fn coincident_planes_and_boxes_are_met_in_file_order() {
     fn one<N: Number>(scene: &gridel_core::Scene<'_>, first: u32) {

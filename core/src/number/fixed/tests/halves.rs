@@ -29,7 +29,7 @@ proptest! {
         prop_assert_eq!(product_of_halves_unsigned(a, b), u64::from(a) * u64::from(b));
     }
 
-    /// Where 16 bits decide, they agree with all bits.
+    /// Tests with 16 bits agree with tests of all bits, if they decide.
     #[test]
     fn coarse_triangles_are_the_triangles(corners: [[i32; 2]; 3], shift in 1_u32..32) {
         let [a, b, c] = corners.map(|corner| corner.map(|x| Fixed(x >> shift)));
@@ -39,7 +39,7 @@ proptest! {
     }
 }
 
-/// Where corners lie apart, 16 bits decide.
+/// Tests with 16 bits decide if corners lie apart.
 #[test]
 fn coarse_triangles_are_mostly_decided() {
     let mut decided = 0;

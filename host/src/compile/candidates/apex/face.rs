@@ -6,7 +6,7 @@ use glam::DVec3;
 use gridel_core::accel::Apex;
 use gridel_core::format::record::{ApexDirection, Gridels, View};
 
-/// How much wider than the picture the camera's window is.
+/// Ratio of the width of the camera's window to that of the picture.
 const WIDER: f64 = 1.02;
 /// 2^30, the ratio 1.
 pub(super) const ONE: f64 = 1_073_741_824.0;

@@ -9,7 +9,7 @@ use gridel_core::accel::Apex;
 use gridel_core::format::record::ApexWindow;
 use rayon::prelude::*;
 
-/// How much finer the next try is.
+/// Ratio by which the next try is finer.
 const FINER: f64 = 1.4;
 /// The part of a list that remains after the next try where it saves next to nothing. Lists are then about a seventh
 /// longer than for single rays.
@@ -196,11 +196,11 @@ impl<'t> Window<'t> {
     }
 }
 
-/// How far some rays of a cell get.
+/// The depths that some rays of a cell reach.
 struct Sight {
-    /// Where each begins, its direction, and the depth at which it meets something.
+    /// The origin of each, its direction, and the depth of its hit.
     rays: [(DVec3, DVec3, f64); 16],
-    /// The depth at which the last of them does.
+    /// The greatest of these depths.
     end: f64,
 }
 

@@ -66,8 +66,8 @@ pub(super) struct Stored {
 }
 
 impl Raster {
-    /// With half the width and height, rounded up. Colors are means of linear light by area and alpha, and normals by
-    /// area.
+    /// Returns the image with half the width and height, rounded up. Colors are means of linear light by area and
+    /// alpha, and normals by area.
     fn halved(&self, has_normals: bool) -> Self {
         let [width, height] = record::Texture::next_level([self.width, self.height]);
         let mut pixels = Vec::with_capacity((width * height) as usize);
@@ -262,8 +262,8 @@ impl Stored {
     }
 }
 
-/// At most [`COLORS`] colors for the pixels of an image, and for these with those of its levels. If those of the image fit,
-/// all of them are among the colors, and others where there is room.
+/// At most [`COLORS`] colors for the pixels of an image, and for these with those of its levels. If those of the image
+/// fit, all of them are among the colors, and others where there is room.
 fn palette(image: &[Roots], all: &[Roots]) -> Vec<Roots> {
     let own: HashSet<Roots> = image.iter().copied().collect();
     if own.len() > COLORS {

@@ -368,7 +368,7 @@ fn a_rig_takes_each_step_at_its_tick() {
     assert_eq!(at(4_799.0 / 48_000.0).vector(), first);
 }
 
-/// Two keys within a tick are a jump: one moves to the tick beside it.
+/// Two keys within a tick are a jump: one moves to the adjacent tick.
 #[test]
 fn keys_of_a_jump_keep_their_order() {
     let ticks = |times: &[f64]| -> Vec<f64> {

@@ -1,4 +1,4 @@
-//! Which camera is chosen.
+//! Tests of the choice of a camera.
 
 use super::*;
 

@@ -159,7 +159,7 @@ fn files_of_other_projects() {
         ("no_indices_3storybuilding.glb", 3, 72),
         ("TestScene.gltf", 9, 1096),
     ] {
-        let Some(path) = test_scenes::find(&format!("meshes/{name}")) else {
+        let Some(path) = samples::find(&format!("meshes/{name}")) else {
             return;
         };
         let scene = load(&path).unwrap_or_else(|error| panic!("{error}")).scene;

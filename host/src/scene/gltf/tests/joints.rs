@@ -8,7 +8,7 @@ use glam::{DMat4, DQuat, DVec3, DVec4};
 struct Random(u64);
 
 impl Random {
-    /// From -1 to 1, and exact in single precision.
+    /// Returns a number from -1 to 1, exact in single precision.
     fn number(&mut self) -> f64 {
         self.0 = self
             .0
@@ -192,7 +192,7 @@ fn chain(random: &mut Random, uneven: bool) -> (Value, Vec<Rest>, Vec<Channel>) 
     (document, rests, channels)
 }
 
-/// Where the last node of a chain stands at a time, or at rest.
+/// Returns the transform of the last node of a chain at a time, or at rest.
 fn world(rests: &[Rest], channels: &[Channel], seconds: Option<f64>) -> DMat4 {
     let locals = rests.iter().enumerate().map(|(node, rest)| {
         let value = |index: usize, path: &str| {

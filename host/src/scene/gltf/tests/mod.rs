@@ -10,7 +10,7 @@ mod morph;
 mod scales;
 
 use super::*;
-use crate::scene::test_scenes::{self, load, load_allowing_outside, mesh};
+use crate::scene::tests::samples::{self, load, load_allowing_outside, mesh};
 use crate::scene::{
     Alpha, Camera, Choice, Diffuse, ImportOptions, Light, LightForm, Material, Wrap,
 };

@@ -388,7 +388,7 @@ fn balls_and_sticks_are_copied_with_their_bonds() {
 
 #[test]
 fn capsid_has_sixty_instances() {
-    let Some(path) = crate::scene::test_scenes::find("molecules/2buk.pdb") else {
+    let Some(path) = crate::scene::tests::samples::find("molecules/2buk.pdb") else {
         return;
     };
     let options = ImportOptions {

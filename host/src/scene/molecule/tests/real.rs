@@ -1,7 +1,7 @@
 //! Molecules of the Protein Data Bank and other projects.
 
 use super::*;
-use crate::scene::{load, test_scenes};
+use crate::scene::{load, tests::samples};
 use crate::shape::Sphere;
 use std::collections::BTreeMap;
 
@@ -16,7 +16,7 @@ fn elements(imported: &Imported) -> BTreeMap<String, usize> {
 
 #[test]
 fn real_molecules_have_the_atoms_that_gemmi_finds() {
-    let Some(facts) = test_scenes::find("reference/molecule_facts_by_gemmi.csv") else {
+    let Some(facts) = samples::find("reference/molecule_facts_by_gemmi.csv") else {
         return;
     };
     let text = std::fs::read_to_string(facts).unwrap();
@@ -27,7 +27,7 @@ fn real_molecules_have_the_atoms_that_gemmi_finds() {
         if !name.ends_with(".pdb") && !name.ends_with(".cif") {
             continue;
         }
-        let Some(path) = test_scenes::find(name) else {
+        let Some(path) = samples::find(name) else {
             continue;
         };
         let imported = load(&path, &MoleculeOptions::default()).unwrap();
@@ -69,7 +69,7 @@ fn real_molecules_have_the_atoms_that_gemmi_finds() {
 
 #[test]
 fn opsin_loses_the_second_of_its_alternate_locations() {
-    let Some(path) = test_scenes::find("molecules/3dqb.pdb") else {
+    let Some(path) = samples::find("molecules/3dqb.pdb") else {
         return;
     };
     let text = std::fs::read_to_string(&path).unwrap();
@@ -86,7 +86,7 @@ fn opsin_loses_the_second_of_its_alternate_locations() {
 #[test]
 fn pdb_and_mmcif_of_one_structure_agree() {
     for (pdb, cif) in [("1crn.pdb", "1CRN.cif"), ("4hhb.pdb", "4hhb.cif")] {
-        let paths = [pdb, cif].map(|name| test_scenes::find(&format!("molecules/{name}")));
+        let paths = [pdb, cif].map(|name| samples::find(&format!("molecules/{name}")));
         let [Some(pdb), Some(cif)] = paths else {
             continue;
         };
@@ -113,7 +113,7 @@ fn real_bonds() {
     };
     // An open chain has a bond less than atoms, and each of the 512 waters has two.
     for (name, atoms, bonds) in [("acrolein.pdb", 8, 7), ("liquid.pdb", 1536, 1024)] {
-        let Some(path) = test_scenes::find(&format!("molecules/{name}")) else {
+        let Some(path) = samples::find(&format!("molecules/{name}")) else {
             continue;
         };
         let objects = load(&path, &options).unwrap().scene.objects.len();

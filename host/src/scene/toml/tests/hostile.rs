@@ -103,7 +103,7 @@ fn vertices_without_faces_do_not_multiply_for_free() {
     );
 }
 
-/// As many spheres as fit into a blob, and more than fit into 4 GB.
+/// The spheres fit into a blob, but not into 4 GB.
 #[test]
 fn two_to_the_23_instances_are_rejected_with_the_figure() {
     let error = rejection(&tower(23, 2, DOT));
@@ -174,7 +174,7 @@ fn burrow(headings: usize, inline: usize, object: &str) -> String {
     text
 }
 
-/// As deep as TOML allows; reading must not run out of stack before it is rejected.
+/// The groups are as deep as TOML allows; reading must not run out of stack before it is rejected.
 #[test]
 fn deep_groups_are_rejected() {
     let dot = "{ kind = \"sphere\", center = [0, 0, 0], radius = 1 }";

@@ -20,7 +20,7 @@ fn assert_near(found: DVec3, expected: DVec3) {
     assert!(found.distance(expected) < 1e-9, "{found} is not {expected}");
 }
 
-/// Where the point of a door that is at the origin at rest is at a time.
+/// Returns the position at a time of the point of a door that is at the origin at rest.
 fn at(scene: &Scene, seconds: f64) -> DVec3 {
     scene.instances_at(seconds)[0].placement.point(DVec3::ZERO)
 }
@@ -56,7 +56,7 @@ fn chain_moves_what_hangs_on_it() {
     );
 }
 
-/// As a blob has times.
+/// Times are rounded to those of a blob.
 #[test]
 fn times_are_those_of_ticks() {
     let scene = scene(&format!(

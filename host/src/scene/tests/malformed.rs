@@ -1,7 +1,8 @@
 //! Malformed and unusual files of other projects. Each is read correctly, with a warning of the
 //! parts that are not drawn, or rejected with its true cause.
 
-use super::{MoleculeOptions, load, test_scenes};
+use super::samples;
+use crate::scene::{MoleculeOptions, load};
 use std::collections::BTreeSet;
 
 /// The result of reading a file.
@@ -92,7 +93,7 @@ const FILES: [(&str, Expected); 64] = [
 
 #[test]
 fn malformed_files_are_read_rightly_or_rejected_with_their_cause() {
-    let Some(folder) = test_scenes::find("bad") else {
+    let Some(folder) = samples::find("bad") else {
         return;
     };
     let mut wrong = Vec::new();
@@ -153,8 +154,7 @@ fn valid_files_of_khronos_are_read() {
         ("KHR_materials_transmission__valid", &[NO_TRIANGLES]),
         ("KHR_materials_volume__valid", &[NO_TRIANGLES]),
     ] {
-        let Some(path) = test_scenes::find(&format!("meshes/gltf-khr-materials/{name}.gltf"))
-        else {
+        let Some(path) = samples::find(&format!("meshes/gltf-khr-materials/{name}.gltf")) else {
             return;
         };
         let loaded = load(&path, &MoleculeOptions::default());

@@ -1,6 +1,6 @@
 //! Tests that messages stay short where words, lines and names of a file are long.
 
-use super::{ImportOptions, read};
+use crate::scene::{ImportOptions, read};
 use miette::{GraphicalReportHandler, GraphicalTheme};
 
 /// Name and content of files with a word `@`, which an error or a warning quotes.

@@ -1,6 +1,6 @@
 //! Random chains of joints for tests.
 
-use super::{
+use crate::scene::{
     Attributes, Instance, Interpolation, Joint, Key, Material, Normals, Object, Part, Placement,
     Scene, SourceSpan, Track, TrackTarget,
 };
@@ -11,7 +11,7 @@ use glam::{DQuat, DVec3, DVec4};
 pub struct Random(pub u64);
 
 impl Random {
-    /// From -1 to 1.
+    /// Returns a number from -1 to 1.
     pub fn number(&mut self) -> f64 {
         self.0 = self
             .0
@@ -66,7 +66,8 @@ fn track(random: &mut Random, target: TrackTarget, index: usize, hinge: bool) ->
     }
 }
 
-/// A scene of a chain of joints with an instance at its end, of a sphere. All joints have scales, or the first alone.
+/// Returns a scene of a chain of joints with an instance at its end, of a sphere. All joints have scales, or the first
+/// alone.
 pub fn chain(random: &mut Random, all_scale: bool) -> Scene {
     let joints = 1 + random.below(5);
     let mut scene = Scene::default();

@@ -1,7 +1,7 @@
 //! Helpers of all importers' tests: scenes from bytes and files, and the meshes of a file. Real
 //! scene files are not in the repository because of their size or licence.
 
-use super::{ImportOptions, Imported, Object, SceneError, Shape};
+use crate::scene::{ImportOptions, Imported, Object, SceneError, Shape};
 use flate2::Compression;
 use flate2::write::GzEncoder;
 use glam::DVec3;
@@ -10,7 +10,7 @@ use std::path::{Path, PathBuf};
 
 /// Returns a file below the folder in the environment variable `GRIDEL_SCENES`, or else below
 /// `../shared/scenes` beside the workspace. If it is missing, the test prints that it is skipped.
-pub(super) fn find(name: &str) -> Option<PathBuf> {
+pub(in crate::scene) fn find(name: &str) -> Option<PathBuf> {
     let folder = match std::env::var_os("GRIDEL_SCENES") {
         Some(folder) => PathBuf::from(folder),
         None => Path::new(env!("CARGO_MANIFEST_DIR")).join("../../shared/scenes"),
@@ -27,33 +27,36 @@ pub(super) fn find(name: &str) -> Option<PathBuf> {
 }
 
 /// Reads a scene from the bytes of a file of this name.
-pub(super) fn read(name: &str, bytes: impl Into<Vec<u8>>) -> Result<Imported, SceneError> {
-    super::read(Path::new(name), bytes.into(), &ImportOptions::default())
+pub(in crate::scene) fn read(
+    name: &str,
+    bytes: impl Into<Vec<u8>>,
+) -> Result<Imported, SceneError> {
+    crate::scene::read(Path::new(name), bytes.into(), &ImportOptions::default())
 }
 
 /// The bytes, gzipped.
-pub(super) fn gzipped(bytes: &[u8]) -> Vec<u8> {
+pub(in crate::scene) fn gzipped(bytes: &[u8]) -> Vec<u8> {
     let mut encoder = GzEncoder::new(Vec::new(), Compression::default());
     encoder.write_all(bytes).unwrap();
     encoder.finish().unwrap()
 }
 
 /// Reads a file that may name files of its own folder alone.
-pub(super) fn load(path: &Path) -> Result<Imported, SceneError> {
-    super::load_with(path, &ImportOptions::default())
+pub(in crate::scene) fn load(path: &Path) -> Result<Imported, SceneError> {
+    crate::scene::load_with(path, &ImportOptions::default())
 }
 
 /// Reads a file that may name any file.
-pub(super) fn load_allowing_outside(path: &Path) -> Result<Imported, SceneError> {
+pub(in crate::scene) fn load_allowing_outside(path: &Path) -> Result<Imported, SceneError> {
     let options = ImportOptions {
         allow_outside: true,
         ..ImportOptions::default()
     };
-    super::load_with(path, &options)
+    crate::scene::load_with(path, &options)
 }
 
 /// The vertices and triangles of an object that must be a mesh.
-pub(super) fn mesh(object: &Object) -> (&[DVec3], &[[u32; 3]]) {
+pub(in crate::scene) fn mesh(object: &Object) -> (&[DVec3], &[[u32; 3]]) {
     match &object.shape {
         Shape::Mesh {
             vertices,

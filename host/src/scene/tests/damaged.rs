@@ -1,7 +1,8 @@
 //! Tests importers with scene files that are cut off or overwritten. The result is always a
 //! consistent scene or an error that says what to do, and it comes at once.
 
-use super::{IMPORTERS, Importer, MoleculeOptions, MoleculeStyle, Scene, Shape, load, test_scenes};
+use super::samples;
+use crate::scene::{IMPORTERS, Importer, MoleculeOptions, MoleculeStyle, Scene, Shape, load};
 use std::path::Path;
 use std::time::{Duration, Instant};
 
@@ -109,12 +110,15 @@ fn damaged_files() {
         ("nff", NFF),
         ("pdb", PDB),
         ("cif", CIF),
-        ("stl", super::stl::tests::TWO_SOLIDS),
-        ("ply", super::ply::tests::SQUARE),
+        ("stl", crate::scene::stl::tests::TWO_SOLIDS),
+        ("ply", crate::scene::ply::tests::SQUARE),
     ] {
         damage(extension, text.as_bytes(), text.len(), 3000);
     }
-    let (text, binary) = (super::gltf::tests::text(), super::gltf::tests::binary());
+    let (text, binary) = (
+        crate::scene::gltf::tests::text(),
+        crate::scene::gltf::tests::binary(),
+    );
     damage("gltf", text.as_bytes(), text.len(), 3000);
     damage("glb", &binary, binary.len(), 3000);
 }
@@ -135,7 +139,7 @@ fn damaged_examples_of_every_format() {
 #[test]
 fn damaged_gzipped_files() {
     for importer in damageable() {
-        let bytes = test_scenes::gzipped(importer.example.as_bytes());
+        let bytes = samples::gzipped(importer.example.as_bytes());
         let extension = format!("{}.gz", importer.extensions[0]);
         damage(&extension, &bytes, bytes.len(), 100);
     }
@@ -143,7 +147,7 @@ fn damaged_gzipped_files() {
 
 #[test]
 fn bad_files_of_other_projects() {
-    let Some(folder) = test_scenes::find("bad") else {
+    let Some(folder) = samples::find("bad") else {
         return;
     };
     for entry in std::fs::read_dir(folder).unwrap() {

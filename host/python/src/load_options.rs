@@ -1,0 +1,195 @@
+//! The options of `Scene.load`.
+
+use crate::arguments::{invalid, options};
+use gridel_host::compile::{LATTICE_BITS, Options};
+use gridel_host::scene::{
+    Choice, ImportOptions, Imported, Instances, MoleculeOptions, MoleculeStyle, NormalsChoice,
+    Posed,
+};
+use pyo3::prelude::*;
+use serde::Deserialize;
+use serde::de::value::{Error, StrDeserializer};
+use std::path::Path;
+
+/// The structure of scene files without `accel`.
+const STRUCTURE: &str = "wide";
+
+const STYLES: [(&str, MoleculeStyle); 2] = [
+    ("space-filling", MoleculeStyle::SpaceFilling),
+    ("ball-and-stick", MoleculeStyle::BallAndStick),
+];
+
+/// The options of `Scene.load`, a dictionary; `None` where Python gives none.
+#[derive(FromPyObject)]
+#[pyo3(from_item_all)]
+pub struct LoadOptions {
+    accel: Option<Vec<String>>,
+    lattice_bits: Option<u8>,
+    camera: Option<String>,
+    animation: Option<String>,
+    time: Option<f64>,
+    instances: Option<String>,
+    normals: Option<String>,
+    assembly: Option<String>,
+    style: Option<String>,
+    model: Option<usize>,
+    altloc: Option<char>,
+    allow_outside: bool,
+}
+
+impl LoadOptions {
+    /// The options of the compiler.
+    pub fn for_compiler(&self) -> PyResult<Options> {
+        let usual = || vec![STRUCTURE.to_owned()];
+        options(
+            &self.accel.clone().unwrap_or_else(usual),
+            self.lattice_bits.unwrap_or(*LATTICE_BITS.end()),
+        )
+    }
+
+    /// The options of importers.
+    pub fn for_import(&self) -> PyResult<ImportOptions> {
+        let instances = self.instances.as_deref().map(instances).transpose()?;
+        let instances = instances.unwrap_or_default();
+        if self.time.is_some() && instances != Instances::Flatten {
+            return Err(invalid(
+                "`time` says where copies of instances stand; add `instances=\"flatten\"`, or leave `time` out",
+            ));
+        }
+        let default = MoleculeOptions::default();
+        let style = self.style.as_deref().map(style).transpose()?;
+        let normals = self.normals.as_deref().map(normals).transpose()?;
+        Ok(ImportOptions {
+            molecule: MoleculeOptions {
+                style: style.unwrap_or(default.style),
+                model: self.model.unwrap_or(default.model),
+                altloc: self.altloc,
+            },
+            assembly: self.assembly.clone(),
+            choice: Choice {
+                camera: self.camera.clone(),
+                animation: self.animation.clone(),
+            },
+            instances,
+            at: self.time,
+            normals: normals.unwrap_or_default(),
+            allow_outside: self.allow_outside,
+        })
+    }
+
+    /// Rejects any option: a blob takes none.
+    pub fn reject_for_blob(&self, path: &Path) -> PyResult<()> {
+        let compiled = "is compiled already";
+        let given = [
+            (
+                self.accel.is_some(),
+                "accel",
+                "holds its structures already",
+            ),
+            (
+                self.lattice_bits.is_some(),
+                "lattice_bits",
+                "holds its coordinates already",
+            ),
+            (self.camera.is_some(), "camera", compiled),
+            (self.animation.is_some(), "animation", compiled),
+            (self.time.is_some(), "time", compiled),
+            (self.instances.is_some(), "instances", compiled),
+            (self.normals.is_some(), "normals", compiled),
+            (self.assembly.is_some(), "assembly", compiled),
+            (self.style.is_some(), "style", compiled),
+            (self.model.is_some(), "model", compiled),
+            (self.altloc.is_some(), "altloc", compiled),
+            (self.allow_outside, "allow_outside", compiled),
+        ];
+        match given.into_iter().find(|&(is_given, ..)| is_given) {
+            Some((_, option, why)) => Err(invalid(format!(
+                "{}: `{option}` is for scene files: a blob {why}; leave `{option}` out, or load the scene file that \
+                 the blob was built from",
+                path.display()
+            ))),
+            None => Ok(()),
+        }
+    }
+
+    /// Rejects options that do not apply to the file that was read.
+    pub fn check(&self, path: &Path, imported: &Imported) -> PyResult<()> {
+        let molecules = "molecules (PDB, mmCIF and XYZ files)";
+        let assemblies = "PDB and mmCIF files";
+        let gltf = "glTF files";
+        let rows = [
+            (self.style.is_some(), imported.molecules, "style", molecules),
+            (self.model.is_some(), imported.molecules, "model", molecules),
+            (
+                self.altloc.is_some(),
+                imported.molecules,
+                "altloc",
+                molecules,
+            ),
+            (self.camera.is_some(), imported.choices, "camera", gltf),
+            (
+                self.animation.is_some(),
+                imported.choices,
+                "animation",
+                gltf,
+            ),
+            (
+                self.assembly.is_some(),
+                imported.assemblies,
+                "assembly",
+                assemblies,
+            ),
+        ];
+        let path = path.display();
+        for (is_given, applies, option, kind) in rows {
+            if is_given && !applies {
+                return Err(invalid(format!(
+                    "{path}: `{option}` is for {kind}, and the scene has none; leave `{option}` out"
+                )));
+            }
+        }
+        if self.time.is_some() && imported.posed.is_none() {
+            return Err(invalid(format!(
+                "{path}: no instance moves, so `time` has no effect; leave `time` out"
+            )));
+        }
+        Ok(())
+    }
+
+    /// What a scene keeps at rest although a time was given.
+    pub fn warning(&self, path: &Path, imported: &Imported) -> Option<String> {
+        let moves = imported.posed == Some(Posed::AtTime) && !imported.scene.tracks.is_empty();
+        moves.then(|| {
+            format!(
+                "{}: `time` places copies of instances alone; camera, lights, materials and vertices stay as they are \
+                 at rest",
+                path.display()
+            )
+        })
+    }
+}
+
+fn instances(name: &str) -> PyResult<Instances> {
+    let found = Instances::deserialize(StrDeserializer::<Error>::new(name));
+    found.map_err(|error| invalid(format!("instances: {error}")))
+}
+
+fn style(name: &str) -> PyResult<MoleculeStyle> {
+    let found = STYLES.into_iter().find(|(own, _)| *own == name);
+    found.map(|(_, style)| style).ok_or_else(|| {
+        let names = STYLES.map(|(own, _)| own).join(" or ");
+        invalid(format!("unknown style `{name}`; use {names}"))
+    })
+}
+
+fn normals(text: &str) -> PyResult<NormalsChoice> {
+    let degrees = |text: &str| text.parse().ok().filter(|it| (0.0..=180.0).contains(it));
+    match (text, text.strip_prefix("smooth=").and_then(degrees)) {
+        ("file", _) => Ok(NormalsChoice::File),
+        ("flat", _) => Ok(NormalsChoice::Flat),
+        (_, Some(degrees)) => Ok(NormalsChoice::Smooth(degrees)),
+        _ => Err(invalid(format!(
+            "unknown normals `{text}`; use file, flat, or smooth= and an angle from 0 to 180 degrees, such as smooth=40"
+        ))),
+    }
+}
