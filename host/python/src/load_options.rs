@@ -7,17 +7,11 @@ use gridel_host::scene::{
     Posed,
 };
 use pyo3::prelude::*;
-use serde::Deserialize;
-use serde::de::value::{Error, StrDeserializer};
 use std::path::Path;
+use std::str::FromStr;
 
 /// The structure of scene files without `accel`.
 const STRUCTURE: &str = "wide";
-
-const STYLES: [(&str, MoleculeStyle); 2] = [
-    ("space-filling", MoleculeStyle::SpaceFilling),
-    ("ball-and-stick", MoleculeStyle::BallAndStick),
-];
 
 /// The options of `Scene.load`, a dictionary; `None` where Python gives none.
 #[derive(FromPyObject)]
@@ -169,27 +163,29 @@ impl LoadOptions {
     }
 }
 
-fn instances(name: &str) -> PyResult<Instances> {
-    let found = Instances::deserialize(StrDeserializer::<Error>::new(name));
-    found.map_err(|error| invalid(format!("instances: {error}")))
+fn instances(word: &str) -> PyResult<Instances> {
+    one_of("instances", word, Instances::ALL, Instances::name)
 }
 
-fn style(name: &str) -> PyResult<MoleculeStyle> {
-    let found = STYLES.into_iter().find(|(own, _)| *own == name);
-    found.map(|(_, style)| style).ok_or_else(|| {
-        let names = STYLES.map(|(own, _)| own).join(" or ");
-        invalid(format!("unknown style `{name}`; use {names}"))
+fn style(word: &str) -> PyResult<MoleculeStyle> {
+    one_of("style", word, MoleculeStyle::ALL, MoleculeStyle::name)
+}
+
+/// Returns the one of some things that a word names.
+fn one_of<T: Copy, const N: usize>(
+    option: &str,
+    word: &str,
+    all: [T; N],
+    name: fn(T) -> &'static str,
+) -> PyResult<T> {
+    let found = all.into_iter().find(|&it| name(it) == word);
+    found.ok_or_else(|| {
+        let names = all.map(name).join(" or ");
+        invalid(format!("unknown {option} `{word}`; use {names}"))
     })
 }
 
 fn normals(text: &str) -> PyResult<NormalsChoice> {
-    let degrees = |text: &str| text.parse().ok().filter(|it| (0.0..=180.0).contains(it));
-    match (text, text.strip_prefix("smooth=").and_then(degrees)) {
-        ("file", _) => Ok(NormalsChoice::File),
-        ("flat", _) => Ok(NormalsChoice::Flat),
-        (_, Some(degrees)) => Ok(NormalsChoice::Smooth(degrees)),
-        _ => Err(invalid(format!(
-            "unknown normals `{text}`; use file, flat, or smooth= and an angle from 0 to 180 degrees, such as smooth=40"
-        ))),
-    }
+    let choice = NormalsChoice::from_str(text);
+    choice.map_err(|remedy| invalid(format!("unknown normals `{text}`; {remedy}")))
 }

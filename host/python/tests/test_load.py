@@ -245,7 +245,7 @@ def test_normals_shade_pictures(tmp_path):
     # The normals of hits are geometric.
     assert np.array_equal(hit, same)
     for wrong in ("round", "smooth", "smooth=200", "smooth=nan"):
-        with pytest.raises(ValueError, match=f"unknown normals `{wrong}`; use file, flat, or smooth= and an angle"):
+        with pytest.raises(ValueError, match=f"unknown normals `{wrong}`; write file, flat, or smooth= and an angle"):
             shaded(wrong)
 
 
@@ -312,7 +312,7 @@ def test_options_that_do_not_apply_to_the_file_are_rejected(ball, option, kind):
 @pytest.mark.parametrize(
     "option, value, error, words",
     [
-        ("instances", "copy", ValueError, "instances: .*`copy`.*`keep` or `flatten`"),
+        ("instances", "copy", ValueError, "unknown instances `copy`; use keep or flatten"),
         ("style", "cartoon", ValueError, "unknown style `cartoon`; use space-filling or ball-and-stick"),
         ("model", 0, ValueError, "model is 0; it must be 1 to"),
         ("altloc", "AB", ValueError, "altloc is 'AB'; it must be one character"),

@@ -5,6 +5,7 @@ use crate::shape::transform::to_size_one;
 use crate::shape::unit;
 use glam::{DAffine3, DMat3, DQuat, DVec3};
 use std::collections::HashMap;
+use std::str::FromStr;
 
 /// The normals that a mesh is shaded with, for each corner of each triangle; empty for those of its faces.
 ///
@@ -38,6 +39,22 @@ pub enum NormalsChoice {
     Flat,
     /// Computed ones, smooth where faces meet at less than this angle in degrees.
     Smooth(f64),
+}
+
+impl FromStr for NormalsChoice {
+    type Err = &'static str;
+
+    fn from_str(text: &str) -> Result<Self, Self::Err> {
+        let degrees = |text: &str| text.parse().ok().filter(|it| (0.0..=180.0).contains(it));
+        match (text, text.strip_prefix("smooth=").and_then(degrees)) {
+            ("file", _) => Ok(Self::File),
+            ("flat", _) => Ok(Self::Flat),
+            (_, Some(degrees)) => Ok(Self::Smooth(degrees)),
+            _ => Err(
+                "write file, flat, or smooth= and an angle from 0 to 180 degrees, such as smooth=40",
+            ),
+        }
+    }
 }
 
 /// Largest angle in radians at which a normal of a file counts as that of its face: less than a step of a display.

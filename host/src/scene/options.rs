@@ -15,12 +15,26 @@ pub struct MoleculeOptions {
     pub altloc: Option<char>,
 }
 
+/// The drawing of atoms and bonds.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum MoleculeStyle {
     /// Atoms as spheres of their van der Waals radius.
     SpaceFilling,
     /// Small spheres, and bonds as cylinders in the colors of the atoms at their ends.
     BallAndStick,
+}
+
+impl MoleculeStyle {
+    /// All of them.
+    pub const ALL: [Self; 2] = [Self::SpaceFilling, Self::BallAndStick];
+
+    /// Returns its name in scene files and options.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::SpaceFilling => "space-filling",
+            Self::BallAndStick => "ball-and-stick",
+        }
+    }
 }
 
 impl Default for MoleculeOptions {
@@ -98,6 +112,19 @@ pub enum Instances {
     Keep,
     /// Each instance becomes objects of its own.
     Flatten,
+}
+
+impl Instances {
+    /// All of them.
+    pub const ALL: [Self; 2] = [Self::Keep, Self::Flatten];
+
+    /// Returns its name in manifests and options.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Keep => "keep",
+            Self::Flatten => "flatten",
+        }
+    }
 }
 
 /// Options for reading a scene file.

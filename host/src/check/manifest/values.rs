@@ -8,13 +8,11 @@ use gridel_core::{Format, Structure};
 use std::collections::BTreeMap;
 
 pub(super) fn target(value: Value<'_>) -> Result<&'static Board, SceneError> {
-    let name = value.word(&BOARDS.map(|board| board.name))?;
-    Ok(Board::named(name).unwrap_or(&BOARDS[0]))
+    value.one_of(BOARDS.each_ref(), |board| board.name)
 }
 
 pub(super) fn format(value: Value<'_>) -> Result<Format, SceneError> {
-    let name = value.word(&Format::ALL.map(Format::name))?;
-    Ok(Format::from_name(name).unwrap_or(Format::F32))
+    value.one_of(Format::ALL, Format::name)
 }
 
 pub(super) fn formats(value: Value<'_>) -> Result<Vec<Format>, SceneError> {
@@ -44,10 +42,7 @@ pub(super) fn structure(value: Value<'_>) -> Result<Structure, SceneError> {
 }
 
 pub(super) fn instances(value: Value<'_>) -> Result<Instances, SceneError> {
-    Ok(match value.word(&["keep", "flatten"])? {
-        "flatten" => Instances::Flatten,
-        _ => Instances::Keep,
-    })
+    value.one_of(Instances::ALL, Instances::name)
 }
 
 pub(super) fn size(value: Value<'_>) -> Result<[u16; 2], SceneError> {

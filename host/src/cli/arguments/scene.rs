@@ -9,6 +9,7 @@ use glam::DVec3;
 use gridel_core::Effects;
 use gridel_host::scene::{self, Instances, MoleculeStyle, NormalsChoice, ToneMapping};
 use std::num::NonZeroUsize;
+use std::str::FromStr;
 
 /// Help for the argument that names a scene file.
 pub fn scene_help() -> String {
@@ -128,7 +129,7 @@ pub struct ImportOptions {
 
     /// Normals of meshes: those of the file, those of the faces, or smooth where faces meet at less than an angle in
     /// degrees, such as smooth=40 [default: file]
-    #[arg(long, value_name = "file|flat|smooth=DEG", value_parser = normals)]
+    #[arg(long, value_name = "file|flat|smooth=DEG", value_parser = NormalsChoice::from_str)]
     normals: Option<NormalsChoice>,
 
     /// Biological assembly of a PDB or mmCIF file, by its number or name [default: the atoms that the file lists]
@@ -247,11 +248,9 @@ impl ImportOptions {
         };
         let camera = choice("camera", &self.camera);
         let animation = choice("animation", &self.animation);
-        let instances = match self.instances {
-            Some(Instances::Keep) => " --instances keep",
-            Some(Instances::Flatten) => " --instances flatten",
-            None => "",
-        };
+        let instances = self
+            .instances
+            .map_or(String::new(), |it| format!(" --instances {}", it.name()));
         let assembly = choice("assembly", &self.assembly);
         let normals = match self.normals {
             Some(NormalsChoice::File) => String::from(" --normals file"),
@@ -315,10 +314,7 @@ impl MoleculeOptions {
     }
 
     fn written(&self) -> String {
-        let style = self.style.map(|style| match style {
-            MoleculeStyle::SpaceFilling => format!(" --style {SPACE_FILLING}"),
-            MoleculeStyle::BallAndStick => format!(" --style {BALL_AND_STICK}"),
-        });
+        let style = self.style.map(|style| format!(" --style {}", style.name()));
         let model = self.model.map(|model| format!(" --model {model}"));
         let altloc = self.altloc.map(String::from);
         let altloc = altloc.map(|place| format!(" --altloc {}", quoted(&place)));
@@ -355,43 +351,30 @@ impl TargetPoint {
     }
 }
 
-fn normals(text: &str) -> Result<NormalsChoice, String> {
-    let degrees = |text: &str| text.parse().ok().filter(|it| (0.0..=180.0).contains(it));
-    match (text, text.strip_prefix("smooth=").and_then(degrees)) {
-        ("file", _) => Ok(NormalsChoice::File),
-        ("flat", _) => Ok(NormalsChoice::Flat),
-        (_, Some(degrees)) => Ok(NormalsChoice::Smooth(degrees)),
-        _ => Err(String::from(
-            "write file, flat, or smooth= and an angle from 0 to 180 degrees, such as smooth=40",
-        )),
-    }
-}
-
 fn effect() -> impl TypedValueParser<Value = Effects> {
     PossibleValuesParser::new(Effects::NAMED.map(|(_, name)| name))
         .try_map(|name| scene::effect_named(&name).ok_or("no such effect"))
 }
 
 fn tone_mapping() -> impl TypedValueParser<Value = ToneMapping> {
-    PossibleValuesParser::new(ToneMapping::ALL.map(ToneMapping::name)).try_map(|name| {
-        let mut all = ToneMapping::ALL.into_iter();
-        all.find(|it| it.name() == name).ok_or("no such curve")
-    })
+    one_of(ToneMapping::ALL, ToneMapping::name)
 }
 
 fn instances() -> impl TypedValueParser<Value = Instances> {
-    PossibleValuesParser::new(["keep", "flatten"]).map(|name| match name.as_str() {
-        "flatten" => Instances::Flatten,
-        _ => Instances::Keep,
-    })
+    one_of(Instances::ALL, Instances::name)
 }
 
 fn style() -> impl TypedValueParser<Value = MoleculeStyle> {
-    PossibleValuesParser::new([SPACE_FILLING, BALL_AND_STICK]).map(|name| match name.as_str() {
-        BALL_AND_STICK => MoleculeStyle::BallAndStick,
-        _ => MoleculeStyle::SpaceFilling,
-    })
+    one_of(MoleculeStyle::ALL, MoleculeStyle::name)
 }
 
-const SPACE_FILLING: &str = "space-filling";
-const BALL_AND_STICK: &str = "ball-and-stick";
+/// Returns a parser of the name of one of some things.
+fn one_of<T: Copy + Send + Sync + 'static, const N: usize>(
+    all: [T; N],
+    name: fn(T) -> &'static str,
+) -> impl TypedValueParser<Value = T> {
+    PossibleValuesParser::new(all.map(name)).try_map(move |word| {
+        let found = all.into_iter().find(|&it| name(it) == word);
+        found.ok_or("no such value")
+    })
+}

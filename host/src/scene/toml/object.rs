@@ -188,10 +188,7 @@ fn smooth(fields: &Fields<'_>) -> Result<Option<f64>, SceneError> {
 }
 
 fn style(value: Value<'_>) -> Result<MoleculeStyle, SceneError> {
-    Ok(match value.word(&["space-filling", "ball-and-stick"])? {
-        "space-filling" => MoleculeStyle::SpaceFilling,
-        _ => MoleculeStyle::BallAndStick,
-    })
+    value.one_of(MoleculeStyle::ALL, MoleculeStyle::name)
 }
 
 fn altloc(value: Value<'_>) -> Result<Option<char>, SceneError> {

@@ -88,11 +88,7 @@ fn track(table: Value<'_>) -> Result<Unresolved, SceneError> {
     let target = fields.require("target")?;
     let (owner, property, moved) = parse(target)?;
     let interpolation = fields.or("interpolation", Interpolation::Linear, |value| {
-        let word = value.word(&Interpolation::ALL.map(Interpolation::name))?;
-        let mut all = Interpolation::ALL.into_iter();
-        Ok(all
-            .find(|it| it.name() == word)
-            .unwrap_or(Interpolation::Linear))
+        value.one_of(Interpolation::ALL, Interpolation::name)
     })?;
     let axis = fields.get("axis");
     if let Some(axis) = axis.filter(|_| moved != TrackTarget::JointRotation) {

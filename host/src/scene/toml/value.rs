@@ -259,11 +259,23 @@ impl<'a> Value<'a> {
 
     /// Returns the value as one of a few words.
     pub(crate) fn word(self, words: &[&'static str]) -> Result<&'static str, SceneError> {
+        Ok(words[self.place_among(words)?])
+    }
+
+    /// Returns the one of some things that the value names.
+    pub(crate) fn one_of<T: Copy, const N: usize>(
+        self,
+        all: [T; N],
+        name: impl Fn(T) -> &'static str,
+    ) -> Result<T, SceneError> {
+        Ok(all[self.place_among(&all.map(name))?])
+    }
+
+    fn place_among(self, words: &[&'static str]) -> Result<usize, SceneError> {
         let text = self.text()?;
         words
             .iter()
-            .find(|&&word| word == text)
-            .copied()
+            .position(|&word| word == text)
             .ok_or_else(|| {
                 let near = nearest(text, words.iter().copied()).unwrap_or_default();
                 self.error(

@@ -121,9 +121,7 @@ pub(super) fn render(table: Value<'_>) -> Result<RenderSettings, SceneError> {
         shadows: fields.or("shadows", default.shadows, Value::boolean)?,
         exposure: fields.or("exposure", 0.0, |value| value.number_in(-32.0..=32.0))?,
         tone_mapping: fields.or("tone_mapping", ToneMapping::None, |value| {
-            let name = value.word(&ToneMapping::ALL.map(ToneMapping::name))?;
-            let mut all = ToneMapping::ALL.into_iter();
-            Ok(all.find(|it| it.name() == name).unwrap_or_default())
+            value.one_of(ToneMapping::ALL, ToneMapping::name)
         })?,
     })
 }
