@@ -95,7 +95,7 @@ fn compare_keeps_instances_or_copies_them() {
         text.contains("6 instances copied: 12 primitives stored"),
         "{text}"
     );
-    assert!(text.contains("objects  M rays/s"), "{text}");
+    assert!(text.contains("primitives  M rays/s"), "{text}");
 }
 
 /// The tests of all rays together are those of the picture that `render` draws.
