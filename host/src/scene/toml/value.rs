@@ -273,24 +273,21 @@ impl<'a> Value<'a> {
 
     fn place_among(self, words: &[&'static str]) -> Result<usize, SceneError> {
         let text = self.text()?;
-        words
-            .iter()
-            .position(|&word| word == text)
-            .ok_or_else(|| {
-                let near = nearest(text, words.iter().copied()).unwrap_or_default();
-                self.error(
-                    format!(
-                        "`{}` is {text:?}, which means nothing here",
-                        self.key,
-                        text = shortened(text)
-                    ),
-                    format!(
-                        "did you mean {near:?}? It may be {}",
-                        words.join(", "),
-                        near = shortened(near)
-                    ),
-                )
-            })
+        words.iter().position(|&word| word == text).ok_or_else(|| {
+            let near = nearest(text, words.iter().copied()).unwrap_or_default();
+            self.error(
+                format!(
+                    "`{}` is {text:?}, which means nothing here",
+                    self.key,
+                    text = shortened(text)
+                ),
+                format!(
+                    "did you mean {near:?}? It may be {}",
+                    words.join(", "),
+                    near = shortened(near)
+                ),
+            )
+        })
     }
 
     /// The values of an array; `example` shows one.
