@@ -46,6 +46,15 @@ pub fn measured_color(blob: &Blob, format: Format, samples: u16) -> ([f64; 3], f
     (means, error)
 }
 
+/// Returns by which power of the number of samples the error of a picture in `f64` falls, from 16 to 4,096 samples.
+pub fn convergence(blob: &Blob) -> f64 {
+    let [few, many] = [16_u16, 4096];
+    let [before, after] = [few, many].map(|samples| measured(blob, Format::F64, samples).1);
+    let exponent = (before / after).log2() / (f64::from(many) / f64::from(few)).log2();
+    eprintln!("{before:.6} {after:.6}: N^-{exponent:.2}");
+    exponent
+}
+
 /// Half a step of a pixel, and of the lattice.
 pub const ROUNDING: f64 = 2e-5;
 

@@ -8,7 +8,7 @@ use gridel_host::blob::Blob;
 use gridel_host::compile::{Options, compile};
 use gridel_host::render::{Job, render};
 use gridel_tests::every_format;
-use gridel_tests::measured::{SCRAMBLES_WIDE, measured, read};
+use gridel_tests::measured::{SCRAMBLES_WIDE, convergence, read};
 
 const APERTURE: f64 = 0.8;
 const FOCUS: f64 = 10.0;
@@ -131,10 +131,7 @@ fn blurred_edges_converge() {
          [material.lamp]\ndiffuse = 0\nemission = 0.9\nlights = false\n\
          [[object]]\nkind = 'sphere'\ncenter = [1.1, 0.3, -9]\nradius = 1\nmaterial = 'lamp'"
     ));
-    let many = 4096;
-    let [few_error, many_error] = [16, many].map(|samples| measured(&blob, Format::F64, samples).1);
-    let exponent = (few_error / many_error).log2() / (f64::from(many) / 16.0).log2();
-    eprintln!("{few_error:.6} {many_error:.6}: N^-{exponent:.2}");
+    let exponent = convergence(&blob);
     assert!(exponent >= 0.6, "{exponent}");
 }
 

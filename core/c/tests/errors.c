@@ -62,8 +62,8 @@ static gridel_buffer buffer(void *memory, size_t bytes) {
 }
 
 int main(int count_of_arguments, char **arguments) {
-  size_t blob_bytes, list_bytes, bytes, parts;
-  unsigned char *blob, *list, *damaged;
+  size_t blob_bytes, list_bytes, far_bytes, bytes, parts;
+  unsigned char *blob, *list, *far, *damaged;
   static gridel_scene scene, fresh, copy;
   static uint64_t memory[1024];
   static unsigned char pixels[3 * 64 * 64];
@@ -92,9 +92,10 @@ int main(int count_of_arguments, char **arguments) {
   gridel_look look = {{0, 0, 0}, {0, 0, 0}, {0, 1, 0}, (uint32_t)1 << 29};
   gridel_circle circle = {{0, 0, 0}, 0, 0, 0, (uint32_t)1 << 29, 1};
   const count counts[] = {gridel_workspace_bytes_fixed, gridel_workspace_bytes_f32, gridel_workspace_bytes_f64};
-  if (count_of_arguments != 3) return 2;
+  if (count_of_arguments != 4) return 2;
   blob = load(arguments[1], &blob_bytes);
   list = load(arguments[2], &list_bytes);
+  far = load(arguments[3], &far_bytes);
 
   /* Loading. */
   EXPECT(NULL_POINTER, gridel_load(NULL, blob, blob_bytes));
@@ -238,6 +239,15 @@ int main(int count_of_arguments, char **arguments) {
   EXPECT(GRIDEL_STATUS_RAY_ORIGIN, gridel_any_f64(&scene, &ray_f64, stack, &any));
   ray_f32.direction[1] = 0;
   EXPECT(GRIDEL_STATUS_RAY_DIRECTION, gridel_any_f32(&scene, &ray_f32, stack, &any));
+  /* From inside a ball with a radius of 1e39, which is a double and no float. */
+  {
+    gridel_ray_f32 from_f32 = {{0, 0, 0}, {0, 1e20f, 0}, 0, 1e30f};
+    gridel_ray_f64 from_f64 = {{0, 0, 0}, {0, 1e20, 0}, 0, 1e30};
+    EXPECT(GRIDEL_STATUS_OK, gridel_load(&copy, far, far_bytes));
+    EXPECT(GRIDEL_STATUS_RAY_DISTANCE, gridel_cast_f32(&copy, &from_f32, stack, &hit_f32));
+    EXPECT(GRIDEL_STATUS_OK, gridel_cast_f64(&copy, &from_f64, stack, &hit_f64));
+    CHECK(hit_f64.object == 0 && hit_f64.point[1] > 9e38);
+  }
 
   /* Pictures. */
   rectangle.x = rectangle.y = 0;

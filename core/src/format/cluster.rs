@@ -49,7 +49,7 @@ records! {
         pub high: [[u16; LANES / 2]; 3],
     }
 
-    /// Which primitives a strip holds, and which vertex is which corner of them.
+    /// The primitives of a strip, and the vertices at their corners.
     #[derive(Clone, Copy, Debug, PartialEq, Eq, Pod, Zeroable)]
     #[repr(C)]
     #[bytes(6)]
@@ -68,7 +68,7 @@ records! {
     pub struct Strip16 {
         /// The vertices; lanes that no triangle needs repeat one.
         pub rows: Rows16,
-        /// Which of the triangles there are, and their corners.
+        /// The triangles that the strip holds, and their corners.
         pub members: StripMembers,
     }
 
@@ -79,7 +79,7 @@ records! {
     pub struct Strip24 {
         /// The vertices; lanes that no triangle needs repeat one.
         pub rows: Rows24,
-        /// Which of the triangles there are, and their corners.
+        /// The triangles that the strip holds, and their corners.
         pub members: StripMembers,
     }
 

@@ -21,7 +21,7 @@ records! {
     #[repr(C)]
     #[bytes(16)]
     pub struct Part {
-        /// Where its blob begins in the section part-blobs, in words of 16 bytes: where that of the part before ends.
+        /// Start of its blob in the section part-blobs, in words of 16 bytes: the end of the blob before.
         pub start: u32,
         /// Length of its blob in words of 16 bytes.
         pub length: u32,

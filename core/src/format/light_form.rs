@@ -18,7 +18,7 @@ records! {
     #[repr(C)]
     #[bytes(56)]
     pub struct LightForm {
-        /// What shines: 0 the position itself, 1 a sphere around it, 2 a rectangle with a corner there, 3 a disc around
+        /// Its shape: 0 the position itself, 1 a sphere around it, 2 a rectangle with a corner there, 3 a disc around
         /// it, 4 a triangle with a corner there.
         #[valid(Kind: 0..=4)]
         pub shape: u32,

@@ -237,8 +237,8 @@ macro_rules! sections {
             Emissions = 81, "emissions", [record::Emission], "emission" of "";
             /// One [`Lens`](crate::format::lens::Lens): what the camera has in place of a pinhole.
             Lens = 90, "lens", [lens::Lens], "" of "";
-            /// How often light may be reflected diffusely between the eye and a light: 1 to 32. Absent where surfaces do not
-            /// light each other.
+            /// Maximum number of diffuse reflections between the eye and a light: 1 to 32. Absent where surfaces do
+            /// not light each other.
             Indirect = 91, "indirect", [u32], "" of "";
             /// One [`Environment`](crate::format::environment::Environment): the light around the scene.
             Environment = 92, "environment", [environment::Environment], "" of "";
@@ -268,7 +268,8 @@ macro_rules! sections {
             MorphVertices = 101, "morph-vertices", [u8, u16, [u8; 3], u32], "displacement" of "morph-vertices";
             /// For each displacement, its morph target.
             MorphNumbers = 102, "morph-numbers", [u8, u16, [u8; 3], u32], "displacement" of "morph-numbers";
-            /// How far each vertex is displaced by a weight of 1, in steps of its storage: units for 16 bits, else 1/256 unit.
+            /// Displacement of each vertex by a weight of 1, in steps of its storage: units for 16 bits, else 1/256
+            /// unit.
             Displacements = 103, "displacements", [[i16; 3], [i32; 3]], "displacement" of "";
             /// For each displacement, by how much a weight of 1 changes the vertex' [normal](crate::geometry::smooth) on its
             /// octahedron, halved. Absent where normals do not change.

@@ -28,9 +28,9 @@ records! {
     #[repr(C)]
     #[bytes(20)]
     pub struct Track {
-        /// What moves: a [`TrackTarget`].
+        /// The property that moves: a [`TrackTarget`].
         pub target: u16,
-        /// How it moves from key to key: an [`Interpolation`].
+        /// The interpolation between keys: an [`Interpolation`].
         pub interpolation: u16,
         /// The number of the light, material, joint or morph target; 0 for the camera.
         pub index: u32,

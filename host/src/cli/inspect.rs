@@ -398,9 +398,9 @@ impl Inspection {
         let [low, high] = limits.bounds;
         let corner = |[x, y, z]: [f64; 3]| format!("({x}, {y}, {z})");
         line(
-            "coordinates",
+            "coordinate step",
             format!(
-                "coordinate steps of {} scene units from {}",
+                "{} scene units, counted from {}",
                 power_of_two(limits.coordinate_step),
                 corner(limits.coordinate_origin)
             ),

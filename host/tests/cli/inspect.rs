@@ -169,6 +169,7 @@ fn working_memory_is_what_the_compiler_says() {
     let inspection = folder.json(&["inspect", "every.gridel"]);
     // The figures below are for this stack, and for the scene's ray depth of 6.
     assert_eq!(inspection["limits"]["stack_depth"], 6);
+    assert_eq!(inspection["limits"]["work_depth"], 13);
     let needs = inspection["working_memory"].as_array().unwrap();
     let here = usize::BITS;
     let expected = [

@@ -251,6 +251,8 @@ fn the_report_has_counts_times_and_counters() {
     }
     let list = folder.json(&[&TRACE[..], &["--accel", "list"]].concat());
     assert_eq!(list["counters"]["planes"], 0);
+    assert_eq!(list["counters"]["cells"], 0);
+    assert_eq!(list["counters"]["instances"], 0);
 
     folder.write("rays.npy", &npy("<f8", &[]));
     let empty = folder.json(&TRACE);

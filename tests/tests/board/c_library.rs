@@ -184,6 +184,16 @@ fn c_functions_answer_wrong_arguments_with_codes() {
         .blob;
     fs::write(folder.join("list.gridel"), list.bytes())
         .expect("the target folder can be written to");
+    // Hits in it are beyond single precision.
+    let ball = "[[object]]\nkind = 'sphere'\ncenter = [0, 0, 0]\nradius = 1e39\n";
+    let far = gridel_host::scene::read("far.toml".as_ref(), ball.into(), &Default::default());
+    let options = Options {
+        structures: vec![Structure::DualSplit],
+        ..Options::default()
+    };
+    let far = compile::compile(&far.expect("a scene").scene, &options).expect("a scene");
+    fs::write(folder.join("far.gridel"), far.blob.bytes())
+        .expect("the target folder can be written to");
     // The example runs here, too.
     let output = run(&mut Command::new(example));
     let view = scene.blob.scene().expect("the compiler's own blob");
@@ -214,7 +224,8 @@ fn c_functions_answer_wrong_arguments_with_codes() {
             .arg(&program);
         run(&mut compile);
         let mut errors = Command::new(&program);
-        errors.args([folder.join("scene.gridel"), folder.join("list.gridel")]);
+        errors
+            .args(["scene", "list", "far"].map(|name| folder.join(name).with_extension("gridel")));
         let said = run(&mut errors);
         println!(
             "{language}: {}",

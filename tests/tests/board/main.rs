@@ -106,6 +106,14 @@ fn pictures(plan: &mut Plan) {
             compare_with_the_hosts(&RV32IMC, Format::Fixed, &scenes::quick());
         });
 
+    for board in ["mps2-an386", "mps2-an385"].map(board) {
+        plan.test_on("limits_hold_without_indirect_light", board, board.format())
+            .in_full()
+            .run(move || {
+                compare_with_the_hosts(board, board.format(), &scenes::deep());
+            });
+    }
+
     let names = [
         "microbit",
         "sifive_e",

@@ -42,6 +42,38 @@ pub fn quick_through_everything() -> Compiled {
     compile_with("quick", load(&fixture_path("quick")), [48, 36], options)
 }
 
+/// Light through 100 clear panes, and a ball between two mirrors, to depth 32: limits that hold without indirect light.
+pub fn deep() -> Compiled {
+    let mut text = String::from(
+        "[camera]\neye = [0.5, 1, 0]\ntarget = [0, 0.9, -4]\nfov = 70\n[render]\ndepth = 32\n\
+         [material.mirror]\ndiffuse = 0\nmirror = 0.95\n[material.clear]\ntransmit = 1\nior = 1\n\
+         [[light]]\nkind = 'directional'\ndirection = [0, -1, 0]\ncolor = 0.9\n\
+         [[object]]\nkind = 'sphere'\ncenter = [0, 0.5, -2]\nradius = 0.5\n",
+    );
+    for (z, normal) in [(-4, 1), (4, -1)] {
+        text += &format!(
+            "[[object]]\nkind = 'disc'\ncenter = [0, 0, {z}]\nnormal = [0, 0, {normal}]\nradius = 9\n\
+             material = 'mirror'\n"
+        );
+    }
+    for pane in 0..100 {
+        let y = 5.0 + 0.1 * f64::from(pane);
+        text += &format!(
+            "[[object]]\nkind = 'disc'\ncenter = [0, {y}, -2]\nnormal = [0, 1, 0]\nradius = 1\n\
+             material = 'clear'\n"
+        );
+    }
+    let read = scene::read(
+        "deep.toml".as_ref(),
+        text.into(),
+        &scene::ImportOptions::default(),
+    );
+    let compiled = compile_with("deep", read.expect("a scene").scene, [32, 24], small());
+    assert_eq!(view_depth(&compiled), 32);
+    assert!(!compiled.features().contains(&"indirect"));
+    compiled
+}
+
 /// Glass on glass, to depth 6.
 pub fn glass_chess() -> Compiled {
     let compiled = fixture("glass-chess", [48, 36]);

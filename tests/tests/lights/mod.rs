@@ -2,11 +2,12 @@
 
 mod near_by;
 
-use gridel_core::{Effects, Format, Settings, Structure};
+use gridel_core::{Effects, Format};
 use gridel_host::blob::Blob;
 use gridel_host::compile::{Options, compile};
-use gridel_host::render::{Job, render};
-use gridel_tests::measured::{ROUNDING, check, measured, read, wrong_pixels};
+use gridel_tests::measured::{
+    ROUNDING, check, convergence, measured, measured_color, read, wrong_pixels,
+};
 use std::f64::consts::PI;
 
 /// A scene with a white surface, seen by 4 by 4 pixels that show nearly one point of it.
@@ -166,13 +167,7 @@ fn soft_shadows_converge() {
         "[3, 0, 0]",
         &format!("{FLOOR}\n{ball}"),
     );
-    let many = 4096;
-    let (few_error, many_error) = (
-        measured(&blob, Format::F64, 16).1,
-        measured(&blob, Format::F64, many).1,
-    );
-    let exponent = (few_error / many_error).log2() / (f64::from(many) / 16.0).log2();
-    eprintln!("{few_error:.6} {many_error:.6}: N^-{exponent:.2}");
+    let exponent = convergence(&blob);
     assert!(exponent >= 0.7, "{exponent}");
 }
 
@@ -302,17 +297,6 @@ fn background(render: &str) -> Blob {
         .blob
 }
 
-fn pixel(blob: &Blob, format: Format, samples: u16) -> [f64; 3] {
-    let scene = blob.scene().expect("a scene");
-    let settings = Settings {
-        samples,
-        ..Settings::of(&scene)
-    };
-    let job = Job::whole(format, Structure::List, settings);
-    let picture = render(&scene, &job, &|| ()).expect("a picture");
-    picture.pixels[5].map(|channel| f64::from(channel) / 65_535.0)
-}
-
 /// Tones are mapped by their formulas, after the mean of any number of samples.
 #[test]
 fn tones_are_mapped_by_their_formulas() {
@@ -331,7 +315,7 @@ fn tones_are_mapped_by_their_formulas() {
             assert_eq!(is_mapped, name != "none");
             for format in Format::ALL {
                 for samples in [1, 64, 65, 4096] {
-                    let found = pixel(&blob, format, samples);
+                    let (found, _) = measured_color(&blob, format, samples);
                     for (found, radiance) in found.into_iter().zip([0.18, 1.0, 8.0]) {
                         let exact = curve((radiance * f64::exp2(stops)).min(16.0));
                         assert!(
@@ -366,7 +350,7 @@ fn exposure_multiplies_all_light() {
     let effects = |blob: &Blob| blob.scene().expect("a scene").effects();
     assert_eq!(effects(&plain), effects(&dark));
     for format in Format::ALL {
-        let (bright, dim) = (pixel(&plain, format, 16), pixel(&dark, format, 16));
+        let [bright, dim] = [&plain, &dark].map(|blob| measured_color(blob, format, 16).0);
         for (bright, dim) in bright.into_iter().zip(dim) {
             assert!(bright > 0.3 && bright < 1.0);
             assert!(

@@ -70,7 +70,7 @@ records! {
         /// The first cell of the window in the table: the sum of the cells of all windows before this one. The
         /// cells of the second side run faster.
         pub first_cell: u32,
-        /// Where the levels of keys begin: culling steps (half units) along the major axis from the apex or the plane.
+        /// Start of the levels of keys: culling steps (half units) along the major axis from the apex or the plane.
         pub start: i32,
         /// Levels per culling step, with 24 fraction bits.
         pub a_step: u32,

@@ -60,7 +60,7 @@ records! {
         /// this less 13.
         #[valid(CoordinateShift: 0..=MAX_COORDINATE_SHIFT as i64)]
         pub coordinate_shift: u8,
-        /// What scene coordinates are counted from: 0 for the lattice's origin, 1 for the scene's.
+        /// The origin of scene coordinates: 0 for the lattice's, 1 for the scene's.
         #[valid(CoordinateOrigin: 0..=1)]
         pub counted_from: u8,
         /// Zero.
@@ -78,7 +78,7 @@ records! {
         pub stride: u16,
         /// Number of records.
         pub count: u32,
-        /// Where the first record lies, in bytes from the blob's start: exactly where the layout puts it, a
+        /// Start of the first record, in bytes from the blob's start: exactly where the layout puts it, a
         /// multiple of [`SECTION_ALIGNMENT`](crate::format::record::SECTION_ALIGNMENT).
         pub offset: u32,
         /// Zero.

@@ -58,7 +58,7 @@ records! {
         /// Default number of samples per pixel.
         #[valid(Samples: 1..=MAX_SAMPLES as i64)]
         pub samples: u16,
-        /// How often a ray may be reflected or refracted.
+        /// Maximum number of reflections and refractions of a ray.
         #[valid(RayDepth: 0..=MAX_RAY_DEPTH as i64)]
         pub depth: u8,
         /// 1 where all colors and lights are display values, which are added up and shown as they are. Else they are

@@ -46,7 +46,7 @@ records! {
         /// Height in texels.
         #[valid(TextureHeight: 1..=4096)]
         pub height: u16,
-        /// How a texel is stored: 0 as an index of 8 bits into 256 colors of 4 bytes, which lie before the texels; 1 as
+        /// The storage of a texel: 0 as an index of 8 bits into 256 colors of 4 bytes, which lie before the texels; 1 as
         /// RGB565, the lower byte first; 2 as red, green, blue; 3 as red, green, blue, alpha.
         #[valid(TextureForm: 0..=3)]
         pub form: u8,

@@ -239,7 +239,8 @@ class Scene:
             objects. Default: ``"keep"``.
         :param normals: normals with which :meth:`render` shades meshes: ``"file"``, ``"flat"``, or smooth where faces meet
             at less than an angle in degrees, such as ``"smooth=40"``. Normals of hits do not change. Default: ``"file"``.
-        :param assembly: biological assembly of a PDB or mmCIF file, by its number or name. Default: the asymmetric unit.
+        :param assembly: biological assembly of a PDB or mmCIF file, by its number or name. Default: the atoms that
+            the file lists.
         :param style: style of molecules: ``"space-filling"`` or ``"ball-and-stick"``. Default: ``"space-filling"``.
         :param model: model of a molecule file, counted from 1. Default: 1.
         :param altloc: alternate location of atoms, one character. Default: the first of each residue.

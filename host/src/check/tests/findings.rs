@@ -269,6 +269,14 @@ fn pictures_that_differ_are_not_recorded_as_one_reference() {
         "{}",
         report.table()
     );
+
+    // No tolerance helps where the sizes differ.
+    fs::remove_file(folder.path("one.png")).unwrap();
+    let other = check("dark", "size = [8, 6]\n");
+    let (manifest, report) = folder.run(&(check("ball", "size = [16, 12]\n") + &other));
+    let left = bless(&manifest, &report).left.join("\n");
+    assert!(left.contains("has another size than another one"), "{left}");
+    assert!(!left.contains("tolerance"), "{left}");
 }
 
 #[test]

@@ -116,7 +116,6 @@ impl Server {
     }
 
     fn answer(&self, stream: &TcpStream) -> io::Result<()> {
-        stream.set_read_timeout(Some(PATIENCE))?;
         stream.set_write_timeout(Some(PATIENCE))?;
         let request = read_request(Timed::new(stream))?;
         let is_head = request.as_ref().is_ok_and(|it| it.starts_with("HEAD "));
