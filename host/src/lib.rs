@@ -71,6 +71,8 @@ pub mod openexr;
 pub mod output;
 pub mod picture;
 pub mod picture_rays;
+#[doc(hidden)]
+pub mod random;
 pub mod render;
 pub mod report;
 pub mod resolution;

@@ -173,7 +173,8 @@ pub fn printable(name: &str) -> String {
     escaped.replace("\\\"", "\"").replace("\\'", "'")
 }
 
-/// Formats a number with six significant digits, without trailing zeros.
+/// Formats a number with six significant digits, without trailing zeros. Numbers of up to nine digits before the point
+/// keep all of these.
 ///
 /// ```
 /// assert_eq!(gridel_host::table::significant(0.1 + 0.2), "0.3");

@@ -13,9 +13,9 @@ pub fn part_of(quick: usize, full: usize) -> usize {
 }
 
 /// Returns the stride of the longest tests over many similar cases: 1 where the environment has
-/// `GRIDEL_FULL=1`, or else 7: then every bit of a byte is met, in some byte.
+/// `GRIDEL_FULL=1`, or else 15: then every bit of a byte is met, in some byte.
 pub fn step() -> usize {
-    part_of(7, 1)
+    part_of(15, 1)
 }
 
 /// `count` where the environment says `GRIDEL_FULL=1`, or else a sixth of it: for the longest tests.

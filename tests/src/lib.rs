@@ -19,7 +19,8 @@ pub mod query;
 pub mod scenes;
 pub mod shapes;
 
-pub use gridel_host::shape::{exact, random};
+pub use gridel_host::random;
+pub use gridel_host::shape::exact;
 pub use gridel_host::verify::rays;
 
 /// Calls a function that is generic over the number format for each of them.

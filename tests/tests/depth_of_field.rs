@@ -7,6 +7,7 @@ use gridel_core::{
 use gridel_host::blob::Blob;
 use gridel_host::compile::{Options, compile};
 use gridel_host::render::{Job, render};
+use gridel_tests::effort::part_of;
 use gridel_tests::every_format;
 use gridel_tests::measured::{SCRAMBLES_WIDE, convergence, read};
 
@@ -74,6 +75,7 @@ fn diameter(picture: &[f64]) -> ([f64; 2], f64) {
 
 #[test]
 fn circles_of_confusion_have_the_diameter_of_the_formula() {
+    let samples = part_of(256, 1024) as u16;
     for format in Format::ALL {
         for depth in [5.0, 7.0, 20.0, 40.0] {
             let radius = 0.04 * depth / FOCUS;
@@ -81,7 +83,7 @@ fn circles_of_confusion_have_the_diameter_of_the_formula() {
                 "[[object]]\nkind = 'sphere'\ncenter = [0, 0, {}]\nradius = {radius}\nmaterial = 'lamp'",
                 -depth
             );
-            let (found, aside) = diameter(&picture(&lens(), &ball, format, 1024));
+            let (found, aside) = diameter(&picture(&lens(), &ball, format, samples));
             let circle = APERTURE * (depth - FOCUS).abs() / depth * pixels_per_unit(FOCUS);
             // The ball's own image spreads it.
             let exact = circle.hypot(2.0 * radius * pixels_per_unit(depth));

@@ -205,7 +205,7 @@ fn ball_on(ground: Ground, extent: f64, shift: DVec3) -> Scene {
 #[test]
 fn a_glass_ball_differs_by_no_more_than_a_step_of_the_lattice() {
     for ground in [Ground::Slab, Ground::Cube, Ground::Disc, Ground::Triangles] {
-        for extent in [1e2, 1e3, 1e4, 1e5] {
+        for extent in [1e2, 1e3, 1e4, 1e5].into_iter().step_by(part_of(3, 1)) {
             let plain = ball_on(ground, extent, DVec3::ZERO);
             let one = compile(&plain, &Options::default()).expect("compiles");
             let step = one.report.step;

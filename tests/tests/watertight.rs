@@ -4,7 +4,7 @@ use glam::DVec3;
 use gridel_core::{Bvh, Flagged, Format, Hit, Kind, NoCount, Number, Ray, Scene, Structure};
 use gridel_host::blob::Blob;
 use gridel_host::scene::Shape;
-use gridel_tests::effort::{part_of, sixth_of, step};
+use gridel_tests::effort::{part_of, step};
 use gridel_tests::every_format;
 use gridel_tests::query::{UnitRay, closest, held, t_bound, through};
 use gridel_tests::random::Random;
@@ -159,7 +159,7 @@ fn closed_meshes_have_no_hole_and_no_double_edge() {
     for (name, (vertices, triangles)) in meshes {
         let blob = mesh(vertices, triangles, 24);
         let scene = blob.scene().expect("a scene");
-        let rays = part_of(sixth_of(60_000), 10_000_000);
+        let rays = part_of(4_000, 10_000_000);
         every_format!(no_leaks_anywhere(name, &scene, rays));
     }
 }
@@ -201,7 +201,7 @@ fn icosphere_does_not_leak(list_step: usize) {
 
 #[test]
 fn the_icosphere_is_closed() {
-    icosphere_does_not_leak(96);
+    icosphere_does_not_leak(480);
 }
 
 #[test]

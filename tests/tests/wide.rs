@@ -7,6 +7,7 @@ use gridel_host::compile::{Options, Quality, compile};
 use gridel_host::scene::{Scene, Shape};
 use gridel_host::shape::Sphere;
 use gridel_host::trace::{Frame, Query, SceneHit, trace};
+use gridel_tests::effort::part_of;
 use gridel_tests::query::{HitBits, any, closest};
 use gridel_tests::random::Random;
 use gridel_tests::{every_format, rays, scenes};
@@ -45,7 +46,7 @@ fn some_scenes() -> Vec<(String, Scene)> {
 /// only.
 fn agrees<N: Number>(name: &str, ordinary: &gridel_core::Scene<'_>, own: &gridel_core::Scene<'_>) {
     let total: usize = Kind::ALL.iter().map(|&kind| own.count(kind)).sum();
-    let rays = 3_000_000 / (total + 200);
+    let rays = part_of(600_000, 3_000_000) / (total + 200);
     let mut hits = 0;
     for ray in rays::rays(ordinary, 23).take(rays) {
         let Some(ready) = ray.ready::<N>(ordinary) else {

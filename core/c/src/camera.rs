@@ -15,13 +15,13 @@ pub unsafe extern "C" fn gridel_camera_of(
     loaded: *const gridel_scene,
     camera: *mut gridel_camera,
 ) -> gridel_status {
-    let tell = || {
+    let attempt = || {
         // SAFETY: the caller's promise.
         let (scene, camera) = unsafe { (scene(loaded)?, output(camera)?) };
         camera.write(of_view(scene.view()));
         Ok(())
     };
-    status(tell())
+    status(attempt())
 }
 
 /// Makes a camera at one place that looks at another.

@@ -178,7 +178,7 @@ pub unsafe extern "C" fn gridel_info_of(
     loaded: *const gridel_scene,
     info: *mut gridel_info,
 ) -> gridel_status {
-    let tell = || {
+    let attempt = || {
         // SAFETY: the caller's promise.
         let (scene, info) = unsafe { (scene(loaded)?, output(info)?) };
         let header = scene.header();
@@ -191,7 +191,7 @@ pub unsafe extern "C" fn gridel_info_of(
         });
         Ok(())
     };
-    status(tell())
+    status(attempt())
 }
 
 /// Writes the bytes of the stack that rays need, which starts at a multiple of 8 bytes.

@@ -22,7 +22,7 @@ pub unsafe extern "C" fn gridel_picture_of(
     loaded: *const gridel_scene,
     picture: *mut gridel_picture,
 ) -> gridel_status {
-    let tell = || {
+    let attempt = || {
         // SAFETY: the caller's promise.
         let (scene, picture) = unsafe { (scene(loaded)?, output(picture)?) };
         let settings = Settings::of(scene);
@@ -36,7 +36,7 @@ pub unsafe extern "C" fn gridel_picture_of(
         });
         Ok(())
     };
-    status(tell())
+    status(attempt())
 }
 
 /// Writes the bytes of the workspace that a picture needs in `fixed`, which starts at a multiple of 8 bytes.

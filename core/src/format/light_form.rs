@@ -28,8 +28,9 @@ records! {
         /// root.
         #[valid(LightReference: 0..=LONGEST)]
         pub reference: i32,
-        /// The distance at which light ends, with 13 fraction bits; 0 for none.
-        #[valid(LightRange: 0..=LONGEST)]
+        /// The distance at which light ends, with 13 fraction bits; 0 for none. A longer one is negative: its magnitude
+        /// has 8 fraction bits.
+        #[valid(LightRange: -LONGEST..=LONGEST)]
         pub range: i32,
         /// The cosine of the angle at which a spot ends, 30 fraction bits; -2^30 where there is none.
         #[valid(ConeCosine: -ONE..=ONE)]
@@ -50,6 +51,8 @@ records! {
 }
 
 impl LightForm {
+    /// Bits that the magnitude of a negative range has fewer than a length.
+    pub const FAR_RANGE_BITS: u32 = 5;
     /// The shape of a sphere.
     pub const SPHERE: u32 = 1;
     /// The shape of a rectangle.

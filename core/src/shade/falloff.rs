@@ -12,6 +12,7 @@ use crate::observe::count::Observer;
 use crate::observe::event::Event;
 use crate::shade::Color;
 use crate::shade::effect::{Effect, Tracer};
+use crate::shade::light::Distance;
 use crate::shade::surface::{Lighting, Surface};
 use crate::target::inline_on_boards;
 
@@ -85,9 +86,19 @@ fn shines<N: Number>(form: &LightForm, lighting: &mut Lighting<'_, N>) -> bool {
 #[inline(always)]
 fn is_in_range<N: Number>(form: &LightForm, lighting: &Lighting<'_, N>) -> bool {
     form.range == 0
-        || lighting
-            .light_distance()
-            .is_some_and(|distance| distance.half < distance.half_length(form.range))
+        || lighting.light_distance().is_some_and(|distance| {
+            let [distance, range] = in_range(form, distance);
+            distance < range
+        })
+}
+
+/// The distance of a light and its range, both over the same number.
+#[inline(always)]
+fn in_range<N: Number>(form: &LightForm, distance: Distance<N>) -> [N; 2] {
+    let range = distance.half_length(form.range.wrapping_abs());
+    let is_far = form.range < 0;
+    let bits = if is_far { LightForm::FAR_RANGE_BITS } else { 0 };
+    [(0..bits).fold(distance.half, |half, _| half.half()), range]
 }
 
 fn has_cone(form: &LightForm) -> bool {
@@ -110,11 +121,12 @@ inline_on_boards!(
         } else {
             fallen(color, distance.half_length(form.reference), distance.half)
         };
-        if form.range > 0
+        if form.range != 0
             && let Some(distance) = lighting.light_distance()
         {
             // KHR_lights_punctual: 1 minus the fourth power of the distance over the range.
-            let part = distance.half.div(distance.half_length(form.range));
+            let [distance, range] = in_range(form, distance);
+            let part = distance.div(range);
             if part >= N::ONE {
                 return Color::BLACK;
             }

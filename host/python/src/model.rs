@@ -1,6 +1,6 @@
 //! The scenes that blobs are compiled from.
 
-use crate::arguments::rejected;
+use crate::arguments::{in_python, rejected};
 use crate::threads::in_pool;
 use gridel_host::blob::Blob;
 use gridel_host::compile::{Compiled, LATTICE_BITS, Options, Report, compile};
@@ -9,13 +9,14 @@ use gridel_host::table::{counted, significant};
 use pyo3::exceptions::PyUserWarning;
 use pyo3::prelude::*;
 use std::ffi::CString;
+use std::path::PathBuf;
 
 /// What a scene is compiled from.
 pub struct Model {
     pub scene: Scene,
     pub options: Options,
-    /// Whether the scene is made of arrays alone.
-    pub is_of_arrays: bool,
+    /// The file that it was read from; `None` for arrays.
+    pub file: Option<PathBuf>,
 }
 
 impl Model {
@@ -24,8 +25,13 @@ impl Model {
         in_pool(py, 0, || compile(&self.scene, &self.options))?.map_err(rejected)
     }
 
-    /// Warns of primitives that the lattice leaves nothing of.
-    pub fn warn_of_collapsed(&self, py: Python<'_>, report: &Report, level: i32) -> PyResult<()> {
+    /// Gives the compiler's warnings. Of arrays only primitives are reported that the lattice leaves nothing of.
+    pub fn warn_of(&self, py: Python<'_>, report: &Report, level: i32) -> PyResult<()> {
+        if let Some(file) = &self.file {
+            let warnings = report.warnings(self.options.lattice_bits);
+            let mut warnings = warnings.iter().map(|it| in_python(it));
+            return warnings.try_for_each(|it| warn(py, &format!("{}: {it}", file.display()), level));
+        }
         if report.collapsed.count() == 0 {
             return Ok(());
         }

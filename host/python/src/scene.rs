@@ -67,7 +67,7 @@ impl NativeScene {
         let model = Model {
             scene: imported.scene,
             options,
-            is_of_arrays: false,
+            file: Some(path.clone()),
         };
         Self::compiled(py, model, 2).map_err(|error| in_file(py, &path, error))
     }
@@ -91,7 +91,7 @@ impl NativeScene {
                 flat_meshes: true,
                 ..options(&accel, lattice_bits)?
             },
-            is_of_arrays: true,
+            file: None,
         };
         Self::compiled(py, model, 3)
     }
@@ -102,7 +102,7 @@ impl NativeScene {
         &self,
         py: Python<'py>,
     ) -> PyResult<Option<(Vec<GivenMesh<'py>>, Vec<&'static str>, u8)>> {
-        let Some(model) = self.model.as_ref().filter(|model| model.is_of_arrays) else {
+        let Some(model) = self.model.as_ref().filter(|model| model.file.is_none()) else {
             return Ok(None);
         };
         let options = &model.options;

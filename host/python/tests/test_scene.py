@@ -382,6 +382,21 @@ def test_load_says_the_remedy_and_warns(tmp_path):
     assert scene.primitives == 1
 
 
+def test_load_gives_the_warnings_of_the_compiler(tmp_path):
+    (tmp_path / "in.toml").write_text(
+        "[camera]\neye = [0, 0, 5]\ntarget = [0, 0, 0]\n"
+        "[[object]]\nname = 'wall'\nkind = 'plane'\npoint = [0, 0, 0]\nnormal = [1, 0, 0]\n"
+        "[[object]]\nkind = 'sphere'\ncenter = [0, 0, 0]\nradius = 1e6\n"
+        "[[object]]\nkind = 'sphere'\ncenter = [3, 0, 0]\nradius = 1e-3\n"
+    )
+    with pytest.warns(UserWarning) as warnings:
+        gridel.Scene.load(tmp_path / "in.toml")
+    said = [str(warning.message) for warning in warnings]
+    assert all(sentence.startswith(str(tmp_path / "in.toml: ")) for sentence in said), said
+    assert sum("lies in the plane wall" in sentence for sentence in said) == 1
+    assert sum("1 primitive too small for the lattice" in sentence for sentence in said) == 1
+
+
 def test_scenes_pickle_and_copy(cube):
     rays = np.random.default_rng(1).normal(size=(1000, 6))
     coarse = gridel.Scene.from_arrays(CUBE / 3, FACES, accel=["bvh", "wide"], lattice_bits=16)

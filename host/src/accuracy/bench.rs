@@ -154,13 +154,10 @@ pub enum MeasureError {
 pub struct Bench<'s> {
     scene: &'s Scene,
     structure: Structure,
-    /// Build quality of the structure `wide`.
-    pub quality: Quality,
-    pub size: [u16; 2],
-    /// Instances of the scene file that were [copied](crate::scene::Imported::copied), for the report.
-    pub copied: usize,
-    /// The pictures that errors are measured against.
-    pub truth: Truth,
+    quality: Quality,
+    size: [u16; 2],
+    copied: usize,
+    truth: Truth,
     compiled: HashMap<(u8, u64, u32), Compiled>,
     hits: HashMap<(u8, u64, u32, &'static str), Vec<Option<FirstHit>>>,
     /// Pictures that others are measured against, by the names of their settings.
@@ -196,6 +193,30 @@ impl<'s> Bench<'s> {
             pictures: HashMap::new(),
             exact: HashMap::new(),
         }
+    }
+
+    /// Returns it with a build quality of the structure `wide`.
+    #[must_use]
+    pub fn with_quality(self, quality: Quality) -> Self {
+        Self { quality, ..self }
+    }
+
+    /// Returns it with the number of instances of the scene file that were [copied](crate::scene::Imported::copied), for
+    /// the report.
+    #[must_use]
+    pub fn with_copied(self, copied: usize) -> Self {
+        Self { copied, ..self }
+    }
+
+    /// Returns it with other pictures that errors are measured against; usually those of `f64`.
+    #[must_use]
+    pub fn with_truth(self, truth: Truth) -> Self {
+        Self { truth, ..self }
+    }
+
+    /// Width and height of the pictures.
+    pub fn size(&self) -> [u16; 2] {
+        self.size
     }
 
     /// Returns the setting that the scene file states.

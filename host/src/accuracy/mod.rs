@@ -6,6 +6,7 @@
 //! | `setting.rs` | what is swept |
 //! | `bench.rs` | renders and compares |
 //! | `truth.rs` | what pictures are compared with |
+//! | `columns.rs` | the figures of a setting, in columns |
 //! | `effects.rs` | what each effect is worth |
 //! | `answers.rs` | the answers in three sentences |
 //! | `page.rs`, `page.html` | the page, and its template |
@@ -14,6 +15,7 @@
 
 mod answers;
 mod bench;
+mod columns;
 mod effects;
 mod instances;
 mod page;
@@ -24,6 +26,7 @@ mod truth;
 
 pub use answers::answers;
 pub use bench::{Bench, Cost, ErrorParts, MeasureError, Point, Reference, reference_setting};
+pub use columns::COLUMNS;
 pub use effects::{BOARD, Worth, given_up, worths};
 pub use instances::instance_notes;
 pub use page::{MOST_PICTURE_BYTES, PagePicture, page};

@@ -3,13 +3,14 @@
 //! `page.html` is the template, with the page's style and script; its marks `{{NAME}}` are replaced here.
 
 use super::{
-    Parameter, Point, Results, Setting, Truth, Worth, answers, frontier, frontier_by,
+    COLUMNS, Parameter, Point, Results, Setting, Truth, Worth, answers, frontier, frontier_by,
     instance_notes, sentences,
 };
 use crate::measure::board::core_names;
 use crate::picture::write_png;
 use crate::table::{counted, grouped, significant};
 use base64::Engine;
+use gridel_core::format::limits::MAX_RAY_DEPTH;
 use serde_json::json;
 use std::collections::HashMap;
 use std::fmt::Write;
@@ -41,7 +42,7 @@ pub fn page(
 ) -> io::Result<String> {
     let name = escape(scene);
     let mut about = format!(
-        "{} x {} pixels, one thread. The reference: {}, 24 lattice bits, ray depth 16, {} per pixel. \
+        "{} x {} pixels, one thread. The reference: {}, 24 lattice bits, ray depth {MAX_RAY_DEPTH}, {} per pixel. \
          Errors are of display values from 0 to 1.",
         size[0],
         size[1],
@@ -343,58 +344,20 @@ fn table(results: &Results) -> String {
         "<table><caption>A star marks what nothing beats by RMSE and time. Instructions per pixel on boards are \
          estimates.</caption>\n<thead><tr>",
     );
-    let columns = [
-        "setting",
-        "",
-        "ms",
-        "spread",
-        "RMSE",
-        "sampling error",
-        "arithmetic error",
-        "largest",
-        "pixels off",
-        "SSIM",
-        "FLIP",
-        "other objects",
-        "t, median",
-        "t, largest",
-        "rays per pixel",
-        "tests per ray",
-        "blob",
-        "RAM",
-    ];
-    for column in columns.into_iter().chain(core_names()) {
+    let columns = ["setting", ""].into_iter().chain(COLUMNS);
+    for column in columns.chain(core_names()) {
         let _ = write!(table, "<th scope=\"col\">{column}</th>");
     }
     table.push_str("</tr></thead>\n<tbody>");
     for (point, best) in results.points.iter().zip(best) {
-        let (errors, cost) = (&point.errors, &point.cost);
-        let cells = [
-            String::from(if best { "*" } else { "" }),
-            format!("{:.2}", 1e3 * cost.time()),
-            cost.spread_text(),
-            format!("{:.5}", errors.rmse),
-            format!("{:.5}", point.parts.sampling),
-            format!("{:.5}", point.parts.arithmetic),
-            format!("{:.4}", errors.largest),
-            grouped(errors.pixels_off),
-            format!("{:.5}", errors.ssim),
-            format!("{:.5}", errors.flip),
-            grouped(errors.other_objects),
-            significant((100.0 * errors.t_ulps[0]).round() / 100.0),
-            significant(errors.t_ulps[1].round()),
-            format!("{:.2}", point.rays_per_pixel()),
-            format!("{:.1}", cost.tests as f64 / cost.rays.max(1) as f64),
-            grouped(cost.blob_bytes),
-            grouped(cost.working_bytes),
-        ];
+        let star = String::from(if best { "*" } else { "" });
         let boards = core_names().into_iter().map(|board| {
             let range = point.instructions(board);
             let text = range.map(|range| range.map(|n| grouped(n.round())).join(" to "));
             text.unwrap_or_default()
         });
         let _ = write!(table, "<tr><th scope=\"row\">{}</th>", escape(&point.name));
-        for cell in cells.into_iter().chain(boards) {
+        for cell in [star].into_iter().chain(point.cells()).chain(boards) {
             let _ = write!(table, "<td>{cell}</td>");
         }
         table.push_str("</tr>\n");

@@ -1,9 +1,9 @@
 //! The directions to lights from a surface, and the light that arrives without anything in the way.
 
 use super::crossing::exact;
+use super::directions;
 use super::number::*;
 use super::path::Path;
-use super::random;
 use super::reason::Reason;
 use super::search::{Stop, Tracer};
 use super::sky;
@@ -117,17 +117,27 @@ fn within<N: Enclosure>(form: &LightForm, [u, v]: [u32; 2]) -> Three<N> {
     let one = 1_u32 << 30;
     let [along, across] = match form.shape {
         LightForm::DISC => {
-            let (radius, [sine, cosine]) = (random::ratio::<N>(u).sqrt(), random::turn::<N>(v));
+            let (radius, [sine, cosine]) =
+                (directions::ratio::<N>(u).sqrt(), directions::turn::<N>(v));
             [radius * cosine, radius * sine]
         }
         // The half of a parallelogram beyond the third side is turned onto the other half.
-        LightForm::TRIANGLE if (u >> 2) + (v >> 2) > one => {
-            [N::one() - random::ratio(u), N::one() - random::ratio(v)]
-        }
-        _ => [random::ratio(u), random::ratio(v)],
+        LightForm::TRIANGLE if (u >> 2) + (v >> 2) > one => [
+            N::one() - directions::ratio(u),
+            N::one() - directions::ratio(v),
+        ],
+        _ => [directions::ratio(u), directions::ratio(v)],
     };
     let [first, second] = form.edges.map(|edge| edge.map(|it| length::<N>(it.into())));
     plus(scale(first, along), scale(second, across))
+}
+
+/// The distance at which a light ends.
+fn range<N: Enclosure>(form: &LightForm) -> N {
+    match form.range {
+        far @ ..0 => N::int((-far).into()),
+        near => length(near.into()),
+    }
 }
 
 /// Returns the light that arrives from a light with a form, given the direction to it; `None` where that is open.
@@ -145,8 +155,8 @@ pub fn arriving<N: Enclosure>(
         let ratio = length::<N>(form.reference.into()).over(distance)?;
         part = ratio.at_most(N::int(1 << 32)).square();
     }
-    if form.range > 0 {
-        let square = own.over(length(form.range.into()))?.square();
+    if form.range != 0 {
+        let square = own.over(range(form))?.square();
         part = part * (one - square.square()).at_least(zero);
     }
     if let Some(share) = aim.share {

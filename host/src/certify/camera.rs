@@ -1,10 +1,10 @@
 //! The rays of samples, from a pinhole or a lens, in exact arithmetic.
 
 use super::crossing::{Ray, Start, exact};
+use super::directions;
 use super::media::Inside;
 use super::number::*;
 use super::path::Path;
-use super::random;
 use super::world::World;
 use gridel_core::format::lens::Lens;
 use gridel_core::format::record::View;
@@ -84,8 +84,8 @@ fn through<N: Enclosure>(lens: &Lens, view: &View, path: &Path<N>) -> Option<Ray
         [view.forward, view.right, view.up].map(|it| exact(it.map(i64::from)));
     let (forward, right, up) = (unit(forward)?, unit(right)?, unit(up)?);
     let [u, v] = path.point(LENS);
-    let radius = random::ratio::<N>(u).sqrt() * N::scaled(lens.radius, 5);
-    let [sine, cosine] = random::turn::<N>(v);
+    let radius = directions::ratio::<N>(u).sqrt() * N::scaled(lens.radius, 5);
+    let [sine, cosine] = directions::turn::<N>(v);
     let offset = plus(scale(right, radius * cosine), scale(up, radius * sine));
     // Where the ray from the eye meets the plane of focus, times the cosine to the camera's axis.
     let there = scale(path.ray.direction, N::scaled(lens.focus, 5));

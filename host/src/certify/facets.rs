@@ -1,8 +1,8 @@
 //! Rough surfaces: the distribution GGX of their facets, in exact arithmetic.
 
+use super::directions;
 use super::hit::{Hit, Seen};
 use super::number::*;
-use super::random;
 use super::shade;
 use gridel_core::Scene;
 use gridel_core::format::record::Light;
@@ -61,13 +61,13 @@ impl<N: Enclosure> Facets<N> {
 
     /// Returns the normal of a random facet that a ray of length 1 sees; `None` where it is open.
     pub fn draw(&self, direction: Three<N>, [u, v]: [u32; 2]) -> Option<Three<N>> {
-        let sides = random::beside(self.normal)?;
+        let sides = directions::perpendiculars(self.normal)?;
         let back = sides.map(|side| -dot(side, direction));
         let [x, y, z] = unit([self.alpha * back[0], self.alpha * back[1], self.cos_in])?;
-        let part = random::ratio::<N>(u);
+        let part = directions::ratio::<N>(u);
         let sag = part + part * z;
         let across = limited(sag * (N::int(2) - sag)).sqrt();
-        let [sine, cosine] = random::turn::<N>(v);
+        let [sine, cosine] = directions::turn::<N>(v);
         // Twice the vector halfway: lengths do not matter.
         let facet = [
             self.alpha * (across * cosine + x),
@@ -75,7 +75,7 @@ impl<N: Enclosure> Facets<N> {
             (N::one() - sag + z).at_least(N::zero()),
         ];
         let [x, y, z] = unit(facet)?;
-        Some(random::combined(self.normal, z, sides, [x, y]))
+        Some(directions::combined(self.normal, z, sides, [x, y]))
     }
 
     /// Returns the part with which a ray leaves, because no other facet is in its way.

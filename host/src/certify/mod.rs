@@ -17,7 +17,7 @@
 //! | `path.rs`, `camera.rs` | a ray on its way from the eye, and how it begins |
 //! | `search.rs`, `hit.rs` | every crossing that may be the nearest, and the surface there |
 //! | `trace.rs`, `surface.rs`, `light.rs`, `aim.rs` | the rays of a sample, what they see, and what arrives from lights |
-//! | `shade.rs`, `paint.rs`, `log2.rs`, `levels.rs`, `bump.rs`, `media.rs`, `facets.rs`, `sky.rs`, `random.rs` | the rules of effects |
+//! | `shade.rs`, `paint.rs`, `log2.rs`, `levels.rs`, `bump.rs`, `media.rs`, `facets.rs`, `sky.rs`, `directions.rs` | the rules of effects |
 //! | `tone.rs`, `picture.rs` | from samples to pixels, with more bits where that is needed |
 //! | `reason.rs`, `report.rs`, `page.rs` | why a pixel is open, and what was found |
 
@@ -27,6 +27,7 @@ mod camera;
 mod cone;
 mod crossing;
 mod deep;
+mod directions;
 mod facets;
 mod hit;
 mod interval;
@@ -39,7 +40,6 @@ mod page;
 mod paint;
 mod path;
 mod picture;
-mod random;
 mod reason;
 mod report;
 mod search;

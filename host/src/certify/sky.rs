@@ -1,8 +1,8 @@
 //! The environment, in exact arithmetic: a map that is defined by integers, and a sun.
 
 use super::crossing::exact;
+use super::directions;
 use super::number::*;
-use super::random;
 use gridel_core::format::environment::Environment;
 use gridel_core::{RayKind, Scene};
 
@@ -131,15 +131,15 @@ pub fn from_map<N: Enclosure>(scene: &Scene<'_>, point: [u32; 2]) -> Option<(Thr
 
 /// Returns a direction of the sun. The squares of lengths from its middle, on a sphere, are uniform.
 pub fn in_sun<N: Enclosure>(record: &Environment, [u, v]: [u32; 2]) -> Option<Three<N>> {
-    let half = ratio_of::<N>(record.sun_radius).half() * random::ratio::<N>(u).sqrt();
+    let half = ratio_of::<N>(record.sun_radius).half() * directions::ratio::<N>(u).sqrt();
     let square = half.square();
     let toward = N::one() - (square + square);
     let away = half * (N::one() - square).sqrt();
     let away = away + away;
-    let [sine, cosine] = random::turn::<N>(v);
+    let [sine, cosine] = directions::turn::<N>(v);
     let sun = record.sun_direction.map(ratio_of);
-    let sides = random::beside(sun)?;
-    Some(random::combined(
+    let sides = directions::perpendiculars(sun)?;
+    Some(directions::combined(
         sun,
         toward,
         sides,

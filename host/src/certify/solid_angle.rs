@@ -1,7 +1,7 @@
 //! Points of lights drawn by solid angle, as the core draws them.
 
+use super::directions;
 use super::number::*;
-use super::random;
 use gridel_core::format::light_form::LightForm;
 
 /// A point of a light, and the light that it brings.
@@ -33,12 +33,12 @@ pub fn of_sphere<N: Enclosure>(radius: N, way: Three<N>, [u, v]: [u32; 2]) -> Op
     let square = widest.square();
     let half = one.over(one + (one - square).sqrt())?;
     // 1 - cos of the direction's angle, of up to that of the cone's.
-    let sag = square * half * random::ratio(u);
+    let sag = square * half * directions::ratio(u);
     let away = (sag + (sag - sag.square())).sqrt().at_most(widest);
     let toward = one - sag;
-    let [sine, cosine] = random::turn::<N>(v);
-    let sides = random::beside(axis)?;
-    let direction = random::combined(axis, toward, sides, [away * cosine, away * sine]);
+    let [sine, cosine] = directions::turn::<N>(v);
+    let sides = directions::perpendiculars(axis)?;
+    let direction = directions::combined(axis, toward, sides, [away * cosine, away * sine]);
     // From the middle of the chord to the surface.
     let part = away.over(widest)?.at_most(one);
     let inward = radius * (one - part.square()).sqrt();
@@ -76,7 +76,7 @@ pub fn of_flat<N: Enclosure>(
     let half_tangent = |row: N| row.over(height + away_from(row));
     let nearest = half_tangent(near)?;
     let turn = half_tangent(far)? - nearest;
-    let tangent = nearest + turn * random::ratio(u);
+    let tangent = nearest + turn * directions::ratio(u);
     let narrowing = one.over(one + tangent.square())?;
     let row = height * (tangent + tangent).over(one - tangent.square())?;
     let row = row.at_least(near).at_most(far);
@@ -97,7 +97,7 @@ pub fn of_flat<N: Enclosure>(
     let sine_of = |end: N| end.over((end.square() + away.square()).sqrt());
     let leftmost = sine_of(left)?;
     let width = sine_of(right)? - leftmost;
-    let sine = leftmost + width * random::ratio(v);
+    let sine = leftmost + width * directions::ratio(v);
     let cosine = (one - sine.square()).at_least(N::zero()).sqrt();
     let place = (away * sine).over(cosine)?.at_least(left).at_most(right);
 

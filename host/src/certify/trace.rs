@@ -6,11 +6,11 @@
 
 use super::crossing::Ray;
 use super::deep;
+use super::directions;
 use super::facets::{self, Facets};
 use super::hit::Seen;
 use super::number::*;
 use super::path::Path;
-use super::random;
 use super::reason::Reason;
 use super::search::{Candidate, Stop, Tracer};
 use super::shade;
@@ -156,7 +156,7 @@ impl Tracer<'_, '_> {
         let scene = self.world.scene;
         let mut brought = [N::zero(); 3];
         if seen.reflections < scene.bounces() {
-            let scattered = random::around(normal, path.point(INDIRECT));
+            let scattered = directions::around(normal, path.point(INDIRECT));
             let scattered = Leaving {
                 kind: RayKind::Diffuse,
                 direction: self.drawn(scattered, seen)?,

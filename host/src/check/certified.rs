@@ -13,9 +13,10 @@ impl Run<'_> {
         &mut self,
         scene: &Scene<'_>,
         structure: Structure,
+        progress: &dyn Fn(),
     ) -> Result<(), String> {
         let check = self.check;
-        if check.certified.is_none() && check.max_proved_error.is_none() {
+        if !check.is_certified() {
             return Ok(());
         }
         let failed = |error: String| format!("{}: {error}", check.scene.path.display());
@@ -59,6 +60,7 @@ impl Run<'_> {
                 self.held_to(Some(format.format.to_owned()), compared, keys, None);
             }
         }
+        progress();
         Ok(())
     }
 }

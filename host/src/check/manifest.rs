@@ -202,14 +202,21 @@ impl Manifest {
         SceneError::new(&self.path, cause, remedy).at_span(&self.text, start, end - start)
     }
 
-    /// Returns the number of steps of [`run`](super::run): pictures, and programs on boards.
+    /// Returns the number of steps of [`run`](super::run): pictures, proofs of them, and programs on boards.
     pub fn steps(&self) -> usize {
-        let steps = |check: &Check| check.formats.len() + check.boards.len();
+        let steps = |check: &Check| {
+            check.formats.len() + usize::from(check.is_certified()) + check.boards.len()
+        };
         self.checks.iter().map(steps).sum()
     }
 }
 
 impl Check {
+    /// Returns whether its pictures are compared with the exact one.
+    pub(super) fn is_certified(&self) -> bool {
+        self.certified.is_some() || self.max_proved_error.is_some()
+    }
+
     fn read(table: Value<'_>, folder: &Path) -> Result<Self, SceneError> {
         let keys = [
             "name",

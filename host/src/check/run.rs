@@ -100,7 +100,7 @@ impl Run<'_> {
             self.format(&shown, (structure, blob.bytes()), format, name)?;
             progress();
         }
-        self.certify(&shown, structure)?;
+        self.certify(&shown, structure, progress)?;
         for number in 0..check.boards.len() {
             self.board(number, &blob, &scene, structure)?;
             progress();

@@ -18,7 +18,6 @@ use gridel_host::accuracy::{
     Bench, MOST_MEASURED_SAMPLES, MeasureError, Point, Truth, Worth, answers, frontier,
     least_reference_samples, page, plot, sentences, sweep,
 };
-use gridel_host::compile::scene_warnings;
 use gridel_host::measure::InstanceCount;
 use gridel_host::table::{counted, grouped, significant};
 use measure::measure;
@@ -100,10 +99,10 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         ));
     }
     let failed = |error: MeasureError| Failure::in_file(path, error);
-    let mut bench = Bench::new(&imported.scene, arguments.accel, size);
-    bench.quality = arguments.quality.unwrap_or_default();
-    bench.copied = imported.copied;
-    bench.truth = arguments.reference;
+    let mut bench = Bench::new(&imported.scene, arguments.accel, size)
+        .with_quality(arguments.quality.unwrap_or_default())
+        .with_copied(imported.copied)
+        .with_truth(arguments.reference);
     let settings = sweep(bench.base(), bench.effects().map_err(failed)?);
     let least = least_reference_samples(&settings);
     let reference_samples = arguments
@@ -118,9 +117,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
             format!("ask for at least {least} with `--reference-samples`, or leave it out"),
         ));
     }
-    let mut all = scene_warnings(&imported.scene);
-    all.extend(bench.warnings().map_err(failed)?);
-    warn_of_file(path, all, &mut warnings);
+    warn_of_file(path, bench.warnings().map_err(failed)?, &mut warnings);
     let key = format!(
         "gridel {} scene {:08x} size {size:?} structure {} reference {}{}",
         env!("CARGO_PKG_VERSION"),

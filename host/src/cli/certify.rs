@@ -4,6 +4,7 @@ use super::arguments::{self, GeometryOptions, PictureOptions, distinct, quoted};
 use super::failure::Failure;
 use super::output::{print, print_json_warned, warn, write_files};
 use super::progress::Progress;
+use super::saving::Saving;
 use super::source::{Compiling, Source};
 use clap::Args;
 use gridel_core::format::checksum;
@@ -21,7 +22,6 @@ use std::fmt::Write as _;
 use std::fs;
 use std::io;
 use std::path::{Path, PathBuf};
-use std::time::{Duration, Instant};
 
 /// Prove how far each number format is from the exact picture
 ///
@@ -73,11 +73,7 @@ const STATE: &str = "certify.state";
 const MOST_PIXELS: usize = 1 << 22;
 
 /// The version of what is proved and how. Raise it with every change, so that older states are not continued.
-const RULES: u32 = 5;
-
-/// Time until the state is first written. Each wait is twice as long as the last, up to `OFTEN`.
-const SOON: Duration = Duration::from_millis(250);
-const OFTEN: Duration = Duration::from_secs(5);
+const RULES: u32 = 6;
 
 /// The JSON output.
 #[derive(Serialize)]
@@ -134,6 +130,13 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         Some(folder) => folder.clone(),
         None => PathBuf::from(format!("certify-{stem}")),
     };
+    let results = [PAGE, JSON, MAP, EXACT].map(|name| folder.join(name));
+    let state = State {
+        path: folder.join(STATE),
+        key: key(scene.header().checksum, &settings),
+    };
+    source.reject_lost(results.iter().chain([&state.path]))?;
+    reject_foreign(&state, &results)?;
     fs::create_dir_all(&folder).map_err(|error| Failure::writing(&folder, &error))?;
 
     // Formats first: they reject settings that no picture has, in a moment.
@@ -153,13 +156,9 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         pictures.push((format, picture.pixels));
     }
 
-    let state = State {
-        path: folder.join(STATE),
-        key: key(scene.header().checksum, &settings),
-    };
     let mut pixels = state.read(count)?;
     let progress = Progress::steps("certifying", settings.height.into());
-    let (mut written, mut pause) = (Instant::now(), SOON);
+    let mut saving = Saving::start();
     // Pixels are kept one by one; a picture of any cost loses a few seconds.
     certify(
         &world,
@@ -167,11 +166,9 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         &mut pixels,
         &|| progress.step(),
         |pixels| {
-            if written.elapsed() < pause {
-                return Ok(());
+            if saving.is_due() {
+                state.write(pixels)?;
             }
-            state.write(pixels)?;
-            (written, pause) = (Instant::now(), OFTEN.min(2 * pause));
             Ok(())
         },
     )?;
@@ -180,7 +177,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
 
     let report = Report::of(&world, &settings, &pixels, &pictures);
     let command = explain_command(arguments, &settings);
-    write_results(&folder, &stem, (&report, &pixels, &pictures), &command)?;
+    write_results(&results, &stem, (&report, &pixels, &pictures), &command)?;
     if arguments.json {
         let folder = folder.display().to_string();
         let report = Commanded {
@@ -263,8 +260,26 @@ impl State {
 
 type Found<'f> = (&'f Report, &'f [Enclosed], &'f [(Format, Vec<[u16; 3]>)]);
 
+/// Rejects files in the place of results where no state says that they are results.
+fn reject_foreign(state: &State, results: &[PathBuf]) -> Result<(), Failure> {
+    let foreign = match state.path.exists() {
+        true => None,
+        false => results.iter().find(|path| path.exists()),
+    };
+    let Some(path) = foreign else {
+        return Ok(());
+    };
+    Err(Failure::usage(
+        format!(
+            "{} exists, and no {STATE} of an earlier run is beside it: it would be overwritten",
+            path.display()
+        ),
+        "give another folder with `-o`, or move that file away",
+    ))
+}
+
 fn write_results(
-    folder: &Path,
+    [page_path, json_path, map_path, exact_path]: &[PathBuf; 4],
     name: &str,
     (report, pixels, pictures): Found<'_>,
     command: &str,
@@ -283,13 +298,11 @@ fn write_results(
         report,
     };
     let json = serde_json::to_string_pretty(&commanded).map_err(|error| failed(error.into()))?;
-    let [page_path, json_path, map_path, exact_path] =
-        [PAGE, JSON, MAP, EXACT].map(|name| folder.join(name));
     write_files(&[
-        (&page_path, &|out| out.write_all(page.as_bytes())),
-        (&json_path, &|out| writeln!(out, "{json}")),
-        (&map_path, &|out| write_png(out, size, &map, None)),
-        (&exact_path, &|out| write_png(out, size, &exact, None)),
+        (page_path, &|out| out.write_all(page.as_bytes())),
+        (json_path, &|out| writeln!(out, "{json}")),
+        (map_path, &|out| write_png(out, size, &map, None)),
+        (exact_path, &|out| write_png(out, size, &exact, None)),
     ])
 }
 

@@ -6,21 +6,14 @@ use glam::DVec3;
 use gridel_core::format::light_form::LightForm;
 use gridel_core::format::record::{self, View};
 use gridel_core::{BlobError, Scene};
-use gridel_host::blob::Blob;
 use gridel_host::compile::{self, CompileError};
 use gridel_host::scene::{Light, ToneMapping};
-use gridel_host::state::Poses;
+use gridel_host::state::State;
 use std::f64::consts::PI;
 
 /// The changes to a blob.
 pub struct Changes {
-    pub view: View,
-    pub lights: Vec<record::Light>,
-    pub materials: Option<Vec<record::Material>>,
-    /// Instances that joints have moved.
-    pub poses: Option<Poses>,
-    /// The blob with meshes that morph targets have moved.
-    pub morphed: Option<Blob>,
+    pub state: State,
     /// In ticks.
     pub time: Option<i32>,
 }
@@ -33,24 +26,7 @@ pub fn fault(error: BlobError) -> Failure {
 impl Changes {
     /// Returns the scene with these changes.
     pub fn apply<'a>(&'a self, scene: &Scene<'a>) -> Result<Scene<'a>, Failure> {
-        self.of_scene(scene).map_err(fault)
-    }
-
-    /// Returns the scene with these changes, or why they do not fit it.
-    pub fn of_scene<'a>(&'a self, scene: &Scene<'a>) -> Result<Scene<'a>, BlobError> {
-        let scene = match &self.morphed {
-            Some(blob) => blob.scene()?,
-            None => *scene,
-        };
-        let changed = scene.with_view(&self.view)?.with_lights(&self.lights)?;
-        let changed = match &self.materials {
-            Some(materials) => changed.with_materials(materials)?,
-            None => changed,
-        };
-        match &self.poses {
-            Some(poses) => poses.apply(&changed),
-            None => Ok(changed),
-        }
+        self.state.apply(scene).map_err(fault)
     }
 
     /// Returns the changes that options make.
@@ -105,14 +81,14 @@ impl Changes {
             }
         });
         let lights = records.collect::<Result<_, _>>();
-        Ok(Self {
-            materials: None,
-            poses: None,
-            morphed: None,
-            time: None,
+        let state = State {
             view,
             lights: lights.map_err(|error| Failure::Usage(miette::Report::new(error)))?,
-        })
+            materials: scene.materials().to_vec(),
+            poses: None,
+            morphed: None,
+        };
+        Ok(Self { state, time: None })
     }
 }
 

@@ -147,11 +147,6 @@ pub fn run(arguments: &Arguments, memory: &PeakAlloc) -> Result<(), Failure> {
     let comparison =
         compare(&imported.scene, &options, &show).map_err(|error| Failure::in_file(path, error))?;
     let mut warnings = imported.warnings;
-    warn_of_file(
-        path,
-        compile::scene_warnings(&imported.scene),
-        &mut warnings,
-    );
     let grown = match &arguments.plot {
         Some(_) => Some(
             growth(&imported.scene, &options, &show)

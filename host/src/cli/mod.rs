@@ -22,6 +22,7 @@ mod input;
 mod names;
 mod output;
 mod progress;
+mod saving;
 mod source;
 mod threads;
 

@@ -206,8 +206,7 @@ impl Source {
             compiled.map_err(|error| Failure::compiling(input.path(), error))?;
         let names = Names::of_scene(&imported.scene);
         let mut warnings = imported.warnings;
-        let mut sentences = report.warnings(compiling.lattice_bits);
-        sentences.extend(compile::scene_warnings(&imported.scene));
+        let sentences = report.warnings(compiling.lattice_bits);
         warn_of_file(input.path(), sentences, &mut warnings);
         Ok(Self {
             input,
@@ -300,27 +299,17 @@ impl Source {
             state.apply(scene)?;
             Ok(state)
         };
-        let state = at().map_err(|error: StateError| {
+        let mut state = at().map_err(|error: StateError| {
             let cause = format!("{}: {error}", self.input.path().display());
             Failure::failed(cause, "change the tracks, or ask for other times")
         })?;
-        let changes = match &self.for_pictures {
-            Some(options) => Changes::of(&state.apply(scene).map_err(fault)?, options)?,
-            None => Changes {
-                view: state.view,
-                lights: state.lights.clone(),
-                materials: None,
-                poses: None,
-                morphed: None,
-                time: None,
-            },
-        };
+        if let Some(options) = &self.for_pictures {
+            let chosen = Changes::of(&state.apply(scene).map_err(fault)?, options)?;
+            (state.view, state.lights) = (chosen.state.view, chosen.state.lights);
+        }
         Ok(Changes {
-            materials: Some(state.materials),
-            poses: state.poses,
-            morphed: state.morphed,
+            state,
             time: Some(time),
-            ..changes
         })
     }
 
@@ -336,7 +325,7 @@ impl Source {
             Tracks::from_bytes(self.blob.bytes())?;
             morph_targets(self.blob.bytes())?;
             match &self.changes {
-                Some(changes) => changes.of_scene(&scene),
+                Some(changes) => changes.state.apply(&scene),
                 None => Ok(scene),
             }
         });

@@ -25,8 +25,8 @@ use std::path::PathBuf;
 ///
 /// A scene passes if all of this holds. Every structure gives the bits of brute force. Any hit and
 /// closest hit agree. Hits are those of exact arithmetic for a shape that is larger or smaller by at
-/// most 8 steps. All numbers are finite. Secondary rays do not hit the surface that they leave. No
-/// ray leaks out of a closed mesh.
+/// most 8 steps. All numbers are finite. Secondary rays do not hit the surface that they leave.
+/// Every shadow of f64 is there in the other formats. No ray leaks out of a closed mesh.
 ///
 /// A step is a rounding of the largest coordinate (2^-24 of it in f32, 2^-53 in f64), or 2^-13 unit
 /// in fixed.

@@ -139,11 +139,12 @@ pub enum CompileError {
     #[error(
         "the {what} lies {distance:.3e} scene units from a scene of {size:.3e}: too far for the number formats"
     )]
-    #[diagnostic(help("move it nearer; in place of a light so far away use a directional one"))]
+    #[diagnostic(help("{remedy}"))]
     FarAway {
         what: String,
         distance: f64,
         size: f64,
+        remedy: &'static str,
     },
     #[error(
         "the `{what}` of the camera is {found:.3e} scene units; at most {most:.3e} are possible"

@@ -153,8 +153,8 @@ impl<'s> Shapes<'s> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::random::Random;
     use crate::scene::{Attributes, Material, Normals, SourceSpan};
-    use crate::shape::random::Random;
     use glam::DQuat;
 
     fn random_point(random: &mut Random, size: f64) -> DVec3 {

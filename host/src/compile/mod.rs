@@ -62,7 +62,6 @@ pub use requirements::RequiringPart;
 pub(crate) use shading::light_record;
 pub use shading::{EnvironmentFigures, Shoulder, Supplied, TextureFigures, radiance};
 pub use structures::{takes_hierarchy, usual_budget};
-pub use warnings::scene_warnings;
 pub use wide::Quality;
 
 pub use crate::scene::TICKS_PER_SECOND;
@@ -143,6 +142,7 @@ pub fn compile_with_progress(
     on_progress: OnProgress<'_>,
 ) -> Result<Compiled, CompileError> {
     check(scene, options)?;
+    let scene_warnings = warnings::scene_warnings(scene);
     let scene = &*scene.with_emitters();
     let has_targets = !scene.morph_targets.is_empty();
     let still = (has_targets && !morph::can_move(&options.structures)).then(|| at_rest(scene));
@@ -153,6 +153,7 @@ pub fn compile_with_progress(
         .iter()
         .for_each(|part| compiled.report.add_part(part));
     compiled.report.keeps_rest = still.is_some();
+    compiled.report.scene_warnings = scene_warnings;
     Ok(compiled)
 }
 
@@ -300,6 +301,7 @@ fn compile_as(
         tables,
         still_lights: still_lights(scene, options.room),
         keeps_rest: false,
+        scene_warnings: Vec::new(),
         names,
     };
     Ok((Compiled { blob, report }, sizes))

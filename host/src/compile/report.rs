@@ -50,6 +50,9 @@ pub struct Report {
     pub still_lights: Option<String>,
     /// True if meshes have morph targets and stay as they are at rest, because a structure cannot be refitted.
     pub keeps_rest: bool,
+    /// Warnings about the scene itself, which [`warnings`](Self::warnings) repeats.
+    #[serde(skip)]
+    pub(super) scene_warnings: Vec<String>,
     /// The names in the blob; `None` if they are not requested, or there are none.
     pub names: Option<KeptNames>,
 }

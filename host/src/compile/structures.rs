@@ -57,8 +57,8 @@ pub fn lay_out(structure: Structure, context: &BuildContext<'_>) -> Result<Layou
             Layout::over_leaves(structure, slabs.unwrap_or_default(), flat)
         }
         Structure::Spheres => {
-            let balls = context.tree().map(|tree| vec![tree.balls()]);
-            Layout::over_leaves(structure, balls.unwrap_or_default(), flat)
+            let spheres = context.tree().map(|tree| vec![tree.spheres()]);
+            Layout::over_leaves(structure, spheres.unwrap_or_default(), flat)
         }
         Structure::Grid => {
             let boxes = slot_boxes(flat, context.order);

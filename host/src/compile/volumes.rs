@@ -1,4 +1,4 @@
-//! Lays a hierarchy out with volumes other than boxes: slabs and balls.
+//! Lays a hierarchy out with volumes other than boxes: slabs and spheres.
 
 use super::hierarchy::{Node, Primitive};
 use super::pairs::Flat;
@@ -103,7 +103,7 @@ impl<'t> Tree<'t> {
     }
 
     /// Bounding spheres.
-    pub fn balls(&self) -> Section {
+    pub fn spheres(&self) -> Section {
         let pairs: Vec<SpherePair> = self
             .pairs()
             .into_par_iter()

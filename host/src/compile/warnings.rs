@@ -9,8 +9,8 @@ use crate::table::{counted, grouped, printable};
 /// Distance from a plane within which an eye counts as in it, relative to the distance from the target.
 const IN_PLANE: f64 = 1e-9;
 
-/// Returns warnings about a scene's objects and its camera before it is compiled.
-pub fn scene_warnings(scene: &Scene) -> Vec<String> {
+/// Returns warnings about a scene's objects and its camera.
+pub(super) fn scene_warnings(scene: &Scene) -> Vec<String> {
     let mut warnings = Vec::new();
     if scene.objects.is_empty() && scene.instances.is_empty() {
         warnings.push(String::from(
@@ -98,7 +98,8 @@ impl Report {
             }),
             self.names_changed(),
         ];
-        all.into_iter().flatten().collect()
+        let of_scene = self.scene_warnings.iter().cloned();
+        all.into_iter().flatten().chain(of_scene).collect()
     }
 
     /// Says which names the blob lacks or has in part.

@@ -237,7 +237,7 @@ pub(super) fn kind_name(kind: RayKind) -> &'static str {
 }
 
 impl Ray {
-    pub(super) fn take(
+    pub(super) fn record(
         &mut self,
         scene: &Scene<'_>,
         frame: &Frame,
@@ -351,7 +351,7 @@ impl Ray {
                 let shadow = self.lights.last_mut().and_then(|l| l.shadow.last_mut());
                 let walk = if *light { shadow } else { self.walk.as_mut() };
                 if let Some(walk) = walk {
-                    walk.take(scene, event);
+                    walk.record(scene, event);
                 }
             }
         }

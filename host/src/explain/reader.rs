@@ -96,7 +96,7 @@ impl<'t> Reader<'t> {
                     let from = ray.from_lens.map(|point| Given::from_origin(point.into()));
                     let given = first.map(|first| from.unwrap_or(first));
                     let begin = |event: &Event| Walk::begin(frame, *format, given, event);
-                    ray.take(scene, frame, begin, event, light);
+                    ray.record(scene, frame, begin, event, light);
                 }
             }
         }

@@ -315,7 +315,7 @@ impl Walk {
     }
 
     /// Takes a step, if the event is one.
-    pub(super) fn take(&mut self, scene: &Scene<'_>, event: &Event) {
+    pub(super) fn record(&mut self, scene: &Scene<'_>, event: &Event) {
         let ray = self.ray;
         let mut step = match *event {
             Event::InstanceEntered { .. } => {

@@ -41,16 +41,13 @@ impl Errors {
         reference: (&[[u16; 3]], &[Option<FirstHit>]),
         (pixels, hits): (&[[u16; 3]], &[Option<FirstHit>]),
     ) -> Self {
+        let [rmse, largest] = rmse_and_largest(reference.0, pixels);
         let [expected, found] = [reference.0, pixels]
             .map(|p| -> Vec<[f64; 3]> { p.iter().map(|pixel| pixel.map(display)).collect() });
-        let (mut squares, mut largest, mut pixels_off) = (0.0, 0.0_f64, 0);
-        for (a, b) in expected.iter().zip(&found) {
-            let apart = [0, 1, 2].map(|k| (a[k] - b[k]).abs());
-            let most = apart.into_iter().fold(0.0, f64::max);
-            squares += apart.iter().map(|x| x * x).sum::<f64>();
-            largest = largest.max(most);
-            pixels_off += usize::from(most > 1.0 / 255.0);
-        }
+        let is_off = |(a, b): &(&[f64; 3], &[f64; 3])| {
+            (0..3).any(|channel| (a[channel] - b[channel]).abs() > 1.0 / 255.0)
+        };
+        let pixels_off = expected.iter().zip(&found).filter(is_off).count();
         let picture = |pixels| flip::Picture {
             width: width.into(),
             pixels,
@@ -70,8 +67,8 @@ impl Errors {
             match (expected, found) {
                 (Some(expected), Some(found)) if expected.is_on(found) => {
                     let at = expected.distance;
-                    let ulp = f64::powi(2.0, at.abs().log2().floor() as i32 - 23);
-                    ulps.push((at - found.distance).abs() / ulp);
+                    let error = (at - found.distance).abs();
+                    ulps.push(error / last_place_in_single_precision(at));
                 }
                 (None, None) => {}
                 _ => other_objects += 1,
@@ -80,7 +77,7 @@ impl Errors {
         ulps.sort_by(f64::total_cmp);
         let last = ulps.last().copied().unwrap_or(0.0);
         Self {
-            rmse: (squares / (3 * pixels.len()).max(1) as f64).sqrt(),
+            rmse,
             largest,
             pixels_off,
             ssim: ssim(width.into(), &gray(reference.0), &gray(pixels)),
@@ -89,6 +86,13 @@ impl Errors {
             t_ulps: [ulps.get(ulps.len() / 2).copied().unwrap_or(0.0), last],
         }
     }
+}
+
+/// Returns the unit of the last place of a number in single precision. That of numbers which are no ordinary ones, 0
+/// among them, is that of the smallest ordinary one.
+fn last_place_in_single_precision(number: f64) -> f64 {
+    let ordinary = number.abs().max(f32::MIN_POSITIVE.into());
+    f64::powi(2.0, ordinary.log2().floor() as i32 - 23)
 }
 
 /// Returns the root of the mean square difference of display values of two pictures, and the largest difference.
@@ -118,4 +122,27 @@ pub fn difference_picture(reference: &[[u16; 3]], pixels: &[[u16; 3]]) -> Vec<u8
     pairs
         .map(|(&a, &b)| (8.0 * 255.0 * (display(a) - display(b)).abs()).round() as u8)
         .collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn hits_at_the_eye_have_an_error_too() {
+        let hit = |distance| {
+            Some(FirstHit {
+                object: 0,
+                instance: None,
+                distance,
+            })
+        };
+        let pixels = [[0; 3]; 3];
+        let expected = [hit(0.0), hit(0.0), hit(1.0)];
+        let found = [hit(0.0), hit(1.0), hit(1.0)];
+        let errors = Errors::of(3, (&pixels, &expected), (&pixels, &found));
+        assert_eq!(errors.other_objects, 0);
+        assert_eq!(errors.t_ulps[0], 0.0);
+        assert!(errors.t_ulps[1] > 1e6 && errors.t_ulps[1].is_finite());
+    }
 }

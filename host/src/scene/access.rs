@@ -122,10 +122,10 @@ impl Access {
     /// If it lies outside of the scene's folder: the cause, which names the folder, and the remedy.
     pub(super) fn resolve(&self, file: &Path, name: &str) -> Result<PathBuf, [String; 2]> {
         if self.files.is_some() {
-            return Ok(beside(file, &name.replace('\\', "/")));
+            return Ok(sibling(file, &name.replace('\\', "/")));
         }
         let Some(root) = &self.folder else {
-            return Ok(beside(file, name));
+            return Ok(sibling(file, name));
         };
         let outside = || {
             [
@@ -160,11 +160,11 @@ impl Access {
                 return Err(outside());
             }
         }
-        Ok(beside(file, name))
+        Ok(sibling(file, name))
     }
 }
 
-fn beside(file: &Path, name: &str) -> PathBuf {
+fn sibling(file: &Path, name: &str) -> PathBuf {
     file.parent().unwrap_or(Path::new("")).join(name)
 }
 

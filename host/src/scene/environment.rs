@@ -1,7 +1,7 @@
 //! The light around a scene, as scene files state it.
 
 use super::image::{Fault, Image, Texels, fault};
-use super::{exr_image, radiance};
+use super::{exr_image, hdr_image};
 use crate::srgb::linear_of_srgb;
 use glam::DVec3;
 use std::fmt;
@@ -151,7 +151,7 @@ impl Panorama {
     pub(super) fn decode(name: &str, bytes: &[u8], texels: &Texels) -> Result<Self, Fault> {
         let check = |width, height| texels.add(width, height);
         let (width, height, pixels) = if bytes.starts_with(b"#?") {
-            radiance::decode(bytes, check)?
+            hdr_image::decode(bytes, check)?
         } else if bytes.starts_with(&exr_image::MAGIC) {
             exr_image::decode(bytes, check)?
         } else {

@@ -15,6 +15,7 @@ mod exr_image;
 mod files;
 mod flatten;
 mod gzip;
+mod hdr_image;
 mod image;
 mod importer;
 mod joint;
@@ -29,7 +30,6 @@ mod placement;
 mod places;
 mod plain_lights;
 mod polygon;
-mod radiance;
 mod scale_range;
 mod size;
 mod source_span;
@@ -192,7 +192,8 @@ fn finish(
         };
         imported.warnings.push(format!(
             "object {}{more} glows, and does not light other objects: spheres, discs, boxes and meshes of up to \
-             {MOST_FACES} triangles do that, outside of parts and without `alpha`; add a `[[light]]`, or set the material's `lights = false`",
+             {MOST_FACES} triangles do that, outside of parts and without `alpha`; copy instances of parts with \
+             `--instances flatten`, add a `[[light]]`, or set the material's `lights = false`",
             crate::table::printable(first)
         ));
     }

@@ -1,10 +1,10 @@
 //! Reads OFF, the Object File Format of Geomview: the vertices and polygons of a mesh, as text.
 //!
-//! The keyword may be missing. It may have the prefixes `ST`, `C` and `N`, for vertices with
-//! texture coordinates, colors and normals on their lines. These are ignored, with a warning each,
-//! and so are the colors of faces. Many programs write colors behind vertices without announcing them;
-//! these are ignored in the same way, where every vertex and every face has a line of its own. Vertices of other than three coordinates (`4OFF`, `nOFF`) and
-//! binary files are rejected. Comments begin with `#`.
+//! The keyword may be missing. It may have the prefixes `ST`, `C` and `N`, for vertices with texture coordinates, colors
+//! and normals on their lines. These are ignored, with a warning each, and so are the colors of faces. Many programs
+//! write colors behind vertices without announcing them; these are ignored in the same way, where every vertex and
+//! every face has a line of its own. Vertices of other than three coordinates (`4OFF`, `nOFF`) and binary files are
+//! rejected. Comments begin with `#`.
 
 use super::importer::{Importer, Input, stem};
 use super::polygon::{self, MAX_CONCAVE};

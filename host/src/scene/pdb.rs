@@ -62,9 +62,7 @@ fn parse<'a>(source: &'a Source, warnings: &mut Warnings) -> Result<Parsed<'a>, 
                 });
                 parsed.models.extend(model);
                 let model = parsed.models.len() - 1;
-                parsed
-                    .atoms
-                    .push(atom(source, number, line, model, warnings)?);
+                parsed.add(source, atom(source, number, line, model, warnings)?)?;
             }
             "REMARK" if columns(line, 7, 10).trim() == "350" => {
                 assemblies.remark(number, columns(line, 11, 80), &mut parsed.groups);

@@ -186,7 +186,7 @@ fn text(source: &Source) -> Result<Imported, SceneError> {
             "outer" | "endloop" | "endsolid" => {}
             _ => {
                 let sentence = format!(
-                    "lines that begin with {word:?} are passed over",
+                    "lines that begin with {word:?} are ignored",
                     word = shortened(word)
                 );
                 warnings.add(source, number, sentence);

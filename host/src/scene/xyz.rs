@@ -96,9 +96,7 @@ fn parse<'a>(
         check_columns(source, comment)?;
         for done in 0..count {
             let (line, text) = next(done)?;
-            parsed
-                .atoms
-                .push(atom(source, line, text, model, warnings)?);
+            parsed.add(source, atom(source, line, text, model, warnings)?)?;
         }
     }
     Ok(parsed)

@@ -13,7 +13,6 @@ mod exact_map;
 mod keys;
 mod lattice;
 #[doc(hidden)]
-pub mod random;
 mod snapped;
 mod sphere;
 pub(crate) mod transform;
@@ -244,7 +243,7 @@ impl Shape {
     }
 
     /// Number of primitives that it is compiled to.
-    pub(crate) fn primitives(&self) -> usize {
+    pub fn primitives(&self) -> usize {
         match self {
             Self::Mesh { triangles, .. } => triangles.len(),
             _ => 1,

@@ -4,8 +4,8 @@ use super::analytic::{Analytic, Geometric, Map, Normal, Surface};
 use super::crossing::roots;
 use super::exact::{Line, Real, dot, minus, norm, unit, vector};
 use super::keys::Keys;
-use super::random::Random;
 use super::snapped::{ROUNDED_UP, integers, real};
+use crate::random::Random;
 use glam::DVec3;
 use gridel_core::format::record::UnitBox;
 

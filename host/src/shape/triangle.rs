@@ -3,7 +3,7 @@
 use super::analytic::{Geometric, Normal, Surface};
 use super::crossing::{flat_span, plane_crossing, within_plane};
 use super::exact::{Line, Real, Vector, cross, dot, minus, unit, vector};
-use super::random::Random;
+use crate::random::Random;
 use glam::DVec3;
 
 /// The corners, counter-clockwise as seen from the front.

@@ -3,7 +3,7 @@
 use super::closed::ClosedMesh;
 use super::judge::{GRAZING, Judge, Mismatch, STEPS};
 use super::rounded::{Answer, HitId, RoundedRay, step};
-use crate::shape::random::Random;
+use crate::random::Random;
 use gridel_core::accel::DynAccel;
 use gridel_core::format::limits::MAX_STACK_DEPTH;
 use gridel_core::{
@@ -31,6 +31,17 @@ pub enum Property {
 }
 
 impl Property {
+    /// All of them, in the order of reports.
+    pub const ALL: [Self; 7] = [
+        Self::Structures,
+        Self::AnyHit,
+        Self::Answers,
+        Self::Numbers,
+        Self::SelfHits,
+        Self::Shadows,
+        Self::Leaks,
+    ];
+
     /// Returns the property in words, for reports.
     pub const fn text(self) -> &'static str {
         match self {
@@ -107,11 +118,11 @@ pub fn check<N: Number>(
     scene: &Scene<'_>,
     judge: &Judge,
     ray: &Ray<N>,
-    heard: &[StructureAnswer<N>],
+    answers: &[StructureAnswer<N>],
     control: bool,
 ) -> Outcome {
     let mut outcome = Outcome::default();
-    let Some(list) = heard.first() else {
+    let Some(list) = answers.first() else {
         return outcome;
     };
     let mut fault = |property, structure, what: String| {
@@ -130,7 +141,7 @@ pub fn check<N: Number>(
         ),
         None => String::from("nothing"),
     };
-    for other in heard {
+    for other in answers {
         if bits(&other.hit) != bits(&list.hit) {
             let what = format!(
                 "hits {}, brute force {}",

@@ -22,7 +22,7 @@ pub use check::{
 pub use closed::ClosedMesh;
 pub use rays::Targets;
 
-use crate::shape::random::Random;
+use crate::random::Random;
 use crate::trace::{Frame, SceneRay};
 use gridel_core::accel::DynAccel;
 use gridel_core::{Fixed, Format, List, Number, Scene, Structure};
@@ -66,7 +66,7 @@ pub struct Worst {
 }
 
 impl Worst {
-    fn take(&mut self, error: f64, ray: &SceneRay) {
+    fn record(&mut self, error: f64, ray: &SceneRay) {
         if error > self.error {
             self.error = error;
             self.ray = Some(as_argument(ray));
@@ -171,13 +171,18 @@ pub fn verify(scene: &Scene<'_>, rays: u64, progress: &(dyn Fn() + Sync)) -> Rep
     let mut all = all.reduce(Tally::default, Tally::plus);
 
     let meshes = ClosedMesh::all(scene);
-    let aims = aims(&work, &meshes, rays);
-    let leaks = aims.par_chunks(CHUNK as usize).map(|aims| {
+    let inside: Vec<_> = meshes
+        .iter()
+        .filter_map(|mesh| Some((mesh, work.inside(mesh)?)))
+        .collect();
+    let leaks = (0..chunks).into_par_iter().map(|chunk| {
         let mut tally = Tally::default();
-        for aim in aims {
-            work.leak::<Fixed>(aim, &mut tally);
-            work.leak::<f32>(aim, &mut tally);
-            work.leak::<f64>(aim, &mut tally);
+        let mut random = Random(0x1ea5 ^ !chunk);
+        let numbers = chunk * CHUNK..rays.min((chunk + 1) * CHUNK);
+        for aim in numbers.filter_map(|number| aim(&inside, number, &mut random)) {
+            work.leak::<Fixed>(&aim, &mut tally);
+            work.leak::<f32>(&aim, &mut tally);
+            work.leak::<f64>(&aim, &mut tally);
         }
         progress();
         tally
@@ -193,41 +198,32 @@ struct Aim<'m> {
     direction: [f64; 3],
 }
 
-/// Rays at the vertices, along the edges and at the faces of meshes, from their inside.
-fn aims<'m>(work: &Work<'_>, meshes: &'m [ClosedMesh], rays: u64) -> Vec<Aim<'m>> {
-    let mut random = Random(0x1ea5);
-    let mut aims = Vec::new();
-    let inside: Vec<_> = meshes
-        .iter()
-        .filter_map(|mesh| Some((mesh, work.inside(mesh)?)))
-        .collect();
-    if inside.is_empty() {
-        return aims;
-    }
-    for number in 0..rays {
-        let (mesh, origin) = &inside[number as usize % inside.len()];
-        // All triangles in turn, then all again with other targets.
-        let turn = number as usize / inside.len();
-        let [a, b, c] = mesh.triangle(turn % mesh.count());
-        let mix = |a: [f64; 3], b: [f64; 3], part: f64| {
-            [0, 1, 2].map(|axis| a[axis] + part * (b[axis] - a[axis]))
-        };
-        let target = match (turn / mesh.count() + turn) % 4 {
-            0 => a,
-            1 => mix(a, b, 0.5),
-            2 => mix(b, c, random.unit()),
-            _ => mix(a, mix(b, c, random.unit()), random.unit()),
-        };
-        let direction = [0, 1, 2].map(|axis| target[axis] - origin[axis]);
-        if direction != [0.0; 3] {
-            aims.push(Aim {
-                mesh,
-                origin: *origin,
-                direction,
-            });
-        }
-    }
-    aims
+/// Returns a ray at a vertex, along an edge or at a face of one of the meshes, from the point inside of it. All
+/// triangles take their turn, then all again with other targets.
+fn aim<'m>(
+    inside: &[(&'m ClosedMesh, [f64; 3])],
+    number: u64,
+    random: &mut Random,
+) -> Option<Aim<'m>> {
+    let number = number as usize;
+    let &(mesh, origin) = inside.get(number.checked_rem(inside.len())?)?;
+    let turn = number / inside.len();
+    let [a, b, c] = mesh.triangle(turn % mesh.count());
+    let mix = |a: [f64; 3], b: [f64; 3], part: f64| {
+        [0, 1, 2].map(|axis| a[axis] + part * (b[axis] - a[axis]))
+    };
+    let target = match (turn / mesh.count() + turn) % 4 {
+        0 => a,
+        1 => mix(a, b, 0.5),
+        2 => mix(b, c, random.unit()),
+        _ => mix(a, mix(b, c, random.unit()), random.unit()),
+    };
+    let direction = [0, 1, 2].map(|axis| target[axis] - origin[axis]);
+    (direction != [0.0; 3]).then_some(Aim {
+        mesh,
+        origin,
+        direction,
+    })
 }
 
 /// The input of checking a ray.
@@ -249,18 +245,18 @@ impl Work<'_> {
         let Ok((ready, _)) = self.frame.ray::<N>(self.scene, ray) else {
             return;
         };
-        let heard = ask_all::<N>(self.scene, &ready);
-        let outcome = check(self.scene, self.judge, &ready, &heard, control);
-        let hit = heard.first().and_then(|list| list.hit);
+        let answers = ask_all::<N>(self.scene, &ready);
+        let outcome = check(self.scene, self.judge, &ready, &answers, control);
+        let hit = answers.first().and_then(|list| list.hit);
         let entry = tally.format(N::FORMAT);
         entry.hits += u64::from(hit.is_some());
         entry.judged += u64::from(outcome.judged);
         if outcome.grazes {
-            entry.worst_grazing.take(outcome.error, ray);
+            entry.worst_grazing.record(outcome.error, ray);
         } else {
-            entry.worst.take(outcome.error, ray);
+            entry.worst.record(outcome.error, ray);
         }
-        let structures = heard.len() as u64;
+        let structures = answers.len() as u64;
         tally.checked(Property::Structures, structures - 1);
         tally.checked(Property::AnyHit, structures);
         tally.checked(Property::Answers, 1);
@@ -420,16 +416,7 @@ impl Tally {
                 worst_grazing: tally.worst_grazing,
             }
         });
-        let properties = [
-            Property::Structures,
-            Property::AnyHit,
-            Property::Answers,
-            Property::Numbers,
-            Property::SelfHits,
-            Property::Shadows,
-            Property::Leaks,
-        ];
-        let properties = properties.map(|property| {
+        let properties = Property::ALL.map(|property| {
             let (broken, examples) = self.broken.remove(&property).unwrap_or_default();
             PropertyReport {
                 property,

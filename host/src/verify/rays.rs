@@ -1,7 +1,7 @@
 //! Rays of every sort that a structure can go wrong on, aimed at one scene.
 
 use super::placed::PlacedPart;
-use crate::shape::random::Random;
+use crate::random::Random;
 use crate::trace::UnitRay;
 use gridel_core::format::record::UnitBox;
 use gridel_core::{Kind, Scene};

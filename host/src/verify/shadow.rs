@@ -3,7 +3,7 @@
 use super::check::{Fault, Property, ask, depart};
 use super::placed::PLACED;
 use super::rounded::{HitId, RoundedRay, step};
-use crate::shape::random::Random;
+use crate::random::Random;
 use crate::shape::{ExactMap, Solid};
 use crate::trace::UnitRay;
 use glam::DVec3;

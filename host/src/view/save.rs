@@ -2,7 +2,7 @@
 
 use crate::scene::Camera;
 use glam::DVec3;
-use std::fs::OpenOptions;
+use std::fs::{self, OpenOptions};
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 
@@ -37,8 +37,12 @@ pub fn save(camera: &Camera, folder: &Path) -> io::Result<PathBuf> {
         let path = folder.join(format!("camera-{number}.toml"));
         match OpenOptions::new().write(true).create_new(true).open(&path) {
             Ok(mut file) => {
-                file.write_all(saved(camera).as_bytes())?;
-                return Ok(path);
+                let written = file.write_all(saved(camera).as_bytes());
+                if written.is_err() {
+                    // Half of a camera is of no use.
+                    let _ = fs::remove_file(&path);
+                }
+                return written.map(|()| path);
             }
             Err(error) if error.kind() == io::ErrorKind::AlreadyExists => {}
             Err(error) => return Err(error),

@@ -3,6 +3,7 @@
 use super::keys::{Key, action, key_help};
 use super::refine::Refiner;
 use super::save::save;
+use super::shot::Shot;
 use super::state::{Effect, State};
 use super::summary::summary;
 use crate::compile::Names;
@@ -14,7 +15,8 @@ use std::io::{self, Write};
 use std::num::NonZeroU32;
 use std::path::Path;
 use std::rc::Rc;
-use std::thread::{self, Scope};
+use std::sync::mpsc::{self, Receiver, Sender};
+use std::thread;
 use std::time::{Duration, Instant};
 use winit::application::ApplicationHandler;
 use winit::dpi::{PhysicalPosition, PhysicalSize};
@@ -76,18 +78,22 @@ pub fn run(refiner: &Refiner<'_>, state: State<'_>, viewed: Viewed<'_>) -> Resul
     let proxy = events.create_proxy();
     // At the end the receiver is gone.
     let wake = || drop(proxy.send_event(Wake::Drawn));
+    let (clicks, clicked) = mpsc::channel();
     thread::scope(|scope| {
+        let explained = proxy.clone();
+        // Ends with the window, which holds the other end of the channel.
+        scope.spawn(move || explain_latest(&clicked, viewed, &explained));
         refiner.run(&wake, || {
             let mut app = App {
                 refiner,
                 state,
                 viewed,
-                scope,
-                proxy: proxy.clone(),
+                clicks,
                 shown: None,
                 last: Instant::now(),
                 mouse: Mouse::default(),
                 message: None,
+                click: 0,
                 error: None,
             };
             events.run_app(&mut app)?;
@@ -100,8 +106,46 @@ pub fn run(refiner: &Refiner<'_>, state: State<'_>, viewed: Viewed<'_>) -> Resul
 enum Wake {
     /// There is more of the picture.
     Drawn,
-    /// An explanation, in short.
-    Explained(String),
+    /// The explanation of a click, in short, and the number of the click.
+    Explained(u64, String),
+}
+
+/// A pixel that was clicked, in the view of that moment.
+struct Click {
+    number: u64,
+    shot: Shot,
+    pixel: [u16; 2],
+}
+
+/// Explains the pixels that are clicked, one after the other: of those that wait, the last.
+fn explain_latest(clicked: &Receiver<Click>, viewed: Viewed<'_>, proxy: &EventLoopProxy<Wake>) {
+    let Viewed { scene, names, .. } = viewed;
+    while let Ok(first) = clicked.recv() {
+        let Click {
+            number,
+            shot,
+            pixel,
+        } = clicked.try_iter().last().unwrap_or(first);
+        let Ok(scene) = scene.with_view(&shot.view) else {
+            continue;
+        };
+        let subject = Subject::Pixel(pixel);
+        let explained = explain(&scene, shot.format, shot.structure, shot.settings, subject);
+        let short = match explained {
+            Ok(explanation) => {
+                let shown = Shown {
+                    explanation: &explanation,
+                    names,
+                    all_walks: false,
+                };
+                print(format!("{shown}\n"));
+                summary(&explanation, names)
+            }
+            Err(error) => error.to_string(),
+        };
+        // The window may be closed by now.
+        drop(proxy.send_event(Wake::Explained(number, short)));
+    }
 }
 
 /// A window and its pixels.
@@ -121,22 +165,23 @@ struct Mouse {
     is_drag: bool,
 }
 
-struct App<'a, 'scope, 'env> {
+struct App<'a> {
     refiner: &'a Refiner<'a>,
     state: State<'a>,
-    viewed: Viewed<'env>,
-    scope: &'scope Scope<'scope, 'env>,
-    proxy: EventLoopProxy<Wake>,
+    viewed: Viewed<'a>,
+    clicks: Sender<Click>,
     shown: Option<Canvas>,
     /// The time at which the window was last drawn.
     last: Instant,
     mouse: Mouse,
     /// Shown in the title in place of the settings, until something changes.
     message: Option<String>,
+    /// The number of the click whose explanation is awaited. Each change of the view takes a new one.
+    click: u64,
     error: Option<WindowError>,
 }
 
-impl<'env> ApplicationHandler<Wake> for App<'_, '_, 'env> {
+impl ApplicationHandler<Wake> for App<'_> {
     fn resumed(&mut self, events: &ActiveEventLoop) {
         match self.open(events) {
             Ok(canvas) => {
@@ -158,8 +203,10 @@ impl<'env> ApplicationHandler<Wake> for App<'_, '_, 'env> {
     }
 
     fn user_event(&mut self, events: &ActiveEventLoop, wake: Wake) {
-        if let Wake::Explained(text) = wake {
-            self.message = Some(text);
+        match wake {
+            Wake::Explained(click, text) if click == self.click => self.message = Some(text),
+            // One of another view or pixel.
+            Wake::Explained(..) | Wake::Drawn => {}
         }
         let due = self.last + FRAME_TIME;
         if due <= Instant::now() {
@@ -179,7 +226,7 @@ impl<'env> ApplicationHandler<Wake> for App<'_, '_, 'env> {
             }
             WindowEvent::KeyboardInput { event, .. } => match key(&event).and_then(action) {
                 Some(action) => {
-                    self.message = None;
+                    self.clear();
                     self.state.apply(action)
                 }
                 None => Effect::Nothing,
@@ -215,7 +262,7 @@ impl<'env> ApplicationHandler<Wake> for App<'_, '_, 'env> {
     }
 }
 
-impl<'env> App<'_, '_, 'env> {
+impl App<'_> {
     fn open(&self, events: &ActiveEventLoop) -> Result<Canvas, WindowError> {
         let settings = self.state.settings();
         let attributes = Window::default_attributes()
@@ -252,7 +299,7 @@ impl<'env> App<'_, '_, 'env> {
         if !self.mouse.is_drag {
             return Effect::Nothing;
         }
-        self.message = None;
+        self.clear();
         match button {
             MouseButton::Left => self.state.drag(way(from)),
             _ => self.state.pan(way(from)),
@@ -275,7 +322,13 @@ impl<'env> App<'_, '_, 'env> {
         }
     }
 
-    /// Explains the pixel under the mouse, in a thread of its own.
+    /// Shows the settings again, also if an explanation is under way.
+    fn clear(&mut self) {
+        self.message = None;
+        self.click += 1;
+    }
+
+    /// Has the pixel under the mouse explained.
     fn explain(&mut self) {
         let shot = self.state.shot();
         let PhysicalPosition { x, y } = self.mouse.place;
@@ -284,28 +337,13 @@ impl<'env> App<'_, '_, 'env> {
         if pixel[0] >= shot.settings.width || pixel[1] >= shot.settings.height {
             return;
         }
-        let Viewed { scene, names, .. } = self.viewed;
-        let proxy = self.proxy.clone();
-        self.scope.spawn(move || {
-            let Ok(scene) = scene.with_view(&shot.view) else {
-                return;
-            };
-            let subject = Subject::Pixel(pixel);
-            let explained = explain(&scene, shot.format, shot.structure, shot.settings, subject);
-            let short = match explained {
-                Ok(explanation) => {
-                    let shown = Shown {
-                        explanation: &explanation,
-                        names,
-                        all_walks: false,
-                    };
-                    print(format!("{shown}\n"));
-                    summary(&explanation, names)
-                }
-                Err(error) => error.to_string(),
-            };
-            // The window may be closed by now.
-            drop(proxy.send_event(Wake::Explained(short)));
+        self.click += 1;
+        let number = self.click;
+        // The thread is there as long as the window.
+        let _ = self.clicks.send(Click {
+            number,
+            shot,
+            pixel,
         });
     }
 

@@ -220,3 +220,21 @@ fn eye_on_a_surface_proves_no_pixel_different() {
         }
     }
 }
+
+/// Neither what the scene reads nor what is not a result is replaced.
+#[test]
+fn files_that_are_no_results_stay() {
+    let folder = Folder::new();
+    let textured = "[material.red]\ntexture = 'map.png'\n\
+        [[object]]\nkind = 'mesh'\nmaterial = 'red'\nvertices = [[0, 0, 0], [1, 0, 0], [0, 1, 0]]\n\
+        faces = [[0, 1, 2]]\ncoordinates = [[0, 0], [1, 0], [0, 1]]\n";
+    folder.write("ball.toml", BALL.as_bytes());
+    folder.done(&["render", "ball.toml", "--size", "4x4", "-o", "map.png"]);
+    folder.write("textured.toml", textured.as_bytes());
+    let here = ["certify", "textured.toml", "--size", "8x8", "-o", "."];
+    folder.fails(2, &here, &["map.png", "a file that the scene reads"]);
+    std::fs::create_dir(folder.path("out")).unwrap();
+    folder.write("out/exact.png", b"my own");
+    let words = ["exact.png exists", "certify.state", "another folder"];
+    folder.fails(2, &SMALL, &words);
+}

@@ -133,6 +133,27 @@ fn warnings_of_importers_are_passed_on() {
     assert_eq!(run.stderr.matches("lost.mtl").count(), 1, "{}", run.stderr);
 }
 
+/// The compiler's warnings are those of `build`.
+#[test]
+fn warnings_of_the_compiler_are_passed_on() {
+    let folder = Folder::new();
+    let scene = "[camera]\neye = [0, 0, 5]\ntarget = [0, 0, 0]\n\
+        [[object]]\nname = 'wall'\nkind = 'plane'\npoint = [0, 0, 0]\nnormal = [1, 0, 0]\n";
+    folder.write("in.toml", scene.as_bytes());
+    let check =
+        "[[check]]\nscene = \"in.toml\"\nsize = [4, 4]\nbudget = { blob_bytes = 1_000_000 }\n";
+    folder.write("check.toml", check.as_bytes());
+    for command in [
+        &["check", "check.toml"][..],
+        &["build", "in.toml", "-o", "in.gridel"],
+    ] {
+        let run = folder.run(command);
+        assert_eq!(run.code, Some(0), "{}", run.stderr);
+        let times = run.said().matches("lies in the plane wall").count();
+        assert_eq!(times, 1, "{}", run.stderr);
+    }
+}
+
 /// A board that cannot run is skipped, and fails where boards are required.
 #[test]
 fn boards_that_are_missing_are_named() {

@@ -297,6 +297,21 @@ fn a_camera_without_a_picture_is_named_with_its_time_and_leaves_nothing() {
     assert_eq!(folder.names(), before);
 }
 
+/// A fault at the start matters only to those who ask for the start.
+#[test]
+fn frames_do_not_depend_on_the_first_key() {
+    let folder = folder();
+    let away = "[camera]\neye = [0, 0, 4]\ntarget = [0, 0, 0]\n\
+        [[object]]\nkind = 'sphere'\ncenter = [0, 0, 0]\nradius = 1\n\
+        [[track]]\ntarget = 'camera.eye'\ntimes = [0, 2]\nvalues = [[0, 0, 0], [0, 0, 4]]\n";
+    folder.write("away.toml", away.as_bytes());
+    let command = ["render", "away.toml", "--size", "8x8", "--fps", "4"];
+    let ask = |frames, output| [&command[..], &["--frames", frames, "-o", output]].concat();
+    folder.fails(1, &ask("0..2", "x-%d.png"), &["at 0 s", "looks nowhere"]);
+    folder.done(&ask("4..6", "x-%d.png"));
+    folder.done(&ask("4..6", "x.apng"));
+}
+
 #[test]
 fn explain_shows_a_pixel_at_a_time() {
     let folder = folder();

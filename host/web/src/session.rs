@@ -9,7 +9,7 @@ use gridel_core::format::limits::MAX_RAY_DEPTH;
 use gridel_core::{Effects, Format, Scene as Checked, Settings, Structure};
 use gridel_host::blob::Blob;
 use gridel_host::compile::{
-    Compiled, LATTICE_BITS, Names, Options, Supplied, compile, scene_warnings,
+    Compiled, LATTICE_BITS, Names, Options, Supplied, compile,
 };
 use gridel_host::explain::{Shown, Subject, explain};
 use gridel_host::measure::board::{BOARDS, Board, Fit, MemoryReport, Rendering, Target};
@@ -101,8 +101,7 @@ impl Session {
         let Compiled { blob, report } = self.compiled(how)?;
         let imported = self.imported(&how.name)?;
         let mut warnings = imported.warnings.clone();
-        let mut sentences = report.warnings(how.lattice_bits);
-        sentences.extend(scene_warnings(&imported.scene));
+        let sentences = report.warnings(how.lattice_bits);
         warnings.extend(sentences.iter().map(|it| format!("{}: {it}", how.name)));
         // It depends on the camera, and the program places it by the camera that it is given.
         let mut supplied = report.supplied.iter();

@@ -441,7 +441,7 @@ fn closed_meshes_are_crossed_an_even_number_of_times() {
             let blob = scenes::blob_with_gridels(&scenes::of([shape.clone()]), bits, 1);
             let scene = blob.scene().expect("a scene");
             let name = format!("{name}, {bits}");
-            every_format!(parity(&name, &scene, part_of(sixth_of(12_000), 1_250_000)));
+            every_format!(parity(&name, &scene, part_of(600, 1_250_000)));
         }
     }
 }

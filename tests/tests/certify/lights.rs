@@ -188,6 +188,14 @@ fn has_cone(form: &LightForm) -> bool {
     form.shape == 0 && form.cone_cosine > -(1 << 30)
 }
 
+/// The distance at which the light ends.
+fn range(form: &LightForm) -> Real {
+    match form.range {
+        far @ ..0 => fraction(-far, 8),
+        near => fraction(near, 13),
+    }
+}
+
 /// Returns whether a light shines towards a surface that lies in its range.
 pub fn shines(form: &LightForm, aim: &Aim, to_light: &Vector) -> bool {
     let is_shone_on = if is_flat(form) {
@@ -195,7 +203,7 @@ pub fn shines(form: &LightForm, aim: &Aim, to_light: &Vector) -> bool {
     } else {
         !has_cone(form) || cos_from(form, to_light) > fraction(form.cone_cosine, 30)
     };
-    let is_near = |distance: Real| distance < fraction(form.range, 13);
+    let is_near = |distance: Real| distance < range(form);
     is_shone_on && (form.range == 0 || aim.distance().is_some_and(is_near))
 }
 
@@ -211,8 +219,8 @@ pub fn falling(form: &LightForm, aim: &Aim, to_light: &Vector) -> Vector {
         let ratio = fraction(form.reference, 13) / distance;
         factor = &ratio * &ratio;
     }
-    if form.range > 0 {
-        let ratio = &own / fraction(form.range, 13);
+    if form.range != 0 {
+        let ratio = &own / range(form);
         let square = &ratio * &ratio;
         factor = factor * (one() - &square * &square).max(real(0.0));
     }

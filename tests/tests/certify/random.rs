@@ -16,8 +16,9 @@ pub fn turn(coordinate: u32) -> [Real; 2] {
 
 /// Two directions perpendicular to one of length 1, and to each other.
 pub fn beside([x, y, z]: &Vector) -> [Vector; 2] {
-    let signed = |value: Real| if z.is_negative() { -value } else { value };
-    let scale = -(one() / (one() + z.abs()));
+    let is_in_cap = (z + fraction(255, 8)).is_negative();
+    let signed = |value: Real| if is_in_cap { -value } else { value };
+    let scale = -(one() / (one() + signed(z.clone())));
     let across = x * y * &scale;
     [
         [one() + x * x * &scale, across.clone(), signed(-x)],

@@ -56,7 +56,8 @@ fn rows() -> Vec<&'static str> {
     table.lines().skip(2).collect()
 }
 
-/// With `GRIDEL_FULL=1` the table is measured again; otherwise small pictures replace large ones.
+/// With `GRIDEL_FULL=1` the table is measured again; otherwise small pictures of some scenes replace large ones of
+/// all.
 #[test]
 fn the_share_of_proved_pixels_is_as_large_as_promised() {
     let mut measured = Vec::new();
@@ -81,7 +82,7 @@ fn the_share_of_proved_pixels_is_as_large_as_promised() {
         }
         measure(&name, scene, [256, 256], LEAST);
     }
-    for (path, has_glass) in REAL {
+    for (path, has_glass) in REAL.into_iter().step_by(part_of(3, 1)) {
         let Some(file) = scenes::real(path) else {
             continue;
         };

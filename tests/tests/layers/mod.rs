@@ -26,7 +26,7 @@ const CORE: Layers = Layers {
 const HOST: Layers = Layers {
     sources: "../host/src",
     order: &[
-        "output simd srgb explained table blob observed picture_rays shape deformation",
+        "output simd srgb explained random table blob observed picture_rays shape deformation",
         "scene sample compile",
         "live morphed state render trace npy picture layer openexr animation merge resolution report",
         "measure emit",

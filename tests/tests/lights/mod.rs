@@ -69,7 +69,6 @@ fn far_lamps_and_large_faces_light_small_scenes() {
         let blob = scene(&light, "[0, 0.3, 0]", "[0, 0, 0]", GROUND);
         let exact = 0.5 * (1.0 - (height / range).powi(4));
         for format in Format::ALL {
-            // A range of more than the lattice holds dims all of the scene alike.
             let (mean, _) = measured(&blob, format, 16);
             assert!(
                 (mean / exact - 1.0).abs() < 0.006,
@@ -169,6 +168,20 @@ fn soft_shadows_converge() {
     );
     let exponent = convergence(&blob);
     assert!(exponent >= 0.7, "{exponent}");
+}
+
+/// The directions to a sphere are spread evenly also where those of a pixel's samples lie on both sides of a plane of
+/// coordinates.
+#[test]
+fn spheres_are_sampled_evenly_in_all_directions() {
+    let towards = |[x, y, z]: [f64; 3]| {
+        format!("[[light]]\nkind = 'sphere'\ncenter = [{x}, {y}, {z}]\nradius = 100\nradiance = 10")
+    };
+    for center in [[300.0, 20.0, 0.0], [-300.0, 20.0, 0.0], [0.0, 20.0, 300.0]] {
+        let blob = scene(&towards(center), "[0, 20, 0]", "[0, 0, 0]", FLOOR);
+        let exponent = convergence(&blob);
+        assert!(exponent >= 0.7, "{center:?}: {exponent}");
+    }
 }
 
 /// A point light with a falloff has its color at a distance of 1, spots end, and a range ends light.

@@ -78,7 +78,7 @@ fn hold_all(what: &str, shape: &str, cases: &[Case]) {
 /// Shapes and rays of every sort.
 fn of_every_sort(shape: usize) {
     // A torus takes ten times as long as the others.
-    let usual = if SHAPES[shape] == "torus" { 20 } else { 60 };
+    let usual = if SHAPES[shape] == "torus" { 8 } else { 60 };
     let count = part_of(usual, 2000);
     hold_all(
         SHAPES[shape],

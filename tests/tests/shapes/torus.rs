@@ -78,7 +78,7 @@ fn tori(
         let rays = rays.collect();
         Case { class, solid, rays }
     };
-    (0..part_of(12, 400)).map(case).collect()
+    (0..part_of(6, 400)).map(case).collect()
 }
 
 fn any(random: &mut Random) -> f64 {

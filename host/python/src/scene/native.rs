@@ -8,7 +8,6 @@ use crate::rays::{Array, Middle, Rays};
 use gridel_core::{BlobError, Scene};
 use gridel_host::blob::Blob;
 use gridel_host::compile::Compiled;
-use gridel_host::scene::Shape;
 use gridel_host::trace::Frame;
 use pyo3::exceptions::PyKeyError;
 use pyo3::prelude::*;
@@ -60,10 +59,7 @@ impl NativeScene {
             .flat_map(|model| model.scene.all_objects())
             .map(|object| {
                 let first = next;
-                next += match &object.shape {
-                    Shape::Mesh { triangles, .. } => triangles.len() as u32,
-                    _ => 1,
-                };
+                next += object.shape.primitives() as u32;
                 first
             });
         let firsts = firsts.collect();
@@ -84,7 +80,7 @@ impl NativeScene {
 
     pub(super) fn compiled(py: Python<'_>, model: Model, level: i32) -> PyResult<Self> {
         let Compiled { blob, report } = model.compile(py)?;
-        model.warn_of_collapsed(py, &report, level)?;
+        model.warn_of(py, &report, level)?;
         let collapsed = match report.collapsed.count() {
             0 => 0.0,
             _ => report.step,

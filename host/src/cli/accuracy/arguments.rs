@@ -15,9 +15,8 @@ use std::path::PathBuf;
 /// Changes six settings, each alone and in combinations: number format, lattice bits (10, 12, 16, 20, 24), samples per
 /// pixel (1 to 64, and those of the scene up to 2048), ray depth, the cutoff below which a secondary ray is not traced,
 /// and the effects that the scene calls for, each of which is left out. Builds and renders the scene with every
-/// setting, and compares the picture with a reference: f64, or the exact picture with --reference exact; 24 bits, ray
-/// depth 16, and the samples of
-/// --reference-samples.
+/// setting, and compares the picture with a reference: f64, or the exact picture with --reference exact; 24 bits, the
+/// largest ray depth, and the samples of --reference-samples.
 ///
 /// Errors, of display values (sRGB) from 0 to 1:
 ///   RMSE           root of the mean square difference, over all pixels and channels

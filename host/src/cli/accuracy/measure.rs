@@ -5,6 +5,7 @@ use super::folder::{RESULTS, encoded, write_picture};
 use crate::cli::failure::Failure;
 use crate::cli::output::write_file;
 use crate::cli::progress::Progress;
+use crate::cli::saving::Saving;
 use crate::cli::threads;
 use gridel_host::accuracy::{Bench, MeasureError, Point, Results, Setting, given_up, worths};
 use gridel_host::measure::difference_picture;
@@ -16,9 +17,10 @@ struct Run<'r, 's> {
     arguments: &'r Arguments,
     bench: &'r mut Bench<'s>,
     folder: &'r Path,
+    saving: Saving,
 }
 
-/// Measures the rest, and writes down every step: the settings, then effects that are left out one after the other.
+/// Measures the rest, and writes it down now and then: the settings, then effects that are left out one after the other.
 pub fn measure(
     arguments: &Arguments,
     bench: &mut Bench<'_>,
@@ -30,6 +32,7 @@ pub fn measure(
         arguments,
         bench,
         folder,
+        saving: Saving::start(),
     };
     let instances = run.bench.instances().map_err(|it| run.failed(it))?;
     let mut results = match kept {
@@ -53,6 +56,7 @@ pub fn measure(
     };
     run.write(&results)?;
     run.all(settings, &mut results)?;
+    run.write(&results)?;
     results.effects = worths(run.bench, &results).map_err(|it| run.failed(it))?;
     let more = given_up(&results.base, &results.effects);
     run.all(&more, &mut results)?;
@@ -71,6 +75,14 @@ impl Run<'_, '_> {
         write_file(&file, |out| text.and_then(|text| out.write_all(&text)))
     }
 
+    /// Writes them now and then.
+    fn save(&mut self, results: &Results) -> Result<(), Failure> {
+        match self.saving.is_due() {
+            true => self.write(results),
+            false => Ok(()),
+        }
+    }
+
     /// Measures all of some settings that are not measured yet.
     fn all(&mut self, settings: &[Setting], results: &mut Results) -> Result<(), Failure> {
         let repeats = usize::from(self.arguments.repeat);
@@ -80,7 +92,7 @@ impl Run<'_, '_> {
                 let measured = self.bench.measure(setting, &results.reference);
                 let (point, pixels) = measured.map_err(|it| self.failed(it))?;
                 let difference = difference_picture(&results.reference.pixels, &pixels);
-                let (name, size) = (setting.name(), self.bench.size);
+                let (name, size) = (setting.name(), self.bench.size());
                 write_picture(self.folder, size, &name, &encoded(&pixels))?;
                 write_picture(
                     self.folder,
@@ -89,7 +101,7 @@ impl Run<'_, '_> {
                     &difference,
                 )?;
                 results.points.push(point);
-                self.write(results)?;
+                self.save(results)?;
             }
             progress.step();
         }
@@ -104,7 +116,7 @@ impl Run<'_, '_> {
                     if let Some(point) = results.point(setting) {
                         point.cost.seconds.push(seconds);
                     }
-                    self.write(results)?;
+                    self.save(results)?;
                 }
                 progress.step();
             }

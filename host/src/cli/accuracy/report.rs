@@ -1,55 +1,23 @@
 //! The results as text and as a table of comma-separated values.
 
 use super::choice::Choice;
-use gridel_host::accuracy::{BOARD, Point, Results, answers, frontier, instance_notes, sentences};
+use gridel_host::accuracy::{
+    BOARD, COLUMNS, Point, Results, answers, frontier, instance_notes, sentences,
+};
 use gridel_host::measure::board as boards;
-use gridel_host::table::{Align, Table, counted, grouped, significant};
+use gridel_host::table::{Align, Table, counted, significant};
 use std::fmt::Write;
 use std::path::Path;
 
 /// Returns the results for people.
 pub fn text(folder: &Path, size: [u16; 2], results: &Results, choice: Option<&Choice>) -> String {
     let best = frontier(&results.points);
-    let mut table = Table::new([
-        ("", Align::Left),
-        ("setting", Align::Left),
-        ("ms", Align::Right),
-        ("spread", Align::Right),
-        ("RMSE", Align::Right),
-        ("sampling", Align::Right),
-        ("arithmetic", Align::Right),
-        ("largest", Align::Right),
-        ("pixels off", Align::Right),
-        ("SSIM", Align::Right),
-        ("FLIP", Align::Right),
-        ("other objects", Align::Right),
-        ("t", Align::Right),
-        ("rays per pixel", Align::Right),
-        ("tests per ray", Align::Right),
-        ("blob", Align::Right),
-        ("RAM", Align::Right),
-    ]);
+    let figures = COLUMNS.into_iter().map(|title| (title, Align::Right));
+    let names = [("", Align::Left), ("setting", Align::Left)];
+    let mut table = Table::new(names.into_iter().chain(figures));
     for (point, best) in results.points.iter().zip(best) {
-        let (errors, cost) = (&point.errors, &point.cost);
-        table.row([
-            String::from(if best { "*" } else { "" }),
-            point.name.clone(),
-            format!("{:.2}", 1e3 * cost.time()),
-            cost.spread_text(),
-            format!("{:.5}", errors.rmse),
-            format!("{:.5}", point.parts.sampling),
-            format!("{:.5}", point.parts.arithmetic),
-            format!("{:.4}", errors.largest),
-            grouped(errors.pixels_off),
-            format!("{:.4}", errors.ssim),
-            format!("{:.4}", errors.flip),
-            grouped(errors.other_objects),
-            format!("{:.1}, {:.0}", errors.t_ulps[0], errors.t_ulps[1]),
-            format!("{:.2}", cost.rays as f64 / cost.pixels.max(1) as f64),
-            format!("{:.1}", cost.tests as f64 / cost.rays.max(1) as f64),
-            grouped(cost.blob_bytes),
-            grouped(cost.working_bytes),
-        ]);
+        let star = String::from(if best { "*" } else { "" });
+        table.row([star, point.name.clone()].into_iter().chain(point.cells()));
     }
     let mut text = format!(
         "{}, {} x {} pixels; * no other setting has a smaller error at a cost that is surely not higher\n{table}\n",

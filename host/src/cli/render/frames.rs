@@ -271,10 +271,8 @@ impl Shot<'_> {
             .install(|| render_moments(&moments, self.job, &|| ()));
         let picture = rendered.map_err(|error| rejected(&error))?;
         let moment = Moment::Frame(Frame { number, per_second });
-        // Common to all frames: the view of the first, and the options.
-        let start = self.source.changes_at(self.scene, tracks, 0)?;
-        let start = start.apply(self.scene)?;
-        let metadata = RenderMetadata::of(&start, self.job)
+        // Common to all frames: the scene at rest, and the options.
+        let metadata = RenderMetadata::of(self.scene, self.job)
             .at(Some(moment))
             .exposed(exposure);
         Ok((picture, metadata))

@@ -15,6 +15,8 @@ const LONGEST_EDGE: f64 = (1 << 16) as f64;
 const BRIGHTEST: f64 = 2047.0;
 /// Largest variation of light across the scene by a range that is too long for a record.
 const UNEVEN: f64 = 0.05;
+/// The longest range of a form, in units.
+const LONGEST_RANGE: f64 = LONGEST * (1 << Record::FAR_RANGE_BITS) as f64;
 
 /// Steps of the lattice by which light starts above a surface of the scene. More than the lattice moves the surface,
 /// and than the error of arithmetic.
@@ -129,6 +131,15 @@ pub fn form_record(
             let full = reference * peak.sqrt();
             reference = full.min(LONGEST * lattice.unit());
             let brightness = (full / reference) * (full / reference);
+            let nearest = light.distances[0];
+            if brightness > BRIGHTEST && units(nearest) > LONGEST {
+                return Err(CompileError::FarAway {
+                    what: light.label.to_owned(),
+                    distance: nearest,
+                    size: LONGEST_EDGE * lattice.unit(),
+                    remedy: "move it nearer and make it less bright, or use a directional light",
+                });
+            }
             if brightness > BRIGHTEST {
                 return Err(CompileError::LightTooBright {
                     light: light.label.to_owned(),
@@ -140,12 +151,12 @@ pub fn form_record(
         limited("distance at which it has its color", reference, LONGEST)?;
     }
     let range = match form.range {
-        Some(range) if units(range) > LONGEST => {
+        Some(range) if units(range) > LONGEST_RANGE => {
             // It is nearly the same everywhere in the scene.
             let [nearest, farthest] = light.distances.map(|it| left_within(range, it));
             let mean = (nearest + farthest) / 2.0;
             if nearest - farthest > UNEVEN * mean || light.has_color_track && mean < 1.0 - UNEVEN {
-                limited("range", range, LONGEST)?;
+                limited("range", range, LONGEST_RANGE)?;
             }
             if !light.has_color_track {
                 color = color.map(|channel| channel * mean);
@@ -154,11 +165,21 @@ pub fn form_record(
         }
         range => range,
     };
+    let range_record = |range: f64| {
+        let far = f64::from(1 << Record::FAR_RANGE_BITS);
+        match units(range) > LONGEST {
+            true => -q13(range / far),
+            false => q13(range).max(1),
+        }
+    };
     let value = color.into_iter().fold(0.0, f64::max);
     // Rounding may bring a color that is as bright as possible beyond.
     if value > BRIGHTEST * (1.0 + 1e-9) {
         return Err(CompileError::TooBright {
-            what: light.label.to_owned(),
+            what: match light.has_color_track {
+                true => format!("{}, whose color has a track,", light.label),
+                false => light.label.to_owned(),
+            },
             value,
             most: BRIGHTEST,
         });
@@ -172,7 +193,7 @@ pub fn form_record(
         shape,
         // A light that is there is never without a distance.
         reference: q13(reference).max(i32::from(reference > 0.0)),
-        range: range.map_or(0, |range| q13(range).max(1)),
+        range: range.map_or(0, range_record),
         cone_cosine: cone.map_or(-(1 << 30), |[outer, _]| q30(outer)),
         width: match (shape, cone) {
             (_, Some([outer, inner])) => q30(inner) - q30(outer),
@@ -220,6 +241,32 @@ mod tests {
         for light in [point, sphere] {
             let found = color_at_reference(light).unwrap();
             assert!((found / 250_000.0 - 1.0).abs() < 1e-4, "{light}: {found}");
+        }
+    }
+
+    /// Whatever the range of a light, its scene compiles; the light is dimmed as the range says.
+    #[test]
+    fn ranges_of_every_length_fit() {
+        for exponent in -20..80 {
+            let range = 10.0 * f64::powf(2.0, f64::from(exponent) / 2.0);
+            let file = format!(
+                "[[object]]\nkind = 'sphere'\ncenter = [0, 0, 0]\nradius = 1\n\
+                 [[light]]\nkind = 'point'\nposition = [0, 3, 3]\nrange = {range}\n"
+            );
+            let imported = read("range.toml".as_ref(), file.into(), &Default::default()).unwrap();
+            let blob = compile(&imported.scene, &Options::default()).unwrap().blob;
+            let scene = blob.scene().unwrap();
+            let form = scene.light_form(&scene.lights()[0]).unwrap();
+            let unit = f64::powi(2.0, scene.header().unit_exponent.into());
+            let found = match form.range {
+                far @ ..0 => f64::from(-far) / 256.0 * unit,
+                near => f64::from(near) / 8192.0 * unit,
+            };
+            let is_kept = (found / range - 1.0).abs() < 1e-4;
+            assert!(
+                is_kept || form.range == 0 && range > 200.0,
+                "{range}: {found}"
+            );
         }
     }
 

@@ -141,6 +141,9 @@ fn check_stays(scene: &Scene, number: usize) -> Result<(), CompileError> {
     }
 }
 
+/// The camera for messages.
+pub const CAMERA: &str = "camera";
+
 /// Returns a place that may lie beyond the scene, in units with 13 fraction bits.
 pub fn on_lattice(
     lattice: &Lattice,
@@ -151,10 +154,16 @@ pub fn on_lattice(
     let q13 = lattice.in_units(point) * 8192.0;
     let largest = q13.abs().max_element();
     if largest.is_nan() || largest > FARTHEST as f64 {
-        let distance = (point - lattice.origin).length();
+        let way = point - lattice.origin;
+        let longest = way.abs().max_element();
         return Err(CompileError::FarAway {
+            remedy: match what.as_str() {
+                CAMERA => "move the camera nearer, or make the scene larger",
+                _ => "move it nearer, make the scene larger, or use a directional light",
+            },
             what,
-            distance,
+            // Squares of the longest ways are no numbers.
+            distance: (way / longest).length() * longest,
             size,
         });
     }

@@ -35,7 +35,7 @@ use gridel_core::Effects;
 use gridel_core::format::SectionKind;
 use gridel_core::format::lens::Lens;
 use gridel_core::format::record::{self, View};
-use lights::{LightData, Space, on_lattice};
+use lights::{CAMERA, LightData, Space, on_lattice};
 use materials::MaterialData;
 use setting::Setting;
 pub use setting::{Shoulder, Supplied};
@@ -122,7 +122,7 @@ impl ShadingData {
             require_lights(&lights.records, stated, scene, &mut requirements);
         }
 
-        on_lattice(lattice, space.size(), String::from("camera"), camera.eye)?;
+        on_lattice(lattice, space.size(), String::from(CAMERA), camera.eye)?;
         let mut places = tracks::places(&scene.tracks, &camera);
         places.extend(joints::places(scene));
         let corners = [extent.0, extent.1];

@@ -1,7 +1,7 @@
 use super::*;
+use crate::random::Random;
 use crate::scene::placement::tests::any;
 use crate::scene::{Material, Placement, Shape, SourceSpan};
-use crate::shape::random::Random;
 use crate::shape::{Cuboid, Sphere};
 use glam::{DQuat, DVec3};
 use std::path::Path;

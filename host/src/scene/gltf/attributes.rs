@@ -35,7 +35,7 @@ impl Placed {
         Some(Self {
             set: set.unwrap_or(info.tex_coord()),
             transform: transform.map_or(DAffine2::IDENTITY, |it| {
-                lies(it.scale(), it.rotation(), it.offset())
+                texture_placement(it.scale(), it.rotation(), it.offset())
             }),
         })
     }
@@ -49,14 +49,14 @@ impl Placed {
         Some(Self {
             set: set.unwrap_or(info.tex_coord()),
             transform: transform.map_or(DAffine2::IDENTITY, |it| {
-                lies(it.scale.0, it.rotation.0, it.offset.0)
+                texture_placement(it.scale.0, it.rotation.0, it.offset.0)
             }),
         })
     }
 }
 
 /// The transform of `KHR_texture_transform`.
-fn lies(scale: [f32; 2], rotation: f32, offset: [f32; 2]) -> DAffine2 {
+fn texture_placement(scale: [f32; 2], rotation: f32, offset: [f32; 2]) -> DAffine2 {
     let [scale, offset] = [scale, offset].map(|it| DVec2::from(it.map(f64::from)));
     texture_transform(scale, rotation.into(), offset)
 }
@@ -89,7 +89,7 @@ impl Importer<'_> {
         (vertices, triangles): (usize, &[[u32; 3]]),
     ) -> Result<Attributes, SceneError> {
         let mut attributes = Attributes::default();
-        let as_many = |found: usize, what: &str| {
+        let check_count = |found: usize, what: &str| {
             if found == vertices {
                 return Ok(());
             }
@@ -98,7 +98,7 @@ impl Importer<'_> {
         };
         if let Some(accessor) = part.get(&Semantic::Colors(0)) {
             let colors = self.buffers.colors(&accessor)?;
-            as_many(colors.len(), "colors")?;
+            check_count(colors.len(), "colors")?;
             let clear = colors.iter().filter(|it| it[3] < 1.0).count();
             let solid = colors
                 .iter()
@@ -117,12 +117,7 @@ impl Importer<'_> {
             return Ok(attributes);
         };
         let coordinates = self.buffers.coordinates(&accessor)?;
-        let as_many = coordinates.len() == vertices;
-        if !as_many {
-            let found = coordinates.len();
-            let cause = format!("{place} has {vertices} vertices and {found} texture coordinates");
-            return Err(self.error(cause, "export the file again"));
-        }
+        check_count(coordinates.len(), "texture coordinates")?;
         attributes.coordinates = coordinates.into_iter().map(DVec2::from_array).collect();
         attributes.triangles = triangles.to_vec();
         Ok(attributes)

@@ -8,7 +8,7 @@ use gltf::{Accessor, Document, Node, Semantic};
 use std::collections::{HashMap, HashSet};
 
 /// Most elements of all accessors together: some for each vertex and triangle.
-const MOST_ELEMENTS: usize = 16 * MOST;
+pub(super) const MOST_ELEMENTS: usize = 16 * MOST;
 
 impl Importer<'_> {
     /// Validates the whole file, also the parts that are not drawn: nodes form trees, and meshes

@@ -1,12 +1,11 @@
-//! Reads glTF 2.0, as text (`.gltf`) and binary (`.glb`): the default scene with its nodes, meshes,
-//! materials, cameras and lights.
+//! Reads glTF 2.0, as text (`.gltf`) and binary (`.glb`): the default scene with its nodes, meshes, materials, cameras
+//! and lights.
 //!
-//! Each set of triangles of each node becomes an object, in the order of the nodes. A mesh that several
-//! nodes share is a [part](super::Part), or is copied where that costs little. Animations of cameras, of lights and of
-//! nodes with meshes become tracks. Morph targets whose weights an animation moves are kept; others give a mesh its
-//! shape at rest. Skins are ignored. The
-//! textures of the base color and the normal map are drawn; a warning names other textures. Images that nothing draws
-//! are not read.
+//! Each set of triangles of each node becomes an object, in the order of the nodes. A mesh that several nodes share is
+//! a [part](super::Part), or is copied where that costs little. Animations of cameras, of lights and of nodes with
+//! meshes become tracks. Morph targets whose weights an animation moves are kept; others give a mesh its shape at rest.
+//! Skins are ignored. The textures of the base color and the normal map are drawn; a warning names other textures.
+//! Images that nothing draws are not read.
 
 mod animation;
 mod attributes;
@@ -100,6 +99,7 @@ fn read(input: Input<'_>) -> Result<Imported, SceneError> {
         vertices: 0,
         triangles: 0,
         displaced: 0,
+        morphed: 0,
         shared: Shared::default(),
         joint_of: HashMap::new(),
         scales: Vec::new(),
@@ -170,6 +170,8 @@ struct Importer<'a> {
     triangles: usize,
     /// Displacements of vertices by morph targets.
     displaced: usize,
+    /// Differences of positions and normals that morph targets add where they stand still.
+    morphed: usize,
     shared: Shared,
     /// The joint that moves a node.
     joint_of: HashMap<usize, usize>,

@@ -94,7 +94,7 @@ fn parse<'a>(source: &'a Source, warnings: &mut Warnings) -> Result<Parsed<'a>, 
                 single = Table::default();
                 if !parser.parsed.atoms.is_empty() {
                     let sentence = format!(
-                        "the data block {name:?} and what follows is passed over",
+                        "the data block {name:?} and what follows is ignored",
                         name = shortened(name)
                     );
                     parser.warnings.add(source, tokens.line, sentence);
@@ -236,7 +236,7 @@ impl<'a> Parser<'a, '_> {
             });
             models.len() - 1
         });
-        self.parsed.atoms.push(Atom {
+        let atom = Atom {
             site: Site {
                 element,
                 position: DVec3::from_array(position),
@@ -251,8 +251,8 @@ impl<'a> Parser<'a, '_> {
             residue: table.value(columns.residue),
             number: table.value(columns.number),
             insertion: table.value([columns.insertion]),
-        });
-        Ok(())
+        };
+        self.parsed.add(self.source, atom)
     }
 
     fn bond(&mut self, table: &Table<'a>, columns: &BondColumns) {

@@ -1,8 +1,33 @@
 //! Limits of the number of atoms and bonds, so that they fit into memory.
 
+use super::parsed::{Atom, Parsed};
 use crate::scene::SceneError;
-use crate::scene::size::Size;
+use crate::scene::size::{MOST_BYTES, Size};
 use crate::scene::text::Source;
+use crate::table::grouped;
+
+/// The most atoms that a file may list, in all of its models.
+const MOST_ATOMS: usize = MOST_BYTES as usize / size_of::<Atom>();
+
+impl<'a> Parsed<'a> {
+    /// Adds an atom. The error is of one more than fit into memory: a short line can list an atom.
+    pub(in crate::scene) fn add(
+        &mut self,
+        source: &Source,
+        atom: Atom<'a>,
+    ) -> Result<(), SceneError> {
+        if self.atoms.len() >= MOST_ATOMS {
+            let cause = format!(
+                "the file lists more than {} atoms, which fit into no usual memory",
+                grouped(MOST_ATOMS)
+            );
+            let error = source.error(cause, "leave models out, or parts of the molecule");
+            return Err(error.at_line(atom.line));
+        }
+        self.atoms.push(atom);
+        Ok(())
+    }
+}
 
 /// Rejects atoms so crowded that their bonds fit into no memory.
 pub(super) fn check_size(source: &Source, atoms: usize, bonds: usize) -> Result<(), SceneError> {

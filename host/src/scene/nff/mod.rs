@@ -21,6 +21,7 @@ mod shapes;
 mod view;
 
 use super::importer::{Importer as Entry, Input};
+use super::size::Size;
 use super::text::{Source, Warnings};
 use super::{Color, Diffuse, Imported, Light, Material, Scene, SceneError};
 use crate::table::shortened;
@@ -92,6 +93,7 @@ struct Importer<'a> {
     ambient: HashMap<usize, f64>,
     /// Number of spheres, cones and polygons, for their names.
     counts: [usize; 3],
+    size: Size,
 }
 
 impl<'a> Importer<'a> {
@@ -109,6 +111,7 @@ impl<'a> Importer<'a> {
             material: None,
             ambient: HashMap::new(),
             counts: [0; 3],
+            size: Size::default(),
         }
     }
 
@@ -128,7 +131,7 @@ impl<'a> Importer<'a> {
                 "start a line with v, b, l, f, s, c, p or pp, or correct the vertex count before it",
             )),
             word => {
-                self.warnings.add(self.source, line.number, format!("the entity {word:?} is unknown and passed over", word = shortened(word)));
+                self.warnings.add(self.source, line.number, format!("the entity {word:?} is unknown and ignored", word = shortened(word)));
                 Ok(())
             }
         }

@@ -53,7 +53,7 @@ impl<'a> Line<'a> {
             warnings.add(
                 source,
                 self.number,
-                format!("what follows the {N} numbers of `{format}` is passed over"),
+                format!("what follows the {N} numbers of `{format}` is ignored"),
             );
         }
         Ok(numbers)

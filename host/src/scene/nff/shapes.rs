@@ -3,6 +3,7 @@
 use super::Importer;
 use super::reader::{Line, Lines};
 use crate::scene::polygon::{self, MAX_CONCAVE};
+use crate::scene::size::Size;
 use crate::scene::{Attributes, Material, Normals, Object, SceneError, Shape};
 use crate::shape::{Cone, Sphere};
 use crate::table::shortened;
@@ -26,8 +27,7 @@ impl<'a> Importer<'a> {
                 center: DVec3::new(x, y, z),
                 radius: radius.abs(),
             }),
-        );
-        Ok(())
+        )
     }
 
     pub(super) fn cone(
@@ -94,8 +94,7 @@ impl<'a> Importer<'a> {
                 apex,
                 apex_radius,
             }),
-        );
-        Ok(())
+        )
     }
 
     /// Reads `p` (three numbers a vertex) and `pp` (six).
@@ -183,14 +182,14 @@ impl<'a> Importer<'a> {
             vertices,
             triangles,
         };
-        self.add("polygon", line, shape);
+        self.add("polygon", line, shape)?;
         if let Some(object) = self.scene.objects.last_mut() {
             object.normals = normals;
         }
         Ok(())
     }
 
-    fn add(&mut self, kind: &str, line: &Line<'a>, shape: Shape) {
+    fn add(&mut self, kind: &str, line: &Line<'a>, shape: Shape) -> Result<(), SceneError> {
         let material = self.material.unwrap_or_else(|| {
             self.warnings.add(
                 self.source,
@@ -208,13 +207,21 @@ impl<'a> Importer<'a> {
         };
         *count += 1;
         let name = format!("{kind} {count}");
+        let attributes = Attributes::default();
+        self.size = self.size.plus(Size::of(&shape, name.len(), &attributes));
+        if let Some(excess) = self.size.excess() {
+            let cause = format!("up to this object the file takes {excess}");
+            let remedy = "leave objects out, or use larger ones";
+            return Err(self.source.error_at(line.text, cause, remedy));
+        }
         self.scene.objects.push(Object {
             name,
             material,
             shape,
             place: self.source.place(line.number),
             normals: Normals::default(),
-            attributes: Attributes::default(),
+            attributes,
         });
+        Ok(())
     }
 }

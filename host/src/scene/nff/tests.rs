@@ -199,9 +199,9 @@ fn dialects_are_read_with_warnings() {
         [
             "t.nff:1: an object before the first `f` line has the default material",
             "t.nff:2: a material of 6 numbers instead of 8 is read as opaque",
-            "t.nff:3: what follows the 4 numbers of `s x y z radius` is passed over",
-            "t.nff:4: what follows the 8 numbers of `f r g b Kd Ks Shine T ior` is passed over",
-            "t.nff:6: the entity \"tess\" is unknown and passed over",
+            "t.nff:3: what follows the 4 numbers of `s x y z radius` is ignored",
+            "t.nff:4: what follows the 8 numbers of `f r g b Kd Ks Shine T ior` is ignored",
+            "t.nff:6: the entity \"tess\" is unknown and ignored",
         ]
     );
 }

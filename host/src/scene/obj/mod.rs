@@ -4,10 +4,9 @@
 //! (`l`), and lets NaN through. It rejects comments and continuations on face lines, panics on a color of two numbers,
 //! and never names a line. So a file would have to be parsed completely before it was passed on.
 //!
-//! Every `o`, `g` and change of `usemtl` starts a new mesh, in file order, which holds only the
-//! vertices that it uses. Faces are cut into triangles in file order. A face whose corners all have
-//! normals is smooth. Smoothing groups are ignored, with a warning. Colors of vertices are in sRGB. Zero-area triangles are kept for
-//! the compiler to report.
+//! Every `o`, `g` and change of `usemtl` starts a new mesh, in file order, which holds only the vertices that it uses.
+//! Faces are cut into triangles in file order. A face whose corners all have normals is smooth. Smoothing groups are
+//! ignored, with a warning. Colors of vertices are in sRGB. Zero-area triangles are kept for the compiler to report.
 
 mod mtl;
 mod parser;
@@ -22,7 +21,7 @@ use super::{Attributes, Color, Imported, Material, Normals, Object, Scene, Scene
 use crate::table::shortened;
 use glam::{DVec2, DVec3};
 use gridel_core::Up;
-use parser::{NO_NORMAL, Parsed, Part};
+use parser::{NONE, Parsed, Part};
 use std::collections::{HashMap, HashSet};
 
 pub(super) const IMPORTER: Importer = Importer {
@@ -314,7 +313,7 @@ impl Mesher<'_> {
         let Some(found) = found.collect::<Option<Vec<_>>>() else {
             let none = triangles.iter().map(|_| Attributes::NONE);
             attributes.triangles.extend(none);
-            return outline.contains(&NO_NORMAL);
+            return outline.contains(&NONE);
         };
         let first = attributes.coordinates.len() as u32;
         let down = found.into_iter().map(|it| DVec2::new(it.x, 1.0 - it.y));
@@ -337,7 +336,7 @@ struct PartNormals {
 impl PartNormals {
     /// Adds those of a face's corners, which has these triangles. Returns false if one of them is missing.
     fn add(&mut self, all: &[DVec3], outline: &[u32], triangles: &[[u32; 3]]) -> bool {
-        let is_flat = outline.contains(&NO_NORMAL);
+        let is_flat = outline.contains(&NONE);
         let is_missing = outline.iter().any(|it| *it as usize >= all.len());
         let is_complete = is_flat || !is_missing;
         if is_flat || is_missing {

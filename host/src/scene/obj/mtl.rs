@@ -70,7 +70,7 @@ pub(super) fn read(
             warnings.add(
                 source,
                 number,
-                "what comes before the first `newmtl` is passed over",
+                "what comes before the first `newmtl` is ignored",
             );
             continue;
         };

@@ -45,16 +45,16 @@ pub(super) struct Part<'a> {
     pub(super) faces: Vec<Face>,
     /// Vertex indices of all faces, one after the other.
     pub(super) corners: Vec<u32>,
-    /// The normals of the corners, likewise; [`NO_NORMAL`] where a corner has none. Empty where no face has any.
+    /// The normals of the corners, likewise; [`NONE`] where a corner has none. Empty where no face has any.
     pub(super) normals: Vec<u32>,
     /// The texture coordinates of the corners, likewise.
     pub(super) coordinates: Vec<u32>,
 }
 
 /// Stands for the normal, or the texture coordinates, of a corner that has none.
-pub(super) const NO_NORMAL: u32 = u32::MAX;
-/// Stands for a normal that the file cannot have.
-const MISSING_NORMAL: u32 = NO_NORMAL - 1;
+pub(super) const NONE: u32 = u32::MAX;
+/// Stands for a normal, or texture coordinates, that the file cannot have.
+const OUT_OF_RANGE: u32 = NONE - 1;
 
 pub(super) struct Face {
     pub(super) line: usize,
@@ -116,12 +116,12 @@ fn has_comment(line: &str) -> bool {
 }
 
 /// Reads the index of a normal or of texture coordinates, and returns it counted from 0. `count` is how many the file
-/// has so far. Returns [`MISSING_NORMAL`] for an index that is out of range.
+/// has so far. Returns [`OUT_OF_RANGE`] for an index that is out of range.
 fn number_of(index: &str, count: usize) -> u32 {
     let index = index.parse::<i64>().ok().filter(|it| *it != 0);
     let index = index.map(|it| if it < 0 { count as i64 + it } else { it - 1 });
     let index = index.and_then(|it| u32::try_from(it).ok());
-    index.map_or(MISSING_NORMAL, |it| it.min(MISSING_NORMAL))
+    index.map_or(OUT_OF_RANGE, |it| it.min(OUT_OF_RANGE))
 }
 
 struct Parser<'a> {
@@ -257,7 +257,7 @@ impl<'a> Parser<'a> {
             let mut indices = word.split('/');
             corners.push(self.corner(word, indices.next().unwrap_or(""))?);
             let mut next = |count: usize| match indices.next() {
-                None | Some("") => NO_NORMAL,
+                None | Some("") => NONE,
                 Some(index) => number_of(index, count),
             };
             coordinates.push(next(self.parsed.coordinates.len()));
@@ -288,12 +288,12 @@ impl<'a> Parser<'a> {
                 line,
                 corners: corners.len(),
             });
-            if !part.normals.is_empty() || normals.iter().any(|it| *it != NO_NORMAL) {
-                part.normals.resize(part.corners.len(), NO_NORMAL);
+            if !part.normals.is_empty() || normals.iter().any(|it| *it != NONE) {
+                part.normals.resize(part.corners.len(), NONE);
                 part.normals.extend(normals);
             }
-            if !part.coordinates.is_empty() || coordinates.iter().any(|it| *it != NO_NORMAL) {
-                part.coordinates.resize(part.corners.len(), NO_NORMAL);
+            if !part.coordinates.is_empty() || coordinates.iter().any(|it| *it != NONE) {
+                part.coordinates.resize(part.corners.len(), NONE);
                 part.coordinates.extend(coordinates);
             }
             part.corners.extend(corners);
@@ -372,7 +372,7 @@ impl<'a> Parser<'a> {
             _ if keyword.starts_with('#') || PASSED_OVER.contains(&keyword) => {}
             _ => {
                 let sentence = format!(
-                    "the statement {keyword:?} is unknown or about curves, and passed over",
+                    "the statement {keyword:?} is unknown or about curves, and ignored",
                     keyword = shortened(keyword)
                 );
                 self.skip(number, &sentence, warnings);

@@ -102,7 +102,7 @@ fn faults_name_line_and_cause() {
         )),
         "t.obj:6: the file has no faces: points and lines have no surface and are skipped (and 2 times more); \
          line 9: a face of 1 vertices has no surface and is skipped; \
-         line 10: the statement \"curv\" is unknown or about curves, and passed over"
+         line 10: the statement \"curv\" is unknown or about curves, and ignored"
     );
     assert_eq!(fault("v 1 2\n"), "t.obj:1: a vertex has 2 of 3 coordinates");
     assert_eq!(

@@ -1,5 +1,5 @@
 use super::*;
-use crate::shape::random::Random;
+use crate::random::Random;
 use std::f64::consts::FRAC_PI_2;
 
 /// A placement of any kind.

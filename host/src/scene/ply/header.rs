@@ -1,9 +1,10 @@
 //! The header of a PLY file: its errors, and its parts that are not read.
 
+use super::super::size::MOST_PRIMITIVES;
 use super::super::text::Warnings;
 use super::super::{SceneError, SourceSpan};
 use super::payload::{Skipped, range};
-use crate::table::{printable, shortened};
+use crate::table::{grouped, printable, shortened};
 use ply_rs_bw::parser::{ParseError, Parser, Reader};
 use ply_rs_bw::ply::{ElementDef, Header, PropertyType};
 use std::io::ErrorKind;
@@ -114,6 +115,24 @@ pub(super) fn check(path: &Path, element: &ElementDef, bytes: usize) -> Result<(
                 element.properties.len()
             ),
             "copy the file again, as binary, or export it again",
+        ));
+    }
+    let most = match element.name.as_str() {
+        // Each of them takes more memory than its bytes of the file.
+        "vertex" => 3 * MOST_PRIMITIVES,
+        "face" | "tristrips" => MOST_PRIMITIVES,
+        _ => u64::MAX,
+    };
+    if element.count as u64 > most {
+        return Err(SceneError::new(
+            path,
+            format!(
+                "the header announces {} elements {:?}; a scene has at most {}",
+                grouped(element.count),
+                element.name,
+                grouped(most)
+            ),
+            "export a part of the mesh, or one with fewer faces",
         ));
     }
     for property in element.properties.values() {

@@ -448,3 +448,22 @@ fn incomplete_normals_are_warned_of_and_a_mark_before_text_is_passed_over() {
         .filter(|it| it.contains("without nx, ny or nz"));
     assert_eq!(found.count(), 1, "{warnings:?}");
 }
+
+#[test]
+fn more_elements_than_a_scene_holds_are_rejected_before_they_are_read() {
+    let header = |vertices: usize, faces: usize| {
+        format!(
+            "ply\nformat binary_little_endian 1.0\nelement vertex {vertices}\nproperty uchar x\n\
+             element face {faces}\nproperty list uchar uchar vertex_indices\nend_header\n"
+        )
+    };
+    for (vertices, faces, named) in [
+        ((3 << 24) + 1, 1, "50,331,649 elements \"vertex\""),
+        (3, (1 << 24) + 1, "16,777,217 elements \"face\""),
+    ] {
+        let mut bytes = header(vertices, faces).into_bytes();
+        bytes.resize(bytes.len() + vertices.max(faces), 0);
+        let error = read(&bytes).unwrap_err();
+        assert!(error.cause.contains(named), "{error}");
+    }
+}

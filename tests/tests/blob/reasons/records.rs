@@ -83,7 +83,7 @@ pub(super) fn light_forms() -> Errors {
     let forms: [Forgery<LightForm>; 7] = [
         (Field::Kind, &|it| it.shape = 5),
         (Field::LightReference, &|it| it.reference = -1),
-        (Field::LightRange, &|it| it.range = -1),
+        (Field::LightRange, &|it| it.range = i32::MIN),
         (Field::ConeCosine, &|it| it.cone_cosine = i32::MAX),
         (Field::LightWidth, &|it| it.width = -1),
         (Field::Normal, &|it| it.normal[1] = i32::MIN),

@@ -417,7 +417,7 @@ fn damaged_assemblies_are_read_or_rejected_with_a_remedy() {
     let head = ["BIOMOLECULE: 1", "APPLY THE FOLLOWING TO CHAINS: A, B"];
     let pdb = chains(&remarks(&[&head, &IDENTITY, &TURN]));
     let cif = cif_of(&[["1", "(1-3)(P,5)", "A,B"], ["2", "1", "A"]]);
-    let random = &mut crate::shape::random::Random(6);
+    let random = &mut crate::random::Random(6);
     for (file, text) in [("t.pdb", pdb), ("t.cif", cif)] {
         let check = |bytes: &[u8]| {
             let text = String::from_utf8_lossy(bytes);

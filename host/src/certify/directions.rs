@@ -15,10 +15,11 @@ pub fn turn<N: Enclosure>(coordinate: u32) -> [N; 2] {
 }
 
 /// Returns two directions that are perpendicular to one of length 1 and to each other; `None` where they are open.
-pub fn beside<N: Enclosure>([x, y, z]: Three<N>) -> Option<[Three<N>; 2]> {
+pub fn perpendiculars<N: Enclosure>([x, y, z]: Three<N>) -> Option<[Three<N>; 2]> {
     let one = N::one();
-    let is_below = z.sign()? == Ordering::Less;
-    let signed = |value: N| if is_below { -value } else { value };
+    // The kernels' `CAP`.
+    let is_in_cap = (z + N::scaled(255, 8)).sign()? == Ordering::Less;
+    let signed = |value: N| if is_in_cap { -value } else { value };
     let scale = -one.over(one + signed(z))?;
     let mixed = x * y * scale;
     Some([
@@ -42,7 +43,7 @@ pub fn around<N: Enclosure>(normal: Three<N>, [u, v]: [u32; 2]) -> Option<Three<
     let square = ratio::<N>(u);
     let (away, toward) = (square.sqrt(), (N::one() - square).sqrt());
     let [sine, cosine] = turn::<N>(v);
-    let sides = beside(normal)?;
+    let sides = perpendiculars(normal)?;
     Some(combined(
         normal,
         toward,
