@@ -30,7 +30,8 @@ impl Model {
         if let Some(file) = &self.file {
             let warnings = report.warnings(self.options.lattice_bits);
             let mut warnings = warnings.iter().map(|it| in_python(it));
-            return warnings.try_for_each(|it| warn(py, &format!("{}: {it}", file.display()), level));
+            return warnings
+                .try_for_each(|it| warn(py, &format!("{}: {it}", file.display()), level));
         }
         if report.collapsed.count() == 0 {
             return Ok(());

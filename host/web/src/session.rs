@@ -8,9 +8,7 @@ use crate::{Answer, pictures};
 use gridel_core::format::limits::MAX_RAY_DEPTH;
 use gridel_core::{Effects, Format, Scene as Checked, Settings, Structure};
 use gridel_host::blob::Blob;
-use gridel_host::compile::{
-    Compiled, LATTICE_BITS, Names, Options, Supplied, compile,
-};
+use gridel_host::compile::{Compiled, LATTICE_BITS, Names, Options, Supplied, compile};
 use gridel_host::explain::{Shown, Subject, explain};
 use gridel_host::measure::board::{BOARDS, Board, Fit, MemoryReport, Rendering, Target};
 use gridel_host::scene::{

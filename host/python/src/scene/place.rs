@@ -21,7 +21,9 @@ pub(super) struct Meeting {
 impl NativeScene {
     /// True if [`corners`](Self::corners) has the corners of whatever rays hit.
     pub(super) fn has_all_triangles(&self) -> bool {
-        self.model.as_ref().is_some_and(|model| model.file.is_none())
+        self.model
+            .as_ref()
+            .is_some_and(|model| model.file.is_none())
     }
 
     /// Starts to load the triangle of a hit: those of rays side by side are far apart in memory.
