@@ -39,7 +39,7 @@ use crate::measure::InstanceCount;
 use crate::table::significant;
 use serde::{Deserialize, Serialize};
 
-/// The measurements so far; a sweep writes them after every step.
+/// The measurements so far; a sweep writes them every few seconds.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Results {
     /// Identifies the sweep: the program's version, the scene, the picture's size, the structure, the reference.

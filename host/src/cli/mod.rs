@@ -10,6 +10,7 @@
 //! | `output.rs` | files and standard output |
 //! | `shell.rs` | completion scripts for shells, and man pages |
 //! | `progress.rs` | the sign of life of long work |
+//! | `saving.rs` | when unfinished work is saved |
 //! | `threads.rs` | threads of long work |
 //! | `names.rs` | the names of hit objects |
 //! | `changes.rs` | what `--light`, `--material` and their like change |

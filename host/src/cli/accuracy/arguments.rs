@@ -49,8 +49,8 @@ use std::path::PathBuf;
 /// rays and tests that they save. Their instructions are those of the rays that they send.
 ///
 /// Writes a folder: page.html with answers, chart and pictures, which loads nothing else; rmse.svg, a plot;
-/// results.csv; and results.json, which grows with every step. After an interruption, the same command
-/// continues where it stopped.
+/// results.csv; and results.json, which is written every few seconds. After an interruption, the same
+/// command continues from there.
 #[derive(Args)]
 #[command(after_help = crate::cli::failure::EXIT_CODES, verbatim_doc_comment)]
 #[command(group = clap::ArgGroup::new("limit").args(["max_error", "max_rays"]).multiple(true))]
