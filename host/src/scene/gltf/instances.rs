@@ -1,5 +1,6 @@
 //! Meshes that several nodes place: parts and instances, where that saves enough.
 
+use super::check::MOST_ELEMENTS;
 use super::place::{mesh_name, place_of, weights};
 use super::shared::{Placed, triangle_count};
 use super::{Importer, Named};
@@ -89,6 +90,7 @@ impl Importer<'_> {
     /// Checks that nodes fit into memory, before anything is made of them.
     pub(super) fn weigh(&self, placed: &[Placed<'_>]) -> Result<(), SceneError> {
         let mut size = Size::default();
+        let mut morphed = 0_usize;
         let mut parts = HashMap::new();
         for (node, _) in placed {
             let Some(mesh) = node.mesh() else {
@@ -121,6 +123,19 @@ impl Importer<'_> {
                     triangles: triangles.max((vertices / 3) as u64),
                 });
                 self.check_size(size, node, || place_of(&mesh, &part))?;
+                // Targets may share one accessor, which may take no bytes.
+                let targets = part.morph_targets().zip(weights(node, &mesh));
+                let used = targets.filter(|(_, weight)| **weight != 0.0).count();
+                morphed = morphed.saturating_add(vertices.saturating_mul(used));
+                if morphed > MOST_ELEMENTS {
+                    return Err(self.error(
+                        format!(
+                            "up to {}, morph targets move more than {MOST_ELEMENTS} vertices",
+                            place_of(&mesh, &part)
+                        ),
+                        "export fewer morph targets, or coarser meshes",
+                    ));
+                }
             }
         }
         Ok(())

@@ -99,7 +99,6 @@ fn read(input: Input<'_>) -> Result<Imported, SceneError> {
         vertices: 0,
         triangles: 0,
         displaced: 0,
-        morphed: 0,
         shared: Shared::default(),
         joint_of: HashMap::new(),
         scales: Vec::new(),
@@ -170,8 +169,6 @@ struct Importer<'a> {
     triangles: usize,
     /// Displacements of vertices by morph targets.
     displaced: usize,
-    /// Differences of positions and normals that morph targets add where they stand still.
-    morphed: usize,
     shared: Shared,
     /// The joint that moves a node.
     joint_of: HashMap<usize, usize>,

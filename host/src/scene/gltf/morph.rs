@@ -5,7 +5,6 @@
 
 use super::Importer;
 use super::buffers::MOST;
-use super::check::MOST_ELEMENTS;
 use super::place::Weighted;
 use crate::scene::normals::cofactors;
 use crate::scene::{
@@ -21,7 +20,7 @@ pub(super) type Changed<'t> = fn(&Target<'t>) -> Option<Accessor<'t>>;
 impl Importer<'_> {
     /// Returns positions or normals with the differences of a part's morph targets, times their weights.
     pub(super) fn morph<'p>(
-        &mut self,
+        &self,
         place: &str,
         weighted: Weighted<'p>,
         vectors: &[[f32; 3]],
@@ -33,16 +32,6 @@ impl Importer<'_> {
             let Some(accessor) = changed(&target).filter(|_| weight != 0.0) else {
                 continue;
             };
-            // Targets may share one accessor, which may take no bytes.
-            self.morphed += vectors.len();
-            if self.morphed > MOST_ELEMENTS {
-                return Err(self.error(
-                    format!(
-                        "up to {place}, morph targets have more than {MOST_ELEMENTS} differences"
-                    ),
-                    "export fewer morph targets, or coarser meshes",
-                ));
-            }
             let differences = self.differences(place, number, &accessor, vectors.len())?;
             for (vector, difference) in morphed.iter_mut().zip(&differences) {
                 *vector += f64::from(weight) * precise(difference);
@@ -148,7 +137,7 @@ impl Importer<'_> {
 
     /// Adds to the normals of a mesh what its morph targets say about them, if they move.
     pub(super) fn change_normals(
-        &mut self,
+        &self,
         place: &str,
         weighted: Weighted<'_>,
         world: &DMat4,

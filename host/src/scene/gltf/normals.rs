@@ -11,7 +11,7 @@ use gltf::mesh::MorphTarget;
 impl Importer<'_> {
     /// The normals of a mesh that is in its place.
     pub(super) fn normals(
-        &mut self,
+        &self,
         place: &str,
         weighted: Weighted<'_>,
         world: &DMat4,

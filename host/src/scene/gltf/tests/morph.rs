@@ -121,6 +121,25 @@ fn targets_of_another_length_are_rejected() {
     );
 }
 
+/// A few bytes announce any number of vertices, and any number of targets of as many.
+#[test]
+fn more_differences_than_a_file_may_have_are_rejected_before_they_are_read() {
+    let mut document = document();
+    push(
+        &mut document,
+        "accessors",
+        json!({"componentType": 5126, "count": 1 << 24, "type": "VEC3", "min": [0, 0, 0], "max": [0, 0, 0]}),
+    );
+    let accessor = document["accessors"].as_array().unwrap().len() - 1;
+    let part = &mut document["meshes"][0]["primitives"][0];
+    part["attributes"] = json!({"POSITION": accessor});
+    part["targets"] = vec![json!({"POSITION": accessor}); 17].into();
+    document["meshes"][0]["weights"] = vec![1.0; 17].into();
+    let error = read(document.to_string().as_bytes()).unwrap_err();
+    let cause = "morph targets move more than 268435456 vertices";
+    assert!(error.cause.contains(cause), "{error}");
+}
+
 /// The document, whose animation moves the weights of its two morph targets by these numbers at 0 s and 1 s.
 fn animated(values: &[f32], interpolation: &str) -> Value {
     let mut document = morphed();
