@@ -225,10 +225,7 @@ impl ApplicationHandler<Wake> for App<'_> {
                 self.state.resize([side(size.width), side(size.height)])
             }
             WindowEvent::KeyboardInput { event, .. } => match key(&event).and_then(action) {
-                Some(action) => {
-                    self.clear();
-                    self.state.apply(action)
-                }
+                Some(action) => self.state.apply(action),
                 None => Effect::Nothing,
             },
             WindowEvent::CursorMoved { position, .. } => self.mouse_moved(position),
@@ -252,6 +249,7 @@ impl ApplicationHandler<Wake> for App<'_> {
         match effect {
             Effect::Nothing => {}
             Effect::Redraw => {
+                self.clear();
                 self.refiner.show(self.state.shot());
                 self.request_redraw();
             }
@@ -299,7 +297,6 @@ impl App<'_> {
         if !self.mouse.is_drag {
             return Effect::Nothing;
         }
-        self.clear();
         match button {
             MouseButton::Left => self.state.drag(way(from)),
             _ => self.state.pan(way(from)),
@@ -322,7 +319,7 @@ impl App<'_> {
         }
     }
 
-    /// Shows the settings again, also if an explanation is under way.
+    /// Shows the settings in the title. An explanation that is under way is not shown.
     fn clear(&mut self) {
         self.message = None;
         self.click += 1;
@@ -353,6 +350,7 @@ impl App<'_> {
             Err(error) => format!("the camera cannot be saved: {error}"),
         };
         print(format!("{message}\n"));
+        self.clear();
         self.message = Some(message);
         self.request_redraw();
     }
