@@ -51,7 +51,7 @@ records! {
 }
 
 impl LightForm {
-    /// Bits that the magnitude of a negative range has fewer than a length.
+    /// Fraction bits by which a negative range has fewer than a length.
     pub const FAR_RANGE_BITS: u32 = 5;
     /// The shape of a sphere.
     pub const SPHERE: u32 = 1;

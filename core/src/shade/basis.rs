@@ -2,23 +2,24 @@
 
 use crate::accel::Number;
 
-/// The z at which directions around another one change sides, with 30 fraction bits.
+/// The z of the edge of the cap around -z, with 30 fraction bits. Outside of it 1 + z is at least 2^-8, so quotients by it
+/// lose 8 bits at most.
 const CAP: i32 = -(255 << 22);
 
 /// Returns two directions that are perpendicular to one of length 1 and to each other.
 ///
-/// They turn steadily with it, except where it enters a cap of 5 degrees around -z. Samples of a pixel that differ in
-/// it by little are so drawn in the same order, and stay spread evenly. (Frisvad, "Building an Orthonormal Basis from a
-/// 3D Unit Vector Without Normalization", 2012; in the cap half a turn around x makes it precise.)
+/// They turn steadily with it, except at the edge of a cap of 5 degrees around -z. So the samples of a pixel, for which
+/// it differs by little, stay spread evenly around it. (Frisvad, "Building an Orthonormal Basis from a 3D Unit Vector
+/// Without Normalization", 2012. In the cap, half a turn around x before and after keeps it precise.)
 pub(super) fn beside<N: Number>(direction: [N; 3]) -> [[N; 3]; 2] {
     if direction[2] < N::ratio(CAP) {
-        return around_z(turned(direction)).map(turned);
+        return outside_the_cap(turned(direction)).map(turned);
     }
-    around_z(direction)
+    outside_the_cap(direction)
 }
 
 #[inline(always)]
-fn around_z<N: Number>([x, y, z]: [N; 3]) -> [[N; 3]; 2] {
+fn outside_the_cap<N: Number>([x, y, z]: [N; 3]) -> [[N; 3]; 2] {
     let half = N::ONE.half() + z.half();
     let part = |product: N| product.half().div(half);
     let (square, mixed) = (part(x * x), part(x * y));
@@ -35,3 +36,6 @@ pub(super) fn cross<N: Number>(a: [N; 3], b: [N; 3]) -> [N; 3] {
     let component = |k: usize, l: usize| a[k] * b[l] - a[l] * b[k];
     [component(1, 2), component(2, 0), component(0, 1)]
 }
+
+#[cfg(test)]
+mod tests;

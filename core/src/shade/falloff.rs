@@ -87,14 +87,14 @@ fn shines<N: Number>(form: &LightForm, lighting: &mut Lighting<'_, N>) -> bool {
 fn is_in_range<N: Number>(form: &LightForm, lighting: &Lighting<'_, N>) -> bool {
     form.range == 0
         || lighting.light_distance().is_some_and(|distance| {
-            let [distance, range] = in_range(form, distance);
+            let [distance, range] = distance_and_range(form, distance);
             distance < range
         })
 }
 
 /// The distance of a light and its range, both over the same number.
 #[inline(always)]
-fn in_range<N: Number>(form: &LightForm, distance: Distance<N>) -> [N; 2] {
+fn distance_and_range<N: Number>(form: &LightForm, distance: Distance<N>) -> [N; 2] {
     let range = distance.half_length(form.range.wrapping_abs());
     let is_far = form.range < 0;
     let bits = if is_far { LightForm::FAR_RANGE_BITS } else { 0 };
@@ -125,7 +125,7 @@ inline_on_boards!(
             && let Some(distance) = lighting.light_distance()
         {
             // KHR_lights_punctual: 1 minus the fourth power of the distance over the range.
-            let [distance, range] = in_range(form, distance);
+            let [distance, range] = distance_and_range(form, distance);
             let part = distance.div(range);
             if part >= N::ONE {
                 return Color::BLACK;

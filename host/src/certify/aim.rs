@@ -135,7 +135,7 @@ fn within<N: Enclosure>(form: &LightForm, [u, v]: [u32; 2]) -> Three<N> {
 /// The distance at which a light ends.
 fn range<N: Enclosure>(form: &LightForm) -> N {
     match form.range {
-        far @ ..0 => N::int((-far).into()),
+        far @ ..0 => length(i64::from(-far) << LightForm::FAR_RANGE_BITS),
         near => length(near.into()),
     }
 }

@@ -170,6 +170,43 @@ fn soft_shadows_converge() {
     assert!(exponent >= 0.7, "{exponent}");
 }
 
+/// Ranges on both sides of the longest near one (8 here) and of the longest that is kept (256), and lights at their
+/// ends.
+#[test]
+fn long_ranges_end_light_where_they_say() {
+    const GROUND: &str =
+        "[[object]]\nkind = 'box'\nmin = [-1, -0.1, -1]\nmax = [1, 0, 1]\nmaterial = 'white'";
+    for (height, range) in [
+        (6.0_f64, 7.99_f64),
+        (6.0, 8.01),
+        (6.0, 6.1),
+        (10.0, 9.9),
+        (10.0, 10.1),
+        (10.0, 12.0),
+        (10.0, 255.9),
+        (10.0, 256.1),
+        (200.0, 199.0),
+        (200.0, 202.0),
+        (200.0, 255.9),
+        (200.0, 1e4),
+    ] {
+        let color = 0.5 * height * height;
+        let light = format!(
+            "[[light]]\nkind = 'point'\nposition = [0, {height}, 0]\nfalloff = 'square'\ncolor = {color}\n\
+             range = {range}"
+        );
+        let blob = scene(&light, "[0, 0.3, 0]", "[0, 0, 0]", GROUND);
+        let exact = 0.5 * (1.0 - (height / range).powi(4)).max(0.0);
+        for format in Format::ALL {
+            let (mean, _) = measured(&blob, format, 16);
+            assert!(
+                (mean - exact).abs() < 0.001,
+                "{height} {range} {format:?} {mean} {exact}"
+            );
+        }
+    }
+}
+
 /// The directions to a sphere are spread evenly also where those of a pixel's samples lie on both sides of a plane of
 /// coordinates.
 #[test]

@@ -59,6 +59,7 @@ pub struct FormedLight<'a> {
     pub label: &'a str,
     /// The distances to the nearest and the farthest point of the scene's box.
     pub distances: [f64; 2],
+    pub scene_size: f64,
     pub has_color_track: bool,
 }
 
@@ -136,7 +137,7 @@ pub fn form_record(
                 return Err(CompileError::FarAway {
                     what: light.label.to_owned(),
                     distance: nearest,
-                    size: LONGEST_EDGE * lattice.unit(),
+                    size: light.scene_size,
                     remedy: "move it nearer and make it less bright, or use a directional light",
                 });
             }
@@ -244,7 +245,7 @@ mod tests {
         }
     }
 
-    /// Whatever the range of a light, its scene compiles; the light is dimmed as the range says.
+    /// A range is kept, or so long that it leaves all of the light.
     #[test]
     fn ranges_of_every_length_fit() {
         for exponent in -20..80 {
@@ -263,10 +264,38 @@ mod tests {
                 near => f64::from(near) / 8192.0 * unit,
             };
             let is_kept = (found / range - 1.0).abs() < 1e-4;
-            assert!(
-                is_kept || form.range == 0 && range > 200.0,
-                "{range}: {found}"
-            );
+            let is_longer = range > super::LONGEST_RANGE * unit;
+            assert!(is_kept != is_longer, "{range}: {found}");
+            assert_eq!(is_longer, form.range == 0, "{range}");
+        }
+    }
+
+    #[test]
+    fn what_is_too_far_away_is_named_with_its_remedy() {
+        const LIGHT: &str = "[[light]]\nkind = 'point'\n";
+        for (rest, cause, remedy) in [
+            (
+                String::from("[camera]\neye = [0, 0, 1e9]\ntarget = [0, 0, 0]"),
+                "the camera lies 1.000e9 scene units from",
+                "move the camera nearer",
+            ),
+            (
+                format!("{LIGHT}position = [0, 1e300, 0]"),
+                "light 0 lies 1.000e300 scene units from",
+                "use a directional light",
+            ),
+            (
+                format!("{LIGHT}position = [3e6, 4e6, 0]\nfalloff = 'square'\ncolor = 25e12"),
+                "light 0 lies 5.000e6 scene units from a scene of",
+                "use a directional light",
+            ),
+        ] {
+            let file =
+                format!("{rest}\n[[object]]\nkind = 'sphere'\ncenter = [0, 0, 0]\nradius = 10\n");
+            let imported = read("far.toml".as_ref(), file.into(), &Default::default()).unwrap();
+            let error = compile(&imported.scene, &Options::default()).unwrap_err();
+            let said = crate::explained(&error);
+            assert!(said.contains(cause) && said.contains(remedy), "{said}");
         }
     }
 

@@ -97,6 +97,7 @@ impl LightData {
             color,
             label: &label(scene, number),
             distances: [nearest.length(), farthest.length()],
+            scene_size: space.size(),
             has_color_track,
         };
         let (form, color) = form_record(&formed, lattice)?;
