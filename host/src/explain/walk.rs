@@ -314,7 +314,7 @@ impl Walk {
         ray.aside + ray.turned * inside + kernels + 8.0 * f64::EPSILON * sum
     }
 
-    /// Takes a step, if the event is one.
+    /// Records a step, if the event is one.
     pub(super) fn record(&mut self, scene: &Scene<'_>, event: &Event) {
         let ray = self.ray;
         let mut step = match *event {

@@ -88,11 +88,11 @@ impl Errors {
     }
 }
 
-/// Returns the unit of the last place of a number in single precision. That of numbers which are no ordinary ones, 0
-/// among them, is that of the smallest ordinary one.
+/// Returns the unit of the last place of a number in single precision. For 0 and subnormal numbers it is that of the
+/// smallest normal one.
 fn last_place_in_single_precision(number: f64) -> f64 {
-    let ordinary = number.abs().max(f32::MIN_POSITIVE.into());
-    f64::powi(2.0, ordinary.log2().floor() as i32 - 23)
+    let normal = number.abs().max(f32::MIN_POSITIVE.into());
+    f64::powi(2.0, normal.log2().floor() as i32 - 23)
 }
 
 /// Returns the root of the mean square difference of display values of two pictures, and the largest difference.

@@ -12,7 +12,6 @@ pub mod exact;
 mod exact_map;
 mod keys;
 mod lattice;
-#[doc(hidden)]
 mod snapped;
 mod sphere;
 pub(crate) mod transform;

@@ -10,7 +10,7 @@ use crate::table::grouped;
 const MOST_ATOMS: usize = MOST_BYTES as usize / size_of::<Atom>();
 
 impl<'a> Parsed<'a> {
-    /// Adds an atom. The error is of one more than fit into memory: a short line can list an atom.
+    /// Adds an atom, unless the file lists too many. A line is shorter than the memory of its atom.
     pub(in crate::scene) fn add(
         &mut self,
         source: &Source,
@@ -18,7 +18,7 @@ impl<'a> Parsed<'a> {
     ) -> Result<(), SceneError> {
         if self.atoms.len() >= MOST_ATOMS {
             let cause = format!(
-                "the file lists more than {} atoms, which fit into no usual memory",
+                "the file lists more than {} atoms, the limit for all of its models",
                 grouped(MOST_ATOMS)
             );
             let error = source.error(cause, "leave models out, or parts of the molecule");

@@ -21,7 +21,7 @@ use super::{Attributes, Color, Imported, Material, Normals, Object, Scene, Scene
 use crate::table::shortened;
 use glam::{DVec2, DVec3};
 use gridel_core::Up;
-use parser::{NONE, Parsed, Part};
+use parser::{NO_INDEX, Parsed, Part};
 use std::collections::{HashMap, HashSet};
 
 pub(super) const IMPORTER: Importer = Importer {
@@ -313,7 +313,7 @@ impl Mesher<'_> {
         let Some(found) = found.collect::<Option<Vec<_>>>() else {
             let none = triangles.iter().map(|_| Attributes::NONE);
             attributes.triangles.extend(none);
-            return outline.contains(&NONE);
+            return outline.contains(&NO_INDEX);
         };
         let first = attributes.coordinates.len() as u32;
         let down = found.into_iter().map(|it| DVec2::new(it.x, 1.0 - it.y));
@@ -336,7 +336,7 @@ struct PartNormals {
 impl PartNormals {
     /// Adds those of a face's corners, which has these triangles. Returns false if one of them is missing.
     fn add(&mut self, all: &[DVec3], outline: &[u32], triangles: &[[u32; 3]]) -> bool {
-        let is_flat = outline.contains(&NONE);
+        let is_flat = outline.contains(&NO_INDEX);
         let is_missing = outline.iter().any(|it| *it as usize >= all.len());
         let is_complete = is_flat || !is_missing;
         if is_flat || is_missing {

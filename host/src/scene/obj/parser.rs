@@ -45,16 +45,16 @@ pub(super) struct Part<'a> {
     pub(super) faces: Vec<Face>,
     /// Vertex indices of all faces, one after the other.
     pub(super) corners: Vec<u32>,
-    /// The normals of the corners, likewise; [`NONE`] where a corner has none. Empty where no face has any.
+    /// The normals of the corners, likewise; [`NO_INDEX`] where a corner has none. Empty where no face has any.
     pub(super) normals: Vec<u32>,
     /// The texture coordinates of the corners, likewise.
     pub(super) coordinates: Vec<u32>,
 }
 
 /// Stands for the normal, or the texture coordinates, of a corner that has none.
-pub(super) const NONE: u32 = u32::MAX;
+pub(super) const NO_INDEX: u32 = u32::MAX;
 /// Stands for a normal, or texture coordinates, that the file cannot have.
-const OUT_OF_RANGE: u32 = NONE - 1;
+const OUT_OF_RANGE: u32 = NO_INDEX - 1;
 
 pub(super) struct Face {
     pub(super) line: usize,
@@ -257,7 +257,7 @@ impl<'a> Parser<'a> {
             let mut indices = word.split('/');
             corners.push(self.corner(word, indices.next().unwrap_or(""))?);
             let mut next = |count: usize| match indices.next() {
-                None | Some("") => NONE,
+                None | Some("") => NO_INDEX,
                 Some(index) => number_of(index, count),
             };
             coordinates.push(next(self.parsed.coordinates.len()));
@@ -288,12 +288,12 @@ impl<'a> Parser<'a> {
                 line,
                 corners: corners.len(),
             });
-            if !part.normals.is_empty() || normals.iter().any(|it| *it != NONE) {
-                part.normals.resize(part.corners.len(), NONE);
+            if !part.normals.is_empty() || normals.iter().any(|it| *it != NO_INDEX) {
+                part.normals.resize(part.corners.len(), NO_INDEX);
                 part.normals.extend(normals);
             }
-            if !part.coordinates.is_empty() || coordinates.iter().any(|it| *it != NONE) {
-                part.coordinates.resize(part.corners.len(), NONE);
+            if !part.coordinates.is_empty() || coordinates.iter().any(|it| *it != NO_INDEX) {
+                part.coordinates.resize(part.corners.len(), NO_INDEX);
                 part.coordinates.extend(coordinates);
             }
             part.corners.extend(corners);
