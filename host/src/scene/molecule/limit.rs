@@ -6,8 +6,8 @@ use crate::scene::size::{MOST_BYTES, Size};
 use crate::scene::text::Source;
 use crate::table::grouped;
 
-/// The most atoms that a file may list, in all of its models.
-const MOST_ATOMS: usize = MOST_BYTES as usize / size_of::<Atom>();
+/// The most atoms that a file may list, in all of its models. While a list grows, it takes its bytes twice.
+const MOST_ATOMS: usize = MOST_BYTES as usize / (2 * size_of::<Atom>());
 
 impl<'a> Parsed<'a> {
     /// Adds an atom, unless the file lists too many. A line is shorter than the memory of its atom.

@@ -458,7 +458,7 @@ fn more_elements_than_a_scene_holds_are_rejected_before_they_are_read() {
         )
     };
     for (vertices, faces, named) in [
-        ((3 << 24) + 1, 1, "50,331,649 elements \"vertex\""),
+        (29_687_501, 1, "29,687,501 elements \"vertex\""),
         (3, (1 << 24) + 1, "16,777,217 elements \"face\""),
     ] {
         let mut bytes = header(vertices, faces).into_bytes();
