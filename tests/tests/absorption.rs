@@ -1,7 +1,11 @@
 //! Glass that absorbs: what lies in it is seen and lit through it, with and without a priority.
 
-use gridel_core::Format;
+use gridel_core::format::limits::{MAX_RAY_DEPTH, MAX_STACK_DEPTH};
+use gridel_core::{
+    Effects, Format, List, NoCount, Number, Ray, Renderer, Scene, Settings, Workspace,
+};
 use gridel_host::compile::{Options, compile};
+use gridel_tests::every_format;
 use gridel_tests::measured::{measured, read, wrong_pixels};
 
 /// Glass with a priority and without.
@@ -34,6 +38,35 @@ fn check(name: &str, text: &str, exact: f64) {
         );
         assert_eq!(wrong_pixels(&blob, format), 0, "{name} {format:?}");
     }
+}
+
+/// Glass in front of the eye absorbs nothing on the way back to a hit before a ray's origin.
+#[test]
+fn rays_that_begin_before_their_origin_gain_no_light() {
+    let text = "background = 0.5\n[material.glass]\ndiffuse = 0\ntransmit = 1\nior = 1\nabsorption = 0.5\n\
+                [[object]]\nkind = 'box'\nmin = [-1, -1, -1]\nmax = [1, 1, 1]\nmaterial = 'glass'\n";
+    let blob = compile(&read(text), &Options::default())
+        .expect("a blob")
+        .blob;
+    let scene = blob.scene().expect("a scene");
+    every_format!(back_through_glass(&scene));
+}
+
+fn back_through_glass<N: Number>(scene: &Scene<'_>) {
+    let side = f64::from(scene.bounds().0[0][1]);
+    let renderer =
+        Renderer::<N, List, { Effects::ALL.0 }>::with_settings(scene, Settings::of(scene));
+    let renderer = renderer.expect("a renderer");
+    let mut space = Workspace::<N, MAX_STACK_DEPTH, { MAX_RAY_DEPTH + 1 }>::new();
+    let mut linear = |tmin: f64| {
+        let (origin, direction) = ([2.0 * side, 0.0, 0.0], [1.0, 0.0, 0.0]);
+        let ray = Ray::<N>::from_f64(scene.bounds(), origin, direction, tmin, 1e5).expect("a ray");
+        renderer.linear_along(&ray, &mut space.as_view(), &mut NoCount)
+    };
+    let around = linear(0.0);
+    // The first hit is the box's far side, from within.
+    let behind = linear(-1.5 * side);
+    assert!(behind <= around, "{:?}: {behind:?} {around:?}", N::FORMAT);
 }
 
 const LIGHT: &str = "[[light]]\nkind = 'directional'\ndirection = [0, -1, 0]\n";

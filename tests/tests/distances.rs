@@ -47,6 +47,26 @@ fn relative<N: Number>() -> f64 {
     }
 }
 
+/// Numbers around halves, at which rounding goes wrong where a half is added: also where a number has no digit for it.
+#[test]
+fn far_numbers_are_rounded_to_the_nearest_integer() {
+    fn check<N: Number>(value: f64) {
+        let wide = N::far_from_f64(value / 8192.0);
+        // Exact, as is the product.
+        let value = N::far_to_f64(wide) * 8192.0;
+        let expected = value.round() as i64;
+        assert_eq!(N::far_to_q13(wide), expected, "{:?} {value}", N::FORMAT);
+        assert_eq!(N::far_to_q13(-wide), -expected, "{:?} {value}", N::FORMAT);
+    }
+    let largest_below_a_half = [0.499_999_97, 0.5_f64.next_down()];
+    let bits = (0..48).map(|bits| f64::powi(2.0, bits));
+    let around = bits.flat_map(|power| [power - 1.0, power - 0.5, power + 0.5, power + 1.0]);
+    for value in around.chain(largest_below_a_half) {
+        check::<f32>(value);
+        check::<f64>(value);
+    }
+}
+
 /// Scenes of all scales, near to their origin and far away from it, and rays from inside and outside.
 #[test]
 fn distances_are_exact_within_the_stated_bounds() {

@@ -11,6 +11,10 @@ use gridel_tests::measured::{SCRAMBLES_WIDE, check, measured, read};
 /// Returns a room around the origin, 20 wide, whose walls glow inwards. Each wall has four squares, the size of a
 /// light.
 fn room(albedo: f64, emission: f64, lights: bool, bounces: u8) -> Blob {
+    blob(&room_text(albedo, emission, lights, bounces))
+}
+
+fn room_text(albedo: f64, emission: f64, lights: bool, bounces: u8) -> String {
     let mut text = format!(
         "[camera]\neye = [1, 2, 3]\ntarget = [4, 3, -9]\nfov = 0.2\n\
          [render]\n{SCRAMBLES_WIDE}samples = 1\nbounces = {bounces}\ncutoff = 0\n\
@@ -39,7 +43,28 @@ fn room(albedo: f64, emission: f64, lights: bool, bounces: u8) -> Blob {
             faces.join(", ")
         );
     }
-    blob(&text)
+    text
+}
+
+/// Surfaces that light passes straight on take nothing away, and spend no bounces.
+#[test]
+fn light_that_passes_surfaces_spends_no_bounces() {
+    let (albedo, emission) = (0.5, 0.1);
+    let shells: String = [4, 6, 8]
+        .map(|radius| {
+            format!(
+                "[[object]]\nkind = 'sphere'\ncenter = [0, 0, 0]\nradius = {radius}\nmaterial = 'clear'\n"
+            )
+        })
+        .concat();
+    for bounces in [1, 2] {
+        let room = room_text(albedo, emission, false, bounces)
+            .replace("[render]\n", "[render]\ndepth = 32\n");
+        let clear = "[material.clear]\ndiffuse = 0\ntransmit = 1\nior = 1\n";
+        let part = 1.0 - f64::powi(albedo, i32::from(bounces) + 1);
+        let exact = part * emission / (1.0 - albedo);
+        check("shells", &blob(&format!("{room}{clear}{shells}")), exact);
+    }
 }
 
 fn blob(text: &str) -> Blob {

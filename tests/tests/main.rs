@@ -10,6 +10,7 @@ mod apex;
 mod blob;
 mod boxes;
 mod c_header;
+mod camera_rays;
 mod certify;
 mod cylinder_cube;
 #[path = "deform/main.rs"]

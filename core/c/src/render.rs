@@ -8,7 +8,7 @@ use crate::{
     gridel_scene, gridel_status,
 };
 use gridel_core::render::Pixel;
-use gridel_core::{Effects, Fixed, NoCount, Number, Renderer, Rgb565, Rgb888, Scene, Settings};
+use gridel_core::{BlobError, Effects, Fixed, NoCount, Number, Renderer, Rgb565, Rgb888, Scene, Settings};
 
 /// The effects that this build has code for.
 const EFFECTS: u32 = Effects::AVAILABLE.0;
@@ -245,7 +245,10 @@ unsafe fn render_from<N: Number>(
     // SAFETY: the caller's promise.
     let view = view_from(scene, &unsafe { read(camera) }?)?;
     let seen = scene.with_view(&view);
-    let seen = seen.map_err(|_| gridel_status::CameraInvalid)?;
+    let seen = seen.map_err(|error| match error {
+        BlobError::MissingEffects { .. } => error.into(),
+        _ => gridel_status::CameraInvalid,
+    })?;
     // SAFETY: the caller's promise.
     unsafe { render_scene::<N>(&seen, (picture, rectangle), pixels, memory) }
 }

@@ -213,7 +213,7 @@ pub struct gridel_picture {
     pub height: u16,
     /// Samples per pixel, 1 to 4096.
     pub samples: u16,
-    /// Maximum number of reflections and refractions of a ray, 0 to 32.
+    /// Maximum number of secondary rays that follow each other, 0 to 32: off mirrors, through glass or alpha, diffuse.
     pub depth: u16,
     /// 1 to dither, else 0.
     pub dither: u16,

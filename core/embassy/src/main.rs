@@ -44,7 +44,7 @@ bind_interrupts!(struct Interrupts {
 
 #[embassy_executor::main]
 async fn main(spawner: Spawner) {
-    // Waits for a row, and for a free buffer.
+    // Two buffers: one row is rendered while another is sent.
     static BUFFERS: StaticCell<[Row; 2]> = StaticCell::new();
     static CHANNEL: StaticCell<Channel<'static, NoopRawMutex, Row>> = StaticCell::new();
     let chip = embassy_nrf::init(Default::default());

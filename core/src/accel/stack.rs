@@ -74,8 +74,8 @@ pub(in crate::accel) fn pop<C: Observer>(
             return Some(entry);
         }
         if C::ENABLED {
-            let (place, enters) = report(&entry);
-            count.event(Event::NodeSkipped { place, enters });
+            let (node, enters) = report(&entry);
+            count.event(Event::NodeSkipped { node, enters });
         }
     }
 }

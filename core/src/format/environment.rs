@@ -1,13 +1,9 @@
 //! The record of the light around a scene.
 
 use crate::format::layout::records;
+use crate::format::range::{ONE, RADIANCE};
 use crate::format::record::Light;
 use bytemuck::{Pod, Zeroable};
-
-/// The ratio 1.
-const ONE: i64 = 1 << 30;
-/// The largest radiance.
-const RADIANCE: i64 = i32::MAX as i64;
 
 records! {
     /// The light around a scene: an octahedral map, and a sun in it.

@@ -2,11 +2,10 @@
 //! all distances.
 
 use crate::format::layout::records;
+use crate::format::range::ONE;
 use crate::format::record::Light;
 use bytemuck::{Pod, Zeroable};
 
-/// The ratio 1.
-const ONE: i64 = 1 << 30;
 /// The longest length, with 13 fraction bits.
 const LONGEST: i64 = 1 << 30;
 /// The longest edge: two of them are a length.
@@ -81,6 +80,11 @@ impl Light {
         } else {
             None
         }
+    }
+
+    /// Returns true if the light shines from a point.
+    pub const fn is_point(&self) -> bool {
+        self.directional == 0 || self.directional & Self::AREA == Self::FORM
     }
 
     /// Returns true if the light is an area and not a point.

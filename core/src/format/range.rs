@@ -2,6 +2,12 @@
 
 use crate::format::{BlobError, Field, Location, Reason, SectionKind};
 
+/// The ratio 1, with 30 fraction bits.
+pub(crate) const ONE: i64 = 1 << 30;
+
+/// The largest radiance, with 20 fraction bits.
+pub(crate) const RADIANCE: i64 = i32::MAX as i64;
+
 /// Returns an error unless a field of the header is at most `most`.
 #[inline(always)]
 pub(crate) fn at_most(field: Field, found: u32, most: u32) -> Result<(), BlobError> {

@@ -230,12 +230,12 @@ macro_rules! sections {
             Textures = 78, "textures", [record::Texture], "texture" of "";
             /// The palettes and texels of all textures: see [`Texture`](crate::format::record::Texture).
             Texels = 79, "texels", [u8], "byte" of "textures";
-            /// [`LightForm`](crate::format::light_form::LightForm)s: what makes lights more than points.
+            /// [`LightForm`](crate::format::light_form::LightForm)s: shape, falloff and cone of lights.
             LightForms = 80, "light-forms", [light_form::LightForm], "form" of "lights";
             /// For each of the first materials, the [light](crate::format::record::Emission) that it sends out; others send
             /// out none. Absent where no material glows.
             Emissions = 81, "emissions", [record::Emission], "emission" of "";
-            /// One [`Lens`](crate::format::lens::Lens): what the camera has in place of a pinhole.
+            /// One [`Lens`](crate::format::lens::Lens): of the camera, where it is no pinhole.
             Lens = 90, "lens", [lens::Lens], "" of "";
             /// Maximum number of diffuse reflections between the eye and a light: 1 to 32. Absent where surfaces do
             /// not light each other.

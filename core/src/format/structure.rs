@@ -142,7 +142,7 @@ impl Structure {
         held.find(|it| set & it.bit() != 0).unwrap_or(Self::List)
     }
 
-    /// Returns whether loading proves that this structure gives the answers of the list. Loading cannot prove it for
+    /// Returns true if loading proves that this structure gives the answers of the list. Loading cannot prove it for
     /// lists of candidates, because a proof that they are complete takes more than linear time. There the blob's
     /// compiler is trusted. A walk through them still ends, and every hit is a true one.
     ///

@@ -11,6 +11,7 @@
 //! which all formats share. At a corner the value is that of the vertex. On an edge it depends only on that edge,
 //! except for the rounding of the weights.
 
+use crate::axis::dot;
 use crate::format::{BlobError, SectionKind, Sections};
 use crate::number::Arithmetic;
 
@@ -75,14 +76,12 @@ impl Weights {
         Self([second.to_q30(), third.to_q30()])
     }
 
-    /// The mean of the corners' values, below 2^31, with 30 more fraction bits.
+    /// The mean of the corners' values, with 30 more fraction bits.
     #[inline(always)]
-    fn mean(self, [a, b, c]: [i32; 3]) -> i64 {
-        let step =
-            |to: i32, weight: i32| i64::from(to.wrapping_sub(a)).wrapping_mul(i64::from(weight));
-        (i64::from(a) << 30)
-            .wrapping_add(step(b, self.0[0]))
-            .wrapping_add(step(c, self.0[1]))
+    fn mean(self, corners: [i32; 3]) -> i64 {
+        let [second, third] = self.0;
+        let first = (1_i32 << 30).wrapping_sub(second).wrapping_sub(third);
+        dot(corners, [first, second, third])
     }
 
     /// The color at the point: linear ratios with 30 fraction bits.

@@ -1,4 +1,4 @@
-//! All clusters of a blob: see [`blob::cluster`](crate::format::cluster).
+//! All clusters of a blob: see [`format::cluster`](crate::format::cluster).
 
 use crate::format::cluster::{
     LANES, Pack, Pack16, Pack24, RADII, Strip, Strip16, Strip24, StripMembers, Windowed24,

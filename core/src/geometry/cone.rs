@@ -19,7 +19,7 @@
 //! middle, and the origin slides by at most one reach along the major axis. So no point is farther than two reaches
 //! from the middle. `cos |Q| + g` is at most that and a radius: three reaches, below 2^31. Squares are below 2^62.
 
-use crate::axis::pick;
+use crate::axis::{dot, pick};
 use crate::format::layout::records;
 use crate::format::range::Ranges;
 use crate::format::record::UnitBox;
@@ -57,6 +57,9 @@ records! {
 const MANTLE: Part = 0;
 const BASE: Part = 1;
 const APEX: Part = 2;
+
+/// Half the height and the widest radius of the largest solid in a scene's box, in 1/256 unit.
+const MOST_REACH: i64 = 80_300 << 8;
 
 /// Maximum number of times the origin slides on towards the tip, where the solid is thinner by half than at the last
 /// place.
@@ -161,6 +164,30 @@ impl<N: Arithmetic> Mantle<N> {
             s + from.max(lowest).min(highest),
             s + to.max(lowest).min(highest),
         ))
+    }
+    /// Returns the distances at which the line enters and leaves, between two places and two ends. Near the tip, where the
+    /// radius is less than `thin`, they are computed again from where it is thinner.
+    #[inline(always)]
+    fn cut(&self, [nearest, farthest]: [N; 2], [enter, leave]: [N; 2], thin: N) -> Option<(N, N)> {
+        let within = |s: N| s.max(nearest).min(farthest);
+        let (_, b) = self.terms(self.q, self.g);
+        let mut cut = self.roots(within(N::divide(-b, self.a)))?;
+        let mut thin = thin;
+        for _ in 0..SLIDES {
+            let (first, last) = (within(cut.0.max(enter)), within(cut.1.min(leave)));
+            let (g_first, g_last) = (self.g - self.e * first, self.g - self.e * last);
+            let (s, g) = if g_first < g_last {
+                (first, g_first)
+            } else {
+                (last, g_last)
+            };
+            if g >= thin {
+                break;
+            }
+            cut = self.roots(s)?;
+            thin = g.half();
+        }
+        Some(cut)
     }
 }
 
@@ -299,24 +326,8 @@ impl Primitive for Cone {
         if nearest > farthest {
             return None;
         }
-        let within = |s: N| s.max(nearest).min(farthest);
-        let (_, b) = mantle.terms(mantle.q, mantle.g);
-        let mut cut = mantle.roots(within(N::divide(-b, mantle.a)))?;
-        let mut thin = (widest.scale_up(bits) * cos).half();
-        for _ in 0..SLIDES {
-            let (first, last) = (within(cut.0.max(enter.0)), within(cut.1.min(leave.0)));
-            let (g_first, g_last) = (mantle.g - e * first, mantle.g - e * last);
-            let (s, g) = if g_first < g_last {
-                (first, g_first)
-            } else {
-                (last, g_last)
-            };
-            if g >= thin {
-                break;
-            }
-            cut = mantle.roots(s)?;
-            thin = g.half();
-        }
+        let thin = (widest.scale_up(bits) * cos).half();
+        let cut = mantle.cut([nearest, farthest], [enter.0, leave.0], thin)?;
         if cut.0 > enter.0 {
             enter = (cut.0, MANTLE);
         }
@@ -437,6 +448,11 @@ impl Primitive for Cone {
         self.check_ranges(scene.at.location())?;
         let radii = [self.base_radius, self.apex_radius];
         scene.at.ensure(radii != [0; 2], Reason::ZeroRadii)?;
+        let along = [0, 1, 2].map(|k: usize| self.apex[k].wrapping_sub(self.base[k]));
+        let widest = i64::from(self.base_radius.max(self.apex_radius));
+        let rest = MOST_REACH.wrapping_sub(widest).max(0).wrapping_mul(2);
+        let fits = dot(along, along) <= rest.wrapping_mul(rest);
+        scene.at.ensure(fits, Reason::OutsideScene)?;
         scene.inner(&self.bounds)
     }
 }

@@ -37,7 +37,7 @@ pub(crate) fn check_rotation(matrix: &[[i32; 3]; 3]) -> Result<(), Reason> {
 }
 
 /// 2^60 over a number from 2^28 to 2^30, within 2^-29 of itself. Boards have no division of 64 bits.
-fn reciprocal(number: u32) -> Option<i64> {
+fn quotient_of_2_to_60(number: u32) -> Option<i64> {
     // Within 2^-13, and twice as many bits with each step of Newton's method.
     let first = (1_u32 << 31).checked_div(number >> 15)?;
     let mut inverse = i64::from(first) << 14;
@@ -53,7 +53,7 @@ fn reciprocal(number: u32) -> Option<i64> {
 pub(crate) fn around(instance: &Instance, part: &UnitBox) -> Option<UnitBox> {
     let [x, y, z] = instance.matrix;
     // The inverse is the transposed matrix, divided by the square: from 2^28 to 2^30, so over 2^60 up to 2^32.
-    let inverse = reciprocal((dot(x, x) >> 16) as u32)?;
+    let inverse = quotient_of_2_to_60((dot(x, x) >> 16) as u32)?;
     // In 1/256 unit, from half units: sums have up to 43 bits, of which 13 are far below that.
     let shift = (33 + i32::from(instance.exponent)).unsigned_abs() & 63;
     let back = |sum: i64, rounded: i64| {
@@ -128,12 +128,12 @@ mod tests {
         let between = (0..10_000).map(|k| (1_u32 << 28) + k * 80_521);
         for number in ends.into_iter().chain(between) {
             let exact = f64::powi(2.0, 60) / f64::from(number);
-            let found = reciprocal(number).expect("a number");
+            let found = quotient_of_2_to_60(number).expect("a number");
             assert!(
                 (found as f64 / exact - 1.0).abs() < f64::powi(2.0, -29),
                 "{number}"
             );
         }
-        assert_eq!(reciprocal(0), None);
+        assert_eq!(quotient_of_2_to_60(0), None);
     }
 }

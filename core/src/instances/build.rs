@@ -126,7 +126,7 @@ fn halve(instances: &[Instance], order: &mut [u32], front: usize) {
         if least == greatest {
             return;
         }
-        // Rounded down, so below the greatest.
+        // Below the greatest, however it is rounded.
         let middle = least.midpoint(greatest).min(greatest.wrapping_sub(1));
         let below = partition(instances, order, axis, middle);
         let (low, high) = order.split_at_mut_checked(below).unwrap_or_default();

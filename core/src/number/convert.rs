@@ -17,15 +17,16 @@ pub trait Convert: Scalar {
     fn radiance_sum(self, other: Self) -> Self;
     /// Radiance clamped to \[0, 1\] as an integer of 16 bits: 65535 is display white. NaN is 0.
     fn to_linear16(self) -> u16;
-    /// A length from scene data in double precision: rounded, saturating, NaN to 0.
+    /// A length from scene data in double precision: rounded, NaN to 0. Beyond its range it saturates in `fixed`, and is
+    /// infinite in the float formats.
     fn length_from_f64(units: f64) -> Self;
-    /// A far coordinate in units from double precision: rounded, saturating, NaN to 0.
+    /// A far coordinate in units from double precision, as [`length_from_f64`](Self::length_from_f64).
     fn far_from_f64(units: f64) -> Self::Wide;
     /// A far coordinate in units in double precision, for reports.
     fn far_to_f64(wide: Self::Wide) -> f64;
     /// A far coordinate in units as an integer with 13 fraction bits: rounded to nearest, saturating, NaN to 0.
     fn far_to_q13(wide: Self::Wide) -> i64;
-    /// A ratio in -2 to 2 from double precision: rounded, saturating, NaN to 0.
+    /// A ratio in -2 to 2 from double precision: rounded, saturating in `fixed`, NaN to 0.
     fn ratio_from_f64(value: f64) -> Self;
     /// A length or a ratio in single precision, for culling on machines with SIMD registers.
     fn to_f32(self) -> f32;

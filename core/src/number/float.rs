@@ -18,7 +18,7 @@ use crate::number::{extent, is_finite};
 
 /// 2^-60 and 2^-100: smaller numbers need care.
 const SMALLEST_F32: f32 = 1.0 / (1u64 << 60) as f32;
-const SMALLEST_F64: f64 = 1.0 / (1u64 << 50) as f64 / (1u64 << 50) as f64;
+pub(crate) const SMALLEST_F64: f64 = 1.0 / (1u64 << 50) as f64 / (1u64 << 50) as f64;
 
 /// A finite vector that is not 0, halved or doubled until its largest component lies between 1 and 2.
 fn near_one<N: Arithmetic<Wide = N>>(mut v: [N; 3]) -> [N; 3] {
@@ -186,8 +186,11 @@ macro_rules! float_number {
 
             fn far_to_q13(wide: Self) -> i64 {
                 let q13 = wide * 8192.0;
-                let half = if q13 < 0.0 { -0.5 } else { 0.5 };
-                (q13 + half) as i64
+                let whole = q13 as i64;
+                let rest = q13 - whole as $float;
+                // A half is rounded away from 0. Nothing is added to the number itself, which may have no digit for it.
+                let step = i64::from(rest >= 0.5).wrapping_sub(i64::from(rest <= -0.5));
+                whole.saturating_add(step)
             }
 
             #[inline(always)]

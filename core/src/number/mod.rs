@@ -1,6 +1,6 @@
 //! The arithmetic of a kernel, in three number formats.
 //!
-//! Every kernel is written once, over [`Number`](crate::number::Arithmetic), and reads the same in `fixed`, `f32` and
+//! Every kernel is written once, over [`Number`](crate::accel::Number), and reads the same in `fixed`, `f32` and
 //! `f64`. A number represents one of four quantities. In the float formats all four are plain floats. In [`Fixed`] each
 //! has its own binary point, and the operations are defined so that the same expression keeps it:
 //!

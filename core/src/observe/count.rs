@@ -72,7 +72,7 @@ impl Observer for NoCount {
     const COUNTS: bool = false;
 }
 
-/// Counts everything.
+/// Counts everything. Numbers beyond 64 bits wrap.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Counters {
@@ -108,12 +108,13 @@ impl Counters {
     /// assert_eq!([counters.rays(), counters.secondary()], [5, 3]);
     /// ```
     pub fn rays(&self) -> u64 {
-        self.primary + self.secondary()
+        self.primary.wrapping_add(self.secondary())
     }
 
     /// Returns all rays but those from the camera.
     pub fn secondary(&self) -> u64 {
-        self.shadow + self.reflected + self.refracted + self.diffuse
+        let leaving = [self.shadow, self.reflected, self.refracted, self.diffuse];
+        leaving.into_iter().fold(0, u64::wrapping_add)
     }
 
     /// Returns all tests of boxes, bounding spheres and primitives, and all cells that were entered.
@@ -125,22 +126,24 @@ impl Counters {
     /// assert_eq!(counters.tests(), 6);
     /// ```
     pub fn tests(&self) -> u64 {
-        self.boxes + self.cells + self.primitives
+        self.boxes
+            .wrapping_add(self.cells)
+            .wrapping_add(self.primitives)
     }
 
     /// Returns the counts of two parts of the work.
     pub fn plus(&self, other: &Self) -> Self {
         Self {
-            planes: self.planes + other.planes,
-            boxes: self.boxes + other.boxes,
-            primitives: self.primitives + other.primitives,
-            cells: self.cells + other.cells,
-            instances: self.instances + other.instances,
-            primary: self.primary + other.primary,
-            shadow: self.shadow + other.shadow,
-            reflected: self.reflected + other.reflected,
-            refracted: self.refracted + other.refracted,
-            diffuse: self.diffuse + other.diffuse,
+            planes: self.planes.wrapping_add(other.planes),
+            boxes: self.boxes.wrapping_add(other.boxes),
+            primitives: self.primitives.wrapping_add(other.primitives),
+            cells: self.cells.wrapping_add(other.cells),
+            instances: self.instances.wrapping_add(other.instances),
+            primary: self.primary.wrapping_add(other.primary),
+            shadow: self.shadow.wrapping_add(other.shadow),
+            reflected: self.reflected.wrapping_add(other.reflected),
+            refracted: self.refracted.wrapping_add(other.refracted),
+            diffuse: self.diffuse.wrapping_add(other.diffuse),
         }
     }
 }

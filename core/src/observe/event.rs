@@ -36,7 +36,7 @@ pub enum Event {
     RayStarted {
         /// The purpose of the ray.
         kind: RayKind,
-        /// Number of reflections and refractions that led to it.
+        /// Number of secondary rays that led to it, of which it is the last; 0 from the camera.
         depth: u8,
         /// The factor of its radiance.
         weight: [f64; 3],
@@ -61,8 +61,8 @@ pub enum Event {
     },
     /// A node or a cell is tested: the ray can hit its content if `span` is not empty.
     Tested {
-        /// The part that is tested.
-        place: NodeId,
+        /// The node or cell.
+        node: NodeId,
         /// The planes that were tested for it. `None` for a plane that was not, because it coincides with a plane
         /// around it, or is not worth a test.
         sides: Sides,
@@ -73,8 +73,8 @@ pub enum Event {
     Empty(NodeId),
     /// A waiting node is dropped, because a hit was found before it.
     NodeSkipped {
-        /// The part that is dropped.
-        place: NodeId,
+        /// The node.
+        node: NodeId,
         /// The distance at which the ray would enter it.
         enters: f64,
     },
@@ -255,13 +255,13 @@ pub enum Event {
         /// The factor that its radiance would have had.
         weight: [f64; 3],
     },
-    /// A ray hits a mirror or glass at the largest depth. Its reflection or refraction stays black.
+    /// A ray at the largest depth hits a surface that could send others. They stay black.
     TooDeep,
     /// A sample is complete.
     SampleFinished {
         /// Its place in 1/256 pixel from the left and from the top of the picture; `None` for a ray
         /// of the caller's own.
-        place: Option<[i32; 2]>,
+        at: Option<[i32; 2]>,
         /// Its radiance, each channel limited to 0 to 1. The limit is 16 where effects act on the mean of samples, or
         /// need it to be right.
         radiance: [f64; 3],

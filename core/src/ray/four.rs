@@ -9,10 +9,11 @@ use super::given::given;
 use super::start::REACH;
 use crate::format::record::UnitBox;
 use crate::number::Scalar;
+use crate::number::float::SMALLEST_F64;
 use crate::simd::{Avx2, F64x4};
 
-/// The largest and the smallest length of a direction, along its largest component.
-const LENGTHS: [f64; 2] = [1.0 / (1_u128 << 100) as f64, (1_u128 << 100) as f64];
+/// The smallest and the largest length of a direction, along its largest component.
+const LENGTHS: [f64; 2] = [SMALLEST_F64, 1.0 / SMALLEST_F64];
 
 /// Four rays in units. Each row has a number of every ray.
 #[derive(Clone, Copy, Debug)]

@@ -38,10 +38,11 @@ impl<N: Arithmetic> Pencil<N> {
     /// ```
     /// # static BLOB: &[u8] =
     /// #     gridel_core::include_blob!(concat!(env!("CARGO_MANIFEST_DIR"), "/../fixtures/blobs/dual-split.gridel"));
-    /// use gridel_core::{Ray, Scene};
+    /// use gridel_core::{Pencil, Scene};
     ///
     /// let scene = Scene::from_bytes(BLOB)?;
-    /// let ray = Ray::<f64>::new(scene.bounds(), [0.0; 3], [3.0, -4.0, 0.0], 0.0, 100.0)?;
+    /// let pencil = Pencil::<f64>::new(scene.bounds(), [0.0; 3])?;
+    /// let ray = pencil.ray([3.0, -4.0, 0.0])?;
     /// assert_eq!(ray.slope(), [0.75, -1.0, 0.0]);
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```

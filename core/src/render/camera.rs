@@ -58,7 +58,7 @@ pub enum Up {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub enum CameraError {
-    /// The field of view is 0, or half a turn or more.
+    /// The field of view is below 2, or half a turn or more.
     FieldOfView(Angle),
     /// Eye and target are the same place, or the direction or rotation has no length.
     NoDirection,
@@ -71,7 +71,7 @@ pub enum CameraError {
 impl fmt::Display for CameraError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(match self {
-            Self::FieldOfView(_) => "the field of view must be above 0 and below half a turn",
+            Self::FieldOfView(_) => "the field of view must be at least 2 and below half a turn",
             Self::NoDirection => "the camera looks nowhere: move its eye or its target",
             Self::AlongUp => {
                 "the camera looks along the direction that points up: give one across the view"
@@ -88,8 +88,8 @@ impl Camera {
     /// `field_of_view` is the angle of the picture's height.
     ///
     /// # Errors
-    /// If eye and target are the same place, or the camera looks along `up`. Also if the field of view is 0 or half a
-    /// turn or more.
+    /// If eye and target are the same place, or the camera looks along `up`. Also if the field of view is below 2, in
+    /// 2^-32 turn, or half a turn or more.
     pub fn look_at(
         eye: Position,
         target: Position,

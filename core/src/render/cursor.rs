@@ -24,9 +24,11 @@ use crate::render::workspace::WorkspaceView;
 ///
 /// # What a ray costs
 /// A step counts the rays from the camera, off mirrors and through glass. Each ray costs one closest hit. If it hits a
-/// surface, each light that shines on that surface costs one shadow ray. A shadow ray costs an any-hit query in a scene
-/// without glass. Else it costs up to 64 closest hits, one for every surface of glass on the way. No other step depends
-/// on the scene.
+/// surface, each light that shines on that surface costs one shadow ray. A shadow ray costs one any-hit query, unless
+/// light can pass surfaces: of glass, or with alpha. Then it costs one closest hit, and one more for every surface that
+/// it passes, of which there are at most [`MAX_SHADOW_SURFACES`](crate::format::limits::MAX_SHADOW_SURFACES). That is
+/// so where the scene has such surfaces. In builds without the feature `wide` it is so in every scene if the renderer's
+/// effects hold one that lets light pass. No other step depends on the scene.
 #[derive(Debug)]
 pub struct Cursor<'r, 's, 'a, N: Number, A: Accel, const EFFECTS: u32, O = Rows> {
     renderer: &'r Renderer<'s, 'a, N, A, EFFECTS>,

@@ -2,7 +2,8 @@
 //!
 //! In `fixed`, directions have 62 bits while they are added up, and 30 when their slopes are computed. So in square
 //! pictures of up to 90 degrees a slope is off by less than 2^-26. In wider ones the error is larger, but below a
-//! thousandth of the distance of two pixels.
+//! thousandth of the distance of two pixels. Directions to pixels outside of the picture need more bits than that: they
+//! are added up with fewer fraction bits.
 
 use crate::accel::Number;
 use crate::axis::pick;
@@ -39,10 +40,6 @@ pub(crate) struct PixelRays<N: Number> {
     height: i32,
 }
 
-/// A row of a picture: the direction to its middle.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Row<N: Number>([N::Wide; 3]);
-
 impl<N: Number> PixelRays<N> {
     pub(crate) fn new(bounds: &UnitBox, view: &View, width: u16, height: u16) -> Self {
         // The largest component of any pixel's direction gets 62 bits, of which its ray uses the upper half.
@@ -68,20 +65,40 @@ impl<N: Number> PixelRays<N> {
         }
     }
 
-    /// The row that lies `y` subpixels below the upper edge.
+    /// The ray to a point that lies so many subpixels to the right of the picture's upper left corner, and so many below.
     #[inline(always)]
-    pub(crate) fn row(&self, y: i32) -> Row<N> {
+    pub(crate) fn ray(&self, [x, y]: [i32; 2]) -> Result<Ray<N>, RayError> {
         let rise = self.height.wrapping_sub(y.wrapping_mul(2));
-        let axis = |k: usize| self.forward[k] + N::wide_times(self.up[k], rise);
-        Row([axis(0), axis(1), axis(2)])
+        let shift = x.wrapping_mul(2).wrapping_sub(self.width);
+        if N::FORMAT == Format::Fixed && (x > self.width || y > self.height) {
+            return self.ray_outside(shift, rise);
+        }
+        let axis = |k: usize| {
+            let row = self.forward[k] + N::wide_times(self.up[k], rise);
+            N::upper(row + N::wide_times(self.right[k], shift))
+        };
+        let slopes = N::slopes_of([axis(0), axis(1), axis(2)]);
+        let (slope, major) = slopes.ok_or(RayError::Direction)?;
+        Ok(self.eye.ray_along(slope, major))
     }
 
-    /// The ray to the point of a row that lies `x` subpixels from the left edge.
-    #[inline(always)]
-    pub(crate) fn ray(&self, row: &Row<N>, x: i32) -> Result<Ray<N>, RayError> {
-        let shift = x.wrapping_mul(2).wrapping_sub(self.width);
-        let axis = |k: usize| N::upper(row.0[k] + N::wide_times(self.right[k], shift));
-        let slopes = N::slopes_of([axis(0), axis(1), axis(2)]);
+    /// The ray to a point outside of the picture, so many half subpixels to the right of its middle and above it.
+    #[cold]
+    #[inline(never)]
+    fn ray_outside(&self, shift: i32, rise: i32) -> Result<Ray<N>, RayError> {
+        let ratio = |part: i32, whole: i32| {
+            let ratio = part.unsigned_abs().checked_div(whole.unsigned_abs());
+            ratio.unwrap_or(0)
+        };
+        let farther = ratio(shift, self.width).max(ratio(rise, self.height));
+        // Less than this many pictures away from the middle.
+        let divisor = 2_i32.wrapping_shl(u32::BITS.wrapping_sub(farther.leading_zeros()));
+        let axis = |k: usize| {
+            let over = |wide: N::Wide| N::wide_over(wide, divisor);
+            let row = over(self.forward[k]) + N::wide_times(over(self.up[k]), rise);
+            row + N::wide_times(over(self.right[k]), shift)
+        };
+        let slopes = N::slopes([axis(0), axis(1), axis(2)]);
         let (slope, major) = slopes.ok_or(RayError::Direction)?;
         Ok(self.eye.ray_along(slope, major))
     }

@@ -30,7 +30,7 @@ pub struct Settings {
     /// Samples per pixel, 1 to 4,096; powers of two are spread best. Beyond 256 they share places within the pixel, but
     /// effects draw different random points.
     pub samples: u16,
-    /// Maximum number of reflections and refractions of a ray, 0 to 32.
+    /// Maximum number of secondary rays that follow each other, 0 to 32: off mirrors, through glass or alpha, diffuse.
     pub depth: u8,
     /// True if pixels are dithered.
     pub dither: bool,
@@ -305,7 +305,7 @@ impl<'s, 'a, N: Number, A: Accel, const EFFECTS: u32> Renderer<'s, 'a, N, A, EFF
     #[inline]
     pub fn primary_ray(&self, x: u16, y: u16) -> Result<Ray<N>, RayError> {
         let middle = |pixel: u16| i32::from(pixel) * SUBPIXELS + SUBPIXELS / 2;
-        self.rays.ray(&self.rays.row(middle(y)), middle(x))
+        self.rays.ray([middle(x), middle(y)])
     }
 
     /// The source of the pixels' rays.

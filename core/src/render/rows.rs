@@ -83,7 +83,7 @@ impl<N: Number, A: Accel, const EFFECTS: u32> Renderer<'_, '_, N, A, EFFECTS> {
         let seen = limited(radiance, tracing.develops::<EFFECTS>());
         if C::ENABLED {
             count.event(Event::SampleFinished {
-                place: None,
+                at: None,
                 radiance: seen.to_f64(),
             });
         }

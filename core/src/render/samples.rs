@@ -64,7 +64,7 @@ impl<N: Number> Samples<N> {
         self.sum = self.sum.plus_displayable(part);
         if C::ENABLED {
             count.event(Event::SampleFinished {
-                place: Some(place([x, y], self.index, samples)),
+                at: Some(place([x, y], self.index, samples)),
                 radiance: seen.to_f64(),
             });
         }

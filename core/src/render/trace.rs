@@ -1,8 +1,8 @@
 //! The ray loop: traces a ray from the camera and all secondary rays.
 //!
 //! There is no recursion. Rays wait in a work list that the caller owns. Each step removes one ray and adds at most
-//! two, one generation deeper, so `depth + 1` entries are enough. A ray is added only if the scene's depth allows it
-//! and its weight is above the scene's cutoff.
+//! three, one generation deeper; [`Effects::work_depth`](crate::Effects::work_depth) says how many can wait. A ray is
+//! added only if the scene's depth allows it and its weight is above the scene's cutoff.
 //!
 //! Secondary rays start outside the surface, on the side to which they go, at the distance of the hit's own error bound
 //! (see [`Hit::error`]). That is close enough to lose no contact, and too far to hit the surface again. A ray that
@@ -148,7 +148,7 @@ struct Tracing<'t, 'w, 's, N: Number, A, C, const EFFECTS: u32> {
     scene: &'s Scene<'s>,
     /// The largest ray depth.
     most: u8,
-    /// Number of reflections and refractions that led to the ray.
+    /// Number of secondary rays that led to the ray, of which the ray is the last.
     depth: u8,
     kind: RayKind,
     /// The source of the random points that effects draw.

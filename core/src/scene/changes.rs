@@ -35,9 +35,11 @@ impl<'a> Scene<'a> {
     pub fn with_view(&self, view: &'a View) -> Result<Self, BlobError> {
         check_view(view)?;
         check_lens(self.lens(), view)?;
+        let effects = self.effects.with(view.effects());
+        check_available(effects)?;
         Ok(Self {
             view,
-            effects: self.effects.with(view.effects()),
+            effects,
             ..*self
         })
     }
@@ -65,11 +67,13 @@ impl<'a> Scene<'a> {
     /// If a number is out of its range, or this build lacks an effect that a light requires.
     pub fn with_lights(&self, lights: &'a [Light]) -> Result<Self, BlobError> {
         let mut effects = self.effects;
+        let decided = match self.lights.is_empty() {
+            true => Effects::NONE,
+            false => Effects::SHADOW,
+        };
         for (index, light) in lights.iter().enumerate() {
             check_light(index, light, self)?;
-            if self.lights.is_empty() {
-                effects = effects.with(light.effects());
-            }
+            effects = effects.with(light.effects().without(decided));
         }
         check_available(effects)?;
         Ok(Self {

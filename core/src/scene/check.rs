@@ -2,7 +2,7 @@
 
 use crate::accel::StructureViews;
 use crate::format::limits::{FARTHEST, LEAST_ROUGHNESS, MAX_MEDIA, SMOOTH};
-use crate::format::range::{At, Ranges, exactly};
+use crate::format::range::{At, ONE, Ranges, exactly};
 use crate::format::record::{Header, Light, Material};
 use crate::format::{
     BlobError, Effects, Field, Kind, Leaf, Location, Reason, SectionKind, Sections, checksum,
@@ -40,9 +40,6 @@ pub(crate) fn check<'a>(scene: &Scene<'a>, sections: &Sections<'a>) -> Result<()
     check_structures(scene, sections)?;
     check_own_primitives(scene)
 }
-
-/// The ratio 1.
-const ONE: i64 = 1 << 30;
 
 fn check_lights(scene: &Scene<'_>) -> Result<(), BlobError> {
     for (index, form) in scene.light_forms().iter().enumerate() {

@@ -6,7 +6,7 @@
 use crate::format::environment::Environment;
 use crate::format::range::{At, Ranges};
 use crate::format::record::Light;
-use crate::format::{BlobError, Field, Location, Reason, SectionKind, Sections};
+use crate::format::{BlobError, Field, Location, Reason, SectionKind, Sections, last};
 
 /// The ratio 1.
 const ONE: i32 = 1 << 30;
@@ -162,7 +162,10 @@ impl<'a> EnvironmentMap<'a> {
             let most = u64::from(i32::MAX.cast_unsigned());
             let brought = match shift {
                 1.. => product.wrapping_add(1 << (shift.wrapping_sub(1) & 63)) >> (shift & 63),
-                _ if product == 0 => 0,
+                // Less than 64, as is the number of zeros.
+                _ if product.leading_zeros() > shift.unsigned_abs() => {
+                    product << (shift.unsigned_abs() & 63)
+                }
                 _ => most,
             };
             brought.min(most) as i32
@@ -252,15 +255,9 @@ fn adds_up<T: Copy + Into<u32>>(
 /// Returns the last of some numbers, which do not decrease, that is at most another one.
 #[inline(always)]
 fn last_at_most<T: Copy + PartialOrd>(all: &[T], most: T) -> usize {
-    let (mut low, mut high) = (0_usize, all.len());
-    while low.saturating_add(1) < high {
-        let middle = low.midpoint(high);
-        match all.get(middle) {
-            Some(&start) if start <= most => low = middle,
-            _ => high = middle,
-        }
-    }
-    low
+    last(all.len(), |place| {
+        all.get(place).is_some_and(|&it| it <= most)
+    })
 }
 
 /// Returns the part of a row's light before a texel, and the part from it, with 16 fraction bits.

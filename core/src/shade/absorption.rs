@@ -170,6 +170,8 @@ fn left<N: Number>(ray: &Ray<N>, hit: &Hit<N>, material: &Material) -> Color<N> 
 /// The part of light that remains after a length of glass.
 pub(super) fn absorb<N: Number>(material: &Material, length: N) -> Color<N> {
     let [red, green, blue] = material.absorption;
+    // A ray of the caller's own can hit glass before its origin.
+    let length = length.max(N::ZERO);
     let left = |coefficient: u32| length.exp_neg(coefficient);
     Color([left(red), left(green), left(blue)])
 }

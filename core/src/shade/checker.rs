@@ -9,6 +9,7 @@ use crate::query::Hit;
 use crate::ray::Ray;
 use crate::shade::Color;
 use crate::shade::effect::{Effect, Tracer};
+use crate::shade::light::length;
 use crate::shade::surface::Surface;
 
 pub(crate) struct Checker;
@@ -36,10 +37,9 @@ impl Effect for Checker {
         if !surface.required.contains(Self::EFFECT) {
             return;
         }
-        let length = |q13: i32| N::narrow(N::far(q13.into()));
-        let size = length(material.checker_size);
+        let size = length::<N>(material.checker_size);
         let parity = (0..3).fold(0, |parity, axis| {
-            let origin = length(material.checker_origin[axis]);
+            let origin = length::<N>(material.checker_origin[axis]);
             let place = if hit.is_unbounded() {
                 far_point(ray, hit, axis, origin, size)
             } else {

@@ -10,7 +10,6 @@ use crate::format::limits::INDIRECT;
 use crate::number::Angle;
 use crate::observe::event::RayKind;
 use crate::query::Hit;
-use crate::ray::Ray;
 use crate::shade::basis::beside;
 use crate::shade::effect::{Effect, Tracer};
 use crate::shade::surface::{Bounce, Secondary, Surface};
@@ -21,27 +20,13 @@ pub(crate) struct Indirect;
 const DIRECTION: u16 = 0x1030;
 
 impl Effect for Indirect {
-    /// Number of diffuse reflections that led to the surface.
+    /// Number of diffuse reflections that led to the ray.
     type State<N: Number> = [u8; INDIRECT as usize];
 
     const EFFECT: Effects = Effects::INDIRECT;
 
     /// The light from a random direction can be brighter than a display shows: the mean of the samples counts.
     const DEVELOPS: bool = true;
-
-    #[inline(always)]
-    fn surface<'s, N: Number, X: Tracer<'s, N>>(
-        tracer: &mut X,
-        state: &mut Self::State<N>,
-        _: &Ray<N>,
-        _: &mut Surface<'_, N>,
-    ) {
-        if tracer.kind() == RayKind::Diffuse
-            && let Some(reflections) = state.first_mut()
-        {
-            *reflections = reflections.saturating_add(1);
-        }
-    }
 
     #[inline(always)]
     fn bounce<'s, N: Number, X: Tracer<'s, N>>(
@@ -66,12 +51,16 @@ impl Effect for Indirect {
     #[inline(always)]
     fn leave<'s, N: Number, X: Tracer<'s, N>>(
         tracer: &mut X,
-        _: &mut Self::State<N>,
+        state: &mut Self::State<N>,
         _: &Hit<N>,
         secondary: &mut Secondary<N>,
     ) {
-        // Lights shine through glass and through transparent parts, too.
-        if secondary.kind == RayKind::Refracted && tracer.kind() == RayKind::Diffuse {
+        if secondary.kind == RayKind::Diffuse {
+            if let Some(reflections) = state.first_mut() {
+                *reflections = reflections.saturating_add(1);
+            }
+        } else if secondary.kind == RayKind::Refracted && tracer.kind() == RayKind::Diffuse {
+            // Lights shine through glass and through transparent parts, too.
             secondary.kind = RayKind::Diffuse;
         }
     }

@@ -82,15 +82,15 @@ impl<N: Number> Distance<N> {
     }
 }
 
-/// The direction and the length of a way.
-pub(crate) struct Reach<N> {
+/// A way by its direction and its length.
+pub(crate) struct Way<N> {
     /// The direction, of length 1.
     pub(crate) unit: [N; 3],
     /// The way's length.
     pub(crate) distance: Distance<N>,
 }
 
-impl<N: Number> Reach<N> {
+impl<N: Number> Way<N> {
     /// Returns them for a way and its length along its largest component; `None` if it has no length, or no end.
     pub(crate) fn of(way: [N::Wide; 3], distance: Option<N::Wide>) -> Option<Self> {
         let (slopes, _) = N::slopes(way)?;

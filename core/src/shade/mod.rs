@@ -3,11 +3,11 @@
 //! An effect implements the trait of `effect.rs` at one or more places of the ray loop, and is named
 //! in the table of `format/effects.rs`.
 //!
-//! | place | when | today |
+//! | place | when | effects |
 //! |---|---|---|
 //! | `camera` | a ray leaves the camera | depth of field |
 //! | `arrive` | a ray has come to a hit | nested, absorption |
-//! | `surface` | a ray hits a surface | checker, smooth, texture levels, normal map, vertex colors, texture, alpha, indirect |
+//! | `surface` | a ray hits a surface | checker, smooth, texture levels, normal map, vertex colors, texture, alpha |
 //! | `emit` | a surface sends out light of its own | emission |
 //! | `aim` | a surface looks for a light | area light, environment |
 //! | `face` | a surface faces a light | smooth, normal map, falloff |

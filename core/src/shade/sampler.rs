@@ -17,10 +17,9 @@
 //! |---|---|---|
 //! | 0 to 0x0fff | the light of this number | `aim` |
 //! | 0x1000 | the lens | `camera` |
-//! | 0x1001 | time | `camera` |
 //! | 0x1010 | the facet of a rough surface | `bounce` |
 //! | 0x1020 | the environment as a light | `aim` |
-//! | 0x1030, 0x1031 | the direction of indirect light, and whether there is any | `bounce` |
+//! | 0x1030 | the direction of indirect light | `bounce` |
 //!
 //! A point is one of Sobol's first two dimensions, which put one of the first 2^k points into every elementary interval
 //! of area 2^-k. Every pixel, bounce and dimension has its own shuffle of the points and its own scramble of each axis.

@@ -151,8 +151,12 @@ fn lift<'s, N: Number, X: Tracer<'s, N>>(
     let from = lighting.origin;
     lighting.origin = moved(from, way);
     // Only a point light has another direction from there: of the others one was drawn, or they are far away.
-    if lighting.light.directional == 0 {
+    if lighting.light.is_point() {
         (lighting.way, lighting.distance) = lighting.light.seen_from(lighting.origin);
+        let Some((slopes, _)) = N::slopes(lighting.way) else {
+            return false;
+        };
+        lighting.norm = N::normalize(slopes).1;
     }
     true
 }

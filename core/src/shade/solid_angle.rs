@@ -4,7 +4,7 @@ use crate::accel::Number;
 use crate::format::light_form::LightForm;
 use crate::number::{Format, extent, far_extent};
 use crate::shade::basis::{beside, cross};
-use crate::shade::light::{Distance, ROOT_OF_HALF, Reach, length};
+use crate::shade::light::{Distance, ROOT_OF_HALF, Way, length};
 use crate::shade::surface::Aim;
 
 /// √π - 1, with 30 fraction bits.
@@ -20,9 +20,9 @@ pub(super) fn of_sphere<N: Number>(
     u: N,
     [sine, cosine]: [N; 2],
 ) {
-    let reach = Reach::<N>::of(aim.way, aim.distance);
+    let way = Way::<N>::of(aim.way, aim.distance);
     aim.way = [N::Wide::default(); 3];
-    let Some(Reach { unit, distance }) = reach else {
+    let Some(Way { unit, distance }) = way else {
         return;
     };
     let radius = distance.half_length(form.edges[0][0]);

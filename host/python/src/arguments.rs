@@ -19,7 +19,7 @@ pub fn rejected(error: impl Into<CompileError>) -> PyErr {
 
 /// A sentence with the options of the command line as they are written in Python: `--model N` as `model=N`.
 pub fn in_python(sentence: &str) -> String {
-    const OPTIONS: [&str; 11] = [
+    const OPTIONS: [&str; 14] = [
         "accel",
         "allow-outside",
         "altloc",
@@ -30,7 +30,10 @@ pub fn in_python(sentence: &str) -> String {
         "lattice-bits",
         "model",
         "normals",
+        "quality",
         "style",
+        "texture-bytes",
+        "without",
     ];
     OPTIONS.iter().fold(sentence.to_owned(), |sentence, name| {
         let own = name.replace('-', "_");

@@ -1,10 +1,11 @@
 //! The options of `Scene.load`.
 
 use crate::arguments::{invalid, options};
-use gridel_host::compile::{LATTICE_BITS, Options};
+use gridel_core::{Effects, Structure};
+use gridel_host::compile::{LATTICE_BITS, Options, Quality};
 use gridel_host::scene::{
     Choice, ImportOptions, Imported, Instances, MoleculeOptions, MoleculeStyle, NormalsChoice,
-    Posed,
+    Posed, effect_named,
 };
 use pyo3::prelude::*;
 use std::path::Path;
@@ -19,6 +20,9 @@ const STRUCTURE: &str = "wide";
 pub struct LoadOptions {
     accel: Option<Vec<String>>,
     lattice_bits: Option<u8>,
+    quality: Option<String>,
+    without: Vec<String>,
+    texture_bytes: Option<u64>,
     camera: Option<String>,
     animation: Option<String>,
     time: Option<f64>,
@@ -35,10 +39,26 @@ impl LoadOptions {
     /// The options of the compiler.
     pub fn for_compiler(&self) -> PyResult<Options> {
         let usual = || vec![STRUCTURE.to_owned()];
-        options(
+        let options = options(
             &self.accel.clone().unwrap_or_else(usual),
             self.lattice_bits.unwrap_or(*LATTICE_BITS.end()),
-        )
+        )?;
+        let quality = self.quality.as_deref().map(quality).transpose()?;
+        if quality.is_some() && !options.structures.contains(&Structure::Wide) {
+            return Err(invalid(
+                "`quality` is for the structure wide, which is not built; add \"wide\" to `accel`, or leave `quality` out",
+            ));
+        }
+        Ok(Options {
+            quality: quality.unwrap_or_default(),
+            texture_bytes: self.texture_bytes,
+            ..options
+        })
+    }
+
+    /// The effects to leave out.
+    pub fn without(&self) -> PyResult<Vec<Effects>> {
+        self.without.iter().map(|name| effect(name)).collect()
     }
 
     /// The options of importers.
@@ -85,6 +105,9 @@ impl LoadOptions {
                 "lattice_bits",
                 "holds its coordinates already",
             ),
+            (self.quality.is_some(), "quality", compiled),
+            (!self.without.is_empty(), "without", compiled),
+            (self.texture_bytes.is_some(), "texture_bytes", compiled),
             (self.camera.is_some(), "camera", compiled),
             (self.animation.is_some(), "animation", compiled),
             (self.time.is_some(), "time", compiled),
@@ -161,6 +184,17 @@ impl LoadOptions {
             )
         })
     }
+}
+
+fn quality(word: &str) -> PyResult<Quality> {
+    one_of("quality", word, Quality::ALL, Quality::name)
+}
+
+fn effect(name: &str) -> PyResult<Effects> {
+    effect_named(name).ok_or_else(|| {
+        let names = Effects::NAMED.map(|(_, name)| name).join(", ");
+        invalid(format!("unknown effect `{name}`; the effects are {names}"))
+    })
 }
 
 fn instances(word: &str) -> PyResult<Instances> {

@@ -53,15 +53,19 @@ impl NativeScene {
             return Err(PyFileNotFoundError::new_err(sentence));
         }
         let (options, importing) = (given.for_compiler()?, given.for_import()?);
+        let without = given.without()?;
         if gridel_host::blob::is_blob(&path)? {
             given.reject_for_blob(&path)?;
             return py.detach(|| Self::of_blob(Blob::read(&path)?, None, f64::NAN));
         }
         let imported = in_pool(py, 0, || scene::load_with(&path, &importing))?;
-        let imported = imported.map_err(rejected)?;
+        let mut imported = imported.map_err(rejected)?;
         given.check(&path, &imported)?;
         let unposed = given.warning(&path, &imported);
-        for warning in imported.warnings.iter().chain(&unposed) {
+        let lost = scene::leave_out(&mut imported.scene, &without);
+        let lost = lost.iter().map(|it| format!("{}: {it}", path.display()));
+        let lost: Vec<_> = lost.collect();
+        for warning in imported.warnings.iter().chain(&lost).chain(&unposed) {
             warn(py, &in_python(warning), 2)?;
         }
         let model = Model {

@@ -2,6 +2,8 @@
 
 import base64
 import json
+import struct
+import zlib
 
 import numpy as np
 import pytest
@@ -20,6 +22,9 @@ STILL = MOVING[: MOVING.index("[[joint]]")] + "[[instance]]\npart = 'ball'\n[[in
 OPTIONS = {
     "accel": "bvh",
     "lattice_bits": 24,
+    "quality": "fast",
+    "without": "shadow",
+    "texture_bytes": 4096,
     "camera": "top",
     "animation": 0,
     "time": 0.0,
@@ -315,6 +320,9 @@ def test_options_that_do_not_apply_to_the_file_are_rejected(ball, option, kind):
         ("instances", "copy", ValueError, "unknown instances `copy`; use keep or flatten"),
         ("style", "cartoon", ValueError, "unknown style `cartoon`; use space-filling or ball-and-stick"),
         ("model", 0, ValueError, "model is 0; it must be 1 to"),
+        ("quality", "great", ValueError, "unknown quality `great`; use fast or good or best"),
+        ("without", "noise", ValueError, "unknown effect `noise`; the effects are shadow, "),
+        ("texture_bytes", -1, ValueError, "texture_bytes is -1; it must be 0 to"),
         ("altloc", "AB", ValueError, "altloc is 'AB'; it must be one character"),
         ("altloc", "", ValueError, "altloc is ''; it must be one character"),
         ("animation", -1, ValueError, "animation is -1; it must be 0 to"),
@@ -329,6 +337,54 @@ def test_options_that_do_not_apply_to_the_file_are_rejected(ball, option, kind):
 def test_invalid_values_are_rejected(ball, option, value, error, words):
     with pytest.raises(error, match=words):
         gridel.Scene.load(ball, **{option: value})
+
+
+def test_quality_is_for_the_structure_wide(ball):
+    with pytest.raises(ValueError, match="`quality` is for the structure wide, which is not built"):
+        gridel.Scene.load(ball, accel="bvh", quality="best")
+    rays = np.random.default_rng(8).normal(size=(200, 6))
+    hits = [gridel.Scene.load(ball, quality=quality).cast(rays) for quality in ("fast", "good", "best")]
+    for other in hits[1:]:
+        np.testing.assert_array_equal(other.t, hits[0].t)
+
+
+def test_effects_are_left_out_with_a_warning(tmp_path):
+    lamp = "[camera]\neye = [0, 3, 9]\ntarget = [0, 0, 0]\n[[light]]\nkind = 'point'\nposition = [0, 9, 0]\n"
+    floor = "[[object]]\nkind = 'box'\nmin = [-9, -3, -9]\nmax = [9, -2, 9]\n"
+    path = write(tmp_path, "lit.toml", lamp + BALL + floor)
+    size = {"width": 40, "height": 30}
+    with pytest.warns(UserWarning, match="lit.toml: without shadow: lights shine through all objects"):
+        bright = gridel.Scene.load(path, without="shadow").render(**size)
+    assert (bright > gridel.Scene.load(path).render(**size)).any()
+    with pytest.warns(UserWarning, match="lit.toml: the scene does not call for glass"):
+        gridel.Scene.load(path, without=["glass"])
+
+
+def png(side):
+    """A PNG file of random colors."""
+
+    def chunk(kind, data):
+        checked = kind + data
+        return struct.pack(">I", len(data)) + checked + struct.pack(">I", zlib.crc32(checked))
+
+    pixels = np.random.default_rng(2).integers(0, 256, (side, side * 3), dtype=np.uint8)
+    rows = np.hstack([np.zeros((side, 1), np.uint8), pixels])
+    head = struct.pack(">IIBBBBB", side, side, 8, 2, 0, 0, 0)
+    chunks = [(b"IHDR", head), (b"IDAT", zlib.compress(rows.tobytes())), (b"IEND", b"")]
+    return b"\x89PNG\r\n\x1a\n" + b"".join(chunk(*each) for each in chunks)
+
+
+def test_textures_fit_into_their_bytes(tmp_path):
+    (tmp_path / "noise.png").write_bytes(png(64))
+    path = write(
+        tmp_path,
+        "noise.toml",
+        "[material.noise]\ntexture = 'noise.png'\n[[object]]\nkind = 'triangle'\nmaterial = 'noise'\n"
+        "vertices = [[0, 0, 0], [1, 0, 0], [0, 1, 0]]\ncoordinates = [[0, 0], [1, 0], [0, 1]]\n",
+    )
+    whole, small = (len(gridel.Scene.load(path, texture_bytes=most).to_blob()) for most in (None, 4096))
+    assert whole - small >= 3 * 64 * 64 - 4096
+    assert small > 1024
 
 
 def test_errors_of_the_compiler_name_the_file(tmp_path):

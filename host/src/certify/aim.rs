@@ -25,6 +25,11 @@ pub struct Aim<N> {
 }
 
 impl<N> Aim<N> {
+    /// The same light, seen along another way.
+    pub fn along(self, way: Three<N>) -> Self {
+        Self { way, ..self }
+    }
+
     fn at(self, drawn: Drawn<N>) -> Self {
         Self {
             way: drawn.way,

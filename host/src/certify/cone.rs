@@ -10,8 +10,15 @@ use super::number::*;
 use super::world::Form;
 use std::cmp::Ordering;
 
-/// One end of an interval on the line; `None` reaches without end.
-type End<N> = Option<Crossing<N>>;
+/// What is decided of a line and the caps of a solid, or its mantle.
+enum Cut<T> {
+    /// The line is nowhere between.
+    Outside,
+    /// Where the line enters and leaves, `None` where it does without end. False if it may be outside all the same.
+    Inside([Option<T>; 2], bool),
+    /// Nothing is decided.
+    Open,
+}
 
 /// Returns the crossings of the solid. `at` says which of the mantle, the base and the other cap the ray starts on.
 pub fn crossings<N: Enclosure>(
@@ -20,151 +27,29 @@ pub fn crossings<N: Enclosure>(
     ray: &Ray<N>,
     found: &mut Vec<Crossing<N>>,
 ) -> Result<(), Grazes> {
-    let Form::Cone {
-        base,
-        axis,
-        base_radius,
-        apex_radius,
-    } = *form
-    else {
+    let Some(line) = Line::new(form, ray) else {
         return Ok(());
     };
-    let w = exact::<N>(axis);
-    let h = norm2(w);
-    let (q, d) = (minus(ray.origin, exact(base)), ray.direction);
-    let (q_axial, d_axial) = (dot(q, w), dot(d, w));
-    let mut sure = true;
-
-    // Between the caps.
-    let cap = |distance: N, part: u8| {
-        Some(Crossing {
-            t: distance.over(d_axial)?,
-            fraction: Some([distance, d_axial]),
-            part,
-            leaves: false,
-            sure: true,
-        })
+    let [at_mantle, at_base, at_apex] = at;
+    let (caps, mut sure) = match line.between_caps(at_base, at_apex)? {
+        Cut::Outside => return Ok(()),
+        Cut::Inside(ends, sure) => (ends, sure),
+        Cut::Open => return grazes(form, ray),
     };
-    let to_base = if at[1] { N::zero() } else { -q_axial };
-    let to_apex = if at[2] { N::zero() } else { h - q_axial };
-    let (mut enters, mut leaves): (Vec<Crossing<N>>, Vec<Crossing<N>>) = (Vec::new(), Vec::new());
-    match d_axial.sign() {
-        Some(Ordering::Equal) => match (to_base.sign(), to_apex.sign()) {
-            (Some(Ordering::Greater), _) | (_, Some(Ordering::Less)) => return Ok(()),
-            (Some(_), Some(_)) => {}
-            _ => sure = false,
-        },
-        Some(sign) => {
-            let base = cap(to_base, BASE).ok_or(Grazes)?;
-            let apex = cap(to_apex, APEX).ok_or(Grazes)?;
-            let (near, far) = if sign == Ordering::Greater {
-                (base, apex)
-            } else {
-                (apex, base)
-            };
-            enters.push(near);
-            leaves.push(far);
+    let mantle = match line.in_mantle(at_mantle)? {
+        Cut::Outside => return Ok(()),
+        Cut::Inside(ends, is_sure) => {
+            sure &= is_sure;
+            ends
         }
-        None => return grazes(form, ray),
-    }
-
-    // In the mantle: a t^2 + 2 b t + c is not positive.
-    let slope = N::int(apex_radius - base_radius);
-    let (g, e) = (N::int(base_radius) * h + slope * q_axial, slope * d_axial);
-    // Seen from the point of the line that is closest to the axis's middle, so that squares are small.
-    let shift = if at[0] {
-        0.0
-    } else {
-        let closest = (dot(d, along(scale(w, N::scaled(1, 1)), -N::one(), q))).over(norm2(d));
-        closest.ok_or(Grazes)?.middle()
+        Cut::Open => return grazes(form, ray),
     };
-    if !shift.is_finite() {
-        return Err(Grazes);
-    }
-    let shift = N::float(shift);
-    let (q, g) = (along(q, shift, d), g + shift * e);
-    let across = |v: Three<N>, axial: N| -> Three<N> { [0, 1, 2].map(|k| v[k] * h - w[k] * axial) };
-    let q_axial = q_axial + shift * d_axial;
-    let (q_across, d_across) = (across(q, q_axial), across(d, d_axial));
-    // For vectors that are h times as long: |v|^2 is h (h v.v - a^2).
-    let a = norm2(d_across) - e.square();
-    let b = dot(q_across, d_across) - g * e;
-    let c = if at[0] {
-        N::zero()
-    } else {
-        norm2(q_across) - g.square()
-    };
-    let mantle = |t: N| Crossing {
-        t: t + shift,
-        fraction: None,
-        part: MANTLE,
-        leaves: false,
-        sure: true,
-    };
-    let (enter, leave): (End<N>, End<N>) = match a.sign() {
-        Some(Ordering::Equal) if b.sign() == Some(Ordering::Equal) => match c.sign() {
-            // Along the mantle, inside or outside of it.
-            Some(Ordering::Greater) => return Ok(()),
-            Some(_) if slope.sign() == Some(Ordering::Equal) => (None, None),
-            _ => return grazes(form, ray),
-        },
-        Some(Ordering::Equal) => {
-            // Parallel to a line of the mantle: it crosses one nappe, once.
-            let root = (-c).over(b + b).ok_or(Grazes)?;
-            let inside = (g + e * root).sign();
-            if inside == Some(Ordering::Less) {
-                return Ok(());
-            }
-            sure &= inside.is_some();
-            match b.sign() {
-                Some(Ordering::Greater) => (None, Some(mantle(root))),
-                Some(_) => (Some(mantle(root)), None),
-                None => return grazes(form, ray),
-            }
-        }
-        None => return grazes(form, ray),
-        Some(sign) => {
-            let square = b.square() - a * c;
-            match square.sign() {
-                Some(Ordering::Less) if sign == Ordering::Greater => return Ok(()),
-                Some(_) => {}
-                None => sure = false,
-            }
-            let root = square.sqrt();
-            let (low, high) = if at[0] {
-                // One root is 0, the other -2 b / a.
-                let other = (-(b + b)).over(a).ok_or(Grazes)?;
-                match b.sign() {
-                    Some(Ordering::Equal) => (N::zero(), N::zero()),
-                    Some(side) if (side == Ordering::Less) == (sign == Ordering::Greater) => {
-                        (N::zero(), other)
-                    }
-                    Some(_) => (other, N::zero()),
-                    None => return Err(Grazes),
-                }
-            } else {
-                roots([a, b, c], root).ok_or(Grazes)?
-            };
-            if sign == Ordering::Greater {
-                // Both on one nappe: the real one if g is positive halfway.
-                let halfway = (g * a - b * e).sign();
-                if halfway == Some(Ordering::Less) {
-                    return Ok(());
-                }
-                sure &= halfway.is_some();
-                (Some(mantle(low)), Some(mantle(high)))
-            } else {
-                // One root on each nappe.
-                match e.sign() {
-                    Some(Ordering::Greater) => (Some(mantle(high)), None),
-                    Some(Ordering::Less) => (None, Some(mantle(low))),
-                    _ => return grazes(form, ray),
-                }
-            }
-        }
-    };
-    enters.extend(enter);
-    leaves.extend(leave);
+    let [enters, leaves] = [0, 1].map(|end| {
+        [caps[end], mantle[end]]
+            .into_iter()
+            .flatten()
+            .collect::<Vec<_>>()
+    });
     for enter in &enters {
         for leave in &leaves {
             match compare(enter, leave) {
@@ -177,6 +62,224 @@ pub fn crossings<N: Enclosure>(
     ends(&enters, Ordering::Greater, sure, ray.start, found);
     ends(&leaves, Ordering::Less, sure, ray.start, found);
     Ok(())
+}
+
+/// A line in the frame of a solid.
+struct Line<N: Enclosure> {
+    /// From the base to the other cap.
+    axis: Three<N>,
+    /// The square of the axis.
+    height2: N,
+    base_radius: N,
+    /// The radius of the other cap less that of the base.
+    widening: N,
+    /// From the base to the line's start.
+    start: Three<N>,
+    direction: Three<N>,
+    /// Products with the axis.
+    start_axial: N,
+    direction_axial: N,
+}
+
+impl<N: Enclosure> Line<N> {
+    fn new(form: &Form, ray: &Ray<N>) -> Option<Self> {
+        let Form::Cone {
+            base,
+            axis,
+            base_radius,
+            apex_radius,
+        } = *form
+        else {
+            return None;
+        };
+        let axis = exact::<N>(axis);
+        let start = minus(ray.origin, exact(base));
+        Some(Self {
+            axis,
+            height2: norm2(axis),
+            base_radius: N::int(base_radius),
+            widening: N::int(apex_radius - base_radius),
+            start,
+            direction: ray.direction,
+            start_axial: dot(start, axis),
+            direction_axial: dot(ray.direction, axis),
+        })
+    }
+
+    /// Where the line is between the planes of the caps. The arguments are true where it starts on one.
+    fn between_caps(&self, at_base: bool, at_apex: bool) -> Result<Cut<Crossing<N>>, Grazes> {
+        let along = self.direction_axial;
+        let distance = |is_there: bool, distance: N| if is_there { N::zero() } else { distance };
+        let to_base = distance(at_base, -self.start_axial);
+        let to_apex = distance(at_apex, self.height2 - self.start_axial);
+        let cap = |distance: N, part: u8| {
+            Ok(Some(Crossing {
+                t: distance.over(along).ok_or(Grazes)?,
+                fraction: Some([distance, along]),
+                part,
+                leaves: false,
+                sure: true,
+            }))
+        };
+        Ok(match along.sign() {
+            Some(Ordering::Equal) => match (to_base.sign(), to_apex.sign()) {
+                (Some(Ordering::Greater), _) | (_, Some(Ordering::Less)) => Cut::Outside,
+                (base, apex) => Cut::Inside([None, None], base.is_some() && apex.is_some()),
+            },
+            Some(sign) => {
+                let (base, apex) = (cap(to_base, BASE)?, cap(to_apex, APEX)?);
+                let is_upward = sign == Ordering::Greater;
+                Cut::Inside(
+                    if is_upward {
+                        [base, apex]
+                    } else {
+                        [apex, base]
+                    },
+                    true,
+                )
+            }
+            None => Cut::Open,
+        })
+    }
+
+    /// Where the line is in the mantle. The argument is true where it starts on it.
+    fn in_mantle(&self, at_mantle: bool) -> Result<Cut<Crossing<N>>, Grazes> {
+        let (q, d, w, h) = (self.start, self.direction, self.axis, self.height2);
+        // Seen from the point of the line that is closest to the axis's middle, so that squares are small.
+        let shift = if at_mantle {
+            0.0
+        } else {
+            let from_middle = along(scale(w, N::scaled(1, 1)), -N::one(), q);
+            dot(d, from_middle).over(norm2(d)).ok_or(Grazes)?.middle()
+        };
+        if !shift.is_finite() {
+            return Err(Grazes);
+        }
+        let shift = N::float(shift);
+        let e = self.widening * self.direction_axial;
+        let g = self.base_radius * h + self.widening * self.start_axial + shift * e;
+        let q_axial = self.start_axial + shift * self.direction_axial;
+        let across =
+            |v: Three<N>, axial: N| -> Three<N> { [0, 1, 2].map(|k| v[k] * h - w[k] * axial) };
+        let (q_across, d_across) = (
+            across(along(q, shift, d), q_axial),
+            across(d, self.direction_axial),
+        );
+        // For vectors that are h times as long: |v|^2 is h (h v.v - a^2).
+        let quadric = Quadric {
+            a: norm2(d_across) - e.square(),
+            b: dot(q_across, d_across) - g * e,
+            c: match at_mantle {
+                true => N::zero(),
+                false => norm2(q_across) - g.square(),
+            },
+            g,
+            e,
+            starts_at_root: at_mantle,
+        };
+        let is_cylinder = self.widening.sign() == Some(Ordering::Equal);
+        Ok(match quadric.inside(is_cylinder)? {
+            Cut::Inside(ends, sure) => {
+                let crossing = |t: N| Crossing {
+                    t: t + shift,
+                    fraction: None,
+                    part: MANTLE,
+                    leaves: false,
+                    sure: true,
+                };
+                Cut::Inside(ends.map(|end| end.map(crossing)), sure)
+            }
+            Cut::Outside => Cut::Outside,
+            Cut::Open => Cut::Open,
+        })
+    }
+}
+
+/// A line in a double cone: in it `a t^2 + 2 b t + c` is not positive, and on the nappe that counts `g + e t` is not
+/// negative.
+struct Quadric<N> {
+    a: N,
+    b: N,
+    c: N,
+    g: N,
+    e: N,
+    /// True if 0 is a root, where `c` is 0.
+    starts_at_root: bool,
+}
+
+impl<N: Enclosure> Quadric<N> {
+    fn inside(&self, is_cylinder: bool) -> Result<Cut<N>, Grazes> {
+        match self.a.sign() {
+            Some(Ordering::Equal) if self.b.sign() == Some(Ordering::Equal) => {
+                // Along the mantle, inside or outside of it.
+                Ok(match self.c.sign() {
+                    Some(Ordering::Greater) => Cut::Outside,
+                    Some(_) if is_cylinder => Cut::Inside([None, None], true),
+                    _ => Cut::Open,
+                })
+            }
+            Some(Ordering::Equal) => self.inside_once(),
+            Some(sign) => self.inside_between(sign),
+            None => Ok(Cut::Open),
+        }
+    }
+
+    /// A line that is parallel to one of the mantle: it crosses one nappe, once.
+    fn inside_once(&self) -> Result<Cut<N>, Grazes> {
+        let root = (-self.c).over(self.b + self.b).ok_or(Grazes)?;
+        let nappe = (self.g + self.e * root).sign();
+        if nappe == Some(Ordering::Less) {
+            return Ok(Cut::Outside);
+        }
+        Ok(match self.b.sign() {
+            Some(Ordering::Greater) => Cut::Inside([None, Some(root)], nappe.is_some()),
+            Some(_) => Cut::Inside([Some(root), None], nappe.is_some()),
+            None => Cut::Open,
+        })
+    }
+
+    /// A line that crosses twice: `sign` is that of `a`.
+    fn inside_between(&self, sign: Ordering) -> Result<Cut<N>, Grazes> {
+        let Self { a, b, c, g, e, .. } = *self;
+        let square = b.square() - a * c;
+        let mut sure = true;
+        match square.sign() {
+            Some(Ordering::Less) if sign == Ordering::Greater => return Ok(Cut::Outside),
+            Some(_) => {}
+            None => sure = false,
+        }
+        let (low, high) = if self.starts_at_root {
+            // The other root is -2 b / a.
+            let other = (-(b + b)).over(a).ok_or(Grazes)?;
+            match b.sign() {
+                Some(Ordering::Equal) => (N::zero(), N::zero()),
+                Some(side) if (side == Ordering::Less) == (sign == Ordering::Greater) => {
+                    (N::zero(), other)
+                }
+                Some(_) => (other, N::zero()),
+                None => return Err(Grazes),
+            }
+        } else {
+            roots([a, b, c], square.sqrt()).ok_or(Grazes)?
+        };
+        if sign == Ordering::Greater {
+            // Both on one nappe: the real one if g is positive halfway.
+            let halfway = (g * a - b * e).sign();
+            if halfway == Some(Ordering::Less) {
+                return Ok(Cut::Outside);
+            }
+            return Ok(Cut::Inside(
+                [Some(low), Some(high)],
+                sure && halfway.is_some(),
+            ));
+        }
+        // One root on each nappe.
+        Ok(match e.sign() {
+            Some(Ordering::Greater) => Cut::Inside([Some(high), None], sure),
+            Some(Ordering::Less) => Cut::Inside([None, Some(low)], sure),
+            _ => Cut::Open,
+        })
+    }
 }
 
 /// Adds the last crossing where a ray enters, or the first where it leaves.

@@ -78,8 +78,6 @@ pub struct Seen<'h, N> {
     pub interface: Interface<N>,
     /// The media that a ray on the far side is inside of.
     pub beyond: Inside,
-    /// Diffuse reflections that led here.
-    pub reflections: u8,
     /// The length of the rays that led here, if textures have levels.
     pub length: Option<Log2>,
 }

@@ -1,6 +1,6 @@
 //! Lights: what of them arrives at a surface.
 
-use super::aim;
+use super::aim::{self, Aim};
 use super::crossing::{Ray, Start, compare};
 use super::facets;
 use super::hit::Seen;
@@ -16,6 +16,14 @@ use gridel_core::Effects;
 use gridel_core::format::limits::MAX_SHADOW_SURFACES;
 use gridel_core::format::record::{Light, Material};
 use std::cmp::Ordering;
+
+/// What is between a point and a light.
+struct Passed<N> {
+    /// The surfaces that the light may pass, and surfaces that may coincide with them.
+    surfaces: Vec<Candidate<N>>,
+    /// True if something else may block the light.
+    is_open: bool,
+}
 
 impl Tracer<'_, '_> {
     /// Returns the radiance that a light of the scene, given with its number, adds.
@@ -39,59 +47,19 @@ impl Tracer<'_, '_> {
         if faces == Some(false) {
             return Ok(black);
         }
-        let arriving = match self.world.scene.light_form(light) {
-            Some(form) => aim::arriving(form, &aim, to_light).ok_or(Stop)?,
-            None => aim.color,
-        };
-        if is_nothing(arriving) {
+        let Some(rays) = self.shadow_rays(seen, light, &aim, to_light)? else {
             return Ok(black);
-        }
-        // The way may start elsewhere, and the light may be reached or not.
-        let mut ways = vec![Some((hit.point, aim.way, hit.start(hit.front)))];
-        if self.has(Effects::SMOOTH.with(Effects::SHADOW)) {
-            let geometric = dot(hit.facing(), to_light);
-            let lifted = |ways: &mut Vec<_>| -> Result<(), Stop> {
-                let (reached, step) = shade::lift(self.world, hit).ok_or(Stop)?;
-                let from = plus(hit.point, step);
-                if reached != Some(false) {
-                    // For lights other than points the direction stays as it is.
-                    let way = match light.directional {
-                        0 => minus(aim.way, step),
-                        _ => aim.way,
-                    };
-                    ways.push(Some((from, way, Start::Free)));
-                }
-                if reached != Some(true) {
-                    ways.push(None);
-                }
-                if reached.is_none() {
-                    self.note(Reason::Terminator, depth, hit.primitive, hit.point);
-                }
-                Ok(())
-            };
-            match positive(geometric) {
-                Some(true) => {}
-                Some(false) => {
-                    ways.clear();
-                    lifted(&mut ways)?;
-                }
-                None => {
-                    self.note(Reason::Terminator, depth, hit.primitive, hit.point);
-                    lifted(&mut ways)?;
-                }
-            }
-        }
-        let is_bumped = seen.material.maps & Material::MAPS_NORMAL != 0;
-        if is_bumped && !self.has(Effects::SMOOTH.with(Effects::SHADOW)) {
-            // Light from behind does not reach a front, as it would be lifted to no surface.
-            match positive(dot(hit.facing(), to_light)) {
-                Some(true) => {}
-                Some(false) => return Ok(black),
-                None => {
-                    self.note(Reason::Terminator, depth, hit.primitive, hit.point);
-                    ways.push(None);
-                }
-            }
+        };
+        // A point light is as bright as from where its ray starts.
+        let arriving = |ray: &Option<Ray<N>>| match (ray, self.world.scene.light_form(light)) {
+            (None, _) => Some(black),
+            (Some(_), None) => Some(aim.color),
+            (Some(ray), Some(form)) => aim::arriving(form, &aim.along(ray.direction), to_light),
+        };
+        let arriving: Option<Vec<_>> = rays.iter().map(arriving).collect();
+        let arriving = arriving.ok_or(Stop)?;
+        if arriving.iter().all(|&it| is_nothing(it)) {
+            return Ok(black);
         }
         let cos = cos.at_least(N::zero());
         let mut reflected = scale(seen.diffuse, cos);
@@ -113,16 +81,11 @@ impl Tracer<'_, '_> {
             self.note(Reason::Terminator, depth, hit.primitive, hit.point);
             result = Some(black);
         }
-        for way in ways {
-            let brought = match way {
+        for (ray, arriving) in rays.iter().zip(arriving) {
+            let brought = match ray {
                 None => black,
-                Some((origin, direction, start)) if self.has(Effects::SHADOW) => {
-                    let ray = Ray {
-                        origin,
-                        direction,
-                        start,
-                    };
-                    let left = self.through(&ray, aim.is_far, to_light, seen.path)?;
+                Some(ray) if self.has(Effects::SHADOW) => {
+                    let left = self.through(ray, aim.is_far, to_light, seen.path)?;
                     times(times(arriving, left), reflected)
                 }
                 Some(_) => times(arriving, reflected),
@@ -130,6 +93,60 @@ impl Tracer<'_, '_> {
             result = Some(result.map_or(brought, |result| hull(result, brought)));
         }
         result.ok_or(Stop)
+    }
+
+    /// Returns the shadow rays of which one is cast; one of them is `None` if the light may not reach the point at all.
+    /// `None` if it certainly does not.
+    fn shadow_rays<N: Enclosure>(
+        &self,
+        seen: &Seen<'_, N>,
+        light: &Light,
+        aim: &Aim<N>,
+        to_light: Three<N>,
+    ) -> Result<Option<Vec<Option<Ray<N>>>>, Stop> {
+        let (hit, depth) = (seen.hit, seen.path.depth);
+        let straight = Some(Ray {
+            origin: hit.point,
+            direction: aim.way,
+            start: hit.start(hit.front),
+        });
+        let is_lifted = self.has(Effects::SMOOTH.with(Effects::SHADOW));
+        let is_bumped = seen.material.maps & Material::MAPS_NORMAL != 0;
+        if !is_lifted && !is_bumped {
+            return Ok(Some(vec![straight]));
+        }
+        let faces = positive(dot(hit.facing(), to_light));
+        if faces.is_none() {
+            self.note(Reason::Terminator, depth, hit.primitive, hit.point);
+        }
+        let mut rays = match faces {
+            Some(true) => return Ok(Some(vec![straight])),
+            // Light from behind does not reach a front, as it would be lifted to no surface.
+            Some(false) if !is_lifted => return Ok(None),
+            None if !is_lifted => return Ok(Some(vec![straight, None])),
+            Some(false) => Vec::new(),
+            None => vec![straight],
+        };
+        let (reached, step) = shade::lift(self.world, hit).ok_or(Stop)?;
+        if reached != Some(false) {
+            // For lights other than points the direction stays as it is.
+            let direction = match light.is_point() {
+                true => minus(aim.way, step),
+                false => aim.way,
+            };
+            rays.push(Some(Ray {
+                origin: plus(hit.point, step),
+                direction,
+                start: Start::Free,
+            }));
+        }
+        if reached != Some(true) {
+            rays.push(None);
+        }
+        if reached.is_none() {
+            self.note(Reason::Terminator, depth, hit.primitive, hit.point);
+        }
+        Ok(Some(rays))
     }
 
     /// The part of a light that arrives along a ray: up to a t of 1, or from infinitely far.
@@ -143,51 +160,22 @@ impl Tracer<'_, '_> {
         let depth = path.depth;
         let (black, white) = ([N::zero(); 3], [N::one(); 3]);
         let scene = self.world.scene;
-        // Surfaces that light may pass, and surfaces that may coincide with them.
-        let mut surfaces: Vec<Candidate<N>> = Vec::new();
-        let mut is_dark = false;
-        let mut may_be_dark: Option<(u32, N)> = None;
-        let end = if is_far { f64::INFINITY } else { 1.0 };
-        self.search(ray, end, depth, &mut |candidate, end| {
-            if is_dark {
-                return -1.0;
-            }
-            let mut candidate = candidate;
-            if !is_far {
-                // The light itself, and what touches it, casts no shadow.
-                match positive(N::one() - candidate.crossing.t) {
-                    Some(true) => {}
-                    Some(false) => return end,
-                    None => candidate.crossing.sure = false,
-                }
-            }
-            let space = self.world.space(candidate.instance);
-            let solid = &space.solids[candidate.solid as usize];
-            let material = scene.material(solid.object);
-            if material.is_some_and(passes) || space.may_be_hidden(solid, &candidate.crossing) {
-                surfaces.push(candidate);
-            } else if candidate.crossing.sure {
-                is_dark = true;
-                return -1.0;
-            } else {
-                may_be_dark = Some((solid.primitive, candidate.crossing.t));
-            }
-            end
-        })?;
-        if is_dark {
+        let Some(Passed {
+            surfaces,
+            mut is_open,
+        }) = self.passed(ray, is_far, depth)?
+        else {
             return Ok(black);
-        }
+        };
         let mut left = white;
-        let mut is_open = false;
-        if let Some((primitive, t)) = may_be_dark {
-            let point = along(ray.origin, t, ray.direction);
-            self.note(Reason::Shadow, depth, primitive, point);
+        let mut surfaces = self.one_each(&surfaces, ray, depth)?;
+        if surfaces.len() > MAX_SHADOW_SURFACES {
+            let certain = surfaces.iter().filter(|it| it.crossing.sure).count();
+            if certain > MAX_SHADOW_SURFACES {
+                return Ok(black);
+            }
             is_open = true;
         }
-        if surfaces.len() > MAX_SHADOW_SURFACES {
-            return Ok(black);
-        }
-        let mut surfaces = self.one_each(&surfaces, ray, depth)?;
         if !scene.media().is_empty() || self.has(Effects::ABSORPTION) {
             self.sort(&mut surfaces, ray, depth)?;
         }
@@ -256,6 +244,56 @@ impl Tracer<'_, '_> {
             }
         }
         Ok(if is_open { hull(black, left) } else { left })
+    }
+
+    /// Returns what is between a point and a light; `None` if light certainly does not pass it.
+    fn passed<N: Enclosure>(
+        &self,
+        ray: &Ray<N>,
+        is_far: bool,
+        depth: u8,
+    ) -> Result<Option<Passed<N>>, Stop> {
+        let mut surfaces: Vec<Candidate<N>> = Vec::new();
+        let mut is_dark = false;
+        let mut may_be_dark: Option<(u32, N)> = None;
+        let end = if is_far { f64::INFINITY } else { 1.0 };
+        self.search(ray, end, depth, &mut |candidate, end| {
+            if is_dark {
+                return -1.0;
+            }
+            let mut candidate = candidate;
+            if !is_far {
+                // The light itself, and what touches it, casts no shadow.
+                match positive(N::one() - candidate.crossing.t) {
+                    Some(true) => {}
+                    Some(false) => return end,
+                    None => candidate.crossing.sure = false,
+                }
+            }
+            let space = self.world.space(candidate.instance);
+            let solid = &space.solids[candidate.solid as usize];
+            let material = self.world.scene.material(solid.object);
+            if material.is_some_and(passes) || space.may_be_hidden(solid, &candidate.crossing) {
+                surfaces.push(candidate);
+            } else if candidate.crossing.sure {
+                is_dark = true;
+                return -1.0;
+            } else {
+                may_be_dark = Some((solid.primitive, candidate.crossing.t));
+            }
+            end
+        })?;
+        if is_dark {
+            return Ok(None);
+        }
+        if let Some((primitive, t)) = may_be_dark {
+            let point = along(ray.origin, t, ray.direction);
+            self.note(Reason::Shadow, depth, primitive, point);
+        }
+        Ok(Some(Passed {
+            surfaces,
+            is_open: may_be_dark.is_some(),
+        }))
     }
 
     /// Sorts surfaces by their places along a ray.

@@ -13,12 +13,12 @@ pub struct Path<N> {
     pub ray: Ray<N>,
     /// The part of its light that arrives at the eye.
     pub weight: Three<N>,
-    /// Reflections and refractions that led to it.
+    /// Secondary rays that led to it, of which it is the last.
     pub depth: u8,
     pub kind: RayKind,
     /// The random points of its sample.
     pub points: Sampler,
-    /// Diffuse reflections that led to it, without the last.
+    /// Diffuse reflections that led to it.
     pub reflections: u8,
     pub inside: Inside,
     /// The length of the rays before it, if textures have levels.

@@ -11,8 +11,8 @@ use super::path::Path;
 use super::reason::Reason;
 use super::search::{Stop, Tracer};
 use super::shade;
+use gridel_core::Effects;
 use gridel_core::format::record::Material;
-use gridel_core::{Effects, RayKind};
 
 impl Tracer<'_, '_> {
     /// Returns the surface of a hit.
@@ -81,7 +81,6 @@ impl Tracer<'_, '_> {
             passing,
             interface: interface.unwrap_or(Interface::of(hit.front, material)),
             beyond: path.inside.beyond(scene, boundary.as_ref(), hit.crossed()),
-            reflections: path.reflections + u8::from(path.kind == RayKind::Diffuse),
             length,
         })
     }

@@ -155,7 +155,7 @@ impl Tracer<'_, '_> {
         } = *seen;
         let scene = self.world.scene;
         let mut brought = [N::zero(); 3];
-        if seen.reflections < scene.bounces() {
+        if path.reflections < scene.bounces() {
             let scattered = directions::around(normal, path.point(INDIRECT));
             let scattered = Leaving {
                 kind: RayKind::Diffuse,
@@ -297,6 +297,7 @@ impl Tracer<'_, '_> {
                 }
             }
         }
+        let reflections = seen.path.reflections + u8::from(kind == RayKind::Diffuse);
         let alpha = self.world.scene.roughness(hit.object);
         match (kind, seen.path.kind) {
             (RayKind::Reflected, _) if alpha.is_some_and(facets::is_wide) => {
@@ -318,7 +319,7 @@ impl Tracer<'_, '_> {
                 depth: depth + 1,
                 kind,
                 points: seen.path.points,
-                reflections: seen.reflections,
+                reflections,
                 length: seen.length,
                 inside: if outward == hit.front {
                     seen.path.inside

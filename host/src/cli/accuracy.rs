@@ -15,10 +15,11 @@ use super::source::{import, warn_of_file};
 use choice::{Choice, choice};
 use folder::{CSV, PAGE, PLOT, kept, pictures};
 use gridel_host::accuracy::{
-    Bench, MOST_MEASURED_SAMPLES, MeasureError, Point, Truth, Worth, answers, frontier,
+    Bench, MOST_MEASURED_SAMPLES, MeasureError, Point, Setting, Truth, Worth, answers, frontier,
     least_reference_samples, page, plot, sentences, sweep,
 };
 use gridel_host::measure::InstanceCount;
+use gridel_host::scene::{Imported, RenderSettings};
 use gridel_host::table::{counted, grouped, significant};
 use measure::measure;
 use report::{csv, text};
@@ -57,66 +58,20 @@ struct Printed<'t> {
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let path = &arguments.scene;
     check_quality(arguments.quality, &[arguments.accel])?;
-    let options = SceneOptions {
-        cutoff: arguments.cutoff,
-        geometry: GeometryOptions {
-            lattice_bits: None,
-            room: None,
-            texture_bytes: None,
-            import: arguments.import.clone(),
-        },
-        ..SceneOptions::default()
-    };
-    let mut imported = import(path, &options)?;
-    let mut warnings = std::mem::take(&mut imported.warnings);
-    let samples = &mut imported.scene.render.samples;
-    if *samples > MOST_MEASURED_SAMPLES {
-        let note = format!(
-            "its {} samples per pixel are measured as {MOST_MEASURED_SAMPLES}, because the reference has twice as many",
-            grouped(usize::from(*samples))
-        );
-        warn_of_file(path, vec![note], &mut warnings);
-        *samples = MOST_MEASURED_SAMPLES;
-    }
+    let (imported, mut warnings) = read(arguments)?;
     let stem = path.file_stem().unwrap_or_default().display().to_string();
     let folder = match &arguments.output {
         Some(folder) => folder.clone(),
         None => PathBuf::from(format!("accuracy-{stem}")),
     };
-    let stated = imported.scene.render;
-    let size = arguments
-        .size
-        .unwrap_or_else(|| smaller([stated.width, stated.height]));
-    let pixels = usize::from(size[0]) * usize::from(size[1]);
-    if pixels > MOST_PIXELS {
-        return Err(Failure::usage(
-            format!(
-                "{} pixels exceed the largest size of {}",
-                grouped(pixels),
-                grouped(MOST_PIXELS)
-            ),
-            "ask for a smaller `--size`: errors, and times per ray, hardly depend on it",
-        ));
-    }
+    let size = measured_size(arguments, &imported.scene.render)?;
     let failed = |error: MeasureError| Failure::in_file(path, error);
     let mut bench = Bench::new(&imported.scene, arguments.accel, size)
         .with_quality(arguments.quality.unwrap_or_default())
         .with_copied(imported.copied)
         .with_truth(arguments.reference);
     let settings = sweep(bench.base(), bench.effects().map_err(failed)?);
-    let least = least_reference_samples(&settings);
-    let reference_samples = arguments
-        .reference_samples
-        .unwrap_or(least.max(REFERENCE_SAMPLES));
-    if reference_samples < least {
-        return Err(Failure::usage(
-            format!(
-                "a reference of {} per pixel is no better than the measured settings",
-                counted(reference_samples.into(), "sample")
-            ),
-            format!("ask for at least {least} with `--reference-samples`, or leave it out"),
-        ));
-    }
+    let reference_samples = reference_samples(arguments, &settings)?;
     warn_of_file(path, bench.warnings().map_err(failed)?, &mut warnings);
     let key = format!(
         "gridel {} scene {:08x} size {size:?} structure {} reference {}{}",
@@ -175,6 +130,70 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         true => Err(nothing_within(arguments, &results.points)),
         false => Ok(()),
     }
+}
+
+/// Reads the scene, with at most as many samples as are measured. Returns its warnings, too.
+fn read(arguments: &Arguments) -> Result<(Imported, Vec<String>), Failure> {
+    let path = &arguments.scene;
+    let options = SceneOptions {
+        cutoff: arguments.cutoff,
+        geometry: GeometryOptions {
+            lattice_bits: None,
+            room: None,
+            texture_bytes: None,
+            import: arguments.import.clone(),
+        },
+        ..SceneOptions::default()
+    };
+    let mut imported = import(path, &options)?;
+    let mut warnings = std::mem::take(&mut imported.warnings);
+    let samples = &mut imported.scene.render.samples;
+    if *samples > MOST_MEASURED_SAMPLES {
+        let note = format!(
+            "its {} samples per pixel are measured as {MOST_MEASURED_SAMPLES}, because the reference has twice as many",
+            grouped(usize::from(*samples))
+        );
+        warn_of_file(path, vec![note], &mut warnings);
+        *samples = MOST_MEASURED_SAMPLES;
+    }
+    Ok((imported, warnings))
+}
+
+/// The width and height of the pictures that are measured.
+fn measured_size(arguments: &Arguments, stated: &RenderSettings) -> Result<[u16; 2], Failure> {
+    let size = arguments
+        .size
+        .unwrap_or_else(|| smaller([stated.width, stated.height]));
+    let pixels = usize::from(size[0]) * usize::from(size[1]);
+    if pixels <= MOST_PIXELS {
+        return Ok(size);
+    }
+    Err(Failure::usage(
+        format!(
+            "{} pixels exceed the largest size of {}",
+            grouped(pixels),
+            grouped(MOST_PIXELS)
+        ),
+        "ask for a smaller `--size`: errors, and times per ray, hardly depend on it",
+    ))
+}
+
+/// The samples per pixel of the reference.
+fn reference_samples(arguments: &Arguments, settings: &[Setting]) -> Result<u16, Failure> {
+    let least = least_reference_samples(settings);
+    let samples = arguments
+        .reference_samples
+        .unwrap_or(least.max(REFERENCE_SAMPLES));
+    if samples >= least {
+        return Ok(samples);
+    }
+    Err(Failure::usage(
+        format!(
+            "a reference of {} per pixel is no better than the measured settings",
+            counted(samples.into(), "sample")
+        ),
+        format!("ask for at least {least} with `--reference-samples`, or leave it out"),
+    ))
 }
 
 /// No setting keeps within the bound.

@@ -73,7 +73,7 @@ const STATE: &str = "certify.state";
 const MOST_PIXELS: usize = 1 << 22;
 
 /// The version of what is proved and how. Raise it with every change, so that older states are not continued.
-const RULES: u32 = 6;
+const RULES: u32 = 7;
 
 /// The JSON output.
 #[derive(Serialize)]

@@ -3,7 +3,6 @@
 
 mod files;
 mod size;
-mod warnings;
 
 use super::arguments::{LightChange, SceneOptions, TraceOptions, check_quality, check_room};
 use super::changes::{Changes, fault};
@@ -21,8 +20,6 @@ use gridel_host::scene::{self, Imported, Posed, SourceSpan, Track};
 use gridel_host::state::{self, State, StateError};
 use gridel_host::table::{counted, grouped, printable, significant};
 use std::path::{Path, PathBuf};
-use warnings::leave_out;
-pub use warnings::warn_of_file;
 
 /// A blob, from a file or from the compiler.
 pub struct Source {
@@ -363,6 +360,15 @@ impl Source {
     }
 }
 
+/// Warns of a file, and adds that to its other warnings.
+pub fn warn_of_file(path: &Path, sentences: Vec<String>, warnings: &mut Vec<String>) {
+    for sentence in sentences {
+        let warning = format!("{}: {sentence}", path.display());
+        warn(&warning);
+        warnings.push(warning);
+    }
+}
+
 /// Objects that a warning names; the rest are counted.
 const NAMED: usize = 5;
 
@@ -456,12 +462,9 @@ fn import_from(input: &Input, options: &SceneOptions) -> Result<(Imported, bool)
             "leave the option out",
         ));
     }
-    imported
-        .warnings
-        .extend(leave_out(&mut imported.scene, path, &importing.without));
-    for warning in &imported.warnings {
-        warn(warning);
-    }
+    imported.warnings.iter().for_each(warn);
+    let lost = scene::leave_out(&mut imported.scene, &importing.without);
+    warn_of_file(path, lost, &mut imported.warnings);
     if let Some(cutoff) = options.cutoff {
         imported.scene.render.cutoff = cutoff;
     }

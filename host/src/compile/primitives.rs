@@ -210,115 +210,127 @@ impl Primitives {
             Shape::Mesh {
                 vertices,
                 triangles,
-            } => {
-                let snapped: Vec<_> = vertices.iter().map(|&v| lattice.snap(v)).collect();
-                // Their numbers among all distinct ones without normals, as soon as they are looked up.
-                let mut numbers = vec![None; vertices.len()];
-                let texture = scene.materials[object.material].placing();
-                let attributes = object.attributes.placed_on(texture);
-                let all = Corners::of(&object.normals, &attributes, scene.display_values);
-                let mut all = all.ok_or_else(|| CompileError::TextureCoordinates {
-                    object: format!("{} ({})", printable(&object.name), object.place),
-                    most: MOST_COORDINATE,
-                })?;
-                let targets = &scene.morph_targets;
-                all.motions = self.motions.of(object, triangles, lattice, targets)?;
-                let all = all;
-                let mut is_smooth = false;
-                let name_of = |number: usize| {
-                    let name = printable(&object.name);
-                    format!("{name} ({}, triangle {number})", object.place)
-                };
-                for (number, triangle) in triangles.iter().enumerate() {
-                    let corners = triangle.map(|vertex| snapped[vertex as usize]);
-                    let found = all.of_triangle(number, *triangle);
-                    if is_degenerate(corners) && !self.opens(corners, found) {
-                        let [a, b, c] = triangle.map(|vertex| vertices[vertex as usize]);
-                        let name = name_of(number);
-                        if (b - a).cross(c - a) == DVec3::ZERO {
-                            self.without_area.add(name);
-                        } else {
-                            self.collapsed.add(name);
-                        }
-                        self.slivers.push(corners);
-                        let moving = corners.into_iter().zip(found).filter(|it| it.1.motion > 0);
-                        self.sliver_motions
-                            .extend(moving.map(|(place, corner)| (place, corner.motion)));
-                        self.leave_out();
-                    } else {
-                        let [a, b, c] = triangle.map(|vertex| vertices[vertex as usize]);
-                        if is_degenerate(corners) && (b - a).cross(c - a) != DVec3::ZERO {
-                            self.collapsed.add(name_of(number));
-                        }
-                        let displacement = triangle
-                            .map(|vertex| {
-                                let given = lattice.in_fine(vertices[vertex as usize]);
-                                displacement(given, snapped[vertex as usize])
-                            })
-                            .into_iter()
-                            .fold(0.0, f64::max);
-                        let triangle = if all.is_plain() {
-                            triangle.map(|vertex| {
-                                *numbers[vertex as usize].get_or_insert_with(|| {
-                                    distinct.number(snapped[vertex as usize], Corner::default())
-                                })
-                            })
-                        } else {
-                            is_smooth |= found[0].normal.is_some();
-                            [0, 1, 2].map(|k: usize| distinct.number(corners[k], found[k]))
-                        };
-                        self.triangles.push(triangle);
-                        self.keep(Kind::Triangle, displacement);
-                    }
-                }
-                for (effect, is_required) in [
-                    (Effects::SMOOTH, is_smooth),
-                    (Effects::VERTEX_COLORS, all.is_colored()),
-                ] {
-                    if is_required {
-                        let name = format!("mesh {}", printable(&object.name));
-                        self.requirements.add(effect, name, &object.place);
-                    }
-                }
-                let is_still = all.motions.is_empty();
-                if !self.flat_meshes
-                    && is_still
-                    && flattened::is_flattened((vertices, &snapped), triangles)
-                {
-                    return Err(CompileError::Flattened {
-                        object: format!("{} ({})", printable(&object.name), object.place),
-                        step: lattice.step(),
-                    });
-                }
-            }
-            shape => {
-                let name = || format!("{} ({})", printable(&object.name), object.place);
-                let Some(Added {
-                    kind,
-                    displacement,
-                    fits,
-                }) = self.records.add(shape, lattice)
-                else {
-                    self.collapsed.add(name());
-                    self.leave_out();
-                    return self.check_count();
-                };
-                if !fits && !kind.is_bounded() {
-                    return Err(CompileError::OutOfReach {
-                        object: name(),
-                        most: lattice.unit() * (FARTHEST_POINT >> 8) as f64,
-                    });
-                }
-                self.needs_room |= !fits;
-                let steps = displacement / lattice.fine_steps();
-                if steps > FAR_MOVED {
-                    self.far_moved
-                        .add(format!("{}: by {steps:.1} steps", name()));
-                }
-                self.keep(kind, displacement);
-            }
+            } => self.add_mesh(scene, object, (vertices, triangles), lattice, distinct)?,
+            shape => self.add_solid(object, shape, lattice)?,
         }
         self.check_count()
+    }
+
+    fn add_mesh(
+        &mut self,
+        scene: &Scene,
+        object: &Object,
+        (vertices, triangles): (&[DVec3], &[[u32; 3]]),
+        lattice: &Lattice,
+        distinct: &mut Vertices,
+    ) -> Result<(), CompileError> {
+        let snapped: Vec<_> = vertices.iter().map(|&v| lattice.snap(v)).collect();
+        // Their numbers among all distinct ones without normals, as soon as they are looked up.
+        let mut numbers = vec![None; vertices.len()];
+        let texture = scene.materials[object.material].placing();
+        let attributes = object.attributes.placed_on(texture);
+        let all = Corners::of(&object.normals, &attributes, scene.display_values);
+        let mut all = all.ok_or_else(|| CompileError::TextureCoordinates {
+            object: format!("{} ({})", printable(&object.name), object.place),
+            most: MOST_COORDINATE,
+        })?;
+        let targets = &scene.morph_targets;
+        all.motions = self.motions.of(object, triangles, lattice, targets)?;
+        let all = all;
+        let mut is_smooth = false;
+        let name_of = |number: usize| {
+            let name = printable(&object.name);
+            format!("{name} ({}, triangle {number})", object.place)
+        };
+        for (number, triangle) in triangles.iter().enumerate() {
+            let given = triangle.map(|vertex| vertices[vertex as usize]);
+            let corners = triangle.map(|vertex| snapped[vertex as usize]);
+            let found = all.of_triangle(number, *triangle);
+            let has_area = (given[1] - given[0]).cross(given[2] - given[0]) != DVec3::ZERO;
+            let collapses = is_degenerate(corners);
+            if collapses && has_area {
+                self.collapsed.add(name_of(number));
+            }
+            if collapses && !self.opens(corners, found) {
+                if !has_area {
+                    self.without_area.add(name_of(number));
+                }
+                self.slivers.push(corners);
+                let moving = corners.into_iter().zip(found).filter(|it| it.1.motion > 0);
+                self.sliver_motions
+                    .extend(moving.map(|(place, corner)| (place, corner.motion)));
+                self.leave_out();
+                continue;
+            }
+            let displacement = [0, 1, 2]
+                .map(|k: usize| displacement(lattice.in_fine(given[k]), corners[k]))
+                .into_iter()
+                .fold(0.0, f64::max);
+            let triangle = if all.is_plain() {
+                triangle.map(|vertex| {
+                    *numbers[vertex as usize].get_or_insert_with(|| {
+                        distinct.number(snapped[vertex as usize], Corner::default())
+                    })
+                })
+            } else {
+                is_smooth |= found[0].normal.is_some();
+                [0, 1, 2].map(|k: usize| distinct.number(corners[k], found[k]))
+            };
+            self.triangles.push(triangle);
+            self.keep(Kind::Triangle, displacement);
+        }
+        for (effect, is_required) in [
+            (Effects::SMOOTH, is_smooth),
+            (Effects::VERTEX_COLORS, all.is_colored()),
+        ] {
+            if is_required {
+                let name = format!("mesh {}", printable(&object.name));
+                self.requirements.add(effect, name, &object.place);
+            }
+        }
+        let is_still = all.motions.is_empty();
+        if !self.flat_meshes && is_still && flattened::is_flattened((vertices, &snapped), triangles)
+        {
+            return Err(CompileError::Flattened {
+                object: format!("{} ({})", printable(&object.name), object.place),
+                step: lattice.step(),
+            });
+        }
+        Ok(())
+    }
+
+    /// Adds a shape that is one primitive.
+    fn add_solid(
+        &mut self,
+        object: &Object,
+        shape: &Shape,
+        lattice: &Lattice,
+    ) -> Result<(), CompileError> {
+        let name = || format!("{} ({})", printable(&object.name), object.place);
+        let Some(Added {
+            kind,
+            displacement,
+            fits,
+        }) = self.records.add(shape, lattice)
+        else {
+            self.collapsed.add(name());
+            self.leave_out();
+            return Ok(());
+        };
+        if !fits && !kind.is_bounded() {
+            return Err(CompileError::OutOfReach {
+                object: name(),
+                most: lattice.unit() * (FARTHEST_POINT >> 8) as f64,
+            });
+        }
+        self.needs_room |= !fits;
+        let steps = displacement / lattice.fine_steps();
+        if steps > FAR_MOVED {
+            self.far_moved
+                .add(format!("{}: by {steps:.1} steps", name()));
+        }
+        self.keep(kind, displacement);
+        Ok(())
     }
 
     /// Returns true if corners of a triangle that coincide at rest move apart, so that it then has an area.

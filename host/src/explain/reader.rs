@@ -17,8 +17,8 @@ impl Explanation {
         let mut explanation = Explanation::default();
         let mut reader = Reader::new(scene, format, subject, begin);
         for event in events {
-            if let Event::SampleFinished { place, radiance } = *event {
-                explanation.samples.push(reader.finish(place, radiance));
+            if let Event::SampleFinished { at, radiance } = *event {
+                explanation.samples.push(reader.finish(at, radiance));
             } else {
                 reader.take(event);
             }

@@ -347,8 +347,8 @@ impl Walk {
                 }
                 Step::Opened { place }
             }
-            Event::Tested { place, sides, span } => {
-                let tested = ray.tested(place, sides, span);
+            Event::Tested { node, sides, span } => {
+                let tested = ray.tested(node, sides, span);
                 self.culled += usize::from(tested.culled.is_some());
                 Step::Tested(tested)
             }
@@ -362,8 +362,8 @@ impl Walk {
                 }
                 return;
             }
-            Event::NodeSkipped { place, enters } => Step::GivenUp {
-                place: name(place),
+            Event::NodeSkipped { node, enters } => Step::GivenUp {
+                place: name(node),
                 enters: enters * ray.scale,
                 hit: ray.limit * ray.scale,
             },

@@ -170,7 +170,8 @@ fn change_tracks<'t>(
 
 #[cfg(test)]
 mod tests {
-    use crate::scene::{Light, LightShape, Scene, leave_out, read};
+    use crate::scene::without::leave_one_out;
+    use crate::scene::{Light, LightShape, Scene, read};
     use glam::DVec3;
     use gridel_core::Effects;
 
@@ -192,7 +193,7 @@ mod tests {
             for effect in [Effects::AREA_LIGHT, Effects::FALLOFF] {
                 let mut scene = scene(&format!("{lamp}{FLOOR}"));
                 assert_eq!(scene.objects.len(), 2);
-                let names = leave_out(&mut scene, effect).unwrap();
+                let names = leave_one_out(&mut scene, effect).unwrap();
                 assert!(names.contains(&String::from("object `bulb`")), "{names:?}");
                 assert!(
                     !names.contains(&String::from("object `floor`")),

@@ -5,6 +5,7 @@
 
 use super::plain_lights::{remove_falloff, shrink_areas};
 use super::{Diffuse, Material, Normals, Object, Scene, ToneMapping};
+use crate::table::printable;
 use gridel_core::Effects;
 use gridel_core::format::track::TrackTarget;
 use std::borrow::Cow;
@@ -193,9 +194,64 @@ impl Scene {
     }
 }
 
+/// Leaves effects out of a scene. Returns a sentence about each: what is lost, or that the scene does not call for it.
+///
+/// ```
+/// # let file = "[[object]]\nkind = 'sphere'\ncenter = [0, 0, 0]\nradius = 1\nname = 'ball'";
+/// # let imported = gridel_host::scene::read("ball.toml".as_ref(), file.into(), &Default::default())?;
+/// use gridel_core::Effects;
+/// use gridel_host::scene::leave_out;
+///
+/// let mut scene = imported.scene;
+/// let sentences = leave_out(&mut scene, &[Effects::SHADOW, Effects::GLASS]);
+/// assert_eq!(sentences[0], "without shadow: lights shine through all objects");
+/// assert_eq!(sentences[1], "the scene does not call for glass, so nothing is left out");
+/// # Ok::<(), gridel_host::scene::SceneError>(())
+/// ```
+pub fn leave_out(scene: &mut Scene, effects: &[Effects]) -> Vec<String> {
+    // One that is left out can take another along.
+    let whole = (effects.len() > 1).then(|| scene.clone());
+    let was_called_for = |effect| {
+        let whole = whole.clone();
+        whole.is_some_and(|mut scene| leave_one_out(&mut scene, effect).is_some())
+    };
+    let sentences = effects
+        .iter()
+        .filter_map(|&effect| match leave_one_out(scene, effect) {
+            None if was_called_for(effect) => None,
+            None => Some(format!(
+                "the scene does not call for {effect}, so nothing is left out"
+            )),
+            Some(names) => Some(format!(
+                "without {effect}{}: {}",
+                in_parentheses(&names),
+                shown_without(effect)
+            )),
+        });
+    sentences.collect()
+}
+
+/// Names of what loses an effect.
+fn in_parentheses(names: &[String]) -> String {
+    const NAMED: usize = 5;
+    let shown: Vec<_> = names
+        .iter()
+        .take(NAMED)
+        .map(|name| printable(name))
+        .collect();
+    let more = match names.len().saturating_sub(NAMED) {
+        0 => String::new(),
+        more => format!(" and {more} more"),
+    };
+    match shown.is_empty() {
+        true => String::new(),
+        false => format!(" ({}{more})", shown.join(", ")),
+    }
+}
+
 /// Leaves one effect out, and returns the names of the lights, materials and objects that lose it. `None` for a scene
 /// that does not call for it.
-pub fn leave_out(scene: &mut Scene, effect: Effects) -> Option<Vec<String>> {
+pub(super) fn leave_one_out(scene: &mut Scene, effect: Effects) -> Option<Vec<String>> {
     let before = scene.clone();
     scene.remove_effects(effect);
     if *scene == before {
@@ -356,7 +412,7 @@ mod tests {
             scene.remove_effects(effect);
             let left = effects(&scene);
             assert!(!left.contains(effect), "{name}: {left}");
-            assert_eq!(leave_out(&mut scene, effect), None, "{name}");
+            assert_eq!(leave_one_out(&mut scene, effect), None, "{name}");
             let depends = match effect {
                 Effects::GLASS => Effects::ABSORPTION.with(Effects::NESTED),
                 Effects::FALLOFF => Effects::AREA_LIGHT,
@@ -373,5 +429,20 @@ mod tests {
         let mut scene = scene();
         scene.remove_effects(Effects::ALL);
         assert_eq!(effects(&scene), Effects::NONE);
+    }
+
+    #[test]
+    fn effects_that_are_left_out_twice_are_named_once() {
+        let text = "[[light]]\nkind = 'sphere'\ncenter = [0, 5, 0]\nradius = 1\nradiance = 1\n\
+                    [[object]]\nkind = 'sphere'\ncenter = [0, 0, 0]\nradius = 1\n";
+        let imported = read("s.toml".as_ref(), text.into(), &Default::default()).unwrap();
+        for effects in [
+            [Effects::AREA_LIGHT; 2],
+            [Effects::FALLOFF, Effects::AREA_LIGHT],
+        ] {
+            let sentences = leave_out(&mut imported.scene.clone(), &effects);
+            assert_eq!(sentences.len(), 1, "{sentences:?}");
+            assert!(!sentences[0].contains("does not call"), "{sentences:?}");
+        }
     }
 }

@@ -76,9 +76,6 @@ impl<'s> Exact<'s> {
             return product(&brought, &ray.weight);
         };
         let mut trail = ray.trail;
-        if trail.kind == RayKind::Diffuse {
-            trail.reflections = trail.reflections.saturating_add(1);
-        }
         let face = self.face(trail.inside, &met);
         let mut weight = ray.weight.clone();
         if let Some(medium) = face.before {
@@ -229,6 +226,7 @@ impl<'s> Exact<'s> {
         let mut trail = Trail {
             depth: trail.depth + 1,
             kind,
+            reflections: trail.reflections + u8::from(leaving.kind == RayKind::Diffuse),
             ..*trail
         };
         if leaving.outward != met.front {

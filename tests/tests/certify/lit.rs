@@ -101,8 +101,8 @@ impl Exact<'_> {
             return None;
         }
         let origin = sum(&met.point, &met.lift()?);
-        // A plain point light; of others a point has been drawn.
-        if light.directional == 0 {
+        // Of others a point has been drawn, or they are far away.
+        if light.is_point() {
             aim.way = toward(light, &origin);
         }
         Some(origin)

@@ -26,6 +26,7 @@ pub fn all() -> Vec<(String, Scene)> {
     let mut all: Vec<(String, Scene)> = [
         ("smooth", smooth()),
         ("smooth under a sky", smooth_under_a_sky()),
+        ("smooth near points", smooth_near_points()),
         ("spots", spots()),
         ("lamps", lamps()),
         ("rough glass", rough_glass()),
@@ -76,6 +77,25 @@ fn smooth_under_a_sky() -> String {
          [[part]]\nname = 'ball'\n\
          [[part.object]]\nkind = 'mesh'\nsmooth = 120\nmaterial = 'dull'\n{OCTAHEDRON}\
          [[instance]]\npart = 'ball'\ntranslate = [2, 0, -1]\nrotate = [10, 20, 30]\nscale = 0.75\n"
+    )
+}
+
+/// Returns a scene of such balls next to points that fall off, that end, or that are spots.
+fn smooth_near_points() -> String {
+    format!(
+        "background = [0.1, 0.2, 0.3]\nambient = 0.02\n{CAMERA}\
+         [[light]]\nkind = 'point'\nposition = [-3, 0.5, 1]\ncolor = [2, 1, 1]\nfalloff = 'square'\n\
+         [[light]]\nkind = 'point'\nposition = [3, 1.5, 0.5]\ncolor = [0.2, 0.4, 0.8]\nrange = 4\n\
+         [[light]]\nkind = 'spot'\nposition = [0, 2, 2]\ndirection = [0, -1, -1]\ncolor = [1, 3, 1]\nfalloff = 'square'\n\
+         inner = 20\nouter = 50\n\
+         [material.clay]\ndiffuse = [0.8, 0.7, 0.6]\n\
+         [material.drink]\ndiffuse = 0.1\ntransmit = 0.8\nior = 1.33\nabsorption = [0.5, 0.2, 0.1]\n{GROUND}\
+         [[object]]\nkind = 'mesh'\nsmooth = 120\nmaterial = 'clay'\n{OCTAHEDRON}\
+         [[object]]\nkind = 'box'\nmin = [-2.75, 0, 0]\nmax = [-2.5, 1, 2]\nmaterial = 'drink'\n\
+         [[part]]\nname = 'ball'\n\
+         [[part.object]]\nkind = 'mesh'\nsmooth = 120\nmaterial = 'clay'\n{OCTAHEDRON}\
+         [[instance]]\npart = 'ball'\ntranslate = [-1.5, 0, -1]\nrotate = [10, 20, 30]\n\
+         [[instance]]\npart = 'ball'\ntranslate = [2, 0, -1]\nscale = 0.75\n"
     )
 }
 

@@ -67,7 +67,7 @@ impl Traverse for Grid {
         let root = PairCulling::<N>::root(cull, space.bounds(), limit(ray.tmax));
         if C::ENABLED {
             count.event(Event::Tested {
-                place: NodeId {
+                node: NodeId {
                     what: "grid",
                     number: 0,
                 },

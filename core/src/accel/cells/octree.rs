@@ -114,7 +114,7 @@ impl Traverse for Octree {
         let root = PairCulling::<N>::root(cull, space.bounds(), end);
         if C::ENABLED {
             count.event(Event::Tested {
-                place: node_id(0),
+                node: node_id(0),
                 sides: space.bounds().0.map(|axis| axis.map(Some)),
                 span: Cull::span(root),
             });
@@ -169,7 +169,7 @@ impl Traverse for Octree {
                     let empty = views.nodes.get(child as usize) == Some(&OctreeNode::EMPTY.0);
                     if C::ENABLED {
                         count.event(Event::Tested {
-                            place: node_id(child),
+                            node: node_id(child),
                             sides: place.child(sides).planes(&divisions),
                             span: Cull::span(Interval { near, far }),
                         });

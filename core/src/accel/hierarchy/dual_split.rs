@@ -74,7 +74,7 @@ impl Traverse for DualSplit {
             cull
         };
         tested(count, 6, || Event::Tested {
-            place: place(0),
+            node: place(0),
             sides: space.bounds().0.map(|axis| axis.map(Some)),
             span: Cull::span(interval),
         });
@@ -134,7 +134,7 @@ impl Traverse for DualSplit {
                 }
                 if C::ENABLED {
                     count.event(Event::NodeSkipped {
-                        place: place(entry.node),
+                        node: place(entry.node),
                         enters: <Cull as Culling<N>>::units(entry.near),
                     });
                 }
@@ -260,7 +260,7 @@ fn carve_ray<C: Observer>(
 ) {
     *interval = interval.and(form.around(planes));
     tested(count, 2, || Event::Tested {
-        place: place(number),
+        node: place(number),
         sides: sides(axis, [Some(planes as i16), Some((planes >> 16) as i16)]),
         span: Cull::span(*interval),
     });
@@ -297,7 +297,7 @@ fn split<C: Observer>(
                 [planes[0], None]
             };
             count.event(Event::Tested {
-                place: place(child),
+                node: place(child),
                 sides: sides(word.split(), planes),
                 span: Cull::span(Interval { near, far }),
             });

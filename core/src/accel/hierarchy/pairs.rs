@@ -45,7 +45,7 @@ pub(in crate::accel) trait PairRecord: Copy {
     /// The test of a child, as events report it.
     fn tested(&self, number: u32, side: u32, span: [f64; 2]) -> Event {
         Event::Tested {
-            place: self.child(number, side).id(),
+            node: self.child(number, side).id(),
             sides: self.sides()[(side & 1) as usize],
             span,
         }
@@ -278,7 +278,7 @@ where
         let interval = (self.root)(limit);
         if C::ENABLED {
             count.event(Event::Tested {
-                place: self.pairs.root().id(),
+                node: self.pairs.root().id(),
                 sides: self.space.bounds().0.map(|axis| axis.map(Some)),
                 span: span::<N, K>(interval),
             });

@@ -1,7 +1,7 @@
 //! The reach of a primitive: the points at which a hit on it can be reported.
 //!
 //! Volumes other than boxes must hold these points, not only the primitive. A hit's t lies in the culling interval of
-//! the primitive's box, clamped to it if needed (see `accept_in_box` in `geometry`). That interval is wider than the
+//! the primitive's box, clamped to it if needed (see `accept_in_box` in `accel::clamp`). That interval is wider than the
 //! box. The rule of [`cull`](crate::accel::cull) limits the distance of a hit from the box on each axis. It is 4 units
 //! where the ray's slope is 2^-12 or more. On the others, of which there are at most two, it is 16.3 units.
 //!
@@ -29,9 +29,9 @@ const SLAB_ABOUT_SPHERE: i64 = 1;
 /// half.
 const SLAB_ABOUT_BOX: i64 = 17;
 /// The margin of a bounding sphere around its primitives: a unit for the hit and one for the sphere's test.
-const BALL_ABOUT_SPHERE: i64 = 2;
+const BOUNDING_SPHERE_ABOUT_SPHERE: i64 = 2;
 /// The diagonal of 16.3, 16.3 and 4 units, and one unit for the sphere's test.
-const BALL_ABOUT_BOX: i64 = 25;
+const BOUNDING_SPHERE_ABOUT_BOX: i64 = 25;
 
 /// Returns the smallest integer whose square is at least this.
 fn root_above(square: u64) -> i64 {
@@ -87,12 +87,12 @@ impl Reach {
         let center = center.map(|x| i64::from(x) << 8);
         match *self {
             Self::Sphere(middle, reach) => {
-                let room = radius - i64::from(reach) - (BALL_ABOUT_SPHERE << 8);
+                let room = radius - i64::from(reach) - (BOUNDING_SPHERE_ABOUT_SPHERE << 8);
                 let apart = [0, 1, 2].map(|k: usize| i64::from(middle[k]) - center[k]);
                 room >= 0 && squared(apart) <= room * room
             }
             Self::Box(bounds) => {
-                let room = radius - (BALL_ABOUT_BOX << 8);
+                let room = radius - (BOUNDING_SPHERE_ABOUT_BOX << 8);
                 let apart = [0, 1, 2].map(|k: usize| {
                     let [low, high] = bounds.0[k].map(|side| i64::from(side) << 8);
                     (center[k] - low).max(high - center[k])

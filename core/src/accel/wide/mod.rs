@@ -320,7 +320,7 @@ fn observe_tested<N: Number, C: Observer>(
     for lane in children(node) {
         let bounds = node.child_box(lane);
         count.event(Event::Tested {
-            place: node.child(lane).id(),
+            node: node.child(lane).id(),
             sides: bounds.0.map(|axis| axis.map(Some)),
             span: cull.span(&bounds, limit),
         });

@@ -2,12 +2,8 @@
 
 use crate::format::layout::records;
 use crate::format::limits::{FARTHEST, MAX_RAY_DEPTH, MAX_SAMPLES};
+use crate::format::range::{ONE, RADIANCE};
 use bytemuck::{Pod, Zeroable};
-
-/// The largest radiance.
-const RADIANCE: i64 = i32::MAX as i64;
-/// The ratio 1.
-const ONE: i64 = 1 << 30;
 
 impl View {
     /// The [encoding](Self::encoding) of display values.
@@ -58,7 +54,7 @@ records! {
         /// Default number of samples per pixel.
         #[valid(Samples: 1..=MAX_SAMPLES as i64)]
         pub samples: u16,
-        /// Maximum number of reflections and refractions of a ray.
+        /// Maximum number of secondary rays that follow each other: off mirrors, through glass or alpha, diffuse.
         #[valid(RayDepth: 0..=MAX_RAY_DEPTH as i64)]
         pub depth: u8,
         /// 1 where all colors and lights are display values, which are added up and shown as they are. Else they are

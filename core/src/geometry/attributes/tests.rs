@@ -37,6 +37,23 @@ fn colors_at_corners_are_those_of_the_vertices() {
 }
 
 #[test]
+fn means_of_the_farthest_coordinates_are_exact() {
+    let [low, high] = [i32::MIN + 1, i32::MAX];
+    let half = Weights([1 << 29, 0]);
+    for (corners, mean) in [
+        ([-(1 << 30), 1 << 30, 0], 0),
+        ([low, high, 0], 0),
+        ([high, low, low], 0),
+        ([high, high, low], high),
+    ] {
+        let corners = corners.map(|u| [u, -u]);
+        assert_eq!(half.coordinates(corners), [mean, -mean], "{corners:?}");
+    }
+    let third = Weights([0, 1 << 30]);
+    assert_eq!(third.coordinates([[low; 2], [0; 2], [high; 2]]), [high; 2]);
+}
+
+#[test]
 fn weights_of_points_outside_and_of_nan_stay_in_range() {
     let corners = [[0, 0, 0], [2560, 0, 0], [0, 2560, 0]];
     let up = [0.0_f32, 0.0, 1.0];

@@ -22,6 +22,9 @@ class LoadOptions(TypedDict):
 
     accel: Optional[list[str]]
     lattice_bits: Optional[int]
+    quality: Optional[str]
+    without: list[str]
+    texture_bytes: Optional[int]
     camera: Optional[str]
     animation: Optional[str]
     time: Optional[float]

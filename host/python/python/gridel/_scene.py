@@ -214,6 +214,9 @@ class Scene:
         *,
         accel: Optional[Accel] = None,
         lattice_bits: Optional[int] = None,
+        quality: Optional[str] = None,
+        without: Union[str, Sequence[str]] = (),
+        texture_bytes: Optional[int] = None,
         camera: Optional[str] = None,
         animation: Union[str, int, None] = None,
         time: Optional[float] = None,
@@ -231,6 +234,11 @@ class Scene:
 
         :param accel: the structures to build, one name or several. Default: ``"wide"``.
         :param lattice_bits: bits of the lattice for coordinates, 10 to 24. Default: 24.
+        :param quality: how long to search for a better ``wide`` structure: ``"fast"``, ``"good"`` or ``"best"``. It changes
+            no result. Default: ``"good"``.
+        :param without: effects that :meth:`render` leaves out, one name or several, such as ``"shadow"``. Default: none.
+        :param texture_bytes: most bytes of all textures; they are stored with fewer colors or texels to fit. Default: no
+            limit.
         :param camera: camera of a glTF file, by its name or that of its node. Default: the first with a perspective.
         :param animation: animation of a glTF file, by its name or its number from 0. Default: the first.
         :param time: seconds at which copies of instances that move stand; needs ``instances="flatten"``. Camera, lights,
@@ -253,6 +261,9 @@ class Scene:
         given = {
             "accel": None if accel is None else _names(accel),
             "lattice_bits": None if lattice_bits is None else _bits(lattice_bits),
+            "quality": _text(quality, "quality"),
+            "without": _names(without),
+            "texture_bytes": None if texture_bytes is None else _integer(texture_bytes, "texture_bytes", 0, _LARGEST),
             "camera": _text(camera, "camera"),
             "animation": _text(animation, "animation", or_number=True),
             "time": _seconds(time, "time"),

@@ -69,146 +69,204 @@ pub fn form_record(
     light: &FormedLight<'_>,
     lattice: &Lattice,
 ) -> Result<(Record, Color), CompileError> {
-    let FormedLight { form, color, .. } = *light;
-    let units = |length: f64| length / lattice.unit();
-    let limited = |what: &'static str, length: f64, most: f64| {
-        let fits = units(length) <= most;
-        let most = most * lattice.unit();
-        fits.then_some(()).ok_or_else(|| CompileError::LightForm {
-            light: light.label.to_owned(),
-            what,
-            length,
-            most,
-        })
-    };
-    let q13 = |length: f64| (units(length) * 8192.0).round() as i32;
-    let (shape, normal, edges, mut reference) = match form.shape {
-        LightShape::Point => {
-            let direction = form.spot.map_or(DVec3::ZERO, |spot| unit(spot.direction));
-            let reference = if form.falls_off { 1.0 } else { 0.0 };
-            (0, direction, [DVec3::ZERO; 2], reference)
-        }
-        LightShape::Facet { normal } => {
-            let reference = if form.falls_off { 1.0 } else { 0.0 };
-            (Record::RECTANGLE, unit(normal), [DVec3::ZERO; 2], reference)
-        }
-        LightShape::Sphere { radius } => (
-            Record::SPHERE,
-            DVec3::ZERO,
-            [
-                DVec3::X * (radius + lift_length(form, lattice)),
-                DVec3::ZERO,
-            ],
-            radius,
-        ),
-        LightShape::Rectangle { edges } => {
-            let across = edges[0].cross(edges[1]);
-            (
-                Record::RECTANGLE,
-                unit(across),
-                edges,
-                (across.length() / PI).sqrt(),
-            )
-        }
-        LightShape::Triangle { edges } => {
-            let across = edges[0].cross(edges[1]);
-            let reference = (0.5 * across.length() / PI).sqrt();
-            (Record::TRIANGLE, unit(across), edges, reference)
-        }
-        LightShape::Disc { normal, radius } => {
-            let normal = unit(normal);
-            let first = normal.any_orthonormal_vector();
-            let edges = [first * radius, normal.cross(first) * radius];
-            (Record::DISC, normal, edges, radius)
-        }
-    };
-    for edge in edges {
-        limited("edge or radius", edge.abs().max_element(), LONGEST_EDGE)?;
+    let outline = Outline::of(light.form, lattice);
+    for edge in outline.edges {
+        let length = edge.abs().max_element();
+        light.reject_beyond(lattice, "edge or radius", length, LONGEST_EDGE)?;
     }
-    // The color is as precise as possible, and the distance at which the light has it compensates.
-    let (peak, mut color) = (color.into_iter().fold(0.0, f64::max), color);
-    if reference > 0.0 && peak > 0.0 {
-        if !light.has_color_track {
-            let full = reference * peak.sqrt();
-            reference = full.min(LONGEST * lattice.unit());
-            let brightness = (full / reference) * (full / reference);
-            let nearest = light.distances[0];
-            if brightness > BRIGHTEST && units(nearest) > LONGEST {
-                return Err(CompileError::FarAway {
-                    what: light.label.to_owned(),
-                    distance: nearest,
-                    size: light.scene_size,
-                    remedy: "move it nearer and make it less bright, or use a directional light",
-                });
-            }
-            if brightness > BRIGHTEST {
-                return Err(CompileError::LightTooBright {
-                    light: light.label.to_owned(),
-                    times: brightness / BRIGHTEST,
-                });
-            }
-            color = color.map(|channel| channel / peak * brightness);
-        }
-        limited("distance at which it has its color", reference, LONGEST)?;
-    }
-    let range = match form.range {
-        Some(range) if units(range) > LONGEST_RANGE => {
-            // It is nearly the same everywhere in the scene.
-            let [nearest, farthest] = light.distances.map(|it| left_within(range, it));
-            let mean = (nearest + farthest) / 2.0;
-            if nearest - farthest > UNEVEN * mean || light.has_color_track && mean < 1.0 - UNEVEN {
-                limited("range", range, LONGEST_RANGE)?;
-            }
-            if !light.has_color_track {
-                color = color.map(|channel| channel * mean);
-            }
-            None
-        }
-        range => range,
-    };
-    let range_record = |range: f64| {
-        let far = f64::from(1 << Record::FAR_RANGE_BITS);
-        match units(range) > LONGEST {
-            true => -q13(range / far),
-            false => q13(range).max(1),
-        }
-    };
-    let value = color.into_iter().fold(0.0, f64::max);
-    // Rounding may bring a color that is as bright as possible beyond.
-    if value > BRIGHTEST * (1.0 + 1e-9) {
-        return Err(CompileError::TooBright {
-            what: match light.has_color_track {
-                true => format!("{}, whose color has a track,", light.label),
-                false => light.label.to_owned(),
-            },
-            value,
-            most: BRIGHTEST,
-        });
-    }
-    let q30 = |ratio: f64| (ratio * f64::from(1 << 30)).round() as i32;
+    let (reference, color) = light.at_reference(outline.reference, lattice)?;
+    let (range, color) = light.in_range(color, lattice)?;
+    light.reject_too_bright(color)?;
+    let q13 = |length: f64| q13(length / lattice.unit());
     let cosine = |degrees: f64| degrees.to_radians().cos();
-    let cone = form
-        .spot
-        .map(|spot| [cosine(spot.outer), cosine(spot.inner)]);
+    let cone = light.form.spot;
+    let cone = cone.map(|spot| [spot.outer, spot.inner].map(cosine));
     let record = Record {
-        shape,
+        shape: outline.shape,
         // A light that is there is never without a distance.
         reference: q13(reference).max(i32::from(reference > 0.0)),
-        range: range.map_or(0, range_record),
+        range: range.map_or(0, |range| range_record(range / lattice.unit())),
         cone_cosine: cone.map_or(-(1 << 30), |[outer, _]| q30(outer)),
-        width: match (shape, cone) {
+        width: match (outline.shape, cone) {
             (_, Some([outer, inner])) => q30(inner) - q30(outer),
             (0 | Record::SPHERE, _) => 0,
             // Within its own size of all of it.
             _ => {
-                let sizes = edges.map(|edge| 2.0 * edge.abs().element_sum());
+                let sizes = outline.edges.map(|edge| 2.0 * edge.abs().element_sum());
                 q13(sizes.iter().sum()).min(1 << 30)
             }
         },
-        normal: normal.to_array().map(q30),
-        edges: edges.map(|edge| edge.to_array().map(q13)),
+        normal: outline.normal.to_array().map(q30),
+        edges: outline.edges.map(|edge| edge.to_array().map(q13)),
     };
     Ok((record, color))
+}
+
+/// A length in units as records have it.
+fn q13(units: f64) -> i32 {
+    (units * 8192.0).round() as i32
+}
+
+/// A ratio as records have it.
+fn q30(ratio: f64) -> i32 {
+    (ratio * f64::from(1 << 30)).round() as i32
+}
+
+/// A range in units as records have it: negative where it is far.
+fn range_record(units: f64) -> i32 {
+    let far = f64::from(1 << Record::FAR_RANGE_BITS);
+    match units > LONGEST {
+        true => -q13(units / far),
+        false => q13(units).max(1),
+    }
+}
+
+/// What a form's shape is in its record, in scene units.
+struct Outline {
+    shape: u32,
+    normal: DVec3,
+    edges: [DVec3; 2],
+    /// The distance at which the light has its color; 0 without a falloff.
+    reference: f64,
+}
+
+impl Outline {
+    fn of(form: &LightForm, lattice: &Lattice) -> Self {
+        let at_1 = if form.falls_off { 1.0 } else { 0.0 };
+        let (shape, normal, edges, reference) = match form.shape {
+            LightShape::Point => {
+                let direction = form.spot.map_or(DVec3::ZERO, |spot| unit(spot.direction));
+                (0, direction, [DVec3::ZERO; 2], at_1)
+            }
+            LightShape::Facet { normal } => {
+                (Record::RECTANGLE, unit(normal), [DVec3::ZERO; 2], at_1)
+            }
+            LightShape::Sphere { radius } => {
+                let lifted = radius + lift_length(form, lattice);
+                let edges = [DVec3::X * lifted, DVec3::ZERO];
+                (Record::SPHERE, DVec3::ZERO, edges, radius)
+            }
+            LightShape::Rectangle { edges } => {
+                let across = edges[0].cross(edges[1]);
+                let reference = (across.length() / PI).sqrt();
+                (Record::RECTANGLE, unit(across), edges, reference)
+            }
+            LightShape::Triangle { edges } => {
+                let across = edges[0].cross(edges[1]);
+                let reference = (0.5 * across.length() / PI).sqrt();
+                (Record::TRIANGLE, unit(across), edges, reference)
+            }
+            LightShape::Disc { normal, radius } => {
+                let normal = unit(normal);
+                let first = normal.any_orthonormal_vector();
+                let edges = [first * radius, normal.cross(first) * radius];
+                (Record::DISC, normal, edges, radius)
+            }
+        };
+        Self {
+            shape,
+            normal,
+            edges,
+            reference,
+        }
+    }
+}
+
+impl FormedLight<'_> {
+    /// Rejects a length of more than `most` units.
+    fn reject_beyond(
+        &self,
+        lattice: &Lattice,
+        what: &'static str,
+        length: f64,
+        most: f64,
+    ) -> Result<(), CompileError> {
+        if length / lattice.unit() <= most {
+            return Ok(());
+        }
+        Err(CompileError::LightForm {
+            light: self.label.to_owned(),
+            what,
+            length,
+            most: most * lattice.unit(),
+        })
+    }
+
+    /// Returns the color in the record, as precise as possible, and the distance at which the light has it.
+    fn at_reference(
+        &self,
+        reference: f64,
+        lattice: &Lattice,
+    ) -> Result<(f64, Color), CompileError> {
+        let peak = self.color.into_iter().fold(0.0, f64::max);
+        if reference <= 0.0 || peak <= 0.0 {
+            return Ok((reference, self.color));
+        }
+        let what = "distance at which it has its color";
+        if self.has_color_track {
+            self.reject_beyond(lattice, what, reference, LONGEST)?;
+            return Ok((reference, self.color));
+        }
+        let full = reference * peak.sqrt();
+        let reference = full.min(LONGEST * lattice.unit());
+        let brightness = (full / reference) * (full / reference);
+        let nearest = self.distances[0];
+        if brightness > BRIGHTEST && nearest / lattice.unit() > LONGEST {
+            return Err(CompileError::FarAway {
+                what: self.label.to_owned(),
+                distance: nearest,
+                size: self.scene_size,
+                remedy: "move it nearer and make it less bright, or use a directional light",
+            });
+        }
+        if brightness > BRIGHTEST {
+            return Err(CompileError::LightTooBright {
+                light: self.label.to_owned(),
+                times: brightness / BRIGHTEST,
+            });
+        }
+        let color = self.color.map(|channel| channel / peak * brightness);
+        Ok((reference, color))
+    }
+
+    /// Returns the range in the record, if it has one, and the color with what a longer one leaves of it.
+    fn in_range(
+        &self,
+        color: Color,
+        lattice: &Lattice,
+    ) -> Result<(Option<f64>, Color), CompileError> {
+        let range = self.form.range;
+        let Some(range) = range.filter(|range| range / lattice.unit() > LONGEST_RANGE) else {
+            return Ok((range, color));
+        };
+        // It is nearly the same everywhere in the scene.
+        let [nearest, farthest] = self.distances.map(|it| left_within(range, it));
+        let mean = (nearest + farthest) / 2.0;
+        if nearest - farthest > UNEVEN * mean || self.has_color_track && mean < 1.0 - UNEVEN {
+            self.reject_beyond(lattice, "range", range, LONGEST_RANGE)?;
+        }
+        let color = match self.has_color_track {
+            true => color,
+            false => color.map(|channel| channel * mean),
+        };
+        Ok((None, color))
+    }
+
+    fn reject_too_bright(&self, color: Color) -> Result<(), CompileError> {
+        let value = color.into_iter().fold(0.0, f64::max);
+        // Rounding may bring a color that is as bright as possible beyond.
+        if value <= BRIGHTEST * (1.0 + 1e-9) {
+            return Ok(());
+        }
+        Err(CompileError::TooBright {
+            what: match self.has_color_track {
+                true => format!("{}, whose color has a track,", self.label),
+                false => self.label.to_owned(),
+            },
+            value,
+            most: BRIGHTEST,
+        })
+    }
 }
 
 #[cfg(test)]

@@ -44,6 +44,18 @@ pub enum Quality {
 }
 
 impl Quality {
+    /// All of them.
+    pub const ALL: [Self; 3] = [Self::Fast, Self::Good, Self::Best];
+
+    /// Returns its name, which the option `--quality` takes.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Fast => "fast",
+            Self::Good => "good",
+            Self::Best => "best",
+        }
+    }
+
     fn passes(self) -> usize {
         match self {
             Quality::Fast => 0,

@@ -4,7 +4,7 @@ use super::{Culled, InUnits, Plane, Side, Tested, name};
 use gridel_core::observe::event::{NodeId, Sides};
 
 impl InUnits {
-    pub(super) fn tested(&self, place: NodeId, sides: Sides, span: [f64; 2]) -> Tested {
+    pub(super) fn tested(&self, node: NodeId, sides: Sides, span: [f64; 2]) -> Tested {
         let mut planes = Vec::new();
         for (axis, sides) in sides.iter().enumerate() {
             for (side, plane) in sides.iter().enumerate() {
@@ -13,7 +13,7 @@ impl InUnits {
         }
         let culled = (span[0] > span[1]).then(|| self.reason(&planes, span));
         Tested {
-            place: name(place),
+            place: name(node),
             planes,
             span: span.map(|t| t * self.scale),
             units: span,

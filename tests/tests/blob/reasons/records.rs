@@ -414,6 +414,20 @@ pub(super) fn primitives() -> Errors {
             (it.base_radius, it.apex_radius) = (0, 0)
         })
     });
+    // Wider and higher than any solid in a scene's box.
+    errors.reason("cone 0", Reason::OutsideScene, |it| {
+        let bounds = it.header().bounds;
+        it.change(SectionKind::Cones, 0, |it: &mut Cone| {
+            [it.base, it.apex] =
+                [0, 1].map(|side: usize| bounds.0.map(|axis| i32::from(axis[side]) << 8));
+            it.base_radius = 65_534 << 8;
+        })
+    });
+    errors.reason("cone 0", Reason::OutsideScene, |it| {
+        it.change(SectionKind::Cones, 0, |it: &mut Cone| {
+            it.bounds.0[2][1] = i16::MAX
+        })
+    });
     errors.field("object 1", Field::FirstPrimitive, |it| {
         it.set(SectionKind::ObjectFirst, 1, u32::MAX)
     });
