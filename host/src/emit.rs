@@ -189,17 +189,39 @@ impl Emitted<'_> {
     }
 }
 
-/// The constant that states a scene unit in coordinate steps; nothing where a step is longer than a unit, or the number
-/// is beyond 64 bits.
+/// The constant that states a scene unit in coordinate steps, and the function that converts other lengths. Nothing of
+/// what would be beyond 64 bits; no constant where a step is longer than a unit.
 fn scene_unit(exponent: i32) -> String {
-    if !(-62..=0).contains(&exponent) {
+    let bits = exponent.unsigned_abs();
+    if bits > 62 {
         return String::new();
     }
+    let (unit, steps) = if exponent <= 0 {
+        let unit = format!(
+            "/// A scene unit in coordinate steps, those of `gridel_core::Position`.\n\
+             #[allow(dead_code)]\n\
+             pub const UNIT: i64 = 1 << {bits};\n"
+        );
+        (
+            unit,
+            format!("((numerator as i128) << {bits}) / denominator as i128"),
+        )
+    } else {
+        (
+            String::new(),
+            format!("numerator as i128 / ((denominator as i128) << {bits})"),
+        )
+    };
     format!(
-        "/// A scene unit in coordinate steps, those of `gridel_core::Position`.\n\
+        "{unit}\
+         /// A length of `numerator / denominator` scene units in coordinate steps, for constants. One that is longer\n\
+         /// than 32 bits does not compile.\n\
          #[allow(dead_code)]\n\
-         pub const UNIT: i64 = 1 << {};\n",
-        -exponent
+         pub const fn steps(numerator: i64, denominator: i64) -> i32 {{\n    \
+         let steps = {steps};\n    \
+         assert!(steps as i32 as i128 == steps, \"the length is beyond the scene's coordinates\");\n    \
+         steps as i32\n\
+         }}\n"
     )
 }
 

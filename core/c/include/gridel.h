@@ -8,6 +8,9 @@
 #include <stddef.h>
 #include <stdint.h>
 
+/* The number of a missing object, primitive or instance. */
+#define GRIDEL_NONE UINT32_C(4294967295)
+
 /* Bytes of the stack that a ray needs in a scene whose stack is so deep (see `gridel inspect` and
  * `gridel_info`), for memory that the compiler reserves: a multiple of 8. */
 #define GRIDEL_STACK_BYTES(depth) \
@@ -17,9 +20,9 @@
    : (depth) <= 48 ? 48 : (depth) <= 96 ? 96 : 160)
 
 
-// Marks a missing object, primitive or instance: of a ray that hits nothing, and the instance of a hit of the scene's
-// own objects.
-#define GRIDEL_NONE 4294967295
+// The version of this header: major, minor and patch number, of 16, 8 and 8 bits. A program whose library returns
+// another number by `gridel_version` is linked with the library of another header, whose types can have other sizes.
+#define GRIDEL_VERSION 256
 
 // Words of a `gridel_scene`.
 #define GRIDEL_SCENE_WORDS 86
@@ -44,7 +47,7 @@ enum gridel_status
   GRIDEL_STATUS_OK = 0,
   // A pointer is null.
   GRIDEL_STATUS_NULL_POINTER = 1,
-  // A pointer is not aligned for its type; memory for stacks and workspaces needs 8 bytes.
+  // A pointer is not aligned for its type; memory for stacks, workspaces and parts needs 8 bytes.
   GRIDEL_STATUS_MISALIGNED = 2,
   // A buffer has fewer bytes than are needed.
   GRIDEL_STATUS_BUFFER_TOO_SMALL = 3,
@@ -206,7 +209,7 @@ typedef struct gridel_buffer {
 typedef struct gridel_hit {
   // The distance from the ray's position, in a straight line, in steps; `UINT64_MAX` if nothing is hit.
   uint64_t distance;
-  // The place that is hit, in steps.
+  // The place that is hit, in steps; one beyond 32 bits is moved to their end.
   int32_t position[3];
   // The surface's normal, of length 2^30.
   int32_t normal[3];
@@ -302,7 +305,7 @@ typedef struct gridel_picture {
   uint16_t height;
   // Samples per pixel, 1 to 4096.
   uint16_t samples;
-  // Maximum number of reflections and refractions of a ray, 0 to 32.
+  // Maximum number of secondary rays that follow each other, 0 to 32: off mirrors, through glass or alpha, diffuse.
   uint16_t depth;
   // 1 to dither, else 0.
   uint16_t dither;
@@ -325,6 +328,9 @@ typedef struct gridel_rectangle {
 #ifdef __cplusplus
 extern "C" {
 #endif // __cplusplus
+
+// Returns the version of the library, in the form of `GRIDEL_VERSION`.
+uint32_t gridel_version(void);
 
 // Writes the camera of the scene file.
 //
@@ -448,9 +454,9 @@ gridel_status gridel_load_with_parts(struct gridel_scene *to,
                                      struct gridel_buffer parts);
 
 // Writes the reason why a blob is rejected as a sentence, with the section, the record and the expected value. The
-// sentence ends with 0 and is cut off where the buffer ends. Returns the code. What places the parts of a blob is checked
-// by `gridel_load_with_parts` alone, and not here. Takes some KiB of code and of stack; a program that does not call it
-// does not hold it.
+// sentence ends with 0 and is cut off where the buffer ends. Returns the code. Of a blob with parts that is right as far
+// as is checked here, it is that of `gridel_load`, which does not load it. What places the parts is checked by
+// `gridel_load_with_parts` alone. Takes some KiB of code and of stack; a program that does not call it does not hold it.
 //
 // # Safety
 // Each pointer is null, or points to what its type states.

@@ -246,7 +246,8 @@ unsafe fn cast_units<N: Number>(
     // SAFETY: the caller's promise.
     let stack: &mut StackView = unsafe { stack(scene, memory) }?;
     let units = Units::of(scene);
-    let (ray, scale) = units.ray::<N>(scene, ray)?;
+    let given = ray;
+    let (ray, scale) = units.ray::<N>(scene, given)?;
     let Some(hit) = closest_hit::<N, Accel, _>(scene, &ray, stack, &mut NoCount) else {
         return Ok(gridel_hit_f64 {
             t: f64::INFINITY,
@@ -258,9 +259,17 @@ unsafe fn cast_units<N: Number>(
             front: 0,
         });
     };
+    let t = scale.multiple(N::far_to_f64(hit.t))?;
+    let point = hit.point.map(N::length_to_f64);
+    // A point of a plane that is farther away than a point of the core can be.
+    let is_far = point.iter().any(|x| x.abs() > MOST_HELD);
+    let on_ray = |axis: usize| given.origin[axis] + t * given.direction[axis];
     Ok(gridel_hit_f64 {
-        t: scale.multiple(N::far_to_f64(hit.t))?,
-        point: units.place(hit.point.map(N::length_to_f64)),
+        t,
+        point: match is_far {
+            true => [on_ray(0), on_ray(1), on_ray(2)],
+            false => units.place(point),
+        },
         normal: hit.normal.map(N::ratio_to_f64),
         object: hit.object,
         primitive: hit.primitive,
@@ -303,6 +312,9 @@ impl From<gridel_ray_f32> for gridel_ray_f64 {
         }
     }
 }
+
+/// Units up to which a hit's point is the place that is hit, in the number formats of casts in scene units.
+const MOST_HELD: f64 = (1_u64 << 46) as f64;
 
 /// The relation of scene units to the core's.
 struct Units {
@@ -376,6 +388,10 @@ impl Units {
         let largest = larger(larger(x, y), z);
         if largest == 0.0 || !ray.direction.iter().all(|x| x.is_finite()) {
             return Err(gridel_status::RayDirection);
+        }
+        // As lengths, both ends can be infinite.
+        if ray.t_min.is_nan() || ray.t_max.is_nan() || ray.t_min > ray.t_max {
+            return Err(gridel_status::RayInterval);
         }
         let factor = largest * self.per_unit;
         let (direction, scale) = if ORDINARY.contains(&largest) && ORDINARY.contains(&factor) {

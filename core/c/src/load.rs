@@ -102,9 +102,9 @@ fn held(scene: Scene<'static>) -> Result<Scene<'static>, gridel_status> {
 }
 
 /// Writes the reason why a blob is rejected as a sentence, with the section, the record and the expected value. The
-/// sentence ends with 0 and is cut off where the buffer ends. Returns the code. What places the parts of a blob is checked
-/// by `gridel_load_with_parts` alone, and not here. Takes some KiB of code and of stack; a program that does not call it
-/// does not hold it.
+/// sentence ends with 0 and is cut off where the buffer ends. Returns the code. Of a blob with parts that is right as far
+/// as is checked here, it is that of `gridel_load`, which does not load it. What places the parts is checked by
+/// `gridel_load_with_parts` alone. Takes some KiB of code and of stack; a program that does not call it does not hold it.
 ///
 /// # Safety
 /// Each pointer is null, or points to what its type states.
@@ -127,8 +127,9 @@ pub unsafe extern "C" fn gridel_blob_error(
         let mut sentence = Sentence { text, used: 0 };
         let checked = match Scene::from_bytes(blob) {
             // It is rejected only because its parts are missing; they are checked one by one.
-            Err(BlobError::Parts { .. }) => part_blobs(blob)
-                .and_then(|mut parts| parts.try_for_each(|part| Scene::from_bytes(part).map(drop))),
+            Err(whole @ BlobError::Parts { .. }) => part_blobs(blob)
+                .and_then(|mut parts| parts.try_for_each(|part| Scene::from_bytes(part).map(drop)))
+                .and(Err(whole)),
             Ok(scene) if !scene.holds(STRUCTURE) => Err(BlobError::MissingPart {
                 missing: STRUCTURE.name(),
             }),
@@ -138,6 +139,12 @@ pub unsafe extern "C" fn gridel_blob_error(
         let name = STRUCTURE.name();
         // What does not fit is cut off.
         let _ = match error {
+            BlobError::Parts { .. } => sentence.write_str(
+                "the blob has parts: load it by gridel_load_with_parts, with the memory that gridel_parts_bytes states",
+            ),
+            BlobError::Misaligned => sentence.write_str(
+                "the blob does not start at a multiple of 4 bytes: align it, or copy it into aligned memory",
+            ),
             // No Cargo feature of this library helps.
             BlobError::MissingPart { missing } if missing == name || missing == "wide" => write!(
                 sentence,

@@ -8,7 +8,9 @@ use crate::{
     gridel_scene, gridel_status,
 };
 use gridel_core::render::Pixel;
-use gridel_core::{BlobError, Effects, Fixed, NoCount, Number, Renderer, Rgb565, Rgb888, Scene, Settings};
+use gridel_core::{
+    BlobError, Effects, Fixed, NoCount, Number, Renderer, Rgb565, Rgb888, Scene, Settings,
+};
 
 /// The effects that this build has code for.
 const EFFECTS: u32 = Effects::AVAILABLE.0;

@@ -14,7 +14,7 @@ pub enum gridel_status {
     Ok = 0,
     /// A pointer is null.
     NullPointer = 1,
-    /// A pointer is not aligned for its type; memory for stacks and workspaces needs 8 bytes.
+    /// A pointer is not aligned for its type; memory for stacks, workspaces and parts needs 8 bytes.
     Misaligned = 2,
     /// A buffer has fewer bytes than are needed.
     BufferTooSmall = 3,
@@ -147,8 +147,8 @@ fn text(status: u32) -> &'static CStr {
     match status {
         0 => c"done",
         1 => c"a pointer is null",
-        2 => c"a pointer is not aligned: memory for stacks and workspaces starts at a multiple of 8 bytes",
-        3 => c"a buffer is too small: ask gridel_stack_bytes, gridel_workspace_bytes_* or gridel_parts_bytes",
+        2 => c"a pointer is not aligned: memory for stacks, workspaces and parts starts at a multiple of 8 bytes, pixels of RGB565 at one of 2",
+        3 => c"a buffer is too small: gridel_stack_bytes, gridel_workspace_bytes_* and gridel_parts_bytes state the bytes of memory, and pixels take 3 bytes each, or 2 in RGB565",
         4 => c"the scene was not loaded: call gridel_load, and look at what it returns",
         10 => c"the blob does not start at a multiple of 4 bytes: align it, or copy it into aligned memory",
         11 => c"the blob is shorter or longer than it says: was it cut off, or was something added to it?",
@@ -163,7 +163,7 @@ fn text(status: u32) -> &'static CStr {
         20 => c"a record of the blob is invalid: gridel_blob_error says which",
         30 => c"the ray's direction is zero, infinite or NaN, or so short or long that t is no number of the hit's type",
         31 => c"the ray's origin is infinite or NaN",
-        32 => c"the ray's origin is too far from the scene: move it closer along the ray",
+        32 => c"the ray's origin is too far from the scene, or its hit from 0 for the hit's type: move the origin closer along the ray, or use gridel_cast_f64",
         33 => c"the ray's interval ends before it begins, or is NaN",
         40 => c"the picture has no pixels, or is more than 64 times as wide as high",
         41 => c"the samples per pixel must be 1 to 4096",

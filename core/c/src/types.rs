@@ -3,7 +3,7 @@
 use core::ffi::c_void;
 
 /// Marks a missing object, primitive or instance: of a ray that hits nothing, and the instance of a hit of the scene's
-/// own objects.
+/// own objects. The header has it from `cbindgen.toml`.
 pub const GRIDEL_NONE: u32 = 0xffff_ffff;
 
 /// Words of a `gridel_scene`.
@@ -72,7 +72,7 @@ pub struct gridel_ray {
 pub struct gridel_hit {
     /// The distance from the ray's position, in a straight line, in steps; `UINT64_MAX` if nothing is hit.
     pub distance: u64,
-    /// The place that is hit, in steps.
+    /// The place that is hit, in steps; one beyond 32 bits is moved to their end.
     pub position: [i32; 3],
     /// The surface's normal, of length 2^30.
     pub normal: [i32; 3],

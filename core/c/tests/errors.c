@@ -97,6 +97,9 @@ int main(int count_of_arguments, char **arguments) {
   list = load(arguments[2], &list_bytes);
   far = load(arguments[3], &far_bytes);
 
+  CHECK(gridel_version() == GRIDEL_VERSION);
+  CHECK(sizeof GRIDEL_NONE == sizeof(uint32_t));
+
   /* Loading. */
   EXPECT(NULL_POINTER, gridel_load(NULL, blob, blob_bytes));
   EXPECT(NULL_POINTER, gridel_load(&scene, NULL, blob_bytes));
@@ -247,6 +250,10 @@ int main(int count_of_arguments, char **arguments) {
     EXPECT(GRIDEL_STATUS_RAY_DISTANCE, gridel_cast_f32(&copy, &from_f32, stack, &hit_f32));
     EXPECT(GRIDEL_STATUS_OK, gridel_cast_f64(&copy, &from_f64, stack, &hit_f64));
     CHECK(hit_f64.object == 0 && hit_f64.point[1] > 9e38);
+    /* As lengths, both ends are infinite. */
+    from_f64.t_min = INFINITY;
+    from_f64.t_max = 1.7e308;
+    EXPECT(GRIDEL_STATUS_RAY_INTERVAL, gridel_cast_f64(&copy, &from_f64, stack, &hit_f64));
   }
 
   /* Pictures. */
@@ -320,6 +327,12 @@ int main(int count_of_arguments, char **arguments) {
   EXPECT(GRIDEL_STATUS_CAMERA_FIELD_OF_VIEW, gridel_look_at(&scene, &look, &camera));
   look.field_of_view -= 2;
   EXPECT(GRIDEL_STATUS_OK, gridel_look_at(&scene, &look, &camera));
+  EXPECT(GRIDEL_STATUS_OK,
+         gridel_render_from_f64(&scene, &camera, &picture, &rectangle, buffer(pixels, sizeof pixels), large));
+  look.field_of_view = 2;
+  EXPECT(GRIDEL_STATUS_OK, gridel_look_at(&scene, &look, &camera));
+  EXPECT(GRIDEL_STATUS_PICTURE_RESOLUTION,
+         gridel_render_from_f64(&scene, &camera, &picture, &rectangle, buffer(pixels, sizeof pixels), large));
   EXPECT(NOT_LOADED, gridel_orbit(&fresh, &circle, &camera));
   EXPECT(NULL_POINTER, gridel_orbit(&scene, NULL, &camera));
   EXPECT(NULL_POINTER, gridel_orbit(&scene, &circle, NULL));

@@ -160,7 +160,8 @@ pub(super) const COUNTED: usize = 16;
 ///
 /// For a closed mesh, a whole line has an even number of hits. A ray has an odd number if it begins inside and ends
 /// outside. `stack` needs [`stack_depth`](Scene::stack_depth) entries. The cost is that of a ray without end, for every
-/// 16 hits.
+/// 16 hits. A list of as many lies on the call stack, which takes 1.2 KiB more in `fixed` and `f32` than for a closest
+/// hit.
 ///
 /// ```
 /// # static BLOB: &[u8] =

@@ -44,7 +44,8 @@ impl Scene<'_> {
     /// ```
     ///
     /// # Errors
-    /// If the direction is zero, or the first distance is greater than the second.
+    /// If the direction is zero, or the first distance is greater than the second. Also if the place is
+    /// [`FARTHEST`](crate::format::limits::FARTHEST) or farther from the lattice's origin.
     pub fn ray_within<N: Number>(
         &self,
         position: Position,
@@ -54,7 +55,7 @@ impl Scene<'_> {
         if nearest > farthest {
             return Err(RayError::Interval);
         }
-        let origin = self.on_lattice(position).map(N::far);
+        let origin = self.start_of_ray(position)?.map(N::far);
         let direction = direction.map(|component| N::far(component.into()));
         let (slope, _) = N::slopes(direction).ok_or(RayError::Direction)?;
         let (_, norm) = N::normalize(slope);

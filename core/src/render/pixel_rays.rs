@@ -2,8 +2,8 @@
 //!
 //! In `fixed`, directions have 62 bits while they are added up, and 30 when their slopes are computed. So in square
 //! pictures of up to 90 degrees a slope is off by less than 2^-26. In wider ones the error is larger, but below a
-//! thousandth of the distance of two pixels. Directions to pixels outside of the picture need more bits than that: they
-//! are added up with fewer fraction bits.
+//! thousandth of the distance of two pixels. A direction to a pixel farther outside of the picture needs more bits than
+//! that, and is added up with fewer fraction bits.
 
 use crate::accel::Number;
 use crate::axis::pick;
@@ -65,33 +65,34 @@ impl<N: Number> PixelRays<N> {
         }
     }
 
-    /// The ray to a point that lies so many subpixels to the right of the picture's upper left corner, and so many below.
+    /// The ray to a point that lies so many subpixels to the right of the picture's upper left corner, and so many below:
+    /// at most one and a half times its width and height.
     #[inline(always)]
     pub(crate) fn ray(&self, [x, y]: [i32; 2]) -> Result<Ray<N>, RayError> {
         let rise = self.height.wrapping_sub(y.wrapping_mul(2));
+        let row = |k: usize| self.forward[k] + N::wide_times(self.up[k], rise);
+        let row = [row(0), row(1), row(2)];
         let shift = x.wrapping_mul(2).wrapping_sub(self.width);
-        if N::FORMAT == Format::Fixed && (x > self.width || y > self.height) {
-            return self.ray_outside(shift, rise);
-        }
-        let axis = |k: usize| {
-            let row = self.forward[k] + N::wide_times(self.up[k], rise);
-            N::upper(row + N::wide_times(self.right[k], shift))
-        };
+        let axis = |k: usize| N::upper(row[k] + N::wide_times(self.right[k], shift));
         let slopes = N::slopes_of([axis(0), axis(1), axis(2)]);
         let (slope, major) = slopes.ok_or(RayError::Direction)?;
         Ok(self.eye.ray_along(slope, major))
     }
 
-    /// The ray to a point outside of the picture, so many half subpixels to the right of its middle and above it.
-    #[cold]
-    #[inline(never)]
-    fn ray_outside(&self, shift: i32, rise: i32) -> Result<Ray<N>, RayError> {
+    /// The ray to such a point, of at most 2^24 subpixels, on any side of the picture.
+    pub(crate) fn ray_anywhere(&self, [x, y]: [i32; 2]) -> Result<Ray<N>, RayError> {
+        let is_inside = (0..=self.width).contains(&x) && (0..=self.height).contains(&y);
+        if is_inside || N::FORMAT != Format::Fixed {
+            return self.ray([x, y]);
+        }
+        let rise = self.height.wrapping_sub(y.wrapping_mul(2));
+        let shift = x.wrapping_mul(2).wrapping_sub(self.width);
         let ratio = |part: i32, whole: i32| {
             let ratio = part.unsigned_abs().checked_div(whole.unsigned_abs());
             ratio.unwrap_or(0)
         };
         let farther = ratio(shift, self.width).max(ratio(rise, self.height));
-        // Less than this many pictures away from the middle.
+        // The point is less than this many halves of the picture away from its middle.
         let divisor = 2_i32.wrapping_shl(u32::BITS.wrapping_sub(farther.leading_zeros()));
         let axis = |k: usize| {
             let over = |wide: N::Wide| N::wide_over(wide, divisor);

@@ -286,7 +286,8 @@ impl<'s, 'a, N: Number, A: Accel, const EFFECTS: u32> Renderer<'s, 'a, N, A, EFF
         Ok(())
     }
 
-    /// Returns the ray from the eye through the middle of a pixel, for queries of the caller's own.
+    /// Returns the ray from the eye through the middle of a pixel, for queries of the caller's own. Of a pixel outside of
+    /// the picture, [`ray_through`](Self::ray_through) returns it.
     ///
     /// ```
     /// # static BLOB: &[u8] =
@@ -306,6 +307,34 @@ impl<'s, 'a, N: Number, A: Accel, const EFFECTS: u32> Renderer<'s, 'a, N, A, EFF
     pub fn primary_ray(&self, x: u16, y: u16) -> Result<Ray<N>, RayError> {
         let middle = |pixel: u16| i32::from(pixel) * SUBPIXELS + SUBPIXELS / 2;
         self.rays.ray([middle(x), middle(y)])
+    }
+
+    /// Returns the ray from the eye through the middle of a pixel that can lie anywhere, also left of the picture or above
+    /// it: each number is -65,535 to 65,535. Inside of the picture it is the [primary ray](Self::primary_ray).
+    ///
+    /// ```
+    /// # static BLOB: &[u8] =
+    /// #     gridel_core::include_blob!(concat!(env!("CARGO_MANIFEST_DIR"), "/../fixtures/blobs/dual-split.gridel"));
+    /// use gridel_core::{Renderer, Scene};
+    ///
+    /// let scene = Scene::from_bytes(BLOB)?;
+    /// let renderer = Renderer::new(&scene)?;
+    /// assert_eq!(renderer.ray_through(7, 5)?.slope(), renderer.primary_ray(7, 5)?.slope());
+    /// // Far to the left, where the camera looks along -z and x grows to the right.
+    /// assert_eq!(renderer.ray_through(-30_000, 0)?.slope()[0], -1.0);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    ///
+    /// # Errors
+    /// If a number is out of its range, or the blob's camera vectors make no direction.
+    pub fn ray_through(&self, x: i32, y: i32) -> Result<Ray<N>, RayError> {
+        let most = i32::from(u16::MAX);
+        let range = -most..=most;
+        if !range.contains(&x) || !range.contains(&y) {
+            return Err(RayError::Direction);
+        }
+        let middle = |pixel: i32| pixel * SUBPIXELS + SUBPIXELS / 2;
+        self.rays.ray_anywhere([middle(x), middle(y)])
     }
 
     /// The source of the pixels' rays.

@@ -77,16 +77,26 @@ impl Scene<'_> {
     /// ```
     ///
     /// # Errors
-    /// If the direction is zero.
+    /// If the direction is zero, or the place is [`FARTHEST`](crate::format::limits::FARTHEST) or farther from the
+    /// lattice's origin.
     pub fn ray_from<N: Number>(
         &self,
         position: Position,
         direction: [i32; 3],
     ) -> Result<Ray<N>, RayError> {
-        let origin = self.on_lattice(position).map(N::far);
+        let origin = self.start_of_ray(position)?.map(N::far);
         let direction = direction.map(|component| N::far(component.into()));
         let [start, end] = [N::far(0), N::far(i64::MAX)];
         Ray::new(self.bounds(), origin, direction, start, end)
+    }
+
+    /// Returns a place on the lattice, unless it would be moved.
+    pub(crate) fn start_of_ray(&self, position: Position) -> Result<[i64; 3], RayError> {
+        let place = self.on_lattice(position);
+        match place.iter().all(|coordinate| coordinate.abs() < FARTHEST) {
+            true => Ok(place),
+            false => Err(RayError::Distance),
+        }
     }
 }
 

@@ -11,6 +11,9 @@ pub const FEW: [&str; 3] = ["triangle", "sphere", "shadow"];
 /// Prefix of items of code.
 pub const CODE: &str = "code: ";
 
+/// The item of the call stack, or its prefix.
+pub const CALL_STACK: &str = "call stack";
+
 pub const PROFILES: [Profile; 2] = [Profile::Fast, Profile::Small];
 
 /// The scene's own sizes (depth of the stack, width, waiting rays) are constants of its program. They add up to 0.8 %
@@ -54,6 +57,16 @@ impl ProgramEstimate<'_> {
             bytes: known.bytes + FRAME_ALIGNMENT,
             ..known
         })
+    }
+
+    /// Returns true if the figures are those of a program with code for more parts.
+    pub fn has_code_for_more(&self) -> bool {
+        let (board, format) = self.similar;
+        let place = (board, format, Structure::DualSplit);
+        let known = self
+            .programs
+            .figure(place, self.parts, Profile::Fast, |it| it.code);
+        known.is_some_and(|known| !known.measured)
     }
 
     /// Returns a figure of the program. `through` converts it to another structure, by the figures of all parts through

@@ -12,7 +12,7 @@
 
 use super::Board;
 use super::account::Account;
-use super::estimate::{CODE, PROFILES, ProgramEstimate};
+use super::estimate::{CALL_STACK, CODE, PROFILES, ProgramEstimate};
 use super::programs::{Known, Profile, Programs};
 use super::rendering::Rendering;
 use super::working;
@@ -46,6 +46,8 @@ pub struct MemoryReport {
     pub kind: Option<&'static str>,
     /// True if the scene's own program was built and measured, in both profiles.
     pub measured: bool,
+    /// True if the figures of code and call stack are those of a program with code for more.
+    pub has_code_for_more: bool,
     pub flash: Account,
     pub ram: Account,
     /// The scene's program, built for speed.
@@ -169,11 +171,11 @@ impl MemoryReport {
         let measured = |known: Option<Known>| known.is_some_and(|known| known.measured);
         let all_measured = stacks.into_iter().all(measured);
         let how = match all_measured {
-            true => "call stack",
-            false => "call stack, at most",
+            true => "",
+            false => ", at most",
         };
         ram.add(
-            how,
+            format!("{CALL_STACK}{how}"),
             deepest.map(|(fast, small)| fast.bytes.max(small.bytes)),
         );
         let (similar, its_format) = program.similar;
@@ -189,6 +191,7 @@ impl MemoryReport {
             measured_on: format!("{} in {}", similar.core, its_format.name()),
             kind: (!board.is_emulated()).then_some(board.measured),
             measured: all_measured && measured(program.code(Profile::Fast)),
+            has_code_for_more: program.has_code_for_more(),
             flash,
             ram,
             fast,
@@ -265,12 +268,30 @@ impl MemoryReport {
             })
             .collect();
         if !short.is_empty() {
-            return Fit::Short(format!("the scene takes {}", short.join(", and ")));
+            let short = short.join(", and ");
+            let certain = |account: &Account| account.at_least() - self.bounds(account);
+            let certainly = accounts
+                .iter()
+                .any(|(_, account)| certain(account) > account.available);
+            return if certainly || !self.has_code_for_more {
+                Fit::Short(format!("the scene takes {short}"))
+            } else {
+                Fit::Undecided(format!(
+                    "whether the scene fits is undecided: it takes at most {short}: its own program was not built, and the figures are those of one with code for more"
+                ))
+            };
         }
         match self.undecided() {
             Some(why) => Fit::Undecided(format!("whether the scene fits is undecided: {why}")),
             None => Fit::Fits,
         }
+    }
+
+    /// Bytes of code and call stack, which are upper bounds where the program was not built.
+    fn bounds(&self, account: &Account) -> u64 {
+        let is_bound = |what: &str| what.starts_with(CODE) || what.starts_with(CALL_STACK);
+        let bounds = account.items.iter().filter(|item| is_bound(&item.what));
+        bounds.filter_map(|item| item.bytes).sum()
     }
 
     /// Returns the parts that are not known, and why; `None` if all are.
