@@ -14,7 +14,9 @@ fn header() -> String {
 
 /// The library's declarations, in one text.
 fn source() -> String {
-    let files = ["status", "types", "load", "camera", "cast", "render"];
+    let files = [
+        "status", "types", "load", "camera", "cast", "render", "version",
+    ];
     let read = |name: &&str| fs::read_to_string(library().join(format!("src/{name}.rs")));
     files
         .iter()
@@ -39,7 +41,8 @@ fn header_declares_the_functions_of_the_library() {
         let (list, rest) = rest.split_once(')').expect("an end");
         let names = parameters(list, |one| one.split_once(':').map(|(name, _)| name.into()));
         assert!(
-            rest.starts_with(" -> gridel_status") || name == "gridel_text",
+            rest.starts_with(" -> gridel_status")
+                || ["gridel_text", "gridel_version"].contains(&name),
             "{name}"
         );
         defined.insert(String::from(name), names);
@@ -54,7 +57,8 @@ fn header_declares_the_functions_of_the_library() {
         let (before, rest) = header[at..].split_once('(').expect("parameters");
         let (list, _) = rest.split_once(')').expect("an end");
         let name = before.rsplit([' ', '*']).next().expect("a name");
-        let names = parameters(list, |one| one.rsplit([' ', '*']).next().map(String::from));
+        let name_of = |one: &str| one.rsplit([' ', '*']).next().map(String::from);
+        let names = parameters(list, |one| name_of(one).filter(|_| one != "void"));
         let before = declared.insert(String::from(name), names);
         assert_eq!(before, None, "{name} is declared twice");
     }

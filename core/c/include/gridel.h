@@ -20,10 +20,6 @@
    : (depth) <= 48 ? 48 : (depth) <= 96 ? 96 : 160)
 
 
-// The version of this header: major, minor and patch number, of 16, 8 and 8 bits. A program whose library returns
-// another number by `gridel_version` is linked with the library of another header, whose types can have other sizes.
-#define GRIDEL_VERSION 256
-
 // Words of a `gridel_scene`.
 #define GRIDEL_SCENE_WORDS 86
 
@@ -35,6 +31,10 @@
 
 // Bytes of a workspace that is large enough for every scene, in `f64`.
 #define GRIDEL_WORKSPACE_BYTES_MAX_F64 7680
+
+// The version of this header: major, minor and patch number, of 16, 8 and 8 bits. A program whose library returns
+// another number by `gridel_version` is linked with the library of another header, whose types can have other sizes.
+#define GRIDEL_VERSION 256
 
 // The result of a function: 0, or the reason why it did nothing. `gridel_text` returns the
 // sentence.
@@ -329,9 +329,6 @@ typedef struct gridel_rectangle {
 extern "C" {
 #endif // __cplusplus
 
-// Returns the version of the library, in the form of `GRIDEL_VERSION`.
-uint32_t gridel_version(void);
-
 // Writes the camera of the scene file.
 //
 // # Safety
@@ -577,6 +574,9 @@ gridel_status gridel_render_from_f64(const struct gridel_scene *loaded,
 
 // Returns the sentence for a code, which says what to do; it lives forever.
 const char *gridel_text(uint32_t status);
+
+// Returns the version of the library, in the form of `GRIDEL_VERSION`.
+uint32_t gridel_version(void);
 
 #ifdef __cplusplus
 }  // extern "C"

@@ -19,20 +19,6 @@ pub enum Indices<'a> {
     U32(&'a [u32]),
 }
 
-/// Returns the last number below `count` of which something holds that holds up to some number; 0 if of none.
-// Without a branch on what is found, which processors would mispredict.
-#[inline(always)]
-pub(crate) fn last(count: usize, holds: impl Fn(usize) -> bool) -> usize {
-    let (mut last, mut left) = (0_usize, count);
-    while left > 1 {
-        let half = left / 2;
-        let middle = last.wrapping_add(half);
-        last = if holds(middle) { middle } else { last };
-        left = left.wrapping_sub(half);
-    }
-    last
-}
-
 impl<'a> Indices<'a> {
     pub(crate) fn read(sections: &Sections<'a>, kind: SectionKind) -> Result<Self, BlobError> {
         let section = sections.get(kind);

@@ -32,7 +32,6 @@ pub use checksum::{Aligned, checksum};
 pub use effects::Effects;
 pub use error::{BlobError, Location};
 pub use index::Indices;
-pub(crate) use index::last;
 pub use kind::Kind;
 pub use leaf::Leaf;
 pub use link::Link;

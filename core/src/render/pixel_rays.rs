@@ -40,6 +40,10 @@ pub(crate) struct PixelRays<N: Number> {
     height: i32,
 }
 
+/// A row of a picture: the direction to its middle.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Row<N: Number>([N::Wide; 3]);
+
 impl<N: Number> PixelRays<N> {
     pub(crate) fn new(bounds: &UnitBox, view: &View, width: u16, height: u16) -> Self {
         // The largest component of any pixel's direction gets 62 bits, of which its ray uses the upper half.
@@ -65,25 +69,30 @@ impl<N: Number> PixelRays<N> {
         }
     }
 
-    /// The ray to a point that lies so many subpixels to the right of the picture's upper left corner, and so many below:
-    /// at most one and a half times its width and height.
+    /// The row that lies `y` subpixels below the upper edge.
     #[inline(always)]
-    pub(crate) fn ray(&self, [x, y]: [i32; 2]) -> Result<Ray<N>, RayError> {
+    pub(crate) fn row(&self, y: i32) -> Row<N> {
         let rise = self.height.wrapping_sub(y.wrapping_mul(2));
-        let row = |k: usize| self.forward[k] + N::wide_times(self.up[k], rise);
-        let row = [row(0), row(1), row(2)];
+        let axis = |k: usize| self.forward[k] + N::wide_times(self.up[k], rise);
+        Row([axis(0), axis(1), axis(2)])
+    }
+
+    /// The ray to the point of a row that lies `x` subpixels from the left edge.
+    #[inline(always)]
+    pub(crate) fn ray(&self, row: &Row<N>, x: i32) -> Result<Ray<N>, RayError> {
         let shift = x.wrapping_mul(2).wrapping_sub(self.width);
-        let axis = |k: usize| N::upper(row[k] + N::wide_times(self.right[k], shift));
+        let axis = |k: usize| N::upper(row.0[k] + N::wide_times(self.right[k], shift));
         let slopes = N::slopes_of([axis(0), axis(1), axis(2)]);
         let (slope, major) = slopes.ok_or(RayError::Direction)?;
         Ok(self.eye.ray_along(slope, major))
     }
 
-    /// The ray to such a point, of at most 2^24 subpixels, on any side of the picture.
+    /// The ray to a point so many subpixels, at most 2^24, to the right of the picture's upper left corner and below: on
+    /// any side of the picture.
     pub(crate) fn ray_anywhere(&self, [x, y]: [i32; 2]) -> Result<Ray<N>, RayError> {
         let is_inside = (0..=self.width).contains(&x) && (0..=self.height).contains(&y);
         if is_inside || N::FORMAT != Format::Fixed {
-            return self.ray([x, y]);
+            return self.ray(&self.row(y), x);
         }
         let rise = self.height.wrapping_sub(y.wrapping_mul(2));
         let shift = x.wrapping_mul(2).wrapping_sub(self.width);

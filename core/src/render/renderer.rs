@@ -306,7 +306,7 @@ impl<'s, 'a, N: Number, A: Accel, const EFFECTS: u32> Renderer<'s, 'a, N, A, EFF
     #[inline]
     pub fn primary_ray(&self, x: u16, y: u16) -> Result<Ray<N>, RayError> {
         let middle = |pixel: u16| i32::from(pixel) * SUBPIXELS + SUBPIXELS / 2;
-        self.rays.ray([middle(x), middle(y)])
+        self.rays.ray(&self.rays.row(middle(y)), middle(x))
     }
 
     /// Returns the ray from the eye through the middle of a pixel that can lie anywhere, also left of the picture or above

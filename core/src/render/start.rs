@@ -20,9 +20,10 @@ impl<N: Number> Start<'_, N> {
     pub(super) fn ray(self) -> Option<Ray<N>> {
         match self {
             Self::Camera(rays, pixel, [sample, samples]) => {
+                let [x, y] = place(pixel, sample, samples);
                 // If this moved out of the loops around it, its fields would be stored to the stack and loaded again.
                 let rays = black_box(rays);
-                rays.ray(place(pixel, sample, samples)).ok()
+                rays.ray(&rays.row(y), x).ok()
             }
             Self::Own(ray) => Some(*ray),
         }

@@ -5,7 +5,7 @@ use crate::format::lens::Lens;
 use crate::format::light_form::LightForm;
 use crate::format::limits::MAX_MEDIA;
 use crate::format::record::{Emission, Header, Light, Material, Texture, UnitBox, View};
-use crate::format::{Effects, Indices, Kind, Structure, last};
+use crate::format::{Effects, Indices, Kind, Structure};
 use crate::geometry::{Geometry, PrimitiveId};
 use crate::instances::placed::Placed;
 use crate::scene::environment::EnvironmentMap;
@@ -420,9 +420,16 @@ impl<'a> Scene<'a> {
                 0
             };
         }
-        let firsts = &self.object_first;
-        let begins_before = |object: usize| firsts.get(object).is_some_and(|it| it <= primitive);
-        last(firsts.len(), begins_before) as u32
+        // The last object whose first primitive is not beyond this one.
+        let (mut low, mut high) = (0_usize, self.object_first.len());
+        while low.saturating_add(1) < high {
+            let middle = low.midpoint(high);
+            match self.object_first.get(middle) {
+                Some(first) if first <= primitive => low = middle,
+                _ => high = middle,
+            }
+        }
+        low as u32
     }
 
     /// Returns the material of an object.

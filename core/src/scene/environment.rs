@@ -6,7 +6,7 @@
 use crate::format::environment::Environment;
 use crate::format::range::{At, Ranges};
 use crate::format::record::Light;
-use crate::format::{BlobError, Field, Location, Reason, SectionKind, Sections, last};
+use crate::format::{BlobError, Field, Location, Reason, SectionKind, Sections};
 
 /// The ratio 1.
 const ONE: i32 = 1 << 30;
@@ -255,9 +255,15 @@ fn adds_up<T: Copy + Into<u32>>(
 /// Returns the last of some numbers, which do not decrease, that is at most another one.
 #[inline(always)]
 fn last_at_most<T: Copy + PartialOrd>(all: &[T], most: T) -> usize {
-    last(all.len(), |place| {
-        all.get(place).is_some_and(|&it| it <= most)
-    })
+    let (mut low, mut high) = (0_usize, all.len());
+    while low.saturating_add(1) < high {
+        let middle = low.midpoint(high);
+        match all.get(middle) {
+            Some(&start) if start <= most => low = middle,
+            _ => high = middle,
+        }
+    }
+    low
 }
 
 /// Returns the part of a row's light before a texel, and the part from it, with 16 fraction bits.

@@ -153,10 +153,15 @@ fn lift<'s, N: Number, X: Tracer<'s, N>>(
     // Only a point light has another direction from there: of the others one was drawn, or they are far away.
     if lighting.light.is_point() {
         (lighting.way, lighting.distance) = lighting.light.seen_from(lighting.origin);
-        let Some((slopes, _)) = N::slopes(lighting.way) else {
-            return false;
-        };
-        lighting.norm = N::normalize(slopes).1;
+        // The distance by which a light falls off is that from there, too.
+        if const { Effects::AVAILABLE.contains(Effects::FALLOFF) }
+            && lighting.light.form().is_some()
+        {
+            let Some((slopes, _)) = N::slopes(lighting.way) else {
+                return false;
+            };
+            lighting.norm = N::normalize(slopes).1;
+        }
     }
     true
 }

@@ -9,7 +9,7 @@ use crate::accel::space::Space;
 use crate::format::range::At;
 use crate::format::record::UnitBox;
 use crate::format::{
-    BlobError, Field, Indices, Kind, Leaf, Location, Reason, SectionKind, Sections, last,
+    BlobError, Field, Indices, Kind, Leaf, Location, Reason, SectionKind, Sections,
 };
 use crate::geometry::Shapes;
 use crate::observe::count::Observer;
@@ -58,9 +58,16 @@ impl Divisions {
     /// Returns the last division whose lower plane satisfies a condition that holds up to some division, or the first.
     #[inline(always)]
     pub(in crate::accel) fn last(&self, holds: impl Fn(i16) -> bool) -> u32 {
-        last(self.count as usize, |division| {
-            holds(self.plane(division as u32))
-        }) as u32
+        let (mut low, mut high) = (0, self.count);
+        while high.wrapping_sub(low) > 1 {
+            let middle = low.wrapping_add(high.wrapping_sub(low) / 2);
+            if holds(self.plane(middle)) {
+                low = middle;
+            } else {
+                high = middle;
+            }
+        }
+        low
     }
 
     /// Returns the divisions that a closed interval meets, with its ends. The first is the last one that begins at or

@@ -17,10 +17,17 @@ impl Source {
                 let advice = report.advice(scene, || self.smaller());
                 Err(Failure::rejected(why, advice))
             }
-            Fit::Undecided(why) => Err(Failure::rejected(
-                why,
-                "build the program and measure it, or name another board with `--target`",
-            )),
+            Fit::Undecided(why) => {
+                let advice = report.advice(scene, || self.smaller());
+                let otherwise = match advice.is_empty() {
+                    true => "name another board with `--target`",
+                    false => &advice,
+                };
+                Err(Failure::rejected(
+                    why,
+                    format!("build the program and measure it; if it does not fit, {otherwise}"),
+                ))
+            }
         }
     }
 

@@ -61,12 +61,14 @@ impl ProgramEstimate<'_> {
 
     /// Returns true if the figures are those of a program with code for more parts.
     pub fn has_code_for_more(&self) -> bool {
-        let (board, format) = self.similar;
-        let place = (board, format, Structure::DualSplit);
-        let known = self
-            .programs
-            .figure(place, self.parts, Profile::Fast, |it| it.code);
-        known.is_some_and(|known| !known.measured)
+        let is_measured = |(board, format): (&Board, Format), structure| {
+            let place = (board, format, structure);
+            let known = self
+                .programs
+                .figure(place, self.parts, Profile::Fast, |it| it.code);
+            known.is_some_and(|known| known.measured)
+        };
+        !is_measured(self.here, self.structure) && !is_measured(self.similar, Structure::DualSplit)
     }
 
     /// Returns a figure of the program. `through` converts it to another structure, by the figures of all parts through
