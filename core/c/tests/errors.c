@@ -361,7 +361,9 @@ int main(int count_of_arguments, char **arguments) {
     wrong.eye[0] = ((int64_t)1 << 50) + 1;
     EXPECT(GRIDEL_STATUS_CAMERA_INVALID, renders_from[k](&scene, &wrong, &picture, &rectangle, buffer(pixels, 48), large));
     wrong = camera;
-    wrong.forward[0] = wrong.forward[1] = wrong.forward[2] = 0;
+    memset(wrong.forward, 0, sizeof wrong.forward);
+    memset(wrong.right, 0, sizeof wrong.right);
+    memset(wrong.up, 0, sizeof wrong.up);
     EXPECT(GRIDEL_STATUS_CAMERA_INVALID, renders_from[k](&scene, &wrong, &picture, &rectangle, buffer(pixels, 48), large));
     wrong = camera;
     wrong.reserved = 1;

@@ -11,7 +11,6 @@
 //! which all formats share. At a corner the value is that of the vertex. On an edge it depends only on that edge,
 //! except for the rounding of the weights.
 
-use crate::axis::dot;
 use crate::format::{BlobError, SectionKind, Sections};
 use crate::number::Arithmetic;
 
@@ -78,10 +77,13 @@ impl Weights {
 
     /// The mean of the corners' values, with 30 more fraction bits.
     #[inline(always)]
-    fn mean(self, corners: [i32; 3]) -> i64 {
+    fn mean(self, [a, b, c]: [i32; 3]) -> i64 {
         let [second, third] = self.0;
         let first = (1_i32 << 30).wrapping_sub(second).wrapping_sub(third);
-        dot(corners, [first, second, third])
+        let product = |value: i32, weight: i32| i64::from(value).wrapping_mul(weight.into());
+        product(a, first)
+            .wrapping_add(product(b, second))
+            .wrapping_add(product(c, third))
     }
 
     /// The color at the point: linear ratios with 30 fraction bits.

@@ -186,11 +186,9 @@ macro_rules! float_number {
 
             fn far_to_q13(wide: Self) -> i64 {
                 let q13 = wide * 8192.0;
-                let whole = q13 as i64;
-                let rest = q13 - whole as $float;
-                // A half is rounded away from 0. Nothing is added to the number itself, which may have no digit for it.
-                let step = i64::from(rest >= 0.5).wrapping_sub(i64::from(rest <= -0.5));
-                whole.saturating_add(step)
+                // With a half itself, sums that are no numbers of the format would be rounded up.
+                const HALF: $float = (0.5 as $float).next_down();
+                (q13 + HALF.copysign(q13)) as i64
             }
 
             #[inline(always)]
