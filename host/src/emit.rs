@@ -133,6 +133,15 @@ impl Emitted<'_> {
              #[allow(dead_code)]\n\
              pub const COORDINATE_ORIGIN: [f64; 3] = {origin:?};\n\
              {unit}\
+             /// A length of `numerator / denominator` scene units in coordinate steps, for constants. One beyond 32\n\
+             /// bits does not compile.\n\
+             #[allow(dead_code)]\n\
+             pub const fn steps(numerator: i64, denominator: i64) -> i32 {{\n    \
+             match gridel_core::scene::coordinate_steps(COORDINATE_EXPONENT, numerator, denominator) {{\n        \
+             Some(steps) => steps,\n        \
+             None => panic!(\"the length is beyond the scene's coordinates\"),\n    \
+             }}\n\
+             }}\n\
              \n\
              /// The number format.\n\
              pub type Number = {number};\n\
@@ -189,39 +198,17 @@ impl Emitted<'_> {
     }
 }
 
-/// The constant that states a scene unit in coordinate steps, and the function that converts other lengths. Nothing of
-/// what would be beyond 64 bits; no constant where a step is longer than a unit.
+/// The constant that states a scene unit in coordinate steps; nothing where a step is longer than a unit, or the number
+/// is beyond 64 bits.
 fn scene_unit(exponent: i32) -> String {
-    let bits = exponent.unsigned_abs();
-    if bits > 62 {
+    if !(-62..=0).contains(&exponent) {
         return String::new();
     }
-    let (unit, steps) = if exponent <= 0 {
-        let unit = format!(
-            "/// A scene unit in coordinate steps, those of `gridel_core::Position`.\n\
-             #[allow(dead_code)]\n\
-             pub const UNIT: i64 = 1 << {bits};\n"
-        );
-        (
-            unit,
-            format!("((numerator as i128) << {bits}) / denominator as i128"),
-        )
-    } else {
-        (
-            String::new(),
-            format!("numerator as i128 / ((denominator as i128) << {bits})"),
-        )
-    };
     format!(
-        "{unit}\
-         /// A length of `numerator / denominator` scene units in coordinate steps, for constants. One that is longer\n\
-         /// than 32 bits does not compile.\n\
+        "/// A scene unit in coordinate steps, those of `gridel_core::Position`.\n\
          #[allow(dead_code)]\n\
-         pub const fn steps(numerator: i64, denominator: i64) -> i32 {{\n    \
-         let steps = {steps};\n    \
-         assert!(steps as i32 as i128 == steps, \"the length is beyond the scene's coordinates\");\n    \
-         steps as i32\n\
-         }}\n"
+         pub const UNIT: i64 = 1 << {};\n",
+        -exponent
     )
 }
 
@@ -291,18 +278,13 @@ pub const JOINTS: usize = JOINTS_COUNT;
 #[allow(dead_code)]
 pub type Poses = gridel_core::Poses<INSTANCES>;
 
-/// The views of the parts that instances place.
+/// Room for the views of the parts that instances place: `Parts::new()`.
 pub type Parts = gridel_core::Parts<'static, PARTS>;
 
-/// The parts, checked.
+/// The scene, checked, with its parts, which are loaded in place.
 #[allow(dead_code)]
-pub fn parts() -> Result<Parts, gridel_core::BlobError> {
-    Parts::from_bytes(BLOB)
-}
-
-/// The scene, checked, with its parts.
-#[allow(dead_code)]
-pub fn load(parts: &Parts) -> Result<gridel_core::Scene<'_>, gridel_core::BlobError> {
+pub fn load(parts: &mut Parts) -> Result<gridel_core::Scene<'_>, gridel_core::BlobError> {
+    parts.load(BLOB)?;
     gridel_core::Scene::with_parts(BLOB, parts)
 }
 ";

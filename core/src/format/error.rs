@@ -234,7 +234,7 @@ impl fmt::Display for BlobError {
             BlobError::Parts { found, expected } => write!(
                 f,
                 "the blob was loaded with {found} parts, and needs {expected}: load them by \
-                 `Parts::from_bytes`, and the scene by `Scene::with_parts`"
+                 `Parts::load`, and the scene by `Scene::with_parts`"
             ),
             BlobError::Memory {
                 section,

@@ -19,6 +19,47 @@ pub struct Position(pub [i32; 3]);
 /// Fraction bits of lengths.
 const LENGTH_BITS: i32 = 13;
 
+/// Returns a length of `numerator / denominator` scene units in coordinate steps of 2 to the power of `exponent` scene
+/// units, rounded towards 0. `None` if it is beyond 32 bits, or the denominator is 0.
+///
+/// It is meant for constants: at run time it divides numbers of 128 bits.
+///
+/// ```
+/// use gridel_core::scene::coordinate_steps;
+///
+/// // A quarter of a unit, where a step is 2^-25 units.
+/// const QUARTER: Option<i32> = coordinate_steps(-25, 1, 4);
+/// assert_eq!(QUARTER, Some(1 << 23));
+/// assert_eq!(coordinate_steps(-25, 64, 1), None);
+/// ```
+pub const fn coordinate_steps(exponent: i32, numerator: i64, denominator: i64) -> Option<i32> {
+    if denominator == 0 {
+        return None;
+    }
+    let (mut rest, mut divisor) = (numerator as i128, denominator as i128);
+    if exponent > 63 {
+        return Some(0);
+    }
+    if exponent > 0 {
+        divisor <<= exponent;
+    }
+    let mut steps = rest / divisor;
+    rest %= divisor;
+    // Each further bit of the quotient; something that is not 0 is soon beyond 32 bits.
+    let mut bits = exponent;
+    while bits < 0 && (steps != 0 || rest != 0) && steps as i32 as i128 == steps {
+        rest *= 2;
+        steps = 2 * steps + rest / divisor;
+        rest %= divisor;
+        bits += 1;
+    }
+    if steps as i32 as i128 == steps {
+        Some(steps as i32)
+    } else {
+        None
+    }
+}
+
 impl Scene<'_> {
     /// Returns the exponent of a coordinate step: a step is 2 to this power scene units.
     ///
@@ -229,6 +270,36 @@ mod tests {
                     assert_eq!(header.position(found), Position([position; 3]));
                 }
             }
+        }
+    }
+
+    #[test]
+    fn lengths_are_converted_exactly() {
+        for (exponent, numerator, denominator, steps) in [
+            (0, 7, 2, Some(3)),
+            (0, -7, 2, Some(-3)),
+            (0, 7, -2, Some(-3)),
+            (-25, 9, 1, Some(9 << 25)),
+            (-25, -64, 1, Some(i32::MIN)),
+            (-25, 64, 1, None),
+            (-33, 1, 1, None),
+            (-33, 1, 1000, Some(8_589_934)),
+            (14, 100_000, 1, Some(6)),
+            (62, i64::MAX, 1, Some(1)),
+            (63, i64::MAX, 1, Some(0)),
+            (63, i64::MIN, 1, Some(-1)),
+            (63, i64::MIN, i64::MIN, Some(0)),
+            (1000, i64::MIN, 1, Some(0)),
+            (-93, 1, i64::MAX, Some(1 << 30)),
+            (-94, 1, i64::MAX, None),
+            (-1000, 1, i64::MIN, None),
+            (i32::MIN, 0, 1, Some(0)),
+            (i32::MIN, 1, 1, None),
+            (i32::MAX, i64::MAX, 1, Some(0)),
+            (0, 1, 0, None),
+        ] {
+            let found = coordinate_steps(exponent, numerator, denominator);
+            assert_eq!(found, steps, "{numerator} / {denominator} at 2^{exponent}");
         }
     }
 

@@ -20,7 +20,7 @@ mod read;
 pub(crate) mod textures;
 
 pub use blob::Scene;
-pub use coordinates::Position;
+pub use coordinates::{Position, coordinate_steps};
 pub use motion::Motion;
 pub use names::Names;
 pub use parts::{Parts, part_blobs};

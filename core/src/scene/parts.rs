@@ -17,7 +17,8 @@ use heapless::Vec;
 /// use gridel_core::{Parts, Scene};
 ///
 /// // This blob has no parts; one with parts is loaded likewise.
-/// let parts = Parts::<4>::from_bytes(BLOB)?;
+/// let mut parts = Parts::<4>::new();
+/// parts.load(BLOB)?;
 /// let scene = Scene::with_parts(BLOB, &parts)?;
 /// assert_eq!(scene.instances().len(), 0);
 /// # Ok::<(), gridel_core::BlobError>(())
@@ -26,22 +27,41 @@ use heapless::Vec;
 pub struct Parts<'a, const MOST: usize>(Vec<Scene<'a>, MOST>);
 
 impl<'a, const MOST: usize> Parts<'a, MOST> {
-    /// Loads the parts of a blob, each with the checks of [`Scene::from_bytes`].
+    /// Returns room for parts.
+    pub const fn new() -> Self {
+        Self(Vec::new())
+    }
+
+    /// Loads the parts of a blob, each with the checks of [`Scene::from_bytes`], in place of those that were loaded
+    /// before. If it fails, none are.
     ///
     /// # Errors
     /// If a part is invalid, or there are more than `MOST`.
-    pub fn from_bytes(blob: &'a [u8]) -> Result<Self, BlobError> {
-        let mut parts = Vec::new();
-        for part in part_blobs(blob)? {
-            if parts.push(Scene::from_bytes(part)?).is_err() {
-                return Err(BlobError::Memory {
-                    section: SectionKind::Parts,
-                    found: MOST,
-                    needed: part_blobs(blob)?.count(),
-                });
-            }
+    pub fn load(&mut self, blob: &'a [u8]) -> Result<(), BlobError> {
+        self.0.clear();
+        let loaded = part_blobs(blob)?.try_for_each(|part| {
+            let part = Scene::from_bytes(part)?;
+            self.0.push(part).map_err(|_| BlobError::Memory {
+                section: SectionKind::Parts,
+                found: MOST,
+                needed: part_blobs(blob).map_or(0, Iterator::count),
+            })
+        });
+        if loaded.is_err() {
+            self.0.clear();
         }
-        Ok(Self(parts))
+        loaded
+    }
+
+    /// Returns the parts of a blob. In firmware [load](Self::load) them in place: what a function returns is copied, and
+    /// takes up to three times the memory.
+    ///
+    /// # Errors
+    /// As [`load`](Self::load).
+    pub fn from_bytes(blob: &'a [u8]) -> Result<Self, BlobError> {
+        let mut parts = Self::new();
+        parts.load(blob)?;
+        Ok(parts)
     }
 
     /// Returns the parts with one replaced by a changed view of it, such as one that

@@ -21,7 +21,8 @@ use crate::target::InstancesOnly;
 ///
 /// /// Turns the first instance of a scene about the origin.
 /// fn turned(blob: &[u8]) -> Result<(), BlobError> {
-///     let parts = Parts::<4>::from_bytes(blob)?;
+///     let mut parts = Parts::<4>::new();
+///     parts.load(blob)?;
 ///     let scene = Scene::with_parts(blob, &parts)?;
 ///     let mut memory = Poses::<6>::new();
 ///     for dial in 0..24 {

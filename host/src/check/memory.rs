@@ -5,7 +5,7 @@ use super::manifest::Budget;
 use super::report::{Figure, Key, Outcome};
 use super::run::{Compared, Run};
 use crate::measure::board::{
-    Account, Board, MemoryReport, NotMeasured, Rendering, Target, working_bytes,
+    Account, Board, MemoryReport, NOT_BUILT, NotMeasured, Rendering, Target, working_bytes,
 };
 use crate::table::grouped;
 use gridel_core::{Format, Scene, Structure};
@@ -72,12 +72,15 @@ impl Run<'_> {
             let outcome = match account.used {
                 _ if account.missing() > 0 => {
                     let help = help(&report, what, scene);
+                    let most = match report.may_fit(account) {
+                        true => "at most ",
+                        false => "",
+                    };
                     Outcome::Failed(format!(
-                        "the scene takes {} bytes more than the {} of {}; what helps: {}",
+                        "the scene takes {most}{} bytes more than the {} of {}; what helps: {help}",
                         grouped(account.missing()),
                         grouped(account.available),
                         board.name,
-                        help
                     ))
                 }
                 None => Outcome::Failed(format!("whether it fits is undecided: {unknown}")),
@@ -133,6 +136,12 @@ fn help(report: &MemoryReport, what: &str, scene: &Scene<'_>) -> String {
         "ram" | "target ram" => report.ram_advice(scene),
         _ => report.flash_advice(scene),
     };
+    if report.has_code_for_more {
+        steps.insert(
+            0,
+            format!("build the program and measure it, because {NOT_BUILT}"),
+        );
+    }
     if what.ends_with("flash") {
         let blob = "a smaller blob: `gridel build --max-bytes` says what makes it smaller";
         steps.push(String::from(blob));

@@ -235,6 +235,73 @@ fn memory_report_lists_the_code_of_the_scenes_program() {
     }
 }
 
+/// The programs of all fixtures were built, so that no bound stands for them.
+#[test]
+fn memory_reports_of_fixtures_are_measured() {
+    let folder = Folder::new();
+    for name in [
+        "cornell",
+        "glass-chess",
+        "quick",
+        "robot-arm",
+        "room",
+        "sky",
+        "studio",
+        "tumbler",
+        "turntable",
+    ] {
+        let path = format!("{}/../fixtures/{name}.toml", env!("CARGO_MANIFEST_DIR"));
+        for board in ["stm32vldiscovery", "mps2-an386", "microbit", "sifive_e"] {
+            let report = folder.json(&[
+                "inspect", &path, "--target", board, "--flash", "1G", "--ram", "1G",
+            ]);
+            let report = &report["memory_report"];
+            assert_eq!(report["has_code_for_more"], false, "{name} {board}");
+            assert_eq!(report["measured"], true, "{name} {board}");
+        }
+    }
+}
+
+/// A program that was not built may fit although its upper bound does not; one whose blob is too large does not.
+#[test]
+fn upper_bounds_decide_nothing() {
+    let folder = Folder::new();
+    let scene = "[render]\nwidth = 16\nheight = 8\n[material.default]\nroughness = 0.3\nmirror = 0.5\n\
+                 [[object]]\nkind = 'torus'\ncenter = [0, 0, 0]\naxis = [0, 1, 0]\nmajor_radius = 2\nminor_radius = 1\n\
+                 [[object]]\nkind = 'plane'\npoint = [0, -1, 0]\nnormal = [0, 1, 0]\n";
+    folder.write("rare.toml", scene.as_bytes());
+    let target = ["--target", "stm32vldiscovery", "--ram", "1M", "--flash"];
+    let report = folder.json(&[&["inspect", "rare.toml"], &target[..], &["1M"]].concat());
+    let flash = sum(&report, "flash", "");
+    assert_eq!(report["memory_report"]["has_code_for_more"], true);
+    let build = |flash: u64| {
+        let flash = flash.to_string();
+        folder.run(
+            &[
+                &["build", "rare.toml", "-o", "b.gridel"],
+                &target[..],
+                &[&flash],
+            ]
+            .concat(),
+        )
+    };
+    for (flash, words) in [(flash - 1, "undecided"), (100, "the scene takes")] {
+        let rejected = build(flash);
+        assert_eq!(rejected.code, Some(3), "{}", rejected.said());
+        assert!(
+            rejected.said().contains(words),
+            "{flash}: {}",
+            rejected.said()
+        );
+        assert_eq!(
+            rejected.said().contains("undecided"),
+            flash > 100,
+            "{}",
+            rejected.said()
+        );
+    }
+}
+
 /// Code is listed by shape and effect on every board, so that what requires little is not rejected.
 #[test]
 fn little_is_asked_of_every_board_for_a_scene_that_calls_for_little() {

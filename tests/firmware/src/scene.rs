@@ -70,18 +70,18 @@ impl PartViews {
 /// Memory for the views of parts.
 #[cfg(feature = "instances")]
 #[derive(Default)]
-pub struct PartViews(Option<gridel_core::Parts<'static, PARTS>>);
+pub struct PartViews(gridel_core::Parts<'static, PARTS>);
 
 #[cfg(feature = "instances")]
 impl PartViews {
     pub const fn new() -> Self {
-        Self(None)
+        Self(gridel_core::Parts::new())
     }
 
     /// The scene of [`BLOB`] with its parts, which are proved now in small code, too.
     pub fn load(&mut self, blob: &'static [u8]) -> Result<Scene<'_>, BlobError> {
-        let parts = self.0.insert(gridel_core::Parts::from_bytes(blob)?);
-        Scene::with_parts(blob, parts)
+        self.0.load(blob)?;
+        Scene::with_parts(blob, &self.0)
     }
 }
 

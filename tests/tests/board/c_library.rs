@@ -192,8 +192,16 @@ fn c_functions_answer_wrong_arguments_with_codes() {
         ..Options::default()
     };
     let far = compile::compile(&far.expect("a scene").scene, &options).expect("a scene");
-    fs::write(folder.join("far.gridel"), far.blob.bytes())
-        .expect("the target folder can be written to");
+    let floor = "[[object]]\nkind = 'sphere'\ncenter = [0, 2, 0]\nradius = 3\n\
+                 [[object]]\nkind = 'plane'\npoint = [0, -1, 0]\nnormal = [0, 1, 0]\n";
+    let floor = gridel_host::scene::read("floor.toml".as_ref(), floor.into(), &Default::default());
+    let floor = compile::compile(&floor.expect("a scene").scene, &options).expect("a scene");
+    let arm = load(&scenes::fixture_path("robot-arm"), &Default::default()).expect("a fixture");
+    let arm = compile::compile(&arm.scene, &options).expect("a fixture");
+    for (name, compiled) in [("far", far), ("floor", floor), ("arm", arm)] {
+        let path = folder.join(name).with_extension("gridel");
+        fs::write(path, compiled.blob.bytes()).expect("the target folder can be written to");
+    }
     // The example runs here, too.
     let output = run(&mut Command::new(example));
     let view = scene.blob.scene().expect("the compiler's own blob");
@@ -224,8 +232,8 @@ fn c_functions_answer_wrong_arguments_with_codes() {
             .arg(&program);
         run(&mut compile);
         let mut errors = Command::new(&program);
-        errors
-            .args(["scene", "list", "far"].map(|name| folder.join(name).with_extension("gridel")));
+        let blobs = ["scene", "list", "far", "floor", "arm"];
+        errors.args(blobs.map(|name| folder.join(name).with_extension("gridel")));
         let said = run(&mut errors);
         println!(
             "{language}: {}",

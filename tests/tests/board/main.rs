@@ -12,6 +12,7 @@ mod arm;
 mod c_library;
 #[path = "../../firmware/src/casts.rs"]
 mod casts;
+mod combinations;
 mod costs;
 mod deform;
 mod elf;

@@ -249,65 +249,6 @@ pub fn everything(structure: Structure, instances: bool) -> Compiled {
     compiled
 }
 
-/// Returns shapes and effects that scenes often require together. Each takes eight builds, two on every kind of core,
-/// so the list is short. The memory report bounds the combinations that are not on it.
-pub fn combinations() -> impl Iterator<Item = (Vec<&'static str>, Vec<&'static str>)> {
-    const EVERY: &str = "shadow highlight mirror glass absorption checker";
-    const EVERY_SMOOTH: &str = "shadow highlight mirror glass absorption checker smooth";
-    const EVERY_LAMP: &str = "shadow highlight mirror glass absorption checker smooth vertex-colors texture \
-        falloff area-light tone-mapping emission";
-    const EVERY_SHAPE: &str = "triangle sphere box disc cone torus plane";
-    let programs = [
-        ("triangle", "shadow"),
-        ("triangle", "shadow highlight"),
-        ("triangle", EVERY),
-        ("triangle", "shadow smooth"),
-        ("triangle", "shadow highlight smooth"),
-        ("triangle", EVERY_SMOOTH),
-        ("triangle", "shadow falloff"),
-        ("triangle", "shadow falloff area-light"),
-        ("triangle", "shadow smooth falloff area-light"),
-        ("triangle", "shadow smooth texture"),
-        ("triangle instances", "shadow"),
-        ("sphere", "shadow"),
-        ("sphere", "shadow highlight"),
-        ("sphere", EVERY),
-        ("sphere", "shadow falloff area-light"),
-        ("box", "shadow"),
-        ("box", "shadow highlight"),
-        ("disc", "shadow"),
-        ("cone", "shadow"),
-        ("torus", "shadow"),
-        ("triangle plane", "shadow"),
-        ("triangle sphere", "shadow"),
-        ("triangle box", "shadow"),
-        ("sphere box", "shadow"),
-        // Molecules as balls and sticks.
-        ("sphere cone", "shadow"),
-        ("sphere cone", "shadow highlight"),
-        ("triangle sphere box", EVERY),
-        ("triangle sphere box disc cone", "shadow"),
-        ("triangle sphere box disc cone", "shadow highlight"),
-        ("triangle sphere box disc cone", EVERY),
-        // They bound the programs of many scenes that are not on this list.
-        (EVERY_SHAPE, EVERY_SMOOTH),
-        (EVERY_SHAPE, EVERY_LAMP),
-        // The glass chessboard and the Cornell box.
-        (
-            "sphere box disc cone",
-            "shadow highlight glass absorption checker",
-        ),
-        (
-            "triangle sphere box",
-            "shadow highlight mirror glass absorption",
-        ),
-    ];
-    let split = |text: &'static str| text.split_whitespace().collect::<Vec<_>>();
-    programs
-        .into_iter()
-        .map(move |(shapes, effects)| (split(shapes), split(effects)))
-}
-
 /// A scene of some shapes and effects, with coordinates of 24 bits.
 pub fn combination(shapes: &[&str], effects: &[&str]) -> Compiled {
     let mut scene = base();

@@ -2,6 +2,7 @@
 //!
 //! They are recorded in the package of the host, `host/src/measure/board/programs.json`.
 
+use crate::combinations;
 use crate::elf::Elf;
 use crate::firmware::Build;
 use crate::measured_in_full;
@@ -173,7 +174,7 @@ fn build<'s>(
 /// Parts that usual scenes require, with coordinates of 24 bits as they are by default.
 fn programs_take_what_is_recorded(board: &'static Board, format: Format) {
     let mut linked = Linked::new();
-    for (shapes, effects) in parts::combinations() {
+    for (shapes, effects) in combinations::usual() {
         let scene = parts::combination(&shapes, &effects);
         for profile in [Profile::Fast, Profile::Small] {
             let build = build(board, format, &scene, profile);
@@ -204,6 +205,9 @@ fn more_scenes() -> Vec<Compiled> {
     let c60 = repository().join("fixtures/c60.pdb");
     vec![
         scenes::by_default("cornell", &scenes::fixture_path("cornell")),
+        scenes::by_default("sky", &scenes::fixture_path("sky")),
+        scenes::by_default("studio", &scenes::fixture_path("studio")),
+        scenes::by_default("robot-arm", &scenes::fixture_path("robot-arm")),
         scenes::by_default("c60", &c60),
         parts::combination(&["sphere"], &["shadow"]),
         parts::combination(&["box"], &["shadow", "highlight"]),

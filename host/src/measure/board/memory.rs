@@ -22,6 +22,10 @@ use crate::table::grouped;
 use gridel_core::{Prevalidated, Rgb565, Scene, Structure};
 use serde::Serialize;
 
+/// Why figures of code and call stack are upper bounds.
+pub const NOT_BUILT: &str =
+    "its own program was not built: the figures are those of a program with code for more";
+
 /// Memory of a board that a scene is to fit into.
 #[derive(Clone, Copy, Debug)]
 pub struct Target {
@@ -254,44 +258,42 @@ impl MemoryReport {
         let short: Vec<_> = accounts
             .into_iter()
             .filter(|(_, account)| account.missing() > 0)
-            .map(|(what, account)| {
-                let least = match account.used {
-                    Some(_) => "",
-                    None => "at least ",
-                };
-                format!(
-                    "{least}{} bytes of {what}, {} more than the {} there are",
-                    grouped(account.at_least()),
-                    grouped(account.missing()),
-                    grouped(account.available)
-                )
-            })
             .collect();
-        if !short.is_empty() {
-            let short = short.join(", and ");
-            let certain = |account: &Account| account.at_least() - self.bounds(account);
-            let certainly = accounts
-                .iter()
-                .any(|(_, account)| certain(account) > account.available);
-            return if certainly || !self.has_code_for_more {
-                Fit::Short(format!("the scene takes {short}"))
-            } else {
-                Fit::Undecided(format!(
-                    "whether the scene fits is undecided: it takes at most {short}: its own program was not built, and the figures are those of one with code for more"
-                ))
+        let undecided = |why: String| format!("whether the scene fits is undecided: {why}");
+        if short.is_empty() {
+            return match self.undecided() {
+                Some(why) => Fit::Undecided(undecided(why)),
+                None => Fit::Fits,
             };
         }
-        match self.undecided() {
-            Some(why) => Fit::Undecided(format!("whether the scene fits is undecided: {why}")),
-            None => Fit::Fits,
+        let shortages = short.iter().map(|(what, account)| {
+            let how = match account.used {
+                None => "at least ",
+                Some(_) if self.may_fit(account) => "at most ",
+                Some(_) => "",
+            };
+            format!(
+                "{how}{} bytes of {what}, {} more than the {} there are",
+                grouped(account.at_least()),
+                grouped(account.missing()),
+                grouped(account.available)
+            )
+        });
+        let shortages: Vec<_> = shortages.collect();
+        let takes = format!("the scene takes {}", shortages.join(", and "));
+        match short.iter().all(|(_, account)| self.may_fit(account)) {
+            true => Fit::Undecided(undecided(format!("{takes}, and {NOT_BUILT}"))),
+            false => Fit::Short(takes),
         }
     }
 
-    /// Bytes of code and call stack, which are upper bounds where the program was not built.
-    fn bounds(&self, account: &Account) -> u64 {
+    /// Returns true if memory may be enough although it is less than the figures, because those of code and call stack
+    /// are upper bounds.
+    pub fn may_fit(&self, account: &Account) -> bool {
         let is_bound = |what: &str| what.starts_with(CODE) || what.starts_with(CALL_STACK);
         let bounds = account.items.iter().filter(|item| is_bound(&item.what));
-        bounds.filter_map(|item| item.bytes).sum()
+        let bounds: u64 = bounds.filter_map(|item| item.bytes).sum();
+        self.has_code_for_more && account.at_least() - bounds <= account.available
     }
 
     /// Returns the parts that are not known, and why; `None` if all are.

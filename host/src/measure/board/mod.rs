@@ -25,7 +25,7 @@ mod working;
 
 pub use account::{Account, Item};
 pub use instructions::{PICTURE_COSTS, PictureCost, core_names, instructions, names};
-pub use memory::{Fit, MemoryReport, NotMeasured, Sizes, Target, WORK_LIST};
+pub use memory::{Fit, MemoryReport, NOT_BUILT, NotMeasured, Sizes, Target, WORK_LIST};
 pub use rendering::Rendering;
 pub use working::{WorkingRow, working_bytes, working_rows};
 

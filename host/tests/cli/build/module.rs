@@ -29,6 +29,25 @@ fn a_module_is_emitted_for_every_structure() {
     }
 }
 
+/// A scene unit in steps is there where it is a number of 64 bits; other lengths are converted in scenes of every size.
+#[test]
+fn modules_convert_lengths_in_scenes_of_every_size() {
+    let folder = Folder::new();
+    for (size, has_unit) in [
+        ("1e-30", false),
+        ("1e-3", true),
+        ("1", true),
+        ("1e9", false),
+    ] {
+        let scene = format!("[[object]]\nkind = 'sphere'\ncenter = [0, 0, 0]\nradius = {size}\n");
+        folder.write("ball.toml", scene.as_bytes());
+        folder.done(&["build", "ball.toml", "-o", "b.gridel", "--emit-rust", "src"]);
+        let module = String::from_utf8(folder.read("src/scene.rs")).unwrap();
+        assert_eq!(module.contains("pub const UNIT: i64"), has_unit, "{size}");
+        assert!(module.contains("pub const fn steps("), "{size}");
+    }
+}
+
 #[test]
 fn a_module_is_emitted_for_the_board() {
     let folder = Folder::new();

@@ -22,7 +22,7 @@ const PART: usize = 16;
 struct Memory {
     space: Space,
     row: [Rgb888; WIDTH],
-    parts: Option<Parts<'static, PARTS>>,
+    parts: Parts<'static, PARTS>,
     poses: Poses<INSTANCES>,
     motions: [Motion; JOINTS],
 }
@@ -32,7 +32,7 @@ impl Memory {
         Self {
             space: Space::new(),
             row: [Rgb888([0; 3]); WIDTH],
-            parts: None,
+            parts: Parts::new(),
             poses: Poses::new(),
             motions: [Motion::REST; JOINTS],
         }
@@ -50,10 +50,10 @@ fn run(memory: &'static mut Memory) {
         poses,
         motions,
     } = memory;
-    let Ok(loaded) = Parts::from_bytes(BLOB) else {
+    if parts.load(BLOB).is_err() {
         fail("a part is rejected")
-    };
-    let parts: &'static Parts<'static, PARTS> = parts.insert(loaded);
+    }
+    let parts: &'static Parts<'static, PARTS> = parts;
     let Ok(scene) = Scene::with_parts(BLOB, parts) else {
         fail("the blob is rejected")
     };
