@@ -1,6 +1,6 @@
 /* Every function with pointers that are null or misaligned, buffers that are too small, and scenes that were not loaded:
- * codes, and nothing else. Compiles as C99 and as C++17. The argument is a blob with the structure `list` alone beside
- * the one that is loaded. */
+ * codes, and nothing else. Compiles as C99 and as C++17. The arguments are blobs: of a scene, with the structure `list`
+ * alone, with hits beyond single precision, with a plane, and with parts. */
 #include "gridel.h"
 #include <math.h>
 #include <stdio.h>
@@ -62,8 +62,8 @@ static gridel_buffer buffer(void *memory, size_t bytes) {
 }
 
 int main(int count_of_arguments, char **arguments) {
-  size_t blob_bytes, list_bytes, far_bytes, bytes, parts;
-  unsigned char *blob, *list, *far, *damaged;
+  size_t blob_bytes, list_bytes, far_bytes, floor_bytes, arm_bytes, bytes, parts;
+  unsigned char *blob, *list, *far, *floor_blob, *arm, *damaged;
   static gridel_scene scene, fresh, copy;
   static uint64_t memory[1024];
   static unsigned char pixels[3 * 64 * 64];
@@ -92,10 +92,12 @@ int main(int count_of_arguments, char **arguments) {
   gridel_look look = {{0, 0, 0}, {0, 0, 0}, {0, 1, 0}, (uint32_t)1 << 29};
   gridel_circle circle = {{0, 0, 0}, 0, 0, 0, (uint32_t)1 << 29, 1};
   const count counts[] = {gridel_workspace_bytes_fixed, gridel_workspace_bytes_f32, gridel_workspace_bytes_f64};
-  if (count_of_arguments != 4) return 2;
+  if (count_of_arguments != 6) return 2;
   blob = load(arguments[1], &blob_bytes);
   list = load(arguments[2], &list_bytes);
   far = load(arguments[3], &far_bytes);
+  floor_blob = load(arguments[4], &floor_bytes);
+  arm = load(arguments[5], &arm_bytes);
 
   CHECK(gridel_version() == GRIDEL_VERSION);
   CHECK(sizeof GRIDEL_NONE == sizeof(uint32_t));
@@ -125,6 +127,11 @@ int main(int count_of_arguments, char **arguments) {
   EXPECT(GRIDEL_STATUS_BLOB_MAGIC, gridel_load(&scene, damaged, blob_bytes));
   EXPECT(GRIDEL_STATUS_OK, gridel_blob_error(blob, blob_bytes, text, sizeof text));
   CHECK(text[0] == 0);
+  EXPECT(GRIDEL_STATUS_BLOB_PARTS, gridel_load(&copy, arm, arm_bytes));
+  EXPECT(GRIDEL_STATUS_BLOB_PARTS, gridel_blob_error(arm, arm_bytes, text, sizeof text));
+  CHECK(strstr(text, "gridel_load_with_parts") != NULL);
+  arm[arm_bytes - 8] ^= 1;
+  EXPECT(GRIDEL_STATUS_BLOB_CHECKSUM, gridel_blob_error(arm, arm_bytes, text, sizeof text));
   EXPECT(NULL_POINTER, gridel_blob_error(NULL, blob_bytes, text, sizeof text));
   EXPECT(NULL_POINTER, gridel_blob_error(blob, blob_bytes, NULL, sizeof text));
   EXPECT(GRIDEL_STATUS_BLOB_MISSING_STRUCTURE, gridel_load(&scene, list, list_bytes));
@@ -250,6 +257,15 @@ int main(int count_of_arguments, char **arguments) {
     EXPECT(GRIDEL_STATUS_RAY_DISTANCE, gridel_cast_f32(&copy, &from_f32, stack, &hit_f32));
     EXPECT(GRIDEL_STATUS_OK, gridel_cast_f64(&copy, &from_f64, stack, &hit_f64));
     CHECK(hit_f64.object == 0 && hit_f64.point[1] > 9e38);
+    /* On a plane, where no lattice reaches. */
+    EXPECT(GRIDEL_STATUS_OK, gridel_load(&copy, floor_blob, floor_bytes));
+    for (k = 0; k < 11; k++) {
+      const gridel_ray_f64 along = {{0, 20, 8}, {pow(10, k), -21, 0}, 0, INFINITY};
+      EXPECT(GRIDEL_STATUS_OK, gridel_cast_f64(&copy, &along, stack, &hit_f64));
+      CHECK(fabs(hit_f64.point[0] / pow(10, k) - hit_f64.t) < 1e-6);
+      CHECK(fabs(hit_f64.point[1] + 1) < 1e-3 && fabs(hit_f64.point[2] - 8) < 1e-3 && fabs(hit_f64.t - 1) < 1e-3);
+    }
+    EXPECT(GRIDEL_STATUS_OK, gridel_load(&copy, far, far_bytes));
     /* As lengths, both ends are infinite. */
     from_f64.t_min = INFINITY;
     from_f64.t_max = 1.7e308;

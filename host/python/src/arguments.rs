@@ -3,7 +3,7 @@
 use gridel_core::{Format, Structure};
 use gridel_host::compile::{CompileError, Options};
 use gridel_host::explained;
-use pyo3::exceptions::PyValueError;
+use pyo3::exceptions::{PyFileNotFoundError, PyIsADirectoryError, PyValueError};
 use pyo3::prelude::*;
 use std::path::Path;
 
@@ -50,6 +50,23 @@ pub fn in_file(py: Python<'_>, path: &Path, error: PyErr) -> PyErr {
     } else {
         error
     }
+}
+
+/// Rejects what is not a file to read.
+pub fn check_file(path: &Path) -> PyResult<()> {
+    if path.is_file() {
+        return Ok(());
+    }
+    let what = match (path.is_dir(), path.exists()) {
+        (true, _) => "a directory; name a scene file in it",
+        (_, true) => "not a regular file; give its bytes to `from_blob`",
+        (_, false) => "no such file",
+    };
+    let sentence = format!("{}: {what}", path.display());
+    Err(match path.is_dir() {
+        true => PyIsADirectoryError::new_err(sentence),
+        false => PyFileNotFoundError::new_err(sentence),
+    })
 }
 
 pub fn structure(name: &str) -> PyResult<Structure> {

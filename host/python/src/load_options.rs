@@ -173,16 +173,17 @@ impl LoadOptions {
         Ok(())
     }
 
-    /// What a scene keeps at rest although a time was given.
-    pub fn warning(&self, path: &Path, imported: &Imported) -> Option<String> {
+    /// The importer's warnings, and what a scene keeps at rest although a time was given.
+    pub fn warnings(&self, path: &Path, imported: &Imported) -> Vec<String> {
         let moves = imported.posed == Some(Posed::AtTime) && !imported.scene.tracks.is_empty();
-        moves.then(|| {
+        let at_rest = moves.then(|| {
             format!(
                 "{}: `time` places copies of instances alone; camera, lights, materials and vertices stay as they are \
                  at rest",
                 path.display()
             )
-        })
+        });
+        imported.warnings.iter().cloned().chain(at_rest).collect()
     }
 }
 

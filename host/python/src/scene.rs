@@ -5,7 +5,7 @@ mod place;
 
 pub use native::NativeScene;
 
-use crate::arguments::{in_file, in_python, invalid, options, rejected};
+use crate::arguments::{check_file, in_file, in_python, invalid, options, rejected};
 use crate::hit_arrays::{
     Arrays, Cast, HitArrays, MeshHitArrays, append, collected, column, rows, too_large, zeros,
 };
@@ -23,7 +23,6 @@ use gridel_host::render::{Job, render};
 use gridel_host::scene;
 use gridel_host::trace::SceneRay;
 use numpy::{IntoPyArray, PyArray2, PyArrayMethods, PyUntypedArray};
-use pyo3::exceptions::{PyFileNotFoundError, PyIsADirectoryError};
 use pyo3::prelude::*;
 use pyo3::types::PyBytes;
 use std::path::PathBuf;
@@ -38,20 +37,7 @@ const ROWS_PER_THREAD: u64 = 4;
 impl NativeScene {
     #[staticmethod]
     fn load(py: Python<'_>, path: PathBuf, given: LoadOptions) -> PyResult<Self> {
-        if path.is_dir() {
-            return Err(PyIsADirectoryError::new_err(format!(
-                "{}: a directory; name a scene file in it",
-                path.display()
-            )));
-        }
-        if !path.is_file() {
-            let what = match path.exists() {
-                true => "not a regular file; give its bytes to `from_blob`",
-                false => "no such file",
-            };
-            let sentence = format!("{}: {what}", path.display());
-            return Err(PyFileNotFoundError::new_err(sentence));
-        }
+        check_file(&path)?;
         let (options, importing) = (given.for_compiler()?, given.for_import()?);
         let without = given.without()?;
         if gridel_host::blob::is_blob(&path)? {
@@ -61,12 +47,12 @@ impl NativeScene {
         let imported = in_pool(py, 0, || scene::load_with(&path, &importing))?;
         let mut imported = imported.map_err(rejected)?;
         given.check(&path, &imported)?;
-        let unposed = given.warning(&path, &imported);
-        let lost = scene::leave_out(&mut imported.scene, &without);
-        let lost = lost.iter().map(|it| format!("{}: {it}", path.display()));
-        let lost: Vec<_> = lost.collect();
-        for warning in imported.warnings.iter().chain(&lost).chain(&unposed) {
-            warn(py, &in_python(warning), 2)?;
+        let mut warnings = given.warnings(&path, &imported);
+        for lost in scene::leave_out(&mut imported.scene, &without) {
+            warnings.push(format!("{}: {lost}", path.display()));
+        }
+        for warning in warnings {
+            warn(py, &in_python(&warning), 2)?;
         }
         let model = Model {
             scene: imported.scene,

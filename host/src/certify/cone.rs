@@ -7,7 +7,7 @@ use super::crossing::{
     APEX, BASE, Crossing, Grazes, MANTLE, Ray, Start, compare, exact, flat_normal,
 };
 use super::number::*;
-use super::world::Form;
+use super::world::Cone;
 use std::cmp::Ordering;
 
 /// What is decided of a line and the caps of a solid, or its mantle.
@@ -22,19 +22,17 @@ enum Cut<T> {
 
 /// Returns the crossings of the solid. `at` says which of the mantle, the base and the other cap the ray starts on.
 pub fn crossings<N: Enclosure>(
-    form: &Form,
+    cone: &Cone,
     at: [bool; 3],
     ray: &Ray<N>,
     found: &mut Vec<Crossing<N>>,
 ) -> Result<(), Grazes> {
-    let Some(line) = Line::new(form, ray) else {
-        return Ok(());
-    };
+    let line = Line::new(cone, ray);
     let [at_mantle, at_base, at_apex] = at;
     let (caps, mut sure) = match line.between_caps(at_base, at_apex)? {
         Cut::Outside => return Ok(()),
         Cut::Inside(ends, sure) => (ends, sure),
-        Cut::Open => return grazes(form, ray),
+        Cut::Open => return grazes(cone, ray),
     };
     let mantle = match line.in_mantle(at_mantle)? {
         Cut::Outside => return Ok(()),
@@ -42,7 +40,7 @@ pub fn crossings<N: Enclosure>(
             sure &= is_sure;
             ends
         }
-        Cut::Open => return grazes(form, ray),
+        Cut::Open => return grazes(cone, ray),
     };
     let [enters, leaves] = [0, 1].map(|end| {
         [caps[end], mantle[end]]
@@ -82,28 +80,19 @@ struct Line<N: Enclosure> {
 }
 
 impl<N: Enclosure> Line<N> {
-    fn new(form: &Form, ray: &Ray<N>) -> Option<Self> {
-        let Form::Cone {
-            base,
-            axis,
-            base_radius,
-            apex_radius,
-        } = *form
-        else {
-            return None;
-        };
-        let axis = exact::<N>(axis);
-        let start = minus(ray.origin, exact(base));
-        Some(Self {
+    fn new(cone: &Cone, ray: &Ray<N>) -> Self {
+        let axis = exact::<N>(cone.axis);
+        let start = minus(ray.origin, exact(cone.base));
+        Self {
             axis,
             height2: norm2(axis),
-            base_radius: N::int(base_radius),
-            widening: N::int(apex_radius - base_radius),
+            base_radius: N::int(cone.base_radius),
+            widening: N::int(cone.apex_radius - cone.base_radius),
             start,
             direction: ray.direction,
             start_axial: dot(start, axis),
             direction_axial: dot(ray.direction, axis),
-        })
+        }
     }
 
     /// Where the line is between the planes of the caps. The arguments are true where it starts on one.
@@ -333,19 +322,10 @@ fn roots<N: Enclosure>([a, b, c]: [N; 3], root: N) -> Option<(N, N)> {
 
 /// Decides rays that run nearly along a line of the mantle or across the axis. They miss if they stay away from the
 /// sphere around the solid.
-fn grazes<N: Enclosure>(form: &Form, ray: &Ray<N>) -> Result<(), Grazes> {
-    let Form::Cone {
-        base,
-        axis,
-        base_radius,
-        apex_radius,
-    } = *form
-    else {
-        return Err(Grazes);
-    };
-    let half = scale(exact::<N>(axis), N::scaled(1, 1));
-    let relative = minus(along(half, N::one(), exact(base)), ray.origin);
-    let widest = N::int(base_radius.max(apex_radius));
+fn grazes<N: Enclosure>(cone: &Cone, ray: &Ray<N>) -> Result<(), Grazes> {
+    let half = scale(exact::<N>(cone.axis), N::scaled(1, 1));
+    let relative = minus(along(half, N::one(), exact(cone.base)), ray.origin);
+    let widest = N::int(cone.base_radius.max(cone.apex_radius));
     let reach = norm2(half) + widest.square();
     let closest = dot(relative, ray.direction)
         .over(norm2(ray.direction))
@@ -358,16 +338,13 @@ fn grazes<N: Enclosure>(form: &Form, ray: &Ray<N>) -> Result<(), Grazes> {
 }
 
 /// Returns the outward normal.
-pub fn normal<N: Enclosure>(form: &Form, part: u8, point: Three<N>) -> Option<Three<N>> {
-    let Form::Cone {
+pub fn normal<N: Enclosure>(cone: &Cone, part: u8, point: Three<N>) -> Option<Three<N>> {
+    let Cone {
         base,
         axis,
         base_radius,
         apex_radius,
-    } = *form
-    else {
-        return None;
-    };
+    } = *cone;
     let w = exact::<N>(axis);
     match part {
         BASE => return flat_normal(axis.map(|x| -x)),

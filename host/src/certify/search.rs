@@ -189,7 +189,7 @@ impl Tracer<'_, '_> {
             if (a.instance, a.solid) == (b.instance, b.solid) {
                 let (first, second) = (&a.crossing, &b.crossing);
                 // A solid is entered before it is left. Those of tori are numbered along the ray.
-                if matches!(solid(a).form, Form::Torus { .. }) {
+                if matches!(solid(a).form, Form::Torus(_)) {
                     let number = |it: &Crossing<N>| (it.part, it.leaves);
                     return first.sure && number(first) < number(second);
                 }
@@ -221,7 +221,7 @@ impl Tracer<'_, '_> {
                             smooth: Some(_),
                             ..
                         } | Form::Cuboid { .. }
-                            | Form::Cone { .. }
+                            | Form::Cone(_)
                     )
             };
             surface(a).is_some()

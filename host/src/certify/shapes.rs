@@ -134,7 +134,7 @@ fn all_crossings<N: Enclosure>(
             let at = solid.surfaces.map(starts_on);
             cuboid([lowest, highest], at, ray, found)
         }
-        Form::Cone { .. } => {
+        Form::Cone(cone) => {
             if itself.is_some_and(|(_, inward)| !inward) {
                 return Ok(());
             }
@@ -143,9 +143,9 @@ fn all_crossings<N: Enclosure>(
                 starts_on(solid.surfaces[1]) || itself.is_some_and(|(part, _)| part == BASE),
                 starts_on(solid.surfaces[2]) || itself.is_some_and(|(part, _)| part == APEX),
             ];
-            cone::crossings(&solid.form, at, ray, found)
+            cone::crossings(&cone, at, ray, found)
         }
-        Form::Torus { .. } => torus::crossings(&solid.form, itself.is_some(), ray, found),
+        Form::Torus(torus) => torus::crossings(&torus, itself.is_some(), ray, found),
     }
 }
 
@@ -374,8 +374,8 @@ pub fn normal<N: Enclosure>(form: &Form, part: u8, point: Three<N>) -> Option<Th
             normal[usize::from(part / 2)] = if part.is_multiple_of(2) { -1 } else { 1 };
             Some(exact(normal))
         }
-        Form::Cone { .. } => cone::normal(form, part, point),
-        Form::Torus { .. } => torus::normal(form, point),
+        Form::Cone(cone) => cone::normal(&cone, part, point),
+        Form::Torus(torus) => torus::normal(&torus, point),
     }
 }
 

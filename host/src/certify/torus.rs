@@ -10,7 +10,7 @@
 
 use super::crossing::{Crossing, Grazes, Ray, exact};
 use super::number::*;
-use super::world::Form;
+use super::world::Torus;
 use std::cmp::Ordering;
 
 /// A polynomial; its first coefficient is that of 1.
@@ -44,20 +44,17 @@ enum Piece<N> {
 /// Returns the crossings of the solid. `itself` says that the ray starts on its surface. Parts are numbered along the
 /// ray.
 pub fn crossings<N: Enclosure>(
-    form: &Form,
+    torus: &Torus,
     itself: bool,
     ray: &Ray<N>,
     found: &mut Vec<Crossing<N>>,
 ) -> Result<(), Grazes> {
-    let Form::Torus {
+    let Torus {
         center,
         axis,
         major,
         minor,
-    } = *form
-    else {
-        return Ok(());
-    };
+    } = *torus;
     let (d, w) = (ray.direction, exact::<N>(axis));
     let q = minus(ray.origin, exact(center));
     let length = norm2(d);
@@ -331,16 +328,13 @@ fn narrowed<N: Enclosure>(quartic: &Quartic<N>, between: N) -> N {
 }
 
 /// Returns the outward normal; `None` where it is open, near the axis of a torus without a hole.
-pub fn normal<N: Enclosure>(form: &Form, point: Three<N>) -> Option<Three<N>> {
-    let Form::Torus {
+pub fn normal<N: Enclosure>(torus: &Torus, point: Three<N>) -> Option<Three<N>> {
+    let Torus {
         center,
         axis,
         major,
         ..
-    } = *form
-    else {
-        return None;
-    };
+    } = *torus;
     let (q, w) = (minus(point, exact(center)), exact::<N>(axis));
     let (h, height) = (norm2(w), dot(q, w));
     let outward = unit([0, 1, 2].map(|k| q[k] * h - w[k] * height))?;

@@ -69,7 +69,7 @@ impl Solid {
         let surface = self.surfaces[usize::from(own.part)];
         let is_shared = surface != NONE && surface == other.surfaces[usize::from(its.part)];
         // A ray crosses a plane once; it crosses a curved surface once inward and once outward.
-        let is_curved = matches!(self.form, Form::Cone { .. }) && own.part == MANTLE;
+        let is_curved = matches!(self.form, Form::Cone(_)) && own.part == MANTLE;
         let twins = self.twin == other.twin && own.part == its.part;
         is_shared && (same_way || !is_curved) || twins && same_way
     }
@@ -117,20 +117,28 @@ pub enum Form {
         lowest: [i64; 3],
         highest: [i64; 3],
     },
-    Cone {
-        base: [i64; 3],
-        /// The vector from the base's center to that of the other cap.
-        axis: [i64; 3],
-        base_radius: i64,
-        apex_radius: i64,
-    },
-    /// A torus with a major radius above 0.
-    Torus {
-        center: [i64; 3],
-        axis: [i64; 3],
-        major: i64,
-        minor: i64,
-    },
+    Cone(Cone),
+    Torus(Torus),
+}
+
+/// A cylinder, a cone or a frustum.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub struct Cone {
+    /// The center of the base.
+    pub base: [i64; 3],
+    /// The vector from there to the center of the other cap.
+    pub axis: [i64; 3],
+    pub base_radius: i64,
+    pub apex_radius: i64,
+}
+
+/// A torus with a major radius above 0.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub struct Torus {
+    pub center: [i64; 3],
+    pub axis: [i64; 3],
+    pub major: i64,
+    pub minor: i64,
 }
 
 /// A place where a part stands.
@@ -320,23 +328,23 @@ fn form(scene: &Scene<'_>, slot: usize, geometry: Geometry) -> Option<Form> {
             lowest: wide(cuboid.lowest),
             highest: wide(cuboid.highest),
         },
-        Geometry::Cone(cone) => Form::Cone {
+        Geometry::Cone(cone) => Form::Cone(Cone {
             base: wide(cone.base),
             axis: [0, 1, 2].map(|k| i64::from(cone.apex[k]) - i64::from(cone.base[k])),
             base_radius: cone.base_radius.into(),
             apex_radius: cone.apex_radius.into(),
-        },
+        }),
         // Squares of spheres' quadratics have no simple roots.
         Geometry::Torus(torus) if torus.major_radius == 0 => Form::Sphere {
             center: wide(torus.center),
             radius: torus.minor_radius.into(),
         },
-        Geometry::Torus(torus) => Form::Torus {
+        Geometry::Torus(torus) => Form::Torus(Torus {
             center: wide(torus.center),
             axis: reduced(wide(torus.axis)),
             major: torus.major_radius.into(),
             minor: torus.minor_radius.into(),
-        },
+        }),
     })
 }
 
@@ -375,19 +383,19 @@ impl Surfaces {
                     *surface = self.plane(side, normal);
                 }
             }
-            Form::Cone {
+            Form::Cone(Cone {
                 base,
                 axis,
                 base_radius,
                 apex_radius,
-            } => {
+            }) => {
                 if base_radius == apex_radius {
                     surfaces[0] = self.cylinder(base, axis, base_radius);
                 }
                 surfaces[1] = self.plane(base, axis);
                 surfaces[2] = self.plane([0, 1, 2].map(|k| base[k] + axis[k]), axis);
             }
-            Form::Sphere { .. } | Form::Torus { .. } => {}
+            Form::Sphere { .. } | Form::Torus(_) => {}
         }
         surfaces
     }

@@ -367,7 +367,7 @@ impl Hit {
         Self {
             distance,
             distance_error: error + walk.rounding(distance, met.point),
-            point: frame.place(met.point).to_array(),
+            point: walk.place(frame, distance, met.point),
             normal: met.normal,
             front: met.front,
             object: met.object,

@@ -299,6 +299,19 @@ impl Walk {
         (self.ray.begin + t) * self.ray.scale
     }
 
+    /// Returns the place of a hit in scene coordinates, given in units. Where that is no place of the lattice, as of a
+    /// plane far away, the number format has only the distance right.
+    pub(super) fn place(&self, frame: &Frame, distance: f64, point: [f64; 3]) -> [f64; 3] {
+        let most = match self.ray.format {
+            Format::Fixed => f64::powi(2.0, 17),
+            Format::F32 | Format::F64 => f64::powi(2.0, 46),
+        };
+        if point.iter().all(|x| x.abs() < most) {
+            return frame.place(point).to_array();
+        }
+        [0, 1, 2].map(|axis: usize| self.origin[axis] + distance * self.direction[axis])
+    }
+
     /// Returns how far `origin + distance * direction` may be from the point that the kernels compute there. The
     /// kernels round the ray and the point, and double precision rounds this sum.
     pub(super) fn rounding(&self, distance: f64, point: [f64; 3]) -> f64 {

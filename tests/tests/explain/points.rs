@@ -182,3 +182,44 @@ fn explain_gives_the_distances_of_rays_from_afar() {
         }
     }
 }
+
+/// Planes are hit where no lattice reaches: the point follows from the distance there.
+#[test]
+fn explain_gives_the_points_of_planes_far_away() {
+    let file = "[[object]]\nkind = 'sphere'\ncenter = [0, 2, 0]\nradius = 3\n\
+                [[object]]\nkind = 'plane'\npoint = [0, -1, 0]\nnormal = [0, 1, 0]\n\
+                [[object]]\nkind = 'plane'\npoint = [0, -2, 0]\nnormal = [0.1, 1, 0.2]\n";
+    let scene = gridel_host::scene::read("far.toml".as_ref(), file.into(), &Default::default());
+    let blob = gridel_host::compile::compile(&scene.expect("a scene").scene, &Default::default());
+    let blob = blob.expect("a blob").blob;
+    let scene = blob.scene().expect("a scene");
+    for format in Format::ALL {
+        let mut farthest = 0.0_f64;
+        for exponent in 0..14 {
+            let ray = SceneRay {
+                origin: DVec3::new(0.0, 20.0, 8.0),
+                direction: DVec3::new(f64::powi(10.0, exponent), -21.0, 0.0),
+                tmin: 0.0,
+                tmax: f64::INFINITY,
+            };
+            let explained = explanation(&scene, format, Structure::DualSplit, ray);
+            let about = || format!("{format:?} {exponent}");
+            hits_lie_on_their_rays(&explained, &about);
+            if let Some(hit) = &explained.samples[0].rays[0].hit {
+                farthest = farthest.max(hit.distance);
+                // Slopes are rounded by this part of the way.
+                let bits = match format {
+                    Format::Fixed => 29,
+                    Format::F32 => 23,
+                    Format::F64 => 51,
+                };
+                let most = hit.distance_error + f64::powi(2.0, -bits) * hit.distance;
+                let [_, y, z] = hit.point;
+                let off = (y + 1.0).abs().max((z - 8.0).abs());
+                assert!(off <= most, "{}: {off:e} {most:e} {hit:?}", about());
+            }
+        }
+        let expected = if format == Format::Fixed { 1e7 } else { 9e9 };
+        assert!(farthest > expected, "{format:?}: {farthest:e}");
+    }
+}

@@ -6,7 +6,8 @@ use crate::number::fixed::halves::{product, product_unsigned};
 use crate::number::fixed::reciprocal::reciprocal;
 use core::cmp::Ordering;
 
-/// A number over another. The order is that of the exact quotients. A quotient of another number by 0 is infinite; 0 by 0 compares as equal to everything.
+/// A number over another. The order is that of the exact quotients. A quotient of another number by 0 is infinite; 0 by 0
+/// compares as equal to everything.
 #[derive(Clone, Copy, Debug)]
 pub struct Quotient {
     numerator: i32,

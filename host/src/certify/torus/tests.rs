@@ -7,7 +7,7 @@ use crate::certify::interval::Interval;
 use crate::shape::Solid;
 use crate::shape::exact::{Line, Real};
 use gridel_core::geometry::Geometry;
-use gridel_core::geometry::torus::Torus;
+use gridel_core::geometry::torus::Torus as Record;
 
 /// Numbers without an end, each the same in every run.
 struct Random(u64);
@@ -27,8 +27,8 @@ impl Random {
     }
 }
 
-fn record(center: [i64; 3], axis: [i64; 3], [major, minor]: [i64; 2]) -> Torus {
-    Torus {
+fn record(center: [i64; 3], axis: [i64; 3], [major, minor]: [i64; 2]) -> Record {
+    Record {
         center: center.map(|x| x as i32),
         axis: axis.map(|x| x as i32),
         major_radius: major as i32,
@@ -38,7 +38,7 @@ fn record(center: [i64; 3], axis: [i64; 3], [major, minor]: [i64; 2]) -> Torus {
 }
 
 /// The crossings in exact arithmetic: t, and whether the ray leaves there.
-fn truth(torus: Torus, origin: [i64; 3], direction: [i64; 3]) -> Vec<(Real, bool)> {
+fn truth(torus: Record, origin: [i64; 3], direction: [i64; 3]) -> Vec<(Real, bool)> {
     // The records count 1/256 unit.
     let unit = |v: [i64; 3]| v.map(|x| Real::of(x as f64 / 256.0));
     let line = Line {
@@ -54,14 +54,14 @@ fn truth(torus: Torus, origin: [i64; 3], direction: [i64; 3]) -> Vec<(Real, bool
 
 /// Compares the crossings of a ray, and says how many there are and how many of them are sure.
 fn check<N: Enclosure + std::fmt::Debug>(
-    form: &Form,
+    torus: &Torus,
     ray: &Ray<N>,
     truth: &[(Real, bool)],
     skipped: usize,
 ) -> usize {
     let mut found = Vec::new();
     let is_itself = ray.start != Start::Free;
-    if crossings(form, is_itself, ray, &mut found).is_err() {
+    if crossings(torus, is_itself, ray, &mut found).is_err() {
         return 0;
     }
     let holds = |it: &Crossing<N>, (t, leaves): &(Real, bool)| {
@@ -71,13 +71,13 @@ fn check<N: Enclosure + std::fmt::Debug>(
     for crossing in &truth[skipped..] {
         assert!(
             found.iter().any(|it| holds(it, crossing)),
-            "{form:?} {ray:?}: {:?} is not among {found:?}",
+            "{torus:?} {ray:?}: {:?} is not among {found:?}",
             crossing.0.to_f64()
         );
     }
     for crossing in found.iter().filter(|it| it.sure) {
         let count = truth[skipped..].iter().filter(|it| holds(crossing, it));
-        assert_eq!(count.count(), 1, "{form:?} {ray:?}: {crossing:?}");
+        assert_eq!(count.count(), 1, "{torus:?} {ray:?}: {crossing:?}");
     }
     found.iter().filter(|it| it.sure).count()
 }
@@ -105,8 +105,8 @@ fn crossings_hold_those_of_320_bits() {
         if axis == [0; 3] {
             continue;
         }
-        let torus = record(center, axis, radii);
-        let form = Form::Torus {
+        let recorded = record(center, axis, radii);
+        let torus = Torus {
             center,
             axis,
             major: radii[0],
@@ -117,11 +117,11 @@ fn crossings_hold_those_of_320_bits() {
         let origin = [0, 1, 2].map(|k| center[k] + random.within(3 * reach));
         let target = [0, 1, 2].map(|k| center[k] + random.within(reach));
         let direction = [0, 1, 2].map(|k| target[k] - origin[k]);
-        let exact = truth(torus, origin, direction);
+        let exact = truth(recorded, origin, direction);
         all += exact.len();
-        sure += check(&form, &free::<Interval>(origin, direction), &exact, 0);
+        sure += check(&torus, &free::<Interval>(origin, direction), &exact, 0);
         deep_sure += deep::with_bits(128, || {
-            check(&form, &free::<Ball>(origin, direction), &exact, 0)
+            check(&torus, &free::<Ball>(origin, direction), &exact, 0)
         });
     }
     assert!(all > 2_000, "{all} crossings");
@@ -133,8 +133,8 @@ fn crossings_hold_those_of_320_bits() {
 #[test]
 fn rays_from_the_surface_do_not_meet_it_where_they_start() {
     let (center, axis, [major, minor]) = ([0; 3], [0, 0, 1], [1000, 250]);
-    let torus = record(center, axis, [major, minor]);
-    let form = Form::Torus {
+    let recorded = record(center, axis, [major, minor]);
+    let torus = Torus {
         center,
         axis,
         major,
@@ -150,7 +150,7 @@ fn rays_from_the_surface_do_not_meet_it_where_they_start() {
         if 9 * direction[0] + 12 * direction[1] + 20 * direction[2] == 0 {
             continue;
         }
-        let exact: Vec<_> = truth(torus, origin, direction)
+        let exact: Vec<_> = truth(recorded, origin, direction)
             .into_iter()
             .filter(|(t, _)| *t > Real::of(1e-30))
             .collect();
@@ -167,7 +167,7 @@ fn rays_from_the_surface_do_not_meet_it_where_they_start() {
             ..free::<Interval>(origin, direction)
         };
         all += exact.len();
-        sure += check(&form, &from, &exact, 0);
+        sure += check(&torus, &from, &exact, 0);
     }
     assert!(all > 200 && sure * 100 >= all * 99, "{sure} of {all}");
 }
@@ -175,7 +175,7 @@ fn rays_from_the_surface_do_not_meet_it_where_they_start() {
 /// Touching is open with any number of bits, and is said to be.
 #[test]
 fn rays_that_touch_a_torus_are_open() {
-    let form = Form::Torus {
+    let torus = Torus {
         center: [0; 3],
         axis: [0, 0, 1],
         major: 1000,
@@ -183,7 +183,7 @@ fn rays_that_touch_a_torus_are_open() {
     };
     let ray = free::<Interval>([-3000, 1000, 250], [1, 0, 0]);
     let mut found = Vec::new();
-    if crossings(&form, false, &ray, &mut found).is_ok() {
+    if crossings(&torus, false, &ray, &mut found).is_ok() {
         assert!(found.iter().all(|it| !it.sure), "{found:?}");
         assert!(!found.is_empty());
         for crossing in &found {
@@ -193,6 +193,6 @@ fn rays_that_touch_a_torus_are_open() {
     // Beside it by one lattice step nothing is open.
     let ray = free::<Interval>([-3000, 1000, 251], [1, 0, 0]);
     let mut found = Vec::new();
-    assert!(crossings(&form, false, &ray, &mut found).is_ok());
+    assert!(crossings(&torus, false, &ray, &mut found).is_ok());
     assert!(found.is_empty(), "{found:?}");
 }
