@@ -35,7 +35,8 @@ impl Random {
 
     /// Returns a magnitude in [low, high), its logarithm evenly spread.
     pub fn magnitude(&mut self, low: f64, high: f64) -> f64 {
-        (low.ln() + self.unit() * (high.ln() - low.ln())).exp()
+        let [from, to] = [low, high].map(libm::log);
+        libm::exp(from + self.unit() * (to - from))
     }
 
     /// Returns whether something happens that has one chance in `count`.

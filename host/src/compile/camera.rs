@@ -84,7 +84,7 @@ mod tests {
         for exponent in -20..=-12 {
             for step in 0..200 {
                 let turn = DVec3::new(f64::from(step) * 0.7, f64::from(step) * 0.3, 1.0);
-                let direction = DVec3::new(turn.x.sin(), turn.y.cos(), turn.x.cos());
+                let direction = DVec3::new(libm::sin(turn.x), libm::cos(turn.y), libm::cos(turn.x));
                 let across = direction.any_orthogonal_vector().normalize();
                 let camera = Camera {
                     eye: DVec3::ZERO,

@@ -11,6 +11,7 @@
 //! neighboring points occurs an even number of times, and the mesh is closed again.
 
 use std::collections::HashMap;
+use std::ops::Range;
 
 /// The corners of a triangle on a line, in 1/256 unit.
 pub type Sliver = [Point; 3];
@@ -33,8 +34,11 @@ fn edges([a, b, c]: [Point; 3]) -> impl Iterator<Item = Edge> {
 /// The points at which edges are cut.
 #[derive(Debug, Default)]
 pub struct Cuts {
-    /// For edges that are cut, the points between their ends, in ascending order.
-    points: HashMap<Edge, Vec<Point>>,
+    /// The ends of the edges of each cluster's border, in ascending order.
+    ends: Vec<Point>,
+    /// For edges that are cut, the range of the ends between their own. The points themselves would take memory by the
+    /// square of a cluster's slivers.
+    between: HashMap<Edge, Range<usize>>,
 }
 
 impl Cuts {
@@ -61,31 +65,45 @@ impl Cuts {
             let mut ends: Vec<Point> = cluster.iter().flat_map(|(_, edge)| *edge).collect();
             ends.sort_unstable();
             ends.dedup();
+            let before = cuts.ends.len();
             for &(_, edge) in cluster {
                 let [low, high] = edge;
                 let first = ends.partition_point(|end| *end <= low);
                 let last = ends.partition_point(|end| *end < high);
                 if first < last {
-                    cuts.points.insert(edge, ends[first..last].to_vec());
+                    cuts.between.insert(edge, before + first..before + last);
                 }
             }
+            cuts.ends.append(&mut ends);
         }
         cuts
     }
 
     pub fn is_empty(&self) -> bool {
-        self.points.is_empty()
+        self.between.is_empty()
+    }
+
+    /// Returns the points at which an edge is cut, in ascending order.
+    fn of_edge(&self, a: Point, b: Point) -> &[Point] {
+        let range = self.between.get(&edge(a, b)).cloned();
+        &self.ends[range.unwrap_or_default()]
+    }
+
+    /// Returns the number of pieces that a triangle is cut into.
+    pub fn count(&self, [a, b, c]: [Point; 3]) -> usize {
+        let edges = [[a, b], [b, c], [c, a]].into_iter();
+        1 + edges.map(|[a, b]| self.of_edge(a, b).len()).sum::<usize>()
     }
 
     /// Returns the pieces that a triangle is cut into, wound as it is. It is the triangle alone where no edge is cut.
     pub fn pieces(&self, corners: [Point; 3]) -> Vec<[Point; 3]> {
         let cut_edges = [0, 1, 2].map(|side: usize| {
             let (from, to) = (corners[side], corners[(side + 1) % 3]);
-            let mut points = self.points.get(&edge(from, to)).cloned();
+            let mut points = self.of_edge(from, to).to_vec();
             if from > to {
-                points.iter_mut().for_each(|points| points.reverse());
+                points.reverse();
             }
-            points.unwrap_or_default()
+            points
         });
         let mut pieces = Vec::new();
         divide(corners, cut_edges, &mut pieces);
@@ -135,5 +153,23 @@ impl Clusters {
     fn join(&mut self, a: usize, b: usize) {
         let (a, b) = (self.of(a), self.of(b));
         self.leads_to[a.max(b)] = a.min(b);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn slivers_that_share_an_edge_take_little_memory() {
+        let point = |x: usize| [x as i32, 0, 0];
+        let count = 2000;
+        let slivers: Vec<Sliver> = (2..count).map(|x| [point(0), point(1), point(x)]).collect();
+        let cuts = Cuts::around(&slivers);
+        // Each edge from 0 is cut where the others end.
+        let far = [point(0), point(count - 1), [0, 1, 0]];
+        assert_eq!(cuts.count(far), count - 1);
+        assert_eq!(cuts.pieces(far).len(), count - 1);
+        assert_eq!(cuts.ends.len(), count);
     }
 }

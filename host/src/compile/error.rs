@@ -98,8 +98,8 @@ pub enum CompileError {
     )]
     #[diagnostic(help("make it less bright, lower `exposure`, or make the scene larger"))]
     LightTooBright { light: String, times: f64 },
-    #[error("the {what} has a channel of {value:.4e} after exposure; it must be at most {most}")]
-    #[diagnostic(help("lower `exposure` or the light"))]
+    #[error("the {what} has a channel of {value:.4e}; it must be at most {most}")]
+    #[diagnostic(help("make the light darker, or lower `exposure`"))]
     TooBright { what: String, value: f64, most: f64 },
     #[error("tone mapping is for linear colors, and those of the scene are display values")]
     #[diagnostic(help(

@@ -230,7 +230,7 @@ mod tests {
         let forward = (camera.target - camera.eye).normalize();
         let right = forward.cross(camera.up).normalize();
         let up = right.cross(forward);
-        let tangent = (camera.fov_degrees.to_radians() / 2.0).tan();
+        let tangent = libm::tan(camera.fov_degrees.to_radians() / 2.0);
         let aspect = f64::from(scene.render.width) / f64::from(scene.render.height);
         let mut bounds = [[f64::INFINITY, f64::NEG_INFINITY]; 2];
         for corner in 0..8 {
@@ -301,7 +301,7 @@ mod tests {
         };
         needle.objects[0].shape = Shape::Cone(cone);
         let camera = framing(&needle, None);
-        let flat = 1.0 / (0.8 * 20_f64.to_radians().tan());
+        let flat = 1.0 / (0.8 * libm::tan(20_f64.to_radians()));
         let expected = 100.0 + flat / 16.0;
         assert!((camera.eye.z - expected).abs() < 1e-9, "{}", camera.eye);
         assert!(looks(&camera, DVec3::NEG_Z));

@@ -34,7 +34,7 @@ impl Hierarchies {
                 options.builder,
                 &mut order,
                 options.leaf_size.min(LARGEST_LEAF),
-                |primitive| snapped.groups(scene, primitive),
+                |primitive| snapped.object(scene, primitive),
             )
         } else {
             None

@@ -61,7 +61,7 @@ impl Lattice {
 /// An integer whose power of two is at most `x`, and not much less.
 fn log2_below(x: f64) -> i32 {
     // The logarithm of 0, to which a tiny quotient is rounded, is minus infinity.
-    x.log2().floor().max(-1075.0) as i32 - 1
+    libm::log2(x).floor().max(-1075.0) as i32 - 1
 }
 
 #[cfg(test)]

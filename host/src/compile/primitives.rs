@@ -129,6 +129,18 @@ impl Primitives {
         if cuts.is_empty() {
             return Ok(());
         }
+        // Counted before they are made.
+        let places = |triangle: &[u32; 3]| triangle.map(|vertex| distinct.get(vertex).0);
+        let counts = self.triangles.iter().map(|it| cuts.count(places(it)));
+        let others: usize = self.numbers.iter().map(Vec::len).sum();
+        let pieces = counts.sum::<usize>() + others - self.triangles.len();
+        if pieces > self.total as usize {
+            return Err(CompileError::Slivers {
+                collapsed: self.slivers.len(),
+                pieces,
+                most: self.total as usize,
+            });
+        }
         let triangles = std::mem::take(&mut self.triangles);
         let numbers = std::mem::take(&mut self.numbers[Kind::Triangle as usize]);
         for (triangle, number) in triangles.into_iter().zip(numbers) {
@@ -143,14 +155,6 @@ impl Primitives {
                 self.triangles.push(piece);
                 self.numbers[Kind::Triangle as usize].push(number);
             }
-        }
-        let pieces: usize = self.numbers.iter().map(Vec::len).sum();
-        if pieces > self.total as usize {
-            return Err(CompileError::Slivers {
-                collapsed: self.slivers.len(),
-                pieces,
-                most: self.total as usize,
-            });
         }
         Ok(())
     }
@@ -190,13 +194,11 @@ impl Primitives {
         })
     }
 
-    /// Returns the groups that a primitive is in, the largest first, and its number. The groups are the parts of its
-    /// object's name (`A/CYS 3/CA` is the atom CA of the residue CYS 3 of the chain A).
-    pub fn groups<'s>(&self, scene: &'s Scene, primitive: &Primitive) -> (Vec<&'s str>, u32) {
+    /// Returns the name of a primitive's object, and the primitive's number.
+    pub fn object<'s>(&self, scene: &'s Scene, primitive: &Primitive) -> (&'s str, u32) {
         let number = self.numbers[primitive.kind as usize][primitive.index as usize];
         let behind = self.object_first.partition_point(|&first| first <= number);
-        let object = &scene.objects[behind - 1];
-        (object.name.split('/').collect(), number)
+        (&scene.objects[behind - 1].name, number)
     }
 
     fn add(

@@ -121,11 +121,20 @@ impl Access {
     /// # Errors
     /// If it lies outside of the scene's folder: the cause, which names the folder, and the remedy.
     pub(super) fn resolve(&self, file: &Path, name: &str) -> Result<PathBuf, [String; 2]> {
+        let slashed = name.replace('\\', "/");
         if self.files.is_some() {
-            return Ok(sibling(file, &name.replace('\\', "/")));
+            return Ok(sibling(file, &slashed));
         }
+        let found = || {
+            let named = sibling(file, name);
+            // Elsewhere than on Windows a backslash may belong to the name of a file.
+            match self.is_file(&named) {
+                true => named,
+                false => sibling(file, &slashed),
+            }
+        };
         let Some(root) = &self.folder else {
-            return Ok(sibling(file, name));
+            return Ok(found());
         };
         let outside = || {
             [
@@ -139,7 +148,6 @@ impl Access {
                 ),
             ]
         };
-        let slashed = name.replace('\\', "/");
         let drive = slashed.as_bytes();
         if drive.len() >= 2 && drive[0].is_ascii_alphabetic() && drive[1] == b':' && !cfg!(windows)
         {
@@ -160,7 +168,7 @@ impl Access {
                 return Err(outside());
             }
         }
-        Ok(sibling(file, name))
+        Ok(found())
     }
 }
 

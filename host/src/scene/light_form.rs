@@ -69,7 +69,7 @@ const EVEN: f64 = 1e-6;
 
 /// Returns the geometric mean of a transform's scales.
 pub(super) fn scale_of(by: &DAffine3) -> f64 {
-    by.matrix3.determinant().abs().cbrt()
+    libm::cbrt(by.matrix3.determinant().abs())
 }
 
 /// A normal of a surface after a transform, of any length.
@@ -163,7 +163,7 @@ mod tests {
     #[test]
     fn a_step_of_f32_changes_the_narrowest_spot_by_less_than_a_percent() {
         let change = |degrees: f64| {
-            let width = 1.0 - degrees.to_radians().cos();
+            let width = 1.0 - libm::cos(degrees.to_radians());
             let step = f64::from(f32::EPSILON) / 2.0;
             1.0 - (1.0 - step / width).powi(2)
         };

@@ -29,6 +29,7 @@ pub(crate) mod palette;
 mod placement;
 mod places;
 mod plain_lights;
+mod plain_materials;
 mod polygon;
 mod scale_range;
 mod size;

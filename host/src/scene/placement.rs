@@ -117,40 +117,44 @@ impl Placement {
 
     /// Returns the placement nearest to a matrix whose entries are off by at most `tolerance` of the scale.
     pub(super) fn near(matrix: DMat3, translation: DVec3, tolerance: f64) -> Option<Self> {
-        let entries = matrix.to_cols_array();
-        let size = entries.iter().fold(0.0_f64, |most, it| most.max(it.abs()));
-        let normal = size.is_normal() && entries.iter().all(|it| it.is_finite());
-        if !normal || !translation.is_finite() {
-            return None;
-        }
-        // At size 1 the determinant can neither overflow nor vanish.
-        let unit = DMat3::from_cols(
-            matrix.x_axis / size,
-            matrix.y_axis / size,
-            matrix.z_axis / size,
-        );
-        let determinant = unit.determinant();
-        // A rotation has an entry of at least 1 / sqrt(3), so the determinant of its multiple is at least 1.
-        if determinant < 0.5 {
-            return None;
-        }
-        // libm, because the standard library's roots differ from one machine to another.
-        let root = libm::cbrt(determinant);
-        let scaled = unit * (1.0 / root);
-        let turn = nearest_rotation(scaled);
-        let near = turn.abs_diff_eq(scaled, tolerance);
-        let scale = match size * root {
-            // Rotations that were rounded stay rotations.
-            scale if (scale - 1.0).abs() <= tolerance => 1.0,
-            scale => scale,
-        };
+        let (rotation, scale) = rotation_and_scale(matrix, tolerance)?;
         let placement = Self {
-            rotation: DQuat::from_mat3(&turn).normalize(),
+            rotation,
             translation,
-            scale,
+            // Rotations that were rounded stay rotations.
+            scale: match (scale - 1.0).abs() <= tolerance {
+                true => 1.0,
+                false => scale,
+            },
         };
-        (near && placement.is_valid()).then_some(placement)
+        (translation.is_finite() && placement.is_valid()).then_some(placement)
     }
+}
+
+/// Returns the rotation and the scale that are nearest to a matrix. `None` if one of its entries is off by more than
+/// `tolerance` of the scale, or it mirrors.
+pub(super) fn rotation_and_scale(matrix: DMat3, tolerance: f64) -> Option<(DQuat, f64)> {
+    let entries = matrix.to_cols_array();
+    let size = entries.iter().fold(0.0_f64, |most, it| most.max(it.abs()));
+    if !size.is_normal() || entries.iter().any(|it| !it.is_finite()) {
+        return None;
+    }
+    // At size 1 the determinant can neither overflow nor vanish.
+    let unit = DMat3::from_cols(
+        matrix.x_axis / size,
+        matrix.y_axis / size,
+        matrix.z_axis / size,
+    );
+    let determinant = unit.determinant();
+    // A rotation has an entry of at least 1 / sqrt(3), so the determinant of its multiple is at least 1.
+    if determinant < 0.5 {
+        return None;
+    }
+    let root = libm::cbrt(determinant);
+    let scaled = unit * (1.0 / root);
+    let turn = nearest_rotation(scaled);
+    let near = turn.abs_diff_eq(scaled, tolerance);
+    near.then(|| (DQuat::from_mat3(&turn).normalize(), size * root))
 }
 
 /// The rotation nearest to a matrix with a positive determinant near 1: the orthogonal factor of its polar

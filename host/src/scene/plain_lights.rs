@@ -49,7 +49,7 @@ fn shine(form: &LightForm, way: DVec3) -> f64 {
         _ => 1.0,
     };
     if let Some(spot) = form.spot {
-        let [inner, outer] = [spot.inner, spot.outer].map(|angle| angle.to_radians().cos());
+        let [inner, outer] = [spot.inner, spot.outer].map(|angle| libm::cos(angle.to_radians()));
         let within = spot.direction.normalize_or_zero().dot(direction) - outer;
         let width = inner - outer;
         part *= match within >= width {
@@ -252,7 +252,7 @@ mod tests {
                 -cosine
             )
         };
-        let [full, end] = [10_f64, 30.0].map(|angle| angle.to_radians().cos());
+        let [full, end] = [10_f64, 30.0].map(|angle| libm::cos(angle.to_radians()));
         for (rest, expected) in [
             (String::from("kind = 'point'"), 2.0),
             (

@@ -4,7 +4,8 @@
 //! instruction to the program. Each effect has a row below, which removes the settings that call for it.
 
 use super::plain_lights::{remove_falloff, shrink_areas};
-use super::{Diffuse, Material, Normals, Object, Scene, ToneMapping};
+use super::plain_materials::{average_checkers, average_textures};
+use super::{Material, Normals, Object, Scene, ToneMapping};
 use crate::table::printable;
 use gridel_core::Effects;
 use gridel_core::format::track::TrackTarget;
@@ -23,7 +24,10 @@ const REMOVALS: [(Effects, &str, Removal); Effects::NAMED.len()] = [
     (
         Effects::HIGHLIGHT,
         "surfaces show their diffuse color alone under a light",
-        |scene| each_material(scene, |material| material.highlight = [0.0; 3]),
+        |scene| {
+            each_material(scene, |material| material.highlight = [0.0; 3]);
+            remove_tracks(scene, TrackTarget::MaterialHighlight);
+        },
     ),
     (
         Effects::GLOSSY,
@@ -59,14 +63,7 @@ const REMOVALS: [(Effects, &str, Removal); Effects::NAMED.len()] = [
     (
         Effects::CHECKER,
         "checkerboards have the mean of their two colors",
-        |scene| {
-            each_material(scene, |material| {
-                if let Diffuse::Checker { even, odd, .. } = material.diffuse {
-                    let mean = [0, 1, 2].map(|channel| 0.5 * (even[channel] + odd[channel]));
-                    material.diffuse = Diffuse::Plain(mean);
-                }
-            });
-        },
+        average_checkers,
     ),
     (Effects::SMOOTH, "meshes show their faces", |scene| {
         each_object(scene, |object| object.normals = Normals::default());
@@ -95,15 +92,7 @@ const REMOVALS: [(Effects, &str, Removal); Effects::NAMED.len()] = [
     (
         Effects::TEXTURE,
         "surfaces have their diffuse color weighted by the mean of the image",
-        |scene| {
-            each_material(scene, |material| {
-                material.alpha = None;
-                if let Some(texture) = material.texture.take() {
-                    let mean = texture.image.mean();
-                    material.diffuse = material.diffuse.weighted(mean);
-                }
-            });
-        },
+        average_textures,
     ),
     (
         Effects::ALPHA,
@@ -354,6 +343,22 @@ mod tests {
         smooth = 90
         colors = ['#ff0000', '#00ff00', '#0000ff', '#ffffff']
         material = 'squares'
+        [[track]]
+        target = 'material.all.highlight'
+        times = [0]
+        values = [[0.5, 0.5, 0.5]]
+        [[track]]
+        target = 'material.all.mirror'
+        times = [0]
+        values = [[0.5, 0.5, 0.5]]
+        [[track]]
+        target = 'material.all.transmit'
+        times = [0]
+        values = [[0.5, 0.5, 0.5]]
+        [[track]]
+        target = 'material.squares.checker.odd'
+        times = [0]
+        values = [[0.5, 0.5, 0.5]]
     ";
 
     fn scene() -> Scene {

@@ -149,7 +149,7 @@ impl<'s> State<'s> {
     /// Moves the camera nearer by a number of steps, or further away.
     pub fn zoom(&mut self, steps: f64) -> Effect {
         let [first, now] = [self.first_camera, self.camera].map(|it| it.eye.distance(it.target));
-        let wanted = (now * ZOOM.powf(steps)).max(NEAREST * first);
+        let wanted = (now * libm::pow(ZOOM, steps)).max(NEAREST * first);
         self.moved(self.camera.zoomed(wanted / now))
     }
 
@@ -283,7 +283,7 @@ mod tests {
             state.apply(Action::Home);
             state.pan([height, 0.0]);
             let across = state.camera.target.distance(first.target);
-            let seen = 2.0 * (first.fov_degrees / 2.0).to_radians().tan();
+            let seen = 2.0 * libm::tan((first.fov_degrees / 2.0).to_radians());
             let expected = seen * first.eye.distance(first.target);
             assert!((across / expected - 1.0).abs() < 1e-9);
             // To the right of the mouse, so the camera goes to the left.

@@ -53,3 +53,34 @@ fn core_imports_run_one_way() {
 fn host_imports_run_one_way() {
     check(&HOST);
 }
+
+/// The functions of the standard library whose results differ from one machine to another. Bytes of a blob must not.
+const UNEQUAL: [&str; 22] = [
+    "sin", "cos", "tan", "sin_cos", "asin", "acos", "atan", "atan2", "sinh", "cosh", "tanh", "exp",
+    "exp2", "exp_m1", "ln", "ln_1p", "log", "log2", "log10", "powf", "cbrt", "hypot",
+];
+
+#[test]
+fn blobs_come_from_functions_that_are_equal_on_every_machine() {
+    let host = Path::new(env!("CARGO_MANIFEST_DIR")).join(HOST.sources);
+    let of_blobs = "random shape deformation scene compile live morphed state";
+    let is_of_blobs = |module: &str| of_blobs.split(' ').any(|it| it == module);
+    let mut faults = Vec::new();
+    for source in sources(&host) {
+        let module = source::module(&source.file);
+        if !module.first().is_some_and(|it| is_of_blobs(it)) {
+            continue;
+        }
+        for (number, line) in source.text.lines().enumerate() {
+            let called = |name: &&str| line.contains(&format!(".{name}("));
+            if let Some(name) = UNEQUAL.iter().find(called) {
+                let line = number + 1;
+                faults.push(format!(
+                    "{}:{line}: use libm in place of {name}",
+                    source.file
+                ));
+            }
+        }
+    }
+    assert!(faults.is_empty(), "{}", faults.join("\n"));
+}

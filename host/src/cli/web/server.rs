@@ -120,9 +120,9 @@ impl Server {
         let request = read_request(Timed::new(stream))?;
         let is_head = request.as_ref().is_ok_and(|it| it.starts_with("HEAD "));
         let answer = request.and_then(|it| self.find(&it));
-        let is_refused = answer.is_err();
+        let is_rejected = answer.is_err();
         respond(stream, answer, is_head)?;
-        if is_refused {
+        if is_rejected {
             // A connection that is closed with something unread loses the answer.
             stream.shutdown(Shutdown::Write)?;
             stream.set_read_timeout(Some(REST_PATIENCE))?;
@@ -403,7 +403,7 @@ mod tests {
     }
 
     #[test]
-    fn long_headers_are_read_and_longer_ones_are_refused_with_words() {
+    fn long_headers_are_read_and_longer_ones_are_rejected_with_words() {
         let outer = folder();
         let server = Server::new(&outer.path().join("page"), 0).unwrap();
         for (bytes, code) in [

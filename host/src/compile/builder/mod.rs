@@ -68,14 +68,14 @@ impl Builder {
     }
 }
 
-/// Builds a hierarchy and puts the primitives in the order of its leaves; `None` without primitives. `group` gives the
-/// names of the groups that a primitive is in, the largest first, and its number in scene-file order. Builders other
-/// than the first two make leaves of the usual size where `leaf_size` is larger.
+/// Builds a hierarchy and puts the primitives in the order of its leaves; `None` without primitives. `object` gives the
+/// name of a primitive's object, and the primitive's number in scene-file order. Builders other than the first two make
+/// leaves of the usual size where `leaf_size` is larger.
 pub fn build<'g>(
     builder: Builder,
     primitives: &mut [Primitive],
     leaf_size: usize,
-    group: impl Fn(&Primitive) -> (Vec<&'g str>, u32),
+    object: impl Fn(&Primitive) -> (&'g str, u32),
 ) -> Option<Node> {
     if primitives.len() < 2 {
         return hierarchy::build(primitives, Splits::Swept, leaf_size);
@@ -90,7 +90,7 @@ pub fn build<'g>(
         Builder::Insertion => insertion::build(primitives),
         Builder::NearestPairing => pairing::nearest(primitives),
         Builder::RandomPairing => pairing::random(primitives),
-        Builder::Modelled => modelled::build(primitives, group),
+        Builder::Modelled => modelled::build(primitives, object),
     };
     Some(tree.finish(primitives))
 }

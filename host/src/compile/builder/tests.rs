@@ -38,13 +38,15 @@ fn chain(count: usize) -> Vec<Primitive> {
     primitives((0..count).map(|step| [[(step * 3) as i16, (step * 3) as i16 + 1], [0, 1], [0, 1]]))
 }
 
-fn groups(primitive: &Primitive) -> (Vec<&'static str>, u32) {
-    let names = ["a", "b", "c"];
-    let name = |part: u32| names[(part % 3) as usize];
-    (
-        vec![name(primitive.index / 100), name(primitive.index / 10)],
-        primitive.index,
-    )
+fn object(primitive: &Primitive) -> (&'static str, u32) {
+    let names = [
+        ["a/a", "a/b", "a/c"],
+        ["b/a", "b/b", "b/c"],
+        ["c/a", "c/b", "c/c"],
+    ];
+    let part = |of: u32| (of % 3) as usize;
+    let [group, inner] = [primitive.index / 100, primitive.index / 10].map(part);
+    (names[group][inner], primitive.index)
 }
 
 /// The depth below a node, and that everything is in its place.
@@ -87,7 +89,7 @@ fn every_builder_keeps_every_primitive_and_the_depth() {
     ] {
         for builder in Builder::ALL {
             let mut order = scene.clone();
-            let Some(root) = build(builder, &mut order, 0, groups) else {
+            let Some(root) = build(builder, &mut order, 0, object) else {
                 assert!(scene.is_empty());
                 continue;
             };
@@ -113,7 +115,7 @@ fn every_builder_keeps_every_primitive_and_the_depth() {
 fn better_builders_cost_less() {
     let cost = |builder| {
         let mut order = cloud(3000);
-        hierarchy::sah_cost(&build(builder, &mut order, 0, groups).unwrap())
+        hierarchy::sah_cost(&build(builder, &mut order, 0, object).unwrap())
     };
     let [sah, binned, best, insertion, nearest, random] = [
         Builder::Sah,
@@ -127,4 +129,56 @@ fn better_builders_cost_less() {
     eprintln!("{sah:.1} {binned:.1} {best:.1} {insertion:.1} {nearest:.1} {random:.1}");
     assert!(best < sah && sah <= 1.05 * binned);
     assert!(insertion < 0.5 * random && nearest < 0.5 * random);
+}
+
+/// The primitives of every node of the modelled tree of objects with these names, one each.
+fn modelled(names: &[String]) -> Vec<Vec<u32>> {
+    let primitives = chain(names.len());
+    let object =
+        |primitive: &Primitive| (names[primitive.index as usize].as_str(), primitive.index);
+    let mut order = primitives;
+    let root = build(Builder::Modelled, &mut order, 0, object).unwrap();
+    let mut found = Vec::new();
+    collect(&root, &order, &mut found);
+    found
+}
+
+/// Adds the primitives of a node and of all below it, and returns its own.
+fn collect(node: &Node, order: &[Primitive], found: &mut Vec<Vec<u32>>) -> Vec<u32> {
+    let own = match node {
+        Node::Leaf { first, count, .. } => {
+            let leaf = &order[*first..first + count];
+            leaf.iter().map(|it| it.index).collect()
+        }
+        Node::Inner { children, .. } => {
+            let [left, right] = [0, 1].map(|child: usize| collect(&children[child], order, found));
+            let mut both = [left, right].concat();
+            both.sort_unstable();
+            both
+        }
+    };
+    found.push(own.clone());
+    own
+}
+
+#[test]
+fn modelled_groups_are_nodes() {
+    let names = ["a/x/1", "a/x/2", "a/y", "b", "a/z"].map(String::from);
+    let nodes = modelled(&names);
+    for group in [vec![0, 1], vec![0, 1, 2], vec![3, 4], vec![0, 1, 2, 3, 4]] {
+        assert!(nodes.contains(&group), "{group:?} of {nodes:?}");
+    }
+}
+
+/// Names have any number of parts, and the program's stack is small.
+#[test]
+fn names_of_many_parts_are_followed_without_recursion() {
+    let deep = "a/".repeat(200_000);
+    let nodes = modelled(&[format!("{deep}b"), format!("{deep}c"), String::from("d")]);
+    assert!(nodes.contains(&vec![0, 1]));
+    // Each in a group of the one before.
+    let staircase: Vec<String> = (0..2000)
+        .map(|it| format!("{}b", "a/".repeat(it)))
+        .collect();
+    assert_eq!(modelled(&staircase).last().unwrap().len(), 2000);
 }

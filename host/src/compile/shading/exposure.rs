@@ -27,7 +27,7 @@ impl Exposure {
     ) -> Result<Color, CompileError> {
         let exposed = color.map(|channel| channel * self.factor);
         let largest = exposed.into_iter().fold(0.0, f64::max);
-        if self.factor != 1.0 && largest > MOST {
+        if largest > MOST {
             return Err(CompileError::TooBright {
                 what: what(),
                 value: largest,
@@ -89,5 +89,28 @@ mod tests {
             CompileError::TooBright { value: 2060.0, .. }
         ));
         assert!(error.to_string().contains("light 0 at 1 s"), "{error}");
+    }
+
+    /// An import that is scaled multiplies the colors of its light.
+    #[test]
+    fn colors_of_imported_tracks_that_are_too_bright_are_rejected() {
+        let folder = tempfile::tempdir().unwrap();
+        let lamp = FILE
+            .replace("render.exposure = 1", "")
+            .replace("color = 1", "color = 0.1\nfalloff = 'square'");
+        let lamp = format!("{lamp}values = [[0.1, 0.1, 0.1], [1, 1, 1]]");
+        std::fs::write(folder.path().join("lamp.toml"), lamp).unwrap();
+        let compiled = |scale: f64| {
+            let outer = format!("[[object]]\nkind = 'import'\nfile = 'lamp.toml'\nscale = {scale}");
+            let path = folder.path().join("outer.toml");
+            let scene = read(&path, outer.into(), &Default::default())
+                .unwrap()
+                .scene;
+            compile(&scene, &Options::default())
+        };
+        compiled(40.0).unwrap();
+        let error = compiled(100.0).unwrap_err().to_string();
+        assert!(error.contains("light 0 at 1 s"), "{error}");
+        assert!(error.contains("1.0000e4"), "{error}");
     }
 }

@@ -78,7 +78,7 @@ pub fn form_record(
     let (range, color) = light.in_range(color, lattice)?;
     light.reject_too_bright(color)?;
     let q13 = |length: f64| q13(length / lattice.unit());
-    let cosine = |degrees: f64| degrees.to_radians().cos();
+    let cosine = |degrees: f64| libm::cos(degrees.to_radians());
     let cone = light.form.spot;
     let cone = cone.map(|spot| [spot.outer, spot.inner].map(cosine));
     let record = Record {

@@ -6,6 +6,7 @@
 use super::buffers::Buffers;
 use super::curve::{Curve, seconds, tick};
 use super::place::{parts, transform};
+use crate::scene::placement::rotation_and_scale;
 use crate::scene::{
     Choice, Interpolation, Key, SceneError, SourceSpan, TICKS_PER_SECOND, Track, TrackTarget,
 };
@@ -488,9 +489,5 @@ fn turned(world: &DMat4) -> DQuat {
 fn rotation_of(matrix: DMat3) -> Option<DQuat> {
     /// Tolerance of single precision.
     const TOLERANCE: f64 = 1e-6;
-    let scale = matrix.determinant().cbrt();
-    let turns = matrix * (1.0 / scale);
-    let squared = turns.transpose() * turns;
-    (scale > 0.0 && squared.abs_diff_eq(DMat3::IDENTITY, TOLERANCE))
-        .then(|| DQuat::from_mat3(&turns).normalize())
+    rotation_and_scale(matrix, TOLERANCE).map(|(rotation, _)| rotation)
 }

@@ -2,6 +2,7 @@
 
 use super::item::Item;
 use super::source::Source;
+use crate::scene::placement::rotation_and_scale;
 use crate::scene::{Placement, Scene, SceneError, Track, TrackTarget};
 use glam::{DAffine3, DQuat, DVec3};
 use gridel_core::format::track::ValueKind;
@@ -136,11 +137,7 @@ pub(super) fn moved(track: &Track, by: &DAffine3) -> Option<Track> {
 fn rotation_of(by: &DAffine3) -> Option<DQuat> {
     /// Far above rounding, and far below visible differences.
     const TOLERANCE: f64 = 1e-9;
-    let scale = by.matrix3.determinant().cbrt();
-    let turns = by.matrix3 * (1.0 / scale);
-    let squared = turns.transpose() * turns;
-    let is_rotation = scale > 0.0 && squared.abs_diff_eq(glam::DMat3::IDENTITY, TOLERANCE);
-    is_rotation.then(|| DQuat::from_mat3(&turns))
+    rotation_and_scale(by.matrix3, TOLERANCE).map(|(rotation, _)| rotation)
 }
 
 /// Returns the error of a track that cannot follow the transform of its import.

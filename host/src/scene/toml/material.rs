@@ -53,19 +53,24 @@ impl Palette {
     }
 
     /// Adds a material of an import. One whose name is taken is renamed after the import, unless it is identical apart
-    /// from its place.
+    /// from its place. The name of the [fallback](Self::fallback) is taken from the beginning.
     pub(super) fn adopt(&mut self, material: &Material, import: &str) -> usize {
         let mut material = material.clone();
-        while let Some(&index) = self.indices.get(&material.name) {
-            let known = &self.materials[index];
+        let fallback = Material::default();
+        loop {
+            let index = self.indices.get(&material.name).copied();
+            let known = match index {
+                Some(index) => &self.materials[index],
+                None if material.name == fallback.name => &fallback,
+                None => return self.push(material),
+            };
             let place = std::mem::replace(&mut material.place, known.place.clone());
             if *known == material {
-                return index;
+                return index.unwrap_or_else(|| self.push(material));
             }
             material.place = place;
             material.name = format!("{import}/{}", material.name);
         }
-        self.push(material)
     }
 
     fn push(&mut self, material: Material) -> usize {

@@ -101,7 +101,10 @@ impl Reader<'_> {
         let material = fields.or("material", None, |value| value.name().map(Some))?;
         let name = match fields.get("name") {
             Some(name) => name.filled()?.to_owned(),
-            None if kind == "import" => stem(Path::new(fields.require("file")?.filled()?)),
+            None if kind == "import" => {
+                let file = fields.require("file")?.filled()?.replace('\\', "/");
+                stem(Path::new(&file))
+            }
             None => format!("{kind} {number}"),
         };
         let mut content = match kind {

@@ -125,7 +125,7 @@ fn gradients_have_their_colors_above_and_below() {
 }
 
 #[test]
-fn what_is_too_bright_is_limited_with_a_warning_or_refused() {
+fn what_is_too_bright_is_limited_with_a_warning_or_rejected() {
     let plain = Exposure { factor: 1.0 };
     let compiled = |level: f32| {
         let mut pixels = vec![[1.0; 3]; 64 * 32];

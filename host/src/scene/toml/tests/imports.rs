@@ -1,7 +1,7 @@
 //! Scenes made of several files.
 
 use super::{load_in, material_of, named};
-use crate::scene::{IMPORTERS, Light, LightShape, Shape};
+use crate::scene::{Diffuse, IMPORTERS, Light, LightShape, Shape};
 use crate::shape::Sphere;
 use glam::DVec3;
 use std::path::Path;
@@ -428,4 +428,40 @@ fn round_lights_that_become_oval_are_rejected() {
         let error = scaled(light, "[4, 1, 1]").unwrap_err();
         assert!(error.cause.contains("becomes an ellipse"), "{error}");
     }
+}
+
+#[test]
+fn a_material_called_default_of_an_import_stays_with_it() {
+    let folder = folder(&[
+        (
+            "a.obj",
+            "mtllib a.mtl\nv 0 0 0\nv 1 0 0\nv 0 1 0\nusemtl default\nf 1 2 3\n",
+        ),
+        ("a.mtl", "newmtl default\nKd 1 0 0\n"),
+    ]);
+    let import = "[[object]]\nkind = 'import'\nname = 'a'\nfile = 'a.obj'\n";
+    let ball = "[[object]]\nkind = 'sphere'\nname = 'ball'\ncenter = [0, 0, 0]\nradius = 1\n";
+    let own = "[material.default]\ndiffuse = [0, 0, 1]\n";
+    for (text, ours) in [
+        (format!("{import}{ball}"), [0.8; 3]),
+        (format!("{ball}{import}"), [0.8; 3]),
+        (format!("{own}{ball}{import}"), [0.0, 0.0, 1.0]),
+        (format!("{own}{import}{ball}"), [0.0, 0.0, 1.0]),
+    ] {
+        let scene = load_in(folder.path(), &text).unwrap().scene;
+        let ball = &scene.materials[named(&scene, "ball").material];
+        assert_eq!(ball.diffuse, Diffuse::Plain(ours));
+        let object = scene.objects.iter().find(|it| it.name != "ball").unwrap();
+        let theirs = &scene.materials[object.material];
+        assert_eq!(theirs.diffuse, Diffuse::Plain([1.0, 0.0, 0.0]), "{text}");
+        assert_eq!(theirs.name, "a/default");
+    }
+}
+
+#[test]
+fn backslashes_separate_folders_on_every_system() {
+    let folder = folder(&[("parts/ball.toml", &ball())]);
+    let text = "[[object]]\nkind = 'import'\nfile = 'parts\\ball.toml'\n";
+    let scene = load_in(folder.path(), text).unwrap().scene;
+    named(&scene, "ball/ball");
 }
