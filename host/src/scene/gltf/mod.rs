@@ -4,8 +4,8 @@
 //! Each set of triangles of each node becomes an object, in the order of the nodes. A mesh that several nodes share is
 //! a [part](super::Part), or is copied where that costs little. Animations of cameras, of lights and of nodes with
 //! meshes become tracks. Morph targets whose weights an animation moves are kept; others give a mesh its shape at rest.
-//! Skins are ignored. The textures of the base color and the normal map are drawn; a warning names other textures.
-//! Images that nothing draws are not read.
+//! Skins are ignored. The textures of the base color and the normal map are drawn. Of those of emission and transmission
+//! the mean is taken. A warning names all textures that are not drawn. Images that nothing uses are not read.
 
 mod animation;
 mod attributes;
@@ -19,6 +19,7 @@ mod joints;
 mod material;
 mod middle;
 mod morph;
+mod means;
 mod normal_transforms;
 mod normals;
 mod place;
@@ -30,6 +31,7 @@ use super::importer::{Choices, Importer as Entry, Input};
 use super::text::Warnings;
 use super::{
     Attributes, Choice, Image, Imported, Normals, Object, ScaleRange, Scene, SceneError, Shape,
+use super::texture::ImageMeans;
     SourceSpan,
 };
 use crate::table::shortened;
@@ -92,6 +94,7 @@ fn read(input: Input<'_>) -> Result<Imported, SceneError> {
         access,
         images: HashMap::new(),
         scene: Scene::default(),
+        image_means: ImageMeans::default(),
         materials: HashMap::new(),
         normal_transforms,
         view: View::with_camera(choice.camera.clone()),
@@ -157,8 +160,9 @@ struct Importer<'a> {
     place: SourceSpan,
     buffers: Buffers<'a>,
     access: &'a Access,
-    /// Images by their path or URI.
-    images: HashMap<String, Option<Arc<Image>>>,
+    /// Images by their path or URI; for those that are not there, the cause.
+    images: HashMap<String, Result<Arc<Image>, String>>,
+    image_means: ImageMeans,
     scene: Scene,
     /// Materials in use, by their number in the file; the default has none.
     materials: HashMap<Option<usize>, usize>,
@@ -210,7 +214,7 @@ impl Importer<'_> {
             "skins are ignored; their meshes stand unbent at their nodes",
         );
         for material in document.materials() {
-            for sentence in material::ignored(&material) {
+            if let Some(sentence) = material::ignored(&material) {
                 self.warn(sentence);
             }
         }

@@ -7,6 +7,7 @@ mod instances;
 mod invalid;
 mod joints;
 mod morph;
+mod means;
 mod scales;
 
 use super::*;
