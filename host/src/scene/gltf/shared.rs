@@ -59,8 +59,22 @@ impl Shared {
 
 /// Returns how many triangles a part of a mesh has, as its accessors say.
 pub(super) fn triangle_count(part: &Primitive<'_>) -> u64 {
+    let corners = corner_count(part);
+/// Returns how many corners a part of a mesh has, as its accessors say.
+pub(super) fn corner_count(part: &Primitive<'_>) -> usize {
     let vertices = part.get(&Semantic::Positions).map_or(0, |it| it.count());
-    let corners = part.indices().map_or(vertices, |it| it.count());
+    part.indices().map_or(vertices, |it| it.count())
+}
+
+/// Returns how many of the corners make whole triangles. Those of points and lines all count.
+pub(super) fn corners_used(mode: Mode, corners: usize) -> usize {
+    match mode {
+        Mode::Triangles => corners - corners % 3,
+        Mode::TriangleStrip | Mode::TriangleFan if corners < 3 => 0,
+        _ => corners,
+    }
+}
+
     let count = match part.mode() {
         Mode::Triangles => corners / 3,
         Mode::TriangleStrip | Mode::TriangleFan => corners.saturating_sub(2),
