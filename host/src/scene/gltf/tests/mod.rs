@@ -1,13 +1,14 @@
 mod animation;
 mod appearance;
 mod cameras;
+mod costs;
 mod files;
 mod geometry;
 mod instances;
 mod invalid;
 mod joints;
-mod morph;
 mod means;
+mod morph;
 mod scales;
 
 use super::*;
