@@ -21,6 +21,8 @@ pub struct Image {
     width: u32,
     height: u32,
     pixels: Vec<[u8; 4]>,
+    /// Found once: many materials may share an image.
+    is_opaque: bool,
 }
 
 impl fmt::Debug for Image {
@@ -54,6 +56,7 @@ impl Image {
             name: String::from(name),
             width,
             height,
+            is_opaque: pixels.iter().all(|pixel| pixel[3] == 255),
             pixels,
         })
     }
@@ -65,6 +68,7 @@ impl Image {
             width: 1,
             height: 1,
             pixels: vec![[255; 4]],
+            is_opaque: true,
         }
     }
 
@@ -103,6 +107,12 @@ impl Image {
         })
     }
 
+    /// Returns the mean of the red channel, 0 to 1, for images of numbers rather than of light.
+    pub(super) fn mean_of_red(&self) -> f64 {
+        let sum: u64 = self.pixels.iter().map(|&[red, ..]| u64::from(red)).sum();
+        sum as f64 / (255.0 * self.pixels.len() as f64)
+    }
+
     /// Returns whether every pixel is opaque.
     ///
     /// ```
@@ -112,7 +122,7 @@ impl Image {
     /// assert!(!image.is_opaque());
     /// ```
     pub fn is_opaque(&self) -> bool {
-        self.pixels.iter().all(|pixel| pixel[3] == 255)
+        self.is_opaque
     }
 
     /// Reads a PNG or JPEG file, by its content, for a scene whose images are counted.

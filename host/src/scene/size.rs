@@ -26,6 +26,31 @@ const NAMES: u64 = 2;
 /// The most primitives that a scene may hold.
 pub(super) const MOST_PRIMITIVES: u64 = 16_777_216;
 
+/// The most keys of all tracks of a scene. A key takes 104 bytes until the blob is made, and is copied a few times.
+pub(super) const MOST_KEYS: u64 = 1 << 22;
+
+/// The number of keys of tracks, counted before they are made.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Keys(u64);
+
+impl Keys {
+    /// Counts keys.
+    ///
+    /// # Errors
+    /// If there are too many: the number and the limit in words.
+    pub(super) fn add(&mut self, keys: u64) -> Result<(), String> {
+        self.0 = self.0.saturating_add(keys);
+        if self.0 <= MOST_KEYS {
+            return Ok(());
+        }
+        Err(format!(
+            "{} keys; the limit is {}",
+            grouped(self.0),
+            grouped(MOST_KEYS)
+        ))
+    }
+}
+
 /// Returns how many primitives a shape is; vertices that no triangle uses weigh as triangles would.
 pub(super) fn primitives(shape: &Shape) -> u64 {
     match shape {
@@ -130,6 +155,15 @@ mod tests {
             words.starts_with("about 3.8 GB of memory, for 100,001 objects"),
             "{words}"
         );
+    }
+
+    #[test]
+    fn keys_are_counted_up_to_the_limit() {
+        let mut keys = Keys::default();
+        assert_eq!(keys.add(MOST_KEYS), Ok(()));
+        let words = keys.add(1).unwrap_err();
+        assert_eq!(words, "4,194,305 keys; the limit is 4,194,304");
+        assert!(keys.add(u64::MAX).is_err());
     }
 
     #[test]

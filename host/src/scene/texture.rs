@@ -1,5 +1,6 @@
 //! Textures of materials.
 
+use super::Color;
 use super::access::Access;
 use super::access::FileError;
 use super::image::{Fault, Image};
@@ -80,10 +81,36 @@ pub(super) fn texture_transform(scale: DVec2, radians: f64, offset: DVec2) -> DA
     )
 }
 
+/// The means of images, each computed once: many materials may share an image.
+#[derive(Default)]
+pub(super) struct ImageMeans(HashMap<*const Image, (Arc<Image>, Mean)>);
+
+/// The mean of an image.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Mean {
+    /// As linear light.
+    pub(super) color: Color,
+    /// Of red, where it is a number rather than light.
+    pub(super) red: f64,
+}
+
+impl ImageMeans {
+    pub(super) fn of(&mut self, image: &Arc<Image>) -> Mean {
+        // The image is kept, so that no other one takes its address.
+        let mean = || Mean {
+            color: image.mean(),
+            red: image.mean_of_red(),
+        };
+        let known = self.0.entry(Arc::as_ptr(image));
+        known.or_insert_with(|| (Arc::clone(image), mean())).1
+    }
+}
+
 /// Images that were read, each once.
 pub(super) struct Images<'a> {
     access: &'a Access,
     files: HashMap<PathBuf, Arc<Image>>,
+    pub(super) means: ImageMeans,
 }
 
 impl<'a> Images<'a> {
@@ -91,6 +118,7 @@ impl<'a> Images<'a> {
         Self {
             access,
             files: HashMap::new(),
+            means: ImageMeans::default(),
         }
     }
 

@@ -3,14 +3,15 @@
 //! A node's own translation and rotation keep their keys. Where nodes above it move as well, or tracks do not have such
 //! an interpolation, they are sampled [`RATE`] times per second and at their keys.
 
+use super::ancestry::Ancestry;
 use super::buffers::Buffers;
-use super::curve::{Curve, seconds, tick};
+use super::curve::{Curve, key_count, seconds, tick};
 use super::place::{parts, transform};
 use crate::scene::placement::rotation_and_scale;
+use crate::scene::size::Keys;
 use crate::scene::{
-    Choice, Interpolation, Key, SceneError, SourceSpan, TICKS_PER_SECOND, Track, TrackTarget,
+    Interpolation, Key, SceneError, SourceSpan, TICKS_PER_SECOND, Track, TrackTarget,
 };
-use crate::table::{printable, shortened};
 use glam::{DAffine3, DMat3, DMat4, DQuat, DVec3, DVec4};
 use gltf::animation::Property;
 use gltf::{Animation, Document, Node};
@@ -25,6 +26,9 @@ const MOST_SAMPLES: f64 = 65_536.0;
 
 /// Most samples of all curves of a file.
 const MOST_SAMPLES_OF_ALL: usize = 1 << 20;
+
+/// Most steps of sampling: each sample, and each key, takes one for each node on the way up. They take seconds.
+const MOST_STEPS: usize = 1 << 25;
 
 /// The reason why curves cannot be sampled: cause and remedy.
 type Fault = [String; 2];
@@ -50,66 +54,17 @@ struct Rest {
 #[derive(Default)]
 pub(super) struct Motion {
     nodes: HashMap<usize, NodeCurves>,
-    /// The node above each node.
-    parents: Vec<Option<usize>>,
+    ancestry: Ancestry,
     /// Each node in the one above, at rest.
     rest: Vec<Rest>,
     /// Channels that are not read, and why.
     pub(super) left_out: Vec<String>,
     /// Number of samples of all curves.
     samples: usize,
+    /// Number of steps of sampling.
+    steps: usize,
     /// The least samples per second of a curve, if any was sampled.
     pub(super) least_rate: Option<f64>,
-}
-
-/// The chosen animation: its name, and whether the user chose it.
-pub(super) struct ChosenAnimation<'d> {
-    pub(super) animation: Animation<'d>,
-    pub(super) by_name: bool,
-}
-
-/// Returns the requested animation, or the first.
-pub(super) fn choose<'d>(
-    path: &Path,
-    document: &'d Document,
-    choice: &Choice,
-) -> Result<Option<ChosenAnimation<'d>>, SceneError> {
-    let Some(wanted) = &choice.animation else {
-        let first = document.animations().next();
-        return Ok(first.map(|animation| ChosenAnimation {
-            animation,
-            by_name: false,
-        }));
-    };
-    let named = document.animations().find(|it| it.name() == Some(wanted));
-    let number = wanted.parse().ok();
-    let numbered = || document.animations().nth(number?);
-    let found = named.or_else(numbered);
-    let names = document.animations().map(|it| match it.name() {
-        Some(name) => printable(name),
-        None => it.index().to_string(),
-    });
-    let names: Vec<_> = names.collect();
-    let remedy = match names.is_empty() {
-        true => String::from("leave `--animation` out"),
-        false => format!("choose one of {}", names.join(", ")),
-    };
-    let error = || {
-        SceneError::new(
-            path,
-            format!(
-                "there is no animation {wanted:?}",
-                wanted = shortened(wanted)
-            ),
-            remedy,
-        )
-    };
-    found.ok_or_else(error).map(|animation| {
-        Some(ChosenAnimation {
-            animation,
-            by_name: true,
-        })
-    })
 }
 
 impl Motion {
@@ -121,16 +76,26 @@ impl Motion {
         buffers: &Buffers<'_>,
     ) -> Result<Self, SceneError> {
         let mut motion = Self {
-            parents: vec![None; document.nodes().len()],
+            ancestry: Ancestry::of(document),
             rest: document.nodes().map(|node| Rest::of(&node)).collect(),
             ..Self::default()
         };
-        for node in document.nodes() {
-            for child in node.children() {
-                motion.parents[child.index()] = Some(node.index());
-            }
+        let targets = targets(document);
+        let targets_of = |node: &Node<'_>| node.mesh().map_or(0, |mesh| targets[mesh.index()]);
+        let channels = || animation.into_iter().flat_map(Animation::channels);
+        let mut keys = Keys::default();
+        for (number, channel) in channels().enumerate() {
+            let count = key_count(&channel, targets_of(&channel.target().node()));
+            keys.add(count).map_err(|excess| {
+                let animation = channel.animation().index();
+                SceneError::new(
+                    path,
+                    format!("up to channel {number}, animation {animation} has {excess}"),
+                    "export a shorter animation, or with fewer keys per second",
+                )
+            })?;
         }
-        let channels = animation.into_iter().flat_map(Animation::channels);
+        let channels = channels();
         for (number, channel) in channels.enumerate() {
             let target = channel.target();
             let moves = motion.nodes.entry(target.node().index()).or_default();
@@ -179,6 +144,9 @@ impl Motion {
                 motion.left_out.push(sentence);
             }
         }
+        let nodes = &motion.nodes;
+        let moves = |node| nodes.get(&node).is_some_and(NodeCurves::moves);
+        motion.ancestry.mark(moves);
         Ok(motion)
     }
 
@@ -194,19 +162,11 @@ impl Motion {
 
     /// Returns whether a node, or one above it, moves.
     pub(super) fn moves(&self, node: usize) -> bool {
-        self.chain(node).any(|it| self.moves_itself(it))
+        self.ancestry.moves(node)
     }
 
     pub(super) fn moves_itself(&self, node: usize) -> bool {
-        let moves = self.nodes.get(&node);
-        moves.is_some_and(|it| {
-            it.translation.is_some() || it.rotation.is_some() || it.scale.is_some()
-        })
-    }
-
-    /// A node and those above it, from below.
-    fn chain(&self, node: usize) -> impl Iterator<Item = usize> {
-        std::iter::successors(Some(node), |&node| self.parents[node])
+        self.nodes.get(&node).is_some_and(NodeCurves::moves)
     }
 
     /// The translation, rotation and scale of a node that moves.
@@ -218,7 +178,7 @@ impl Motion {
 
     /// The node above a node.
     pub(super) fn parent(&self, node: usize) -> Option<usize> {
-        self.parents[node]
+        self.ancestry.parent(node)
     }
 
     /// Returns translation, rotation and scale of a node in the one above it.
@@ -244,13 +204,13 @@ impl Motion {
 
     /// Returns the transform of a node in the scene.
     fn world(&self, node: usize, seconds: f64) -> DMat4 {
-        let locals = self.chain(node).map(|it| self.local(it, seconds));
+        let locals = self.ancestry.chain(node).map(|it| self.local(it, seconds));
         locals.fold(DMat4::IDENTITY, |world, local| local * world)
     }
 
     /// The transform in the scene of what is above a node.
     fn above(&self, node: usize, seconds: f64) -> DMat4 {
-        let parent = self.parents[node];
+        let parent = self.parent(node);
         parent.map_or(DMat4::IDENTITY, |parent| self.world(parent, seconds))
     }
 
@@ -260,9 +220,32 @@ impl Motion {
         turned(&(self.above(node, seconds) * DMat4::from_quat(rotation)))
     }
 
+    /// Counts steps before they are taken.
+    fn count_steps(&mut self, steps: usize) -> Result<(), Fault> {
+        self.steps = self.steps.saturating_add(steps);
+        if self.steps <= MOST_STEPS {
+            return Ok(());
+        }
+        Err([
+            format!(
+                "cameras and lights that move take more than {MOST_STEPS} steps: one for each sample, and for each key, \
+                 of each node above them"
+            ),
+            String::from(
+                "put them below fewer nodes, animate fewer lights, or shorten the animation",
+            ),
+        ])
+    }
+
     /// The times at which a node is sampled.
     fn sample_times(&mut self, node: usize) -> Result<Vec<f64>, Fault> {
-        let moves = self.chain(node).filter_map(|it| self.nodes.get(&it));
+        let depth = self.ancestry.depth(node);
+        self.count_steps(depth)?;
+        let curves = self.ancestry.chain(node).filter_map(|it| self.curves(it));
+        let keys = curves.flatten().flatten().map(|curve| curve.keys.len());
+        self.count_steps(keys.sum())?;
+        let moves = self.ancestry.chain(node);
+        let moves = moves.filter_map(|it| self.nodes.get(&it));
         let curves = moves.flat_map(|it| [&it.translation, &it.rotation, &it.scale]);
         let mut ticks = BTreeSet::new();
         for curve in curves.flatten() {
@@ -297,6 +280,7 @@ impl Motion {
                 ),
             ]);
         }
+        self.count_steps(ticks.len().saturating_mul(depth))?;
         Ok(ticks.into_iter().map(seconds).collect())
     }
 
@@ -305,6 +289,7 @@ impl Motion {
         if !self.moves(node) {
             return Ok(Vec::new());
         }
+        self.count_steps(self.ancestry.depth(node))?;
         let track = |target, curve: Curve| Track {
             target,
             index: 0,
@@ -375,7 +360,7 @@ impl Motion {
 
     /// Returns true if no node above a node moves.
     fn moves_alone(&self, node: usize) -> bool {
-        !self.chain(node).skip(1).any(|it| self.moves_itself(it))
+        !self.parent(node).is_some_and(|above| self.moves(above))
     }
 
     /// Returns whether a node that moves keeps its direction: it is neither turned nor scaled.
@@ -412,6 +397,7 @@ impl Motion {
         if !self.moves(node) || directional && self.keeps_direction(node) {
             return Ok(None);
         }
+        self.count_steps(self.ancestry.depth(node))?;
         let own = match directional {
             true => self.own_direction(node),
             false => self.own_curves(node).map(|[eye, _]| eye),
@@ -448,6 +434,13 @@ impl Motion {
     }
 }
 
+impl NodeCurves {
+    /// Returns whether the node itself moves, not its weights alone.
+    fn moves(&self) -> bool {
+        self.translation.is_some() || self.rotation.is_some() || self.scale.is_some()
+    }
+}
+
 impl Rest {
     fn of(node: &Node<'_>) -> Self {
         let matrix = transform(node);
@@ -464,10 +457,13 @@ impl Rest {
     }
 }
 
-/// Returns the number of morph targets of a node's mesh.
-fn targets_of(node: &Node<'_>) -> usize {
-    let parts = node.mesh().into_iter().flat_map(|mesh| mesh.primitives());
-    parts.map(|it| it.morph_targets().len()).max().unwrap_or(0)
+/// Returns the number of morph targets of each mesh.
+fn targets(document: &Document) -> Vec<usize> {
+    let meshes = document.meshes().map(|mesh| {
+        let targets = mesh.primitives().map(|it| it.morph_targets().len());
+        targets.max().unwrap_or(0)
+    });
+    meshes.collect()
 }
 
 /// The time of a node's first key.

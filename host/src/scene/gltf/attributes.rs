@@ -129,15 +129,16 @@ impl Importer<'_> {
         if let Some(&known) = self.materials.get(&material.index()) {
             return Ok(known);
         }
-        let plain = material::read(&material, false);
+        let means = self.means(&material)?;
+        let plain = material::read(&material, false, &means);
         // A texture may bring the alpha that is a pane without it.
-        let texture = self.texture(&material, &material::read(&material, true))?;
+        let texture = self.texture(&material, &material::read(&material, true, &means))?;
         let normal_map = self.normal_map(&material, &plain)?;
         let is_opaque = texture.as_ref().is_none_or(|it| it.image.is_opaque());
         let alpha = material::alpha(&material).filter(|_| !is_opaque);
         let made = match alpha {
             None => plain,
-            Some(_) => material::read(&material, true),
+            Some(_) => material::read(&material, true, &means),
         };
         let made = Material {
             texture,
@@ -165,36 +166,8 @@ impl Importer<'_> {
         material: &gltf::Material<'_>,
         made: &Material,
     ) -> Result<Option<Texture>, SceneError> {
-        let surface = material.pbr_metallic_roughness();
         let name = &made.name;
-        let others = [
-            surface.metallic_roughness_texture().is_some(),
-            material.occlusion_texture().is_some(),
-            material.emissive_texture().is_some(),
-            material
-                .transmission()
-                .is_some_and(|it| it.transmission_texture().is_some()),
-            material
-                .volume()
-                .is_some_and(|it| it.thickness_texture().is_some()),
-        ];
-        let names = [
-            "metallic-roughness",
-            "occlusion",
-            "emissive",
-            "transmission",
-            "thickness",
-        ];
-        let ignored: Vec<_> = names.iter().zip(others).filter(|it| it.1).collect();
-        if !ignored.is_empty() {
-            let all: Vec<&str> = ignored.iter().map(|it| *it.0).collect();
-            let all = all.join(", ");
-            self.warn(format!(
-                "textures of material {name:?} are not drawn: {all}",
-                name = shortened(name)
-            ));
-        }
-        let Some(info) = surface.base_color_texture() else {
+        let Some(info) = material.pbr_metallic_roughness().base_color_texture() else {
             return Ok(None);
         };
         if made.mirror != [0.0; 3] || made.transmit != [0.0; 3] {
@@ -206,7 +179,7 @@ impl Importer<'_> {
                 "the texture of material {name:?} names no image that Gridel reads; its plain color is used", name = shortened(name)));
             return Ok(None);
         };
-        let Some(image) = self.image(&source)? else {
+        let Some(image) = self.image(&source, "the plain color is used")? else {
             return Ok(None);
         };
         let placed = Placed::of_color(material).map_or(DAffine2::IDENTITY, |it| it.transform);
@@ -242,7 +215,7 @@ impl Importer<'_> {
             self.warn(format!(
                 "the normal map of material {name:?} has the scale {scale}; it is drawn with {taken}", name = shortened(name)));
         }
-        let Some(image) = self.image(&source)? else {
+        let Some(image) = self.image(&source, "the normal map is not drawn")? else {
             return Ok(None);
         };
         Ok(Some(NormalMap {
@@ -251,14 +224,18 @@ impl Importer<'_> {
         }))
     }
 
-    /// Reads an image, each once; `None` for a file that is not there.
-    fn image(&mut self, image: &gltf::Image<'_>) -> Result<Option<Arc<Image>>, SceneError> {
+    /// Reads an image, each once. `None` for a file that is not there, with a warning that says what happens `instead`.
+    pub(super) fn image(
+        &mut self,
+        image: &gltf::Image<'_>,
+        instead: &str,
+    ) -> Result<Option<Arc<Image>>, SceneError> {
         let key = match image.source() {
             Source::View { view, .. } => format!("view {}", view.index()),
             Source::Uri { uri, .. } => String::from(uri),
         };
-        if let Some(known) = self.images.get(&key) {
-            return Ok(known.clone());
+        if let Some(known) = self.images.get(&key).cloned() {
+            return Ok(self.found(known, instead));
         }
         let what = format!("image {}", image.index());
         let bytes = match image.source() {
@@ -276,9 +253,8 @@ impl Importer<'_> {
                 Ok(bytes) => Cow::Owned(bytes),
                 // As with textures of OBJ files: it was often left behind.
                 Err(FileError::Unreadable(error)) => {
-                    self.warn(format!("{}; the plain color is used", error.cause));
-                    self.images.insert(key, None);
-                    return Ok(None);
+                    self.images.insert(key, Err(error.cause.clone()));
+                    return Ok(self.found(Err(error.cause), instead));
                 }
                 Err(FileError::Unusable(error)) => return Err(error),
             },
@@ -291,8 +267,15 @@ impl Importer<'_> {
                     &remedy,
                 )
             })?;
-        let decoded = Some(Arc::new(decoded));
-        self.images.insert(key, decoded.clone());
-        Ok(decoded)
+        let decoded = Arc::new(decoded);
+        self.images.insert(key, Ok(Arc::clone(&decoded)));
+        Ok(Some(decoded))
+    }
+
+    /// The image that was read, or a warning with the cause.
+    fn found(&mut self, image: Result<Arc<Image>, String>, instead: &str) -> Option<Arc<Image>> {
+        image
+            .map_err(|cause| self.warn(format!("{cause}; {instead}")))
+            .ok()
     }
 }

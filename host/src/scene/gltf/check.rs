@@ -3,7 +3,9 @@
 use super::Importer;
 use super::buffers::MOST;
 use super::place::place_of;
+use super::shared::{corner_count, corners_used};
 use crate::scene::SceneError;
+use crate::table::counted;
 use gltf::{Accessor, Document, Node, Semantic};
 use std::collections::{HashMap, HashSet};
 
@@ -76,6 +78,7 @@ impl Importer<'_> {
             }
         }
         self.check_targets(document);
+        self.check_triangles(document);
         let parts = document.meshes().flat_map(|mesh| mesh.primitives());
         let uses = parts.flat_map(|part| {
             let attributes = part.attributes();
@@ -103,6 +106,32 @@ impl Importer<'_> {
             }
         }
         Ok(())
+    }
+
+    /// Warns of corners that do not make whole triangles, which glTF does not allow.
+    fn check_triangles(&mut self, document: &Document) {
+        let mut first = None;
+        let mut count = 0;
+        for mesh in document.meshes() {
+            for part in mesh.primitives() {
+                let corners = corner_count(&part);
+                let whole = corners_used(part.mode(), corners);
+                if whole < corners {
+                    count += 1;
+                    first.get_or_insert_with(|| {
+                        let left = corners - whole;
+                        format!(
+                            "{} has {}, of which {left} make no whole triangle and are left out",
+                            place_of(&mesh, &part),
+                            counted(corners, "corner")
+                        )
+                    });
+                }
+            }
+        }
+        if let Some(sentence) = first {
+            self.warn_of(count, sentence);
+        }
     }
 
     /// Warns of morph targets and weights that do not belong together.

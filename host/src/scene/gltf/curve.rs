@@ -209,6 +209,19 @@ impl Curve {
     }
 }
 
+/// Returns the number of keys that a channel is read as; `targets` is the number of morph targets, each of which has
+/// keys of its own. Values that belong to no time count as keys, because they are read, too.
+pub(super) fn key_count(channel: &gltf::animation::Channel<'_>, targets: usize) -> u64 {
+    let sampler = channel.sampler();
+    let curves = match channel.target().property() {
+        Property::MorphTargetWeights => targets.max(1),
+        _ => 1,
+    };
+    let times = sampler.input().count().saturating_mul(curves);
+    let values = sampler.output().count() / values_of_key(interpolation(&sampler));
+    times.max(values) as u64
+}
+
 /// The interpolation of a sampler.
 fn interpolation(sampler: &gltf::animation::Sampler<'_>) -> Interpolation {
     match sampler.interpolation() {

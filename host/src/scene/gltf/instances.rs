@@ -91,12 +91,19 @@ impl Importer<'_> {
     pub(super) fn weigh(&self, placed: &[Placed<'_>]) -> Result<(), SceneError> {
         let mut size = Size::default();
         let mut morphed = 0_usize;
+        let mut listed = 0_usize;
         let mut parts = HashMap::new();
         for (node, _) in placed {
             let Some(mesh) = node.mesh() else {
                 continue;
             };
             let name = node.name().or(mesh.name()).map_or(0, str::len);
+            // Morph targets that move have the name, too.
+            let moving = self.motion.weights(node.index()).map_or(0, <[_]>::len);
+            size = size.plus(Size {
+                names: (moving as u64).saturating_mul(name as u64),
+                ..Size::default()
+            });
             let is_instance =
                 self.shared.placements.contains_key(&node.index()) && !self.has_own_shape(node);
             if is_instance && parts.insert(mesh.index(), ()).is_some() {
@@ -111,28 +118,39 @@ impl Importer<'_> {
             for part in mesh.primitives() {
                 let vertices = part.get(&Semantic::Positions).map_or(0, |it| it.count());
                 let triangles = triangle_count(&part);
-                if matches!(
+                let is_drawn = matches!(
                     part.mode(),
-                    Mode::Points | Mode::Lines | Mode::LineLoop | Mode::LineStrip
-                ) {
-                    continue;
-                }
-                size = size.plus(Size {
-                    objects: 1,
-                    names: name as u64,
-                    triangles: triangles.max((vertices / 3) as u64),
+                    Mode::Triangles | Mode::TriangleStrip | Mode::TriangleFan
+                );
+                // Points and lines take no memory. They count, because each takes time at each node.
+                size = size.plus(match is_drawn {
+                    true => Size {
+                        objects: 1,
+                        names: name as u64,
+                        triangles: triangles.max((vertices / 3) as u64),
+                    },
+                    false => Size {
+                        objects: 1,
+                        ..Size::default()
+                    },
                 });
                 self.check_size(size, node, || place_of(&mesh, &part))?;
+                if !is_drawn {
+                    continue;
+                }
                 // Targets may share one accessor, which may take no bytes.
-                let targets = part.morph_targets().zip(weights(node, &mesh));
+                let weights = weights(node, &mesh);
+                let targets = part.morph_targets().zip(weights);
+                listed = listed.saturating_add(targets.len());
                 let used = targets.filter(|(_, weight)| **weight != 0.0).count();
                 morphed = morphed.saturating_add(vertices.saturating_mul(used));
-                if morphed > MOST_ELEMENTS {
+                if morphed.max(listed) > MOST_ELEMENTS {
+                    let what = match morphed > MOST_ELEMENTS {
+                        true => format!("morph targets move more than {MOST_ELEMENTS} vertices"),
+                        false => format!("nodes have more than {MOST_ELEMENTS} morph targets"),
+                    };
                     return Err(self.error(
-                        format!(
-                            "up to {}, morph targets move more than {MOST_ELEMENTS} vertices",
-                            place_of(&mesh, &part)
-                        ),
+                        format!("up to {}, {what}", place_of(&mesh, &part)),
                         "export fewer morph targets, or coarser meshes",
                     ));
                 }

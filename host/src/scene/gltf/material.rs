@@ -13,6 +13,9 @@
 //! | emission | emissive factor times `KHR_materials_emissive_strength`: 1 is display white; on the front alone |
 //! | absorption | -ln(attenuation color) / attenuation distance |
 //!
+//! The emissive factor is weighted by the mean color of the emissive texture, and t by the mean of red of the
+//! transmission texture: see [`Means`].
+//!
 //! A metal without textures and with a roughness from 0.05 to below 1 has a rough mirror instead. It is the mirror c m
 //! with that roughness. The diffuse color has no part of it, and the highlight is that of m = 0. Others are as above: a
 //! file that states neither also has a metalness and a roughness of 1.
@@ -20,6 +23,7 @@
 //! Where the alpha mode is `BLEND`, alpha is the part of the material that is present, and the rest is a pane. Textures
 //! with alpha are the exception.
 
+use super::means::Means;
 use crate::scene::{Alpha, Color, Diffuse, Material};
 use crate::table::shortened;
 use gltf::material::AlphaMode;
@@ -39,21 +43,30 @@ pub(super) fn is_cut_out(material: &gltf::Material<'_>) -> bool {
     material.alpha_mode() == AlphaMode::Mask && !is_there(material)
 }
 
-/// Sentences on what of a material is ignored or taken otherwise.
-pub(super) fn ignored(material: &gltf::Material<'_>) -> impl Iterator<Item = String> {
+/// A sentence on an index of refraction that is taken otherwise.
+pub(super) fn ignored(material: &gltf::Material<'_>) -> Option<String> {
     let name = name(material);
-    let glows = material.emissive_factor() != [0.0; 3];
     let index = material.ior().filter(|ior| !(1.0..=4.0).contains(ior));
+    index.map(|ior| {
+        let taken = taken_ior(ior);
+        format!("the index of refraction {ior} of material {name:?} is taken as {taken}; it must be 1 to 4", name = shortened(&name))
+    })
+}
+
+/// Sentences on what of a material's emission is ignored.
+pub(super) fn ignored_emission(
+    material: &gltf::Material<'_>,
+    means: &Means,
+) -> impl Iterator<Item = String> {
+    let name = name(material);
+    let emission = emission(material, means);
+    let glows = emission != [0.0; 3];
     [
-        emission(material).iter().any(|&it| it > BRIGHTEST).then(|| {
+        emission.iter().any(|&it| it > BRIGHTEST).then(|| {
             format!("the emission of material {name:?} is limited to {BRIGHTEST}; lower its emissive strength", name = shortened(&name))
         }),
         (material.double_sided() && glows).then(|| {
             format!("material {name:?} has two sides, and glows on the front alone", name = shortened(&name))
-        }),
-        index.map(|ior| {
-            let taken = taken_ior(ior);
-            format!("the index of refraction {ior} of material {name:?} is taken as {taken}; it must be 1 to 4", name = shortened(&name))
         }),
     ]
     .into_iter()
@@ -85,7 +98,7 @@ pub(super) fn alpha(material: &gltf::Material<'_>) -> Option<Alpha> {
 }
 
 /// Reads a material, whose alpha is used by a texture, or else makes a pane of it.
-pub(super) fn read(material: &gltf::Material<'_>, alpha_is_used: bool) -> Material {
+pub(super) fn read(material: &gltf::Material<'_>, alpha_is_used: bool, means: &Means) -> Material {
     let name = name(material);
     let unit = |x: f32| f64::from(x).clamp(0.0, 1.0);
     let surface = material.pbr_metallic_roughness();
@@ -94,6 +107,7 @@ pub(super) fn read(material: &gltf::Material<'_>, alpha_is_used: bool) -> Materi
     let [metal, rough] = [surface.metallic_factor(), surface.roughness_factor()].map(unit);
     let through = material.transmission();
     let through = through.map_or(0.0, |through| unit(through.transmission_factor()));
+    let through = through * means.transmission;
     let there = match material.alpha_mode() {
         AlphaMode::Blend if !alpha_is_used => alpha,
         _ => 1.0,
@@ -134,7 +148,7 @@ pub(super) fn read(material: &gltf::Material<'_>, alpha_is_used: bool) -> Materi
         absorption: volume.map_or([0.0; 3], |volume| {
             absorption(volume.attenuation_color(), volume.attenuation_distance())
         }),
-        emission: emission(material).map(|channel| channel.clamp(0.0, BRIGHTEST) * there),
+        emission: emission(material, means).map(|channel| channel.clamp(0.0, BRIGHTEST) * there),
         name,
         ..Material::default()
     }
@@ -144,11 +158,10 @@ pub(super) fn read(material: &gltf::Material<'_>, alpha_is_used: bool) -> Materi
 const BRIGHTEST: f64 = 2047.0;
 
 /// The radiance of a material's surface.
-fn emission(material: &gltf::Material<'_>) -> Color {
+fn emission(material: &gltf::Material<'_>, means: &Means) -> Color {
     let strength = material.emissive_strength().unwrap_or(1.0);
-    material
-        .emissive_factor()
-        .map(|factor| f64::from(factor * strength))
+    let factors = material.emissive_factor();
+    std::array::from_fn(|k| f64::from(factors[k] * strength) * means.emission[k])
 }
 
 /// The coefficient of Beer's law by which white light turns into a color over a distance.

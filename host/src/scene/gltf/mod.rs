@@ -4,19 +4,22 @@
 //! Each set of triangles of each node becomes an object, in the order of the nodes. A mesh that several nodes share is
 //! a [part](super::Part), or is copied where that costs little. Animations of cameras, of lights and of nodes with
 //! meshes become tracks. Morph targets whose weights an animation moves are kept; others give a mesh its shape at rest.
-//! Skins are ignored. The textures of the base color and the normal map are drawn; a warning names other textures.
-//! Images that nothing draws are not read.
+//! Skins are ignored. The textures of the base color and the normal map are drawn. Of those of emission and transmission
+//! the mean is taken. A warning names all textures that are not drawn. Images that nothing uses are not read.
 
+mod ancestry;
 mod animation;
 mod attributes;
 mod buffers;
 mod check;
+mod chosen;
 mod container;
 mod curve;
 mod document;
 mod instances;
 mod joints;
 mod material;
+mod means;
 mod middle;
 mod morph;
 mod normal_transforms;
@@ -28,9 +31,9 @@ mod view;
 use super::access::Access;
 use super::importer::{Choices, Importer as Entry, Input};
 use super::text::Warnings;
+use super::texture::ImageMeans;
 use super::{
-    Attributes, Choice, Image, Imported, Normals, Object, ScaleRange, Scene, SceneError, Shape,
-    SourceSpan,
+    Attributes, Image, Imported, Normals, Object, ScaleRange, Scene, SceneError, Shape, SourceSpan,
 };
 use crate::table::shortened;
 use animation::Motion;
@@ -91,6 +94,7 @@ fn read(input: Input<'_>) -> Result<Imported, SceneError> {
         buffers: Buffers::read(path, &document, blob, access)?,
         access,
         images: HashMap::new(),
+        image_means: ImageMeans::default(),
         scene: Scene::default(),
         materials: HashMap::new(),
         normal_transforms,
@@ -157,8 +161,9 @@ struct Importer<'a> {
     place: SourceSpan,
     buffers: Buffers<'a>,
     access: &'a Access,
-    /// Images by their path or URI.
-    images: HashMap<String, Option<Arc<Image>>>,
+    /// Images by their path or URI; for those that are not there, the cause.
+    images: HashMap<String, Result<Arc<Image>, String>>,
+    image_means: ImageMeans,
     scene: Scene,
     /// Materials in use, by their number in the file; the default has none.
     materials: HashMap<Option<usize>, usize>,
@@ -210,7 +215,7 @@ impl Importer<'_> {
             "skins are ignored; their meshes stand unbent at their nodes",
         );
         for material in document.materials() {
-            for sentence in material::ignored(&material) {
+            if let Some(sentence) = material::ignored(&material) {
                 self.warn(sentence);
             }
         }
@@ -227,48 +232,6 @@ impl Importer<'_> {
         if !others.is_empty() {
             self.warn(format!("extensions are ignored: {}", others.join(", ")));
         }
-    }
-
-    /// Reads the animation, and warns of the parts that are not shown.
-    fn animation(&mut self, document: &Document, choice: &Choice) -> Result<(), SceneError> {
-        let chosen = animation::choose(self.path, document, choice)?;
-        let animation = chosen.as_ref().map(|chosen| &chosen.animation);
-        self.motion = Motion::read(self.path, document, animation, &self.buffers)?;
-        for sentence in std::mem::take(&mut self.motion.left_out) {
-            self.warn(sentence);
-        }
-        let Some(chosen) = chosen.filter(|_| !self.motion.is_empty()) else {
-            return Ok(());
-        };
-        if !chosen.by_name && document.animations().len() > 1 {
-            self.warn("the file has several animations, of which the first is read; choose one with `--animation`");
-        }
-        let bends = |node: &Node<'_>| {
-            let joints = node.skin().into_iter().flat_map(|skin| skin.joints());
-            let mut joints = joints.map(|joint| joint.index());
-            joints.any(|joint| self.motion.moves(joint))
-        };
-        let bent = document
-            .nodes()
-            .filter(|node| node.mesh().is_some() && bends(node));
-        let bent: Vec<_> = bent.collect();
-        if let Some(node) = bent.first().filter(|_| chosen.by_name) {
-            let name = node.name().map_or(String::new(), |name| {
-                format!(" {name:?}", name = shortened(name))
-            });
-            return Err(self.error(
-                format!(
-                    "the animation bends node {}{name} by a skin, which is not supported",
-                    node.index()
-                ),
-                "choose another `--animation`, or bake the mesh without it",
-            ));
-        }
-        self.warn_of(
-            bent.len(),
-            "a mesh that the animation bends keeps its shape at rest; skins do not move",
-        );
-        Ok(())
     }
 
     /// Walks the nodes of the default scene, or else of the first, or else all.

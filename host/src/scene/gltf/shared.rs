@@ -27,6 +27,8 @@ impl Shared {
     pub(super) fn of(placed: &[Placed<'_>], moves: impl Fn(&Node<'_>) -> bool) -> Self {
         let mut uses: HashMap<usize, Vec<(usize, Placement)>> = HashMap::new();
         let mut saved: HashMap<usize, u64> = HashMap::new();
+        // Summed once for each mesh, which many nodes may share.
+        let mut triangles: HashMap<usize, u64> = HashMap::new();
         let mut moving = Vec::new();
         for (node, world) in placed {
             let Some(mesh) = node.mesh().filter(|_| node.skin().is_none()) else {
@@ -43,9 +45,11 @@ impl Shared {
             }
             let uses = uses.entry(mesh.index()).or_default();
             if !uses.is_empty() {
-                let triangles: u64 = mesh.primitives().map(|it| triangle_count(&it)).sum();
+                let triangles = triangles.entry(mesh.index());
+                let triangles = triangles
+                    .or_insert_with(|| mesh.primitives().map(|it| triangle_count(&it)).sum());
                 let saved = saved.entry(mesh.index()).or_default();
-                *saved = saved.saturating_add(triangles);
+                *saved = saved.saturating_add(*triangles);
             }
             uses.push((node.index(), placement));
         }
@@ -57,10 +61,24 @@ impl Shared {
     }
 }
 
+/// Returns how many corners a part of a mesh has, as its accessors say.
+pub(super) fn corner_count(part: &Primitive<'_>) -> usize {
+    let vertices = part.get(&Semantic::Positions).map_or(0, |it| it.count());
+    part.indices().map_or(vertices, |it| it.count())
+}
+
+/// Returns how many of the corners make whole triangles. Those of points and lines all count.
+pub(super) fn corners_used(mode: Mode, corners: usize) -> usize {
+    match mode {
+        Mode::Triangles => corners - corners % 3,
+        Mode::TriangleStrip | Mode::TriangleFan if corners < 3 => 0,
+        _ => corners,
+    }
+}
+
 /// Returns how many triangles a part of a mesh has, as its accessors say.
 pub(super) fn triangle_count(part: &Primitive<'_>) -> u64 {
-    let vertices = part.get(&Semantic::Positions).map_or(0, |it| it.count());
-    let corners = part.indices().map_or(vertices, |it| it.count());
+    let corners = corner_count(part);
     let count = match part.mode() {
         Mode::Triangles => corners / 3,
         Mode::TriangleStrip | Mode::TriangleFan => corners.saturating_sub(2),

@@ -5,7 +5,8 @@
 //! `Tf` through. `illum` 4 and 9 are so only where `d` or `Tr` says that light passes, or neither is
 //! given and `Ni` is above 1: many programs write 4 for opaque materials. Otherwise `d` below 1 (or `Tr` above 0, of which `d` takes precedence)
 //! is a pane that does not bend light: glass of index 1. `Ka` is not needed, because ambient light
-//! takes the diffuse color. `Ke` is the radiance that the surface sends out.
+//! takes the diffuse color. `Ke` is the radiance that the surface sends out, weighted
+//! by the mean of `map_Ke`, which is not drawn.
 //! `Pr` is the roughness of what mirrors and of glass. `map_Kd` weights `Kd`, with its options `-o`, `-s` and `-clamp`.
 //! `norm` is a normal map, with the same options. Everything else is ignored, with a warning.
 
@@ -18,7 +19,7 @@ use glam::{DAffine2, DVec2};
 
 /// One material of a file.
 #[derive(Default)]
-struct Statements {
+struct Statements<'s> {
     name: String,
     line: usize,
     diffuse: Option<Color>,
@@ -30,6 +31,8 @@ struct Statements {
     transparency: Option<f64>,
     illumination: Option<u32>,
     emission: Color,
+    /// `map_Ke`: the number of its line, and the line.
+    emissive: Option<(usize, &'s str)>,
     roughness: f64,
     texture: Option<Texture>,
     /// The texture of normals.
@@ -42,7 +45,7 @@ pub(super) fn read(
     images: &mut Images<'_>,
     warnings: &mut Warnings,
 ) -> Result<Vec<(String, Material)>, SceneError> {
-    let mut all: Vec<Statements> = Vec::new();
+    let mut all: Vec<Statements<'_>> = Vec::new();
     for (number, line) in source.lines() {
         let words: Vec<&str> = line
             .split_whitespace()
@@ -97,8 +100,16 @@ pub(super) fn read(
             }
             "Pr" => material.roughness = taken_roughness(reader.number()?),
             "Ka" | "sharpness" => {}
-            "map_Kd" => material.texture = reader.texture(number, images, warnings)?,
-            "norm" => material.normals = reader.texture(number, images, warnings)?,
+            "map_Kd" => {
+                let instead = "the plain color is used";
+                material.texture = reader.texture(number, images, instead, warnings)?;
+            }
+            "norm" => {
+                let instead = "the normal map is not drawn";
+                material.normals = reader.texture(number, images, instead, warnings)?;
+            }
+            // `Ke` may follow.
+            "map_Ke" => material.emissive = Some((number, line)),
             _ if keyword.starts_with("map_")
                 || ["bump", "disp", "decal", "refl"].contains(&keyword) =>
             {
@@ -117,13 +128,16 @@ pub(super) fn read(
             }
         }
     }
+    for material in &mut all {
+        material.weight_emission(source, images, warnings)?;
+    }
     Ok(all
         .iter()
         .map(|material| (material.name.clone(), material.build(source, warnings)))
         .collect())
 }
 
-impl Statements {
+impl Statements<'_> {
     fn build(&self, source: &Source, warnings: &mut Warnings) -> Material {
         let default = Material::default();
         let illumination = self.illumination.unwrap_or(2);
@@ -193,7 +207,40 @@ impl Statements {
     }
 }
 
-impl Statements {
+impl Statements<'_> {
+    /// Weights `Ke` by the mean of `map_Ke`. Programs write `Ke 1 1 1` wherever there is such a texture.
+    fn weight_emission(
+        &mut self,
+        source: &Source,
+        images: &mut Images<'_>,
+        warnings: &mut Warnings,
+    ) -> Result<(), SceneError> {
+        let Some((number, line)) = self.emissive else {
+            return Ok(());
+        };
+        if self.emission == [0.0; 3] {
+            let sentence = "map_Ke is ignored, because Ke is 0 or missing";
+            warnings.add(source, number, sentence);
+            return Ok(());
+        }
+        let reader = Reader {
+            source,
+            line,
+            keyword: "map_Ke",
+            values: &[],
+        };
+        let mean = match reader.texture(number, images, "the material does not glow", warnings)? {
+            Some(texture) => {
+                let sentence = "map_Ke is not drawn; its mean is taken, and weights Ke";
+                warnings.add(source, number, sentence);
+                images.means.of(&texture.image).color
+            }
+            None => [0.0; 3],
+        };
+        self.emission = std::array::from_fn(|k| self.emission[k] * mean[k]);
+        Ok(())
+    }
+
     /// The normal map, if it lies as the texture does.
     fn normal_map(&self, source: &Source, warnings: &mut Warnings) -> Option<NormalMap> {
         let texture = self.normals.clone()?;
@@ -257,11 +304,13 @@ impl Reader<'_> {
         Ok(number.clamp(least, most))
     }
 
-    /// Reads a texture: options, then the name of a file, which may contain spaces.
+    /// Reads a texture: options, then the name of a file, which may contain spaces. `None` for a file that is not there,
+    /// with a warning that says what happens `instead`.
     fn texture(
         &self,
         line: usize,
         images: &mut Images<'_>,
+        instead: &str,
         warnings: &mut Warnings,
     ) -> Result<Option<Texture>, SceneError> {
         let mut rest = self.line.strip_prefix(self.keyword).unwrap_or("").trim();
@@ -317,7 +366,7 @@ impl Reader<'_> {
             })),
             // As with material files: it was often left behind.
             Err(FileError::Unreadable([cause, _])) => {
-                let sentence = format!("the texture {cause}; the plain color is used");
+                let sentence = format!("the texture {cause}; {instead}");
                 warnings.add(self.source, line, sentence);
                 Ok(None)
             }

@@ -3,7 +3,7 @@
 use super::item::{Content, Group, Item, PartItem};
 use super::material::Palette;
 use super::source::{Name, Source, Span, nearest};
-use crate::scene::size::{MOST_PRIMITIVES, Size, primitives};
+use crate::scene::size::{Keys, MOST_PRIMITIVES, Size, primitives};
 use crate::scene::{Object, Scene, SceneError};
 use crate::table::shortened;
 use std::collections::{BTreeMap, HashMap};
@@ -17,6 +17,8 @@ struct Cost {
     /// Primitives, or an equivalent of their memory.
     primitives: u64,
     size: Size,
+    /// Keys of the tracks of joints, which each placement copies.
+    keys: u64,
     /// The depth of nested groups.
     nesting: usize,
 }
@@ -106,12 +108,13 @@ impl<'c> Census<'c> {
                 Content::Shape(shape) => Cost {
                     primitives: primitives(shape),
                     size: Size::of(shape, item.name.len(), &item.attributes),
-                    nesting: 0,
+                    ..Cost::default()
                 },
                 // An import is weighed as at least 1, so that nothing can be repeated for free.
                 Content::Import { scene, .. } => Cost {
                     primitives: imported(scene).max(1),
                     size: imported_size(scene).with_longer_names(item.name.len() + 1),
+                    keys: joint_keys(scene),
                     nesting: 0,
                 },
                 Content::Group(items) => self.nested(items, nesting, item)?.inside(item),
@@ -119,11 +122,19 @@ impl<'c> Census<'c> {
             };
             total.size = total.size.plus(cost.size);
             total.primitives = total.primitives.saturating_add(cost.primitives);
+            total.keys = total.keys.saturating_add(cost.keys);
             total.nesting = total.nesting.max(cost.nesting);
             if total.primitives > MOST_PRIMITIVES {
                 return Err(too_many(self.source, item));
             }
             check_size(self.source, item, total.size)?;
+            Keys::default().add(total.keys).map_err(|excess| {
+                self.source.error(
+                    &item.span,
+                    format!("with this object the tracks of joints have {excess}"),
+                    "use fewer instances, or import files with fewer keys",
+                )
+            })?;
         }
         Ok(total)
     }
@@ -245,10 +256,15 @@ fn imported_size(scene: &Scene) -> Size {
 /// cost.
 fn imported(scene: &Scene) -> u64 {
     let objects = objects_of(scene).map(|object| primitives(&object.shape));
+    let others = scene.instances.len() + scene.joints.len();
+    objects.sum::<u64>() + others as u64 + joint_keys(scene)
+}
+
+/// Returns the keys of an import that each of its placements copies. Those of its other tracks are copied once for each
+/// import, where they are counted.
+fn joint_keys(scene: &Scene) -> u64 {
     let tracks = scene.tracks.iter().filter(|it| it.target.is_of_joint());
-    let keys = tracks.map(|it| it.keys.len());
-    let others = scene.instances.len() + scene.joints.len() + keys.sum::<usize>();
-    objects.sum::<u64>() + others as u64
+    tracks.map(|it| it.keys.len() as u64).sum()
 }
 
 /// A scene's own objects and those of its parts.

@@ -64,7 +64,9 @@ pub(super) fn read(input: Input<'_>, imports: &mut Imports) -> Result<Scene, Sce
     let environment = root.or("environment", None, |table| {
         environment::read(table, input.access).map(Some)
     })?;
-    let tracks = root.or("track", Vec::new(), track::read)?;
+    let tracks = root.or("track", Vec::new(), |tables| {
+        track::read(tables, &mut imports.keys)
+    })?;
     let mut images = Images::new(input.access);
     let mut palette = root.or("material", Palette::default(), |tables| {
         Palette::read(tables, &mut images)

@@ -4,6 +4,7 @@ use super::source::{Name, Source};
 use super::value::Fields;
 use crate::scene::access::Access;
 use crate::scene::importer::{Choices, Importers, Input};
+use crate::scene::size::Keys;
 use crate::scene::{Choice, Imported, MoleculeOptions, Scene, SceneError};
 use crate::table::shortened;
 use std::collections::HashMap;
@@ -30,6 +31,8 @@ pub(super) struct Imports {
     /// A scene may import a file many times, but with few different options.
     done: HashMap<PathBuf, Vec<(Molecules, Done)>>,
     pub(super) warnings: Vec<String>,
+    /// The keys of the tracks of all files, and of each of their imports, which may copy them.
+    pub(super) keys: Keys,
     /// The choice of cameras and animations.
     choice: Choice,
     /// The kinds of the files.
@@ -111,6 +114,7 @@ impl Imports {
             nesting: 0,
             done: HashMap::new(),
             warnings: Vec::new(),
+            keys: Keys::default(),
             choice: input.choices.choice.clone(),
             kinds: Kinds::default(),
         }
@@ -133,8 +137,26 @@ impl Imports {
         Ok(scene)
     }
 
-    /// Reads the scene that `source` imports by `file`, which is relative to its own folder.
+    /// Reads the scene that `source` imports by `file`, which is relative to its own folder, and counts its keys.
     pub(super) fn import(
+        &mut self,
+        source: &Source,
+        file: &Name,
+        molecules: Molecules,
+    ) -> Result<Done, SceneError> {
+        let done = self.read(source, file, molecules)?;
+        let keys = done.scene.tracks.iter().map(|it| it.keys.len() as u64);
+        self.keys.add(keys.sum()).map_err(|excess| {
+            source.error(
+                &file.span,
+                format!("with this import, each import counted, tracks have {excess}"),
+                "import files with fewer keys, or import them less often",
+            )
+        })?;
+        Ok(done)
+    }
+
+    fn read(
         &mut self,
         source: &Source,
         file: &Name,

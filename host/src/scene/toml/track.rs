@@ -8,6 +8,7 @@ use super::source::{Name, Source, Span, nearest};
 use super::transform;
 use super::value::{Fields, Value};
 use super::view::field_of_view;
+use crate::scene::size::Keys;
 use crate::scene::{
     Diffuse, Interpolation, Key, LARGEST_SCALE, LEAST_SCALE, Light, LightForm, SceneError, Track,
     TrackTarget,
@@ -75,12 +76,18 @@ enum Owner {
     Morph(String),
 }
 
-/// Reads the tables.
-pub(super) fn read(tables: Value<'_>) -> Result<Vec<Unresolved>, SceneError> {
-    tables
-        .items("`[[track]]` above the keys of each")?
-        .map(track)
-        .collect()
+/// Reads the tables, and counts their keys. A track of angles has more of them than the file.
+pub(super) fn read(tables: Value<'_>, keys: &mut Keys) -> Result<Vec<Unresolved>, SceneError> {
+    let mut tracks = Vec::new();
+    for table in tables.items("`[[track]]` above the keys of each")? {
+        let track = track(table)?;
+        keys.add(track.track.keys.len() as u64).map_err(|excess| {
+            let cause = format!("with this track, tracks have {excess}");
+            table.error(cause, "write fewer keys, or fewer turns")
+        })?;
+        tracks.push(track);
+    }
+    Ok(tracks)
 }
 
 fn track(table: Value<'_>) -> Result<Unresolved, SceneError> {

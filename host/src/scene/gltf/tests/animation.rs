@@ -324,7 +324,7 @@ fn broken_channels_are_rejected() {
 }
 
 /// Replaces the times of keys, which are 0, 1 and 2 seconds.
-fn set_times(document: &mut Value, times: [f32; 3]) {
+pub(super) fn set_times(document: &mut Value, times: [f32; 3]) {
     let uri = document["buffers"][1]["uri"].as_str().unwrap().to_owned();
     let (head, data) = uri.split_once(',').unwrap();
     let mut bytes = STANDARD.decode(data).unwrap();

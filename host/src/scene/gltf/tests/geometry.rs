@@ -76,6 +76,35 @@ fn strips_fans_and_meshes_without_indices() {
 }
 
 #[test]
+fn corners_that_make_no_whole_triangle_are_warned_of() {
+    let mut document = document();
+    let mut with = |mode: usize, corners: usize| {
+        document["meshes"][0]["primitives"][0]["mode"] = json!(mode);
+        document["accessors"][1]["count"] = json!(corners);
+        warnings(&document)
+    };
+    let sentence =
+        "mesh 0, primitive 0 has 5 corners, of which 2 make no whole triangle and are left out";
+    assert_eq!(with(4, 5), [sentence]);
+    for mode in [5, 6] {
+        assert_eq!(with(mode, 5), [] as [&str; 0]);
+        let found = with(mode, 2);
+        assert_eq!(found[0], sentence.replace('5', "2"));
+        assert!(found[1].contains("nothing is drawn"), "{found:?}");
+    }
+    assert_eq!(with(4, 6), [] as [&str; 0]);
+    // Other sentences are about points and lines.
+    assert_eq!(with(1, 5)[0], "points and lines are not drawn");
+    // Corners without indices are the vertices. They are counted where nothing is drawn, too.
+    let part = json!({"attributes": {"POSITION": 0}});
+    document["meshes"] = json!([{"primitives": [part]}, {"primitives": [part, part]}]);
+    let found = warnings(&document);
+    let sentence =
+        "mesh 0, primitive 0 has 4 corners, of which 1 make no whole triangle and are left out";
+    assert_eq!(found, [format!("{sentence} (and 2 times more)")]);
+}
+
+#[test]
 fn numbers_that_are_not_finite_are_reported_with_what_follows() {
     let mut document = document();
     let mut numbers = [0.0_f32, 0.0, 1.0].repeat(4);

@@ -1,11 +1,13 @@
 mod animation;
 mod appearance;
 mod cameras;
+mod costs;
 mod files;
 mod geometry;
 mod instances;
 mod invalid;
 mod joints;
+mod means;
 mod morph;
 mod scales;
 

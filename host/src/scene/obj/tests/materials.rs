@@ -220,6 +220,41 @@ fn textures_that_cannot_be_read_are_named() {
     }
 }
 
+/// Programs write `Ke 1 1 1` wherever there is a texture.
+#[test]
+fn map_ke_weights_ke_by_its_mean_as_light() {
+    let square = "f 1/1 2/2 3/3 4/4\n";
+    for statements in [
+        "Ke 1 1 .5\nmap_Ke two colors.png",
+        "map_Ke -s 2 2 two colors.png\nKe 1 1 .5",
+    ] {
+        let made = textured(square, statements).unwrap();
+        assert_eq!(made.scene.materials[0].emission, [0.5, 0.0, 0.25]);
+        let [warning] = &made.warnings[..] else {
+            panic!("{:?}", made.warnings);
+        };
+        assert!(
+            warning.ends_with("map_Ke is not drawn; its mean is taken, and weights Ke"),
+            "{warning}"
+        );
+    }
+    for (statements, expected) in [
+        ("Ke 1 1 1\nmap_Ke none.png", "the material does not glow"),
+        ("map_Ke none.png", "because Ke is 0 or missing"),
+        ("Ke 0\nmap_Ke broken.png", "because Ke is 0 or missing"),
+    ] {
+        let made = textured(square, statements).unwrap();
+        assert_eq!(made.scene.materials[0].emission, [0.0; 3]);
+        assert!(made.warnings[0].ends_with(expected), "{:?}", made.warnings);
+    }
+    let error = textured(square, "Ke 1 1 1\nmap_Ke broken.png").unwrap_err();
+    let error = error.to_string();
+    assert!(
+        error.contains("t.mtl:3") && error.contains("neither PNG nor JPEG"),
+        "{error}"
+    );
+}
+
 #[test]
 fn mirrors_and_glass_may_be_rough() {
     for (rough, taken) in [(0.5, 0.5), (0.01, 0.0), (2.0, 1.0)] {

@@ -5,6 +5,7 @@ mod fixtures;
 mod hostile;
 mod imports;
 mod joints;
+mod keys;
 mod morph;
 mod objects;
 mod parts;
