@@ -6,8 +6,10 @@
 //!
 //! Every `o`, `g` and change of `usemtl` starts a new mesh, in file order, which holds only the vertices that it uses.
 //! Faces are cut into triangles in file order. A face whose corners all have normals is smooth. Smoothing groups are
-//! ignored, with a warning. Colors of vertices are in sRGB. Zero-area triangles are kept for the compiler to report.
+//! ignored, with a warning. Colors of vertices are in sRGB. Zero-area triangles are kept for the compiler to report. A
+//! backslash at the end of a line continues it on the next one, also within names.
 
+mod lines;
 mod mtl;
 mod parser;
 
@@ -58,7 +60,8 @@ fn read(input: Input<'_>) -> Result<Imported, SceneError> {
 
 fn import(source: &Source, access: &Access) -> Result<Imported, SceneError> {
     let mut warnings = Warnings::default();
-    let parsed = parser::parse(source, &mut warnings)?;
+    let continued = lines::continued(source);
+    let parsed = parser::parse(source, &continued, &mut warnings)?;
     if parsed.parts.is_empty() {
         return Err(without_faces(source, &parsed));
     }
@@ -164,7 +167,8 @@ fn read_libraries(
         let names: Vec<&str> = if allowed(names).is_ok_and(|whole| access.is_file(&whole)) {
             vec![names]
         } else {
-            names.split_whitespace().collect()
+            let names = names.split_whitespace();
+            names.take_while(|word| !word.starts_with('#')).collect()
         };
         for name in names {
             let path = allowed(name)?;

@@ -1,5 +1,6 @@
 //! The lines of an OBJ file: vertices, and parts of faces that share a name and a material.
 
+use super::lines::WholeLines;
 use crate::scene::text::{Source, Warnings};
 use crate::scene::{Color, SceneError};
 use crate::srgb::linear_of_srgb;
@@ -67,12 +68,13 @@ const PASSED_OVER: [&str; 8] = [
     "vp", "mg", "bevel", "c_interp", "d_interp", "lod", "maplib", "call",
 ];
 
-/// Reads all lines.
+/// Reads all lines; `continued` are the [continued](super::lines::continued) ones of the file.
 ///
 /// # Errors
 /// If a vertex is not finite, or a face names a vertex that does not exist.
 pub(super) fn parse<'a>(
     source: &'a Source,
+    continued: &'a [String],
     warnings: &mut Warnings,
 ) -> Result<Parsed<'a>, SceneError> {
     let mut parser = Parser {
@@ -84,16 +86,11 @@ pub(super) fn parse<'a>(
         highest: None,
         smoothing: None,
     };
-    let mut lines = source.lines();
-    while let Some((number, line)) = lines.next() {
-        let mut words: Vec<&str> = Vec::new();
-        let mut rest = line.trim_end();
-        // A backslash at its end continues a line on the next one, unless a comment ends so.
-        while let Some(continued) = rest.strip_suffix('\\').filter(|it| !has_comment(it)) {
-            words.extend(continued.split_whitespace());
-            rest = lines.next().map_or("", |(_, line)| line.trim_end());
-        }
-        words.extend(rest.split_whitespace());
+    let mut continued = continued.iter();
+    let mut words: Vec<&str> = Vec::new();
+    for (number, line, parts) in WholeLines(source.lines()) {
+        words.clear();
+        words.extend(parts.iter().flat_map(|part| part.split_whitespace()));
         // A comment may follow numbers; in names a number sign is common.
         let end = words
             .iter()
@@ -104,24 +101,14 @@ pub(super) fn parse<'a>(
             Some(&"vt") => parser.texture_vertex(line, &words[1..end])?,
             Some(&"vn") => parser.normal(number, line, &words[1..end], warnings)?,
             Some(&"f") => parser.face(number, &words[1..end], warnings)?,
-            _ => parser.statement(number, line.trim(), warnings),
+            _ if parts.len() > 1 => {
+                let whole = continued.next().map_or(line, |it| it.as_str());
+                parser.statement(number, whole.trim(), warnings);
+            }
+            _ => parser.statement(number, line, warnings),
         }
     }
     parser.finish(warnings)
-}
-
-/// Returns whether a word of a line begins a comment.
-fn has_comment(line: &str) -> bool {
-    line.split_whitespace().any(|word| word.starts_with('#'))
-}
-
-/// Reads the index of a normal or of texture coordinates, and returns it counted from 0. `count` is how many the file
-/// has so far. Returns [`OUT_OF_RANGE`] for an index that is out of range.
-fn number_of(index: &str, count: usize) -> u32 {
-    let index = index.parse::<i64>().ok().filter(|it| *it != 0);
-    let index = index.map(|it| if it < 0 { count as i64 + it } else { it - 1 });
-    let index = index.and_then(|it| u32::try_from(it).ok());
-    index.map_or(OUT_OF_RANGE, |it| it.min(OUT_OF_RANGE))
 }
 
 struct Parser<'a> {
@@ -147,7 +134,7 @@ impl<'a> Parser<'a> {
     ) -> Result<(), SceneError> {
         if words.len() < 3 {
             return Err(self.source.error_at(
-                line.trim(),
+                line,
                 format!("a vertex has {} of 3 coordinates", words.len()),
                 "write `v x y z`",
             ));
@@ -204,7 +191,7 @@ impl<'a> Parser<'a> {
     fn texture_vertex(&mut self, line: &'a str, words: &[&'a str]) -> Result<(), SceneError> {
         let &[u, ..] = words else {
             return Err(self.source.error_at(
-                line.trim(),
+                line,
                 "texture coordinates are missing",
                 "write `vt u v`",
             ));
@@ -227,7 +214,7 @@ impl<'a> Parser<'a> {
     ) -> Result<(), SceneError> {
         let &[x, y, z, ..] = words else {
             return Err(self.source.error_at(
-                line.trim(),
+                line,
                 format!("a normal has {} of 3 components", words.len()),
                 "write `vn x y z`",
             ));
@@ -256,12 +243,12 @@ impl<'a> Parser<'a> {
         for word in words {
             let mut indices = word.split('/');
             corners.push(self.corner(word, indices.next().unwrap_or(""))?);
-            let mut next = |count: usize| match indices.next() {
-                None | Some("") => NO_INDEX,
-                Some(index) => number_of(index, count),
+            let mut next = |count: usize, what: &str| match indices.next() {
+                None | Some("") => Ok(NO_INDEX),
+                Some(index) => self.number_of([word, index], count, what),
             };
-            coordinates.push(next(self.parsed.coordinates.len()));
-            normals.push(next(self.parsed.normals.len()));
+            coordinates.push(next(self.parsed.coordinates.len(), "texture coordinate")?);
+            normals.push(next(self.parsed.normals.len(), "normal")?);
         }
         if corners.len() < 3 {
             let sentence = format!(
@@ -340,6 +327,31 @@ impl<'a> Parser<'a> {
                 Ok((index - 1) as u32)
             }
         }
+    }
+
+    /// Reads the index of a normal or of texture coordinates, `what`, of a corner. Returns it counted from 0; `count` is
+    /// how many the file has so far. Returns [`OUT_OF_RANGE`] for an index that is out of range.
+    fn number_of(
+        &self,
+        [word, index]: [&str; 2],
+        count: usize,
+        what: &str,
+    ) -> Result<u32, SceneError> {
+        let index = index.parse::<i64>().map_err(|_| {
+            let cause = format!(
+                "a face has the vertex {quoted:?}, whose {what} is not an index",
+                quoted = shortened(word)
+            );
+            let remedy = "normals and texture coordinates are counted from 1, or backwards from -1";
+            self.source.error_at(word, cause, remedy)
+        })?;
+        let index = match index {
+            0 => None,
+            index if index < 0 => Some(count as i64 + index),
+            index => Some(index - 1),
+        };
+        let index = index.and_then(|it| u32::try_from(it).ok());
+        Ok(index.map_or(OUT_OF_RANGE, |it| it.min(OUT_OF_RANGE)))
     }
 
     fn statement(&mut self, number: usize, line: &'a str, warnings: &mut Warnings) {
