@@ -1,6 +1,10 @@
 //! Lines of an OBJ file that continue on further ones.
 
+use crate::scene::size::MOST_PRIMITIVES;
 use crate::scene::text::Source;
+
+/// The most words of a line, or parts that it is continued by: those of a face with as many triangles as a scene holds.
+pub(super) const MOST_WORDS: usize = MOST_PRIMITIVES as usize + 3;
 
 /// Returns the statements other than vertices and faces that continue on further lines, each as one line. The parser
 /// takes names from them.
@@ -30,7 +34,9 @@ impl<'a, I: Iterator<Item = (usize, &'a str)>> Iterator for WholeLines<I> {
         let (number, line) = self.0.next()?;
         let mut parts = Vec::new();
         let mut rest = line.trim();
-        while let Some(part) = rest.strip_suffix('\\').filter(|it| !has_comment(it)) {
+        while parts.len() <= MOST_WORDS
+            && let Some(part) = rest.strip_suffix('\\').filter(|it| !has_comment(it))
+        {
             parts.push(part.trim());
             rest = self.0.next().map_or("", |(_, line)| line.trim());
         }

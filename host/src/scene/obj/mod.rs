@@ -16,7 +16,6 @@ mod parser;
 use super::access::Access;
 use super::importer::{Importer, Input};
 use super::polygon::{self, MAX_CONCAVE};
-use super::size::Size;
 use super::text::{Source, Warnings};
 use super::texture::Images;
 use super::{Attributes, Color, Imported, Material, Normals, Object, Scene, SceneError, Shape};
@@ -65,7 +64,6 @@ fn import(source: &Source, access: &Access) -> Result<Imported, SceneError> {
     if parsed.parts.is_empty() {
         return Err(without_faces(source, &parsed));
     }
-    check_size(source, &parsed)?;
     let library = read_libraries(source, &parsed, access, &mut warnings)?;
     let mut materials = Materials {
         library,
@@ -121,27 +119,6 @@ fn without_faces(source: &Source, parsed: &Parsed<'_>) -> SceneError {
         Some(first) => error.at_line(first.line),
         None => error,
     }
-}
-
-/// Rejects files whose parts repeat a long name until no memory holds it.
-fn check_size(source: &Source, parsed: &Parsed<'_>) -> Result<(), SceneError> {
-    let mut size = Size::default();
-    for part in &parsed.parts {
-        size = size.plus(Size {
-            objects: 1,
-            names: part.name.len() as u64,
-            triangles: (part.corners.len() - 2 * part.faces.len()) as u64,
-        });
-        if let Some(excess) = size.excess() {
-            return Err(source
-                .error(
-                    format!("up to this part the file takes {excess}"),
-                    "give objects and groups shorter names, or export a part of the scene",
-                )
-                .at_line(part.line));
-        }
-    }
-    Ok(())
 }
 
 /// Reads the files that `mtllib` names. A missing one only causes a warning: it is often not delivered, and the

@@ -1,10 +1,11 @@
 //! The lines of an OBJ file: vertices, and parts of faces that share a name and a material.
 
-use super::lines::WholeLines;
+use super::lines::{MOST_WORDS, WholeLines};
+use crate::scene::size::{Size, lists_fit};
 use crate::scene::text::{Source, Warnings};
 use crate::scene::{Color, SceneError};
 use crate::srgb::linear_of_srgb;
-use crate::table::shortened;
+use crate::table::{grouped, shortened};
 use glam::{DVec2, DVec3};
 
 #[derive(Default)]
@@ -63,6 +64,9 @@ pub(super) struct Face {
     pub(super) corners: usize,
 }
 
+/// Bytes of a vertex: its position, its color, and its number in a mesh.
+const VERTEX: usize = size_of::<DVec3>() + size_of::<Color>() + size_of::<(usize, u32)>();
+
 /// Statements about parts that are not drawn, or not needed to draw.
 const PASSED_OVER: [&str; 8] = [
     "vp", "mg", "bevel", "c_interp", "d_interp", "lod", "maplib", "call",
@@ -85,12 +89,19 @@ pub(super) fn parse<'a>(
         fresh: true,
         highest: None,
         smoothing: None,
+        size: Size::default(),
     };
     let mut continued = continued.iter();
     let mut words: Vec<&str> = Vec::new();
     for (number, line, parts) in WholeLines(source.lines()) {
         words.clear();
-        words.extend(parts.iter().flat_map(|part| part.split_whitespace()));
+        let all = parts.iter().flat_map(|part| part.split_whitespace());
+        words.extend(all.take(MOST_WORDS + 1));
+        if words.len() > MOST_WORDS || parts.len() > MOST_WORDS {
+            let cause = format!("the line has more than {} words", grouped(MOST_WORDS));
+            let remedy = "split it, or export a part of the scene";
+            return Err(source.error(cause, remedy).at_line(number));
+        }
         // A comment may follow numbers; in names a number sign is common.
         let end = words
             .iter()
@@ -111,6 +122,15 @@ pub(super) fn parse<'a>(
     parser.finish(warnings)
 }
 
+/// Returns whether this many vertices, normals and texture coordinates fit into memory.
+pub(super) fn fit([vertices, normals, coordinates]: [usize; 3]) -> bool {
+    lists_fit(&[
+        (vertices, VERTEX),
+        (normals, size_of::<DVec3>()),
+        (coordinates, size_of::<DVec2>()),
+    ])
+}
+
 struct Parser<'a> {
     source: &'a Source,
     parsed: Parsed<'a>,
@@ -122,6 +142,8 @@ struct Parser<'a> {
     highest: Option<(u64, &'a str)>,
     /// The first smoothing group.
     smoothing: Option<usize>,
+    /// The size of the scene up to the last face.
+    size: Size,
 }
 
 impl<'a> Parser<'a> {
@@ -185,7 +207,28 @@ impl<'a> Parser<'a> {
             self.parsed.colors.push([1.0; 3]);
         }
         self.parsed.vertices.push(DVec3::from_array(position));
-        Ok(())
+        self.check_lists(line)
+    }
+
+    /// Rejects more vertices, normals and texture coordinates than fit into memory. Faces may use none of them.
+    fn check_lists(&self, line: &str) -> Result<(), SceneError> {
+        let Parsed {
+            vertices,
+            normals,
+            coordinates,
+            ..
+        } = &self.parsed;
+        let counts = [vertices.len(), normals.len(), coordinates.len()];
+        if fit(counts) {
+            return Ok(());
+        }
+        let [vertices, normals, coordinates] = counts.map(grouped);
+        let cause = format!(
+            "up to this line there are {vertices} vertices, {normals} normals and {coordinates} texture coordinates, \
+             more than fit into memory"
+        );
+        let remedy = "export a part of the scene, or leave normals or texture coordinates out";
+        Err(self.source.error_at(line, cause, remedy))
     }
 
     fn texture_vertex(&mut self, line: &'a str, words: &[&'a str]) -> Result<(), SceneError> {
@@ -202,7 +245,7 @@ impl<'a> Parser<'a> {
             *value = number.transpose()?.unwrap_or(0.0);
         }
         self.parsed.coordinates.push(DVec2::from_array(coordinates));
-        Ok(())
+        self.check_lists(line)
     }
 
     fn normal(
@@ -228,7 +271,7 @@ impl<'a> Parser<'a> {
             warnings.add(self.source, number, sentence);
         }
         self.parsed.normals.push(DVec3::from_array(normal));
-        Ok(())
+        self.check_lists(line)
     }
 
     fn face(
@@ -258,6 +301,7 @@ impl<'a> Parser<'a> {
             self.skip(line, &sentence, warnings);
             return Ok(());
         }
+        self.weigh(line, corners.len() - 2)?;
         if self.fresh {
             self.parsed.parts.push(Part {
                 name: self.name,
@@ -286,6 +330,21 @@ impl<'a> Parser<'a> {
             part.corners.extend(corners);
         }
         Ok(())
+    }
+
+    /// Rejects a face at which the scene no longer fits into memory, or parts that repeat a long name until it does not.
+    fn weigh(&mut self, line: usize, triangles: usize) -> Result<(), SceneError> {
+        if self.fresh {
+            self.size.objects += 1;
+            self.size.names += self.name.len() as u64;
+        }
+        self.size.triangles += triangles as u64;
+        let Some(excess) = self.size.excess() else {
+            return Ok(());
+        };
+        let cause = format!("up to this face the file takes {excess}");
+        let remedy = "give objects and groups shorter names, or export a part of the scene";
+        Err(self.source.error(cause, remedy).at_line(line))
     }
 
     /// Warns of a line that is passed over.

@@ -391,6 +391,14 @@ fn parts_with_a_long_name_are_rejected_with_the_figure() {
 }
 
 #[test]
+fn lists_that_no_face_uses_are_limited() {
+    assert!(parser::fit([8_000_000, 50_000_000, 10_000_000]));
+    for many in [[60_000_000, 0, 0], [0, 80_000_000, 0], [0, 0, 120_000_000]] {
+        assert!(!parser::fit(many), "{many:?}");
+    }
+}
+
+#[test]
 fn colors_of_vertices_are_taken_from_srgb() {
     let text = "v 0 0 0 1 0 0.5\nv 1 0 0 0 2 0\nv 0 1 0 .5 -1 1 0 0 1\nv 9 9 9 1 1 1\nf 1 2 3\n";
     let imported = read(text).unwrap();
