@@ -1,10 +1,12 @@
 //! Reads OFF, the Object File Format of Geomview: the vertices and polygons of a mesh, as text.
 //!
-//! The keyword may be missing. It may have the prefixes `ST`, `C` and `N`, for vertices with texture coordinates, colors
-//! and normals on their lines. These are ignored, with a warning each, and so are the colors of faces. Many programs
-//! write colors behind vertices without announcing them; these are ignored in the same way, where every vertex and
-//! every face has a line of its own. Vertices of other than three coordinates (`4OFF`, `nOFF`) and binary files are
-//! rejected. Comments begin with `#`.
+//! The keyword may be missing. It may have the prefixes `ST`, `C` and `N`, each once, for vertices with texture
+//! coordinates, colors and normals on their lines. Geomview names them in this order, and MeshLab in the order `N`, `C`,
+//! `ST`; any is read, also in lower case. On the line, coordinates come first. Geomview has the normal, the color and the
+//! texture coordinates behind them; MeshLab writes the color before the normal. All three are ignored, with a warning
+//! each, so their order does not matter, and so are the colors of faces. Many programs write colors behind vertices
+//! without announcing them; these are ignored in the same way, where every vertex and every face has a line of its own.
+//! Vertices of other than three coordinates (`4OFF`, `nOFF`) and binary files are rejected. Comments begin with `#`.
 
 use super::importer::{Importer, Input, stem};
 use super::polygon::{self, MAX_CONCAVE};
@@ -12,6 +14,7 @@ use super::size::Size;
 use super::text::{Source, Warnings};
 use super::words::Words;
 use super::{Imported, Material, Object, Scene, SceneError, Shape, SourceSpan};
+use crate::table::shortened;
 use glam::DVec3;
 use gridel_core::Up;
 
@@ -56,23 +59,44 @@ struct Keyword<'a> {
 
 impl<'a> Keyword<'a> {
     fn of(word: &'a str) -> Option<Self> {
-        let (prefix, rest) = word.split_once("OFF")?;
-        let strip = |text: &'a str, letter: &str| match text.strip_prefix(letter) {
-            Some(rest) => (true, rest),
-            None => (false, text),
-        };
-        let (textured, prefix) = strip(prefix, "ST");
-        let (colored, prefix) = strip(prefix, "C");
-        let (normals, dimension) = strip(prefix, "N");
-        let is_whole = ["", "4", "n", "4n"].contains(&dimension)
-            && rest.bytes().all(|byte| byte.is_ascii_digit());
-        is_whole.then_some(Self {
-            textured,
-            colored,
-            normals,
-            dimension,
+        let written = ["OFF", "off"].map(|it| word.split_once(it));
+        let is_lower = written[0].is_none();
+        let (mut prefix, rest) = written.into_iter().flatten().next()?;
+        let mut keyword = Self {
             rest,
-        })
+            ..Self::default()
+        };
+        loop {
+            let properties = [
+                ("ST", &mut keyword.textured),
+                ("C", &mut keyword.colored),
+                ("N", &mut keyword.normals),
+            ];
+            // A small `n` before capitals stands for dimensions.
+            let begins = |letters: &str| {
+                let head = prefix.get(..letters.len());
+                head.is_some_and(|it| it == letters || is_lower && it.eq_ignore_ascii_case(letters))
+            };
+            let mut properties = properties.into_iter();
+            let Some((letters, has)) = properties.find(|(it, has)| !**has && begins(it)) else {
+                break;
+            };
+            *has = true;
+            prefix = &prefix[letters.len()..];
+        }
+        keyword.dimension = prefix;
+        let is_whole = ["", "4", "n", "4n"].contains(&prefix)
+            && rest.bytes().all(|byte| byte.is_ascii_digit());
+        is_whole.then_some(keyword)
+    }
+
+    /// Returns whether a word was meant as a keyword.
+    fn is_like(word: &str) -> bool {
+        let letters = word.trim_end_matches(|c: char| c.is_ascii_digit());
+        let end = letters.len().saturating_sub(3);
+        letters
+            .get(end..)
+            .is_some_and(|it| it.eq_ignore_ascii_case("OFF"))
     }
 
     /// The fewest numbers that a vertex has; a color may lack its opacity.
@@ -147,6 +171,13 @@ fn header<'a>(
             ));
         }
     }
+    if keyword.is_none() && Keyword::is_like(first) {
+        return Err(source.error_at(
+            first,
+            format!("the keyword {:?} is unknown", shortened(first)),
+            "write OFF, NOFF (with normals), COFF (colors), STOFF (texture coordinates), or several such as NCOFF",
+        ));
+    }
     // The first word is a count where the keyword is missing or ends with one.
     let glued = keyword.map_or(first, |it| it.rest);
     if !glued.is_empty() {
@@ -170,6 +201,19 @@ fn header<'a>(
     Ok((keyword.unwrap_or_default(), [vertices, faces]))
 }
 
+/// Vertices that weigh as a triangle does.
+const CORNERS: usize = 3;
+
+/// Rejects the vertex or the face at which the file no longer fits into memory.
+fn check_size(source: &Source, size: Size, part: &str, line: usize) -> Result<(), SceneError> {
+    let Some(excess) = size.excess() else {
+        return Ok(());
+    };
+    let cause = format!("up to this {part} the file takes {excess}");
+    let remedy = "export a part of the mesh, or one with fewer faces";
+    Err(source.error(cause, remedy).at_line(line))
+}
+
 fn read_vertices(
     source: &Source,
     words: &mut Words<'_>,
@@ -180,6 +224,10 @@ fn read_vertices(
     let unannounced = keyword.fewest_numbers() == 3 && has_unannounced_numbers(words, count, faces);
     let fewest = keyword.fewest_numbers() + usize::from(unannounced);
     let mut vertices = Vec::new();
+    let mut size = Size {
+        objects: 1,
+        ..Size::default()
+    };
     let mut first_line = 0;
     for number in 0..count {
         let mut position = [0.0; 3];
@@ -189,6 +237,8 @@ fn read_vertices(
             ))?;
         }
         vertices.push(DVec3::from_array(position));
+        size.triangles = (vertices.len() / CORNERS) as u64;
+        check_size(source, size, "vertex", words.line)?;
         if number == 0 {
             first_line = words.line;
         }
@@ -263,6 +313,7 @@ fn read_faces(
     let wrong = |line, cause: String, remedy: &str| source.error(cause, remedy).at_line(line);
     let mut size = Size {
         objects: 1,
+        triangles: (vertices.len() / CORNERS) as u64,
         ..Size::default()
     };
     let mut triangles = Vec::new();
@@ -288,6 +339,9 @@ fn read_faces(
                 )
             })?);
             corners.push(corner as u32);
+            let within = (triangles.len() + corners.len().saturating_sub(2)) as u64;
+            size.triangles = size.triangles.max(within);
+            check_size(source, size, "face", words.line)?;
         }
         if words.skip_line() > 0 {
             let sentence = "the color of a face is ignored; the surface has one color";
@@ -309,15 +363,6 @@ fn read_faces(
         }
         let named = |triangle: [u32; 3]| triangle.map(|corner| corners[corner as usize]);
         triangles.extend(cut.triangles.into_iter().map(named));
-        size.triangles = triangles.len() as u64;
-        if let Some(excess) = size.excess() {
-            let cause = format!("up to this face the file takes {excess}");
-            return Err(wrong(
-                line,
-                cause,
-                "export a part of the mesh, or one with fewer faces",
-            ));
-        }
     }
     if triangles.is_empty() {
         return Err(source.error(

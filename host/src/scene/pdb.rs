@@ -49,7 +49,15 @@ fn read(input: Input<'_>) -> Result<Imported, SceneError> {
 /// # Errors
 /// If a line of an atom is too short, or its coordinates are no finite numbers.
 fn parse<'a>(source: &'a Source, warnings: &mut Warnings) -> Result<Parsed<'a>, SceneError> {
-    let mut parsed = Parsed::default();
+    parse_into(source, Parsed::default(), warnings)
+}
+
+/// Reads all models, and adds them to what there is.
+pub(super) fn parse_into<'a>(
+    source: &'a Source,
+    mut parsed: Parsed<'a>,
+    warnings: &mut Warnings,
+) -> Result<Parsed<'a>, SceneError> {
     let mut assemblies = Assemblies::default();
     // The number that the file gives the next model, if the next atom starts one.
     let mut next_model = Some("1");
@@ -60,12 +68,14 @@ fn parse<'a>(source: &'a Source, warnings: &mut Warnings) -> Result<Parsed<'a>, 
                     number: text,
                     line: number,
                 });
-                parsed.models.extend(model);
+                if let Some(model) = model {
+                    parsed.add_model(source, model)?;
+                }
                 let model = parsed.models.len() - 1;
                 parsed.add(source, atom(source, number, line, model, warnings)?)?;
             }
             "REMARK" if columns(line, 7, 10).trim() == "350" => {
-                assemblies.remark(number, columns(line, 11, 80), &mut parsed.groups);
+                assemblies.remark(source, number, columns(line, 11, 80), &mut parsed)?;
             }
             // Some programs leave ENDMDL out, or let atoms without a MODEL follow it.
             "MODEL" => next_model = Some(columns(line, 7, 80).trim()),
@@ -75,9 +85,8 @@ fn parse<'a>(source: &'a Source, warnings: &mut Warnings) -> Result<Parsed<'a>, 
                 for first in [12, 17, 22, 27] {
                     let to = columns(line, first, first + 4).trim();
                     if !from.is_empty() && !to.is_empty() {
-                        parsed
-                            .bonds
-                            .push((number, [End::Serial(from), End::Serial(to)]));
+                        let ends = [from, to].map(End::Serial);
+                        parsed.add_bond(source, (number, ends))?;
                     }
                 }
             }

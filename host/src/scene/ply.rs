@@ -2,24 +2,27 @@
 //!
 //! Faces are cut into triangles, and triangle strips (the element `tristrips`, where -1 ends a
 //! strip) into theirs. Vertices have normals and colors: whole numbers up to 255 (`ushort`: 65,535) or others
-//! up to 1. Colors of faces, textures and elements of other names are ignored, with a warning each.
+//! up to 1. A color with a number that is not finite is white, and such a normal makes its faces flat, with a warning.
+//! Colors of faces, textures and elements of other names are ignored, with a warning each.
 
 mod header;
 mod payload;
 
 use super::importer::{Importer, Input, stem};
 use super::polygon::{self, MAX_CONCAVE};
+use super::size::Size;
 use super::text::{Warnings, check_encoding};
 use super::{
     Attributes, Imported, Material, Normals, Object, Scene, SceneError, Shape, SourceSpan,
 };
 use crate::srgb::linear_of_srgb;
-use crate::table::shortened;
+use crate::table::{grouped, shortened};
 use glam::DVec3;
 use gridel_core::Up;
+use header::Announced;
 use payload::{Payload, Skipped};
 use ply_rs_bw::parser::Reader;
-use ply_rs_bw::ply::{Property, PropertyAccess, PropertyAccessResult};
+use ply_rs_bw::ply::{Header, Property, PropertyAccess, PropertyAccessResult};
 use std::path::Path;
 
 pub(super) const IMPORTER: Importer = Importer {
@@ -55,11 +58,15 @@ fn read(input: Input<'_>) -> Result<Imported, SceneError> {
     for element in header.elements.values() {
         header::check(path, element, bytes.len())?;
         match element.name.as_str() {
-            "vertex" => vertices = payload.read::<Vertex>(element, &header)?,
-            "face" => faces = payload.read::<Face>(element, &header)?,
-            "tristrips" => strips = payload.read::<Face>(element, &header)?,
+            "vertex" => vertices = payload.read(element, &header, |_: &Vertex| 0)?,
+            "face" => {
+                let triangles = |face: &Face| face.len().saturating_sub(2);
+                faces = payload.read(element, &header, triangles)?;
+            }
+            // A strip of one triangle takes four numbers, and longer ones take fewer for each.
+            "tristrips" => strips = payload.read(element, &header, |it: &Face| it.len() / 4)?,
             name => {
-                payload.read::<Skipped>(element, &header)?;
+                payload.read(element, &header, |_: &Skipped| 0)?;
                 let sentence = format!("elements {name:?} are ignored", name = shortened(name));
                 warnings.add_times(SourceSpan::of(path), element.count.max(1), sentence);
                 if element.count > 0 {
@@ -72,12 +79,8 @@ fn read(input: Input<'_>) -> Result<Imported, SceneError> {
     if faces.is_empty() && strips.is_empty() {
         return Err(without_surface(path, &ignored));
     }
-    let components = |vertex: &Vertex| vertex.normal.iter().filter(|it| it.is_finite()).count();
-    if vertices.iter().map(components).any(|it| it == 1 || it == 2) {
-        let sentence = "normals of vertices without nx, ny or nz are ignored";
-        warnings.add_times(SourceSpan::of(path), 1, sentence);
-    }
-    let attributes = attributes(path, &vertices, &mut warnings);
+    warn_of_normals(path, &header, &vertices, &mut warnings);
+    let attributes = attributes(path, &header, &vertices, &mut warnings);
     let (shape, normals) = mesh(path, &vertices, &faces, &strips, &mut warnings)?;
     let scene = Scene {
         materials: vec![Material::default()],
@@ -117,22 +120,74 @@ fn without_surface(path: &Path, ignored: &[String]) -> SceneError {
 /// The numbers that end a strip: -1, which is the largest number where a list has no sign.
 const STRIP_ENDS: [i64; 2] = [-1, u32::MAX as i64];
 
-/// The colors of vertices, if all have one.
-fn attributes(path: &Path, vertices: &[Vertex], warnings: &mut Warnings) -> Attributes {
-    let is_colored = |vertex: &Vertex| vertex.color.iter().all(|it| it.is_finite());
-    if !vertices.iter().all(is_colored) {
-        let has_channel = |vertex: &Vertex| vertex.color.iter().any(|it| it.is_finite());
-        if vertices.iter().any(has_channel) {
-            let sentence = "colors of vertices without red, green or blue are ignored";
+/// Warns of normals that are not used.
+fn warn_of_normals(path: &Path, header: &Header, vertices: &[Vertex], warnings: &mut Warnings) {
+    if vertices.is_empty() {
+        return;
+    }
+    match header::announced(header, header::NORMAL) {
+        Announced::None => {}
+        Announced::Some => {
+            let sentence = "normals of vertices without nx, ny or nz are ignored";
             warnings.add_times(SourceSpan::of(path), 1, sentence);
         }
-        return Attributes::default();
+        Announced::All => {
+            let are =
+                "normals with numbers that are not finite; faces that have them are shaded flat";
+            warn_of_vertices(path, vertices, |it| is_finite(it.normal), are, warnings);
+        }
     }
+}
+
+/// Warns of the vertices that something does not hold for: which the first is, and how many there are.
+fn warn_of_vertices(
+    path: &Path,
+    vertices: &[Vertex],
+    holds: impl Fn(&Vertex) -> bool,
+    are: &str,
+    warnings: &mut Warnings,
+) {
+    let others = || vertices.iter().enumerate().filter(|(_, it)| !holds(it));
+    if let Some((first, _)) = others().next() {
+        let sentence = match others().count() {
+            1 => format!("vertex {first} (from 0) has {are}"),
+            count => format!(
+                "{} vertices, of which vertex {first} (from 0) is the first, have {are}",
+                grouped(count)
+            ),
+        };
+        warnings.add_times(SourceSpan::of(path), 1, sentence);
+    }
+}
+
+fn is_finite(numbers: [f64; 3]) -> bool {
+    numbers.iter().all(|it| it.is_finite())
+}
+
+/// The colors of vertices, if the header announces all channels.
+fn attributes(
+    path: &Path,
+    header: &Header,
+    vertices: &[Vertex],
+    warnings: &mut Warnings,
+) -> Attributes {
+    match header::announced(header, header::COLOR) {
+        Announced::All => {}
+        Announced::Some if !vertices.is_empty() => {
+            let sentence = "colors of vertices without red, green or blue are ignored";
+            warnings.add_times(SourceSpan::of(path), 1, sentence);
+            return Attributes::default();
+        }
+        _ => return Attributes::default(),
+    }
+    let are = "colors with numbers that are not finite; white is used";
+    warn_of_vertices(path, vertices, |it| is_finite(it.color), are, warnings);
     for (sentence, is_so) in [
         (
             "colors of vertices are limited to 0 to 1 (of whole numbers: 0 to 255, or 65,535), their range",
-            (|vertex| vertex.color.iter().any(|it| !(0.0..=1.0).contains(it)))
-                as fn(&Vertex) -> bool,
+            (|vertex| {
+                is_finite(vertex.color) && vertex.color.iter().any(|it| !(0.0..=1.0).contains(it))
+            }) as fn(&Vertex) -> bool,
         ),
         ("the alpha of colors of vertices is ignored", |vertex| {
             vertex.alpha < 1.0
@@ -144,7 +199,10 @@ fn attributes(path: &Path, vertices: &[Vertex], warnings: &mut Warnings) -> Attr
         }
     }
     let linear = |channel: f64| linear_of_srgb(channel.clamp(0.0, 1.0));
-    let colors = vertices.iter().map(|vertex| vertex.color.map(linear));
+    let colors = vertices.iter().map(|vertex| match is_finite(vertex.color) {
+        true => vertex.color.map(linear),
+        false => [1.0; 3],
+    });
     Attributes {
         colors: colors.collect(),
         ..Attributes::default()
@@ -171,10 +229,11 @@ fn mesh(
     }
     let mut triangles = Vec::new();
     let (mut short, mut crossing) = (0_usize, 0_usize);
-    let mut points = Vec::new();
+    let (mut corners, mut points) = (Vec::new(), Vec::new());
     for (number, face) in faces.iter().enumerate() {
+        face.corners_into(&mut corners);
         points.clear();
-        for &corner in &face.0 {
+        for &corner in &corners {
             let vertex = usize::try_from(corner)
                 .ok()
                 .and_then(|corner| vertices.get(corner));
@@ -202,7 +261,7 @@ fn mesh(
             )
         })?;
         crossing += usize::from(!cut.exact);
-        let named = |triangle: [u32; 3]| triangle.map(|corner| face.0[corner as usize] as u32);
+        let named = |triangle: [u32; 3]| triangle.map(|corner| corners[corner as usize] as u32);
         triangles.extend(cut.triangles.into_iter().map(named));
     }
     for (count, sentence) in [
@@ -219,26 +278,7 @@ fn mesh(
             warnings.add_times(SourceSpan::of(path), count, sentence);
         }
     }
-    for (number, strip) in strips.iter().enumerate() {
-        for strip in strip.0.split(|corner| STRIP_ENDS.contains(corner)) {
-            let mut corners = Vec::with_capacity(strip.len());
-            for &corner in strip {
-                let index = u32::try_from(corner).ok();
-                let index = index.filter(|&index| (index as usize) < vertices.len());
-                corners.push(index.ok_or_else(|| {
-                    wrong(
-                        format!(
-                            "triangle strips {number} (from 0) use vertex {corner}, and there are \
-                             {} vertices",
-                            vertices.len()
-                        ),
-                        "export the file again; vertices count from 0, and -1 ends a strip",
-                    )
-                })?);
-            }
-            triangles.extend(strip_triangles(&corners));
-        }
-    }
+    add_strips(path, strips, vertices.len(), &mut triangles)?;
     if triangles.is_empty() {
         return Err(wrong(
             String::from("no face and no triangle strip of the file has three vertices"),
@@ -257,6 +297,48 @@ fn mesh(
         triangles,
     };
     Ok((shape, normals))
+}
+
+/// Adds the triangles of strips; `known` is the number of vertices.
+fn add_strips(
+    path: &Path,
+    strips: &[Face],
+    known: usize,
+    triangles: &mut Vec<[u32; 3]>,
+) -> Result<(), SceneError> {
+    let mut numbers = Vec::new();
+    for (number, strip) in strips.iter().enumerate() {
+        strip.corners_into(&mut numbers);
+        for strip in numbers.split(|corner| STRIP_ENDS.contains(corner)) {
+            let mut corners = Vec::with_capacity(strip.len());
+            for &corner in strip {
+                let index = u32::try_from(corner).ok();
+                let index = index.filter(|&index| (index as usize) < known);
+                corners.push(index.ok_or_else(|| {
+                    SceneError::new(
+                        path,
+                        format!(
+                            "triangle strips {number} (from 0) use vertex {corner}, and there are \
+                             {known} vertices"
+                        ),
+                        "export the file again; vertices count from 0, and -1 ends a strip",
+                    )
+                })?);
+            }
+            triangles.extend(strip_triangles(&corners));
+            let size = Size {
+                objects: 1,
+                triangles: triangles.len() as u64,
+                ..Size::default()
+            };
+            if let Some(excess) = size.excess() {
+                let cause =
+                    format!("up to triangle strips {number} (from 0) the file takes {excess}");
+                return Err(SceneError::new(path, cause, header::TOO_LARGE));
+            }
+        }
+    }
+    Ok(())
 }
 
 /// Returns the triangles of a strip, of which every second one is turned. Vertices that come twice join strips, and
@@ -329,30 +411,53 @@ impl PropertyAccess for Vertex {
     }
 }
 
-/// The corners of a face: numbers of vertices, as they are written.
-struct Face(Vec<i64>);
+/// The corners of a face: the list of numbers of vertices as it is written, which takes no more memory than in the file.
+#[derive(Debug)]
+struct Face(Option<Property>);
+
+impl Face {
+    /// The number of corners.
+    fn len(&self) -> usize {
+        match &self.0 {
+            Some(Property::ListChar(list)) => list.len(),
+            Some(Property::ListUChar(list)) => list.len(),
+            Some(Property::ListShort(list)) => list.len(),
+            Some(Property::ListUShort(list)) => list.len(),
+            Some(Property::ListInt(list)) => list.len(),
+            Some(Property::ListUInt(list)) => list.len(),
+            _ => 0,
+        }
+    }
+
+    /// Replaces a list by the corners.
+    fn corners_into(&self, corners: &mut Vec<i64>) {
+        fn wide<T: Copy + Into<i64>>(list: &[T], corners: &mut Vec<i64>) {
+            corners.extend(list.iter().map(|&it| it.into()));
+        }
+        corners.clear();
+        match &self.0 {
+            Some(Property::ListChar(list)) => wide(list, corners),
+            Some(Property::ListUChar(list)) => wide(list, corners),
+            Some(Property::ListShort(list)) => wide(list, corners),
+            Some(Property::ListUShort(list)) => wide(list, corners),
+            Some(Property::ListInt(list)) => wide(list, corners),
+            Some(Property::ListUInt(list)) => wide(list, corners),
+            _ => {}
+        }
+    }
+}
 
 impl PropertyAccess for Face {
     fn new() -> Self {
-        Self(Vec::new())
+        Self(None)
     }
 
     fn set_property(&mut self, name: &str, property: Property) -> PropertyAccessResult {
         if !header::CORNERS.contains(&name) {
             return PropertyAccessResult::Ignored;
         }
-        fn wide<T: Into<i64>>(list: Vec<T>) -> Vec<i64> {
-            list.into_iter().map(Into::into).collect()
-        }
-        self.0 = match property {
-            Property::ListChar(list) => wide(list),
-            Property::ListUChar(list) => wide(list),
-            Property::ListShort(list) => wide(list),
-            Property::ListUShort(list) => wide(list),
-            Property::ListInt(list) => wide(list),
-            Property::ListUInt(list) => wide(list),
-            _ => return PropertyAccessResult::UnsupportedType,
-        };
+        // The header's check rejects other types.
+        self.0 = Some(property);
         PropertyAccessResult::Set
     }
 }

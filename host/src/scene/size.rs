@@ -62,6 +62,15 @@ pub(super) fn primitives(shape: &Shape) -> u64 {
     }
 }
 
+/// Returns whether lists fit into memory, given the length of each and the bytes of an entry.
+pub(super) fn lists_fit(lists: &[(usize, usize)]) -> bool {
+    let bytes = lists
+        .iter()
+        .map(|&(length, bytes)| length as u64 * bytes as u64);
+    // While a list grows, it takes its bytes twice.
+    bytes.sum::<u64>() <= MOST_BYTES / 2
+}
+
 /// The content of a scene, or of a part, in numbers.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(super) struct Size {
@@ -164,6 +173,13 @@ mod tests {
         let words = keys.add(1).unwrap_err();
         assert_eq!(words, "4,194,305 keys; the limit is 4,194,304");
         assert!(keys.add(u64::MAX).is_err());
+    }
+
+    #[test]
+    fn lists_take_half_of_the_memory_at_most() {
+        assert!(lists_fit(&[]));
+        assert!(lists_fit(&[(50_000_000, 24), (43_750_000, 16)]));
+        assert!(!lists_fit(&[(50_000_000, 24), (43_750_001, 16)]));
     }
 
     #[test]

@@ -8,6 +8,7 @@
 //! files, are ignored with a warning.
 
 use super::importer::{Importer, Input, stem};
+use super::size::Size;
 use super::text::{Source, Warnings, check_encoding};
 use super::{Imported, Material, Object, Scene, SceneError, Shape, SourceSpan};
 use crate::table::shortened;
@@ -99,8 +100,26 @@ fn read(input: Input<'_>) -> Result<Imported, SceneError> {
     }
 }
 
+/// Rejects what fits into no memory.
+fn check_size(path: &Path, size: Size) -> Result<(), SceneError> {
+    let Some(excess) = size.excess() else {
+        return Ok(());
+    };
+    Err(SceneError::new(
+        path,
+        format!("the file takes {excess}"),
+        "export a part of the mesh, or one with fewer triangles",
+    ))
+}
+
 fn binary(path: &Path, bytes: &[u8], mut warnings: Warnings) -> Result<Imported, SceneError> {
     let count = announced(bytes).unwrap_or_default() as usize;
+    let size = Size {
+        objects: 1,
+        names: 0,
+        triangles: count as u64,
+    };
+    check_size(path, size)?;
     let mut soup = Soup::default();
     let mut colored = 0;
     for (number, triangle) in bytes[HEAD..].chunks_exact(TRIANGLE).take(count).enumerate() {
@@ -140,6 +159,7 @@ fn text(source: &Source) -> Result<Imported, SceneError> {
     let mut objects = Vec::new();
     let mut solid = (String::new(), source.place(1));
     let mut soup = Soup::default();
+    let mut size = Size::default();
     // The corners of the facet that is open.
     let mut facet: Option<Vec<DVec3>> = None;
     let lines = source.lines();
@@ -180,7 +200,15 @@ fn text(source: &Source) -> Result<Imported, SceneError> {
                 corners.push(DVec3::new(coordinate()?, coordinate()?, coordinate()?));
             }
             "endfacet" => match facet.take().as_deref() {
-                Some(&[a, b, c]) => soup.push([a, b, c]),
+                Some(&[a, b, c]) => {
+                    if soup.triangles.is_empty() {
+                        size.objects += 1;
+                        size.names += solid.0.len() as u64;
+                    }
+                    size.triangles += 1;
+                    check_size(&source.path, size).map_err(|error| error.at_line(number))?;
+                    soup.push([a, b, c]);
+                }
                 _ => return Err(misplaced("this facet has not three vertices")),
             },
             "outer" | "endloop" | "endsolid" => {}

@@ -3,7 +3,7 @@
 
 use super::access::Access;
 use super::{SceneError, SourceSpan, gzip};
-use crate::table::{clipped, shortened};
+use crate::table::{clipped, grouped, shortened};
 use std::collections::HashMap;
 use std::path::{Path, PathBuf};
 use std::string::FromUtf8Error;
@@ -123,13 +123,27 @@ pub(crate) fn check_encoding(path: &Path, bytes: &[u8]) -> Result<(), SceneError
     ))
 }
 
+/// The most sentences of a file that are kept.
+const MOST_SENTENCES: usize = 40;
+
 /// Warnings of an importer. A sentence is kept once, with the first line it applies to and the
-/// number of further lines. So the warnings of a file with a million equal faults stay readable.
+/// number of further lines. Of further sentences of a file with many, which name a word each, the number is kept. So the
+/// warnings of a file with a million faults stay readable.
 #[derive(Default)]
 pub(super) struct Warnings {
     /// Sentence, first place, and the number of further places.
     found: Vec<(String, SourceSpan, usize)>,
     index: HashMap<String, usize>,
+    files: HashMap<Arc<PathBuf>, OfFile>,
+}
+
+/// The warnings of a file.
+#[derive(Default)]
+struct OfFile {
+    /// The number of sentences.
+    kept: usize,
+    /// The place of the first warning that is not kept, and the number of all such.
+    more: Option<(SourceSpan, usize)>,
 }
 
 impl Warnings {
@@ -151,19 +165,33 @@ impl Warnings {
             self.found[index].2 += times;
             return;
         }
+        let file = self.files.entry(Arc::clone(&place.file)).or_default();
+        if file.kept == MOST_SENTENCES {
+            file.more.get_or_insert((place, 0)).1 += times.max(1);
+            return;
+        }
+        file.kept += 1;
         self.index.insert(sentence.clone(), self.found.len());
         self.found.push((sentence, place, times.saturating_sub(1)));
     }
 
     pub(super) fn into_sentences(self) -> Vec<String> {
-        self.found
-            .into_iter()
-            .map(|(sentence, place, more)| match more {
-                0 => format!("{place}: {sentence}"),
-                1 => format!("{place}: {sentence} (and once more)"),
-                _ => format!("{place}: {sentence} (and {more} times more)"),
-            })
-            .collect()
+        let found = self.found.into_iter();
+        let found = found.map(|(sentence, place, more)| match more {
+            0 => format!("{place}: {sentence}"),
+            1 => format!("{place}: {sentence} (and once more)"),
+            _ => format!("{place}: {sentence} (and {more} times more)"),
+        });
+        let mut more: Vec<_> = self.files.into_values().filter_map(|it| it.more).collect();
+        more.sort_by(|(a, _), (b, _)| a.file.cmp(&b.file));
+        let more = more.into_iter().map(|(place, count)| match count {
+            1 => format!("{place}: 1 further warning, of this place, is not listed"),
+            _ => {
+                let count = grouped(count);
+                format!("{place}: {count} further warnings, from this place on, are not listed")
+            }
+        });
+        found.chain(more).collect()
     }
 }
 
@@ -243,6 +271,33 @@ mod tests {
             [
                 "a.obj:3: a face is skipped (and 2 times more)",
                 "a.obj: there is no light"
+            ]
+        );
+    }
+
+    #[test]
+    fn warnings_that_name_a_word_each_are_counted() {
+        let [objects, materials] =
+            ["a.obj", "a.mtl"].map(|name| Source::from_bytes(Path::new(name), Vec::new()));
+        let mut warnings = Warnings::default();
+        for line in 1..=100_000 {
+            warnings.add(&objects, line, format!("the statement {line} is unknown"));
+        }
+        warnings.add(&objects, 100_001, "the statement 7 is unknown");
+        for line in 1..=41 {
+            warnings.add(&materials, line, format!("the color {line} is unknown"));
+        }
+        let sentences = warnings.into_sentences();
+        assert_eq!(sentences.len(), 2 * MOST_SENTENCES + 2);
+        assert_eq!(
+            sentences[6],
+            "a.obj:7: the statement 7 is unknown (and once more)"
+        );
+        assert_eq!(
+            sentences[2 * MOST_SENTENCES..],
+            [
+                "a.mtl:41: 1 further warning, of this place, is not listed",
+                "a.obj:41: 99,960 further warnings, from this place on, are not listed"
             ]
         );
     }

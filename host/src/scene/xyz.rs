@@ -74,7 +74,7 @@ fn parse<'a>(
             };
             source.error_at(word, cause, remedy)
         })?;
-        parsed.models.push(Model { number: "", line });
+        parsed.add_model(source, Model { number: "", line })?;
         let model = parsed.models.len() - 1;
         let mut next = |done: usize| {
             lines.next().ok_or_else(|| {

@@ -19,6 +19,11 @@ impl GroupColumns {
         }
     }
 
+    /// Returns how many chains a row names, or a few more.
+    pub(super) fn count_of_chains(&self, table: &Table<'_>) -> usize {
+        1 + table.value([self.chains]).matches(',').count()
+    }
+
     pub(super) fn read<'a>(&self, table: &Table<'a>) -> Group<'a> {
         let chains = table.value([self.chains]).split(',').map(str::trim);
         Group {

@@ -50,10 +50,19 @@ fn read(input: Input<'_>) -> Result<Imported, SceneError> {
 /// # Errors
 /// If the syntax is broken, a table is incomplete, or coordinates are no finite numbers.
 fn parse<'a>(source: &'a Source, warnings: &mut Warnings) -> Result<Parsed<'a>, SceneError> {
+    parse_into(source, Parsed::default(), warnings)
+}
+
+/// Reads the first data block that has atoms, and adds them to what there is.
+pub(super) fn parse_into<'a>(
+    source: &'a Source,
+    parsed: Parsed<'a>,
+    warnings: &mut Warnings,
+) -> Result<Parsed<'a>, SceneError> {
     let mut parser = Parser {
         source,
         warnings,
-        parsed: Parsed::default(),
+        parsed,
         model_index: HashMap::new(),
     };
     let mut tokens = Tokens::new(source);
@@ -80,7 +89,7 @@ fn parse<'a>(source: &'a Source, warnings: &mut Warnings) -> Result<Parsed<'a>, 
                         )
                         .at_line(line));
                 };
-                single.tags.push(tag);
+                single.add_column(source, tag, line)?;
                 single.row.push(value);
                 token = tokens.next()?;
             }
@@ -129,7 +138,7 @@ impl<'a> Parser<'a, '_> {
         let mut table = Table::default();
         let mut token = tokens.next()?;
         while let Some(Token::Tag(tag)) = token {
-            table.tags.push(tag);
+            table.add_column(self.source, tag, tokens.line)?;
             token = tokens.next()?;
         }
         let Some(columns) = Columns::of(&table) else {
@@ -177,9 +186,14 @@ impl<'a> Parser<'a, '_> {
     fn read(&mut self, table: &Table<'a>, columns: &Columns) -> Result<(), SceneError> {
         match columns {
             Columns::Atom(columns) => self.atom(table, columns)?,
-            Columns::Bond(columns) => self.bond(table, columns),
-            Columns::Group(columns) => self.parsed.groups.push(columns.read(table)),
+            Columns::Bond(columns) => self.bond(table, columns)?,
+            Columns::Group(columns) => {
+                let names = 1 + columns.count_of_chains(table);
+                self.parsed.spend_names(self.source, table.line, names)?;
+                self.parsed.add_group(self.source, columns.read(table))?;
+            }
             Columns::Operator(columns) => {
+                self.parsed.spend_operator(self.source, table.line)?;
                 let matrix = columns.read(table);
                 match self.parsed.operators.entry(matrix.name) {
                     Entry::Vacant(place) => {
@@ -228,14 +242,14 @@ impl<'a> Parser<'a, '_> {
             "" => "1",
             number => number,
         };
-        let models = &mut self.parsed.models;
-        let model = *self.model_index.entry(number).or_insert_with(|| {
-            models.push(Model {
-                number,
-                line: table.line,
-            });
-            models.len() - 1
-        });
+        let model = match self.model_index.entry(number) {
+            Entry::Occupied(model) => *model.get(),
+            Entry::Vacant(place) => {
+                let line = table.line;
+                self.parsed.add_model(self.source, Model { number, line })?;
+                *place.insert(self.parsed.models.len() - 1)
+            }
+        };
         let atom = Atom {
             site: Site {
                 element,
@@ -255,7 +269,7 @@ impl<'a> Parser<'a, '_> {
         self.parsed.add(self.source, atom)
     }
 
-    fn bond(&mut self, table: &Table<'a>, columns: &BondColumns) {
+    fn bond(&mut self, table: &Table<'a>, columns: &BondColumns) -> Result<(), SceneError> {
         // Hydrogen bonds do not count, and a partner that symmetry moves is not where its atom is.
         let kind = table.value([columns.kind]);
         let is_bond = ["covale", "disulf", "metalc"].iter().any(|bond| {
@@ -263,19 +277,19 @@ impl<'a> Parser<'a, '_> {
                 .is_some_and(|start| start.eq_ignore_ascii_case(bond))
         });
         let [first, second] = columns.symmetry.map(|column| table.value([column]));
-        if is_bond && first == second {
-            let end = |end: &EndColumns| {
-                End::Name([
-                    table.value(end.chain),
-                    table.value(end.number),
-                    table.value([end.insertion]),
-                    table.value(end.name),
-                ])
-            };
-            self.parsed
-                .bonds
-                .push((table.line, [end(&columns.ends[0]), end(&columns.ends[1])]));
+        if !is_bond || first != second {
+            return Ok(());
         }
+        let ends = columns.ends.each_ref().map(|end| {
+            End::Name([
+                table.value(end.chain),
+                table.value(end.number),
+                table.value([end.insertion]),
+                table.value(end.name),
+                table.value([end.altloc]),
+            ])
+        });
+        self.parsed.add_bond(self.source, (table.line, ends))
     }
 }
 
@@ -339,6 +353,7 @@ struct EndColumns {
     number: [Column; 2],
     insertion: Column,
     name: [Column; 2],
+    altloc: Column,
 }
 
 struct BondColumns {
@@ -356,6 +371,7 @@ impl BondColumns {
                 number: [column("auth_seq_id"), column("label_seq_id")],
                 insertion: table.column(&format!("pdbx_ptnr{n}_PDB_ins_code")),
                 name: [column("label_atom_id"), column("auth_atom_id")],
+                altloc: table.column(&format!("pdbx_ptnr{n}_label_alt_id")),
             }
         };
         Self {

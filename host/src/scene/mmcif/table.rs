@@ -1,5 +1,12 @@
 //! Tables of CIF, row by row.
 
+use crate::scene::SceneError;
+use crate::scene::text::Source;
+use crate::table::grouped;
+
+/// The most columns of a table. The largest of the dictionaries has some hundreds.
+const MOST_COLUMNS: usize = 10_000;
+
 /// The index of a column.
 pub(super) type Column = Option<usize>;
 
@@ -17,6 +24,22 @@ pub(super) struct Table<'a> {
 }
 
 impl<'a> Table<'a> {
+    /// Adds a column, unless there are too many: a name can be shorter than the memory of its column.
+    pub(super) fn add_column(
+        &mut self,
+        source: &Source,
+        tag: &'a str,
+        line: usize,
+    ) -> Result<(), SceneError> {
+        if self.tags.len() == MOST_COLUMNS {
+            let cause = format!("a table has more than {} columns", grouped(MOST_COLUMNS));
+            let error = source.error(cause, "split the table, or leave columns out");
+            return Err(error.at_line(line));
+        }
+        self.tags.push(tag);
+        Ok(())
+    }
+
     pub(super) fn is_of(&self, wanted: &str) -> bool {
         self.tags
             .first()

@@ -183,9 +183,12 @@ fn missing_ends(source: &Source, parsed: &Parsed<'_>, warnings: &mut Warnings) {
     if parsed.bonds.is_empty() {
         return;
     }
-    let known: HashSet<End<'_>> = parsed.atoms.iter().flat_map(ends_of).collect();
+    let mut missing: HashSet<&End<'_>> = named_ends(parsed).collect();
+    for end in parsed.atoms.iter().flat_map(ends_of) {
+        missing.remove(&end);
+    }
     let mut all = parsed.bonds.iter().filter_map(|(line, bond)| {
-        let end = bond.iter().find(|end| !known.contains(end))?;
+        let end = bond.iter().find(|end| missing.contains(end))?;
         Some((*line, *end))
     });
     let Some((line, first)) = all.next() else {
@@ -194,8 +197,13 @@ fn missing_ends(source: &Source, parsed: &Parsed<'_>, warnings: &mut Warnings) {
     let named = match first {
         End::Serial(serial) => format!("CONECT names the atom {serial}"),
         End::Name(names) => {
-            let [chain, number, _, name] = names.map(shortened);
-            format!("struct_conn names the atom {chain}/{number}/{name}")
+            let [chain, number, _, name, altloc] = names.map(shortened);
+            let at = if altloc.is_empty() {
+                ""
+            } else {
+                " at the alternate location "
+            };
+            format!("struct_conn names the atom {chain}/{number}/{name}{at}{altloc}")
         }
     };
     let sentence = format!("{named}, which the file lacks; the bond is left out");
@@ -203,9 +211,18 @@ fn missing_ends(source: &Source, parsed: &Parsed<'_>, warnings: &mut Warnings) {
 }
 
 /// Returns the names of an atom in bonds.
-fn ends_of<'a>(atom: &Atom<'a>) -> [End<'a>; 2] {
-    let name = [atom.chain, atom.number, atom.insertion, atom.name];
-    [End::Serial(atom.serial), End::Name(name)]
+fn ends_of<'a>(atom: &Atom<'a>) -> [End<'a>; 3] {
+    let name = |altloc| [atom.chain, atom.number, atom.insertion, atom.name, altloc];
+    [
+        End::Serial(atom.serial),
+        End::Name(name(atom.altloc)),
+        End::Name(name("")),
+    ]
+}
+
+/// The ends that bonds name: far fewer than atoms have.
+fn named_ends<'p, 'a>(parsed: &'p Parsed<'a>) -> impl Iterator<Item = &'p End<'a>> {
+    parsed.bonds.iter().flat_map(|(_, ends)| ends)
 }
 
 /// The bonds between the chosen atoms: those of the file, and those that distances imply.
@@ -215,17 +232,22 @@ fn find_bonds(
     atoms: &[&Atom<'_>],
     warnings: &mut Warnings,
 ) -> Vec<[u32; 2]> {
-    let mut ends: HashMap<End<'_>, u32> = HashMap::new();
-    for (atom, index) in atoms.iter().zip(0..) {
-        for end in ends_of(atom) {
-            ends.entry(end).or_insert(index);
+    let mut ends: HashMap<&End<'_>, Option<u32>> = HashMap::new();
+    ends.extend(named_ends(parsed).map(|end| (end, None)));
+    if !ends.is_empty() {
+        for (atom, index) in atoms.iter().zip(0..) {
+            for end in ends_of(atom) {
+                if let Some(first) = ends.get_mut(&end) {
+                    first.get_or_insert(index);
+                }
+            }
         }
     }
     // An end that is missing here may be in another model or an alternate location.
     let stated = parsed
         .bonds
         .iter()
-        .filter_map(|(_, [a, b])| Some([*ends.get(a)?, *ends.get(b)?]));
+        .filter_map(|(_, [a, b])| Some([ends[a]?, ends[b]?]));
     let sites: Vec<Site> = atoms.iter().map(|atom| atom.site).collect();
     let (perceived, crowded) = perceive(&sites);
     if let Some(&first) = crowded.first() {

@@ -1,6 +1,7 @@
 //! The content of a molecule file.
 
 use super::element::Element;
+use super::limit::Left;
 use glam::DVec3;
 use std::collections::HashMap;
 use std::rc::Rc;
@@ -59,8 +60,9 @@ impl<'a> Atom<'a> {
 pub(in crate::scene) enum End<'a> {
     /// An atom's serial number, in PDB.
     Serial(&'a str),
-    /// Chain, residue number, insertion code and atom name, in mmCIF.
-    Name([&'a str; 4]),
+    /// Chain, residue number, insertion code, atom name and alternate location, in mmCIF. An empty location stands for
+    /// any.
+    Name([&'a str; 5]),
 }
 
 /// One of the models of a file.
@@ -106,16 +108,20 @@ pub(in crate::scene) enum Operators<'a> {
     Expression(&'a str),
 }
 
+/// The ends of a bond, and its line.
+pub(in crate::scene) type Bond<'a> = (usize, [End<'a>; 2]);
+
 /// The content of a file, before one model and one set of alternate locations is chosen.
 #[derive(Default)]
 pub(in crate::scene) struct Parsed<'a> {
     pub(in crate::scene) atoms: Vec<Atom<'a>>,
     /// In file order.
     pub(in crate::scene) models: Vec<Model<'a>>,
-    /// The ends of each, and its line.
-    pub(in crate::scene) bonds: Vec<(usize, [End<'a>; 2])>,
+    pub(in crate::scene) bonds: Vec<Bond<'a>>,
     /// The assemblies, in file order.
     pub(in crate::scene) groups: Vec<Group<'a>>,
     /// Operators by their name, for expressions.
     pub(in crate::scene) operators: HashMap<&'a str, Matrix<'a>>,
+    /// The memory that is left for more.
+    pub(super) left: Left,
 }

@@ -1,4 +1,5 @@
 mod assembly;
+mod limits;
 mod real;
 
 use super::*;
@@ -328,6 +329,48 @@ fn mmcif_bonds() {
     assert_eq!(count(&text), 4);
     assert_eq!(count(&text.replace("metalc X", "hydrog X")), 2);
     assert_eq!(count(&text.replace("1_555 1_555", "1_555 2_655")), 2);
+}
+
+/// The nitrogen of a histidine binds zinc at one of its two alternate locations, and a sulfur whose location is open.
+#[test]
+fn mmcif_bonds_name_their_alternate_location() {
+    let atoms = ATOM_SITE.split("ATOM 1").next().unwrap();
+    let text = format!(
+        "{atoms}HETATM 1 ZN ZN . ZN B Y 7 ? 0 0 0 1\nATOM 2 N NE2 A HIS A X 1 ? 10 0 0 1\n\
+         ATOM 3 N NE2 B HIS A X 1 ? 2 0 0 1\nATOM 4 S SG A CYS A X 2 ? 0 6 0 1\nloop_\n\
+         _struct_conn.conn_type_id\n_struct_conn.ptnr1_auth_asym_id\n_struct_conn.ptnr1_auth_seq_id\n\
+         _struct_conn.ptnr1_label_atom_id\n_struct_conn.pdbx_ptnr1_label_alt_id\n\
+         _struct_conn.ptnr2_auth_asym_id\n_struct_conn.ptnr2_auth_seq_id\n_struct_conn.ptnr2_label_atom_id\n\
+         _struct_conn.pdbx_ptnr2_label_alt_id\nmetalc X 1 NE2 B Y 7 ZN ?\nmetalc Y 7 ZN . X 2 SG .\n"
+    );
+    let sticks = |text: &str, altloc| {
+        let options = MoleculeOptions {
+            style: MoleculeStyle::BallAndStick,
+            altloc,
+            ..MoleculeOptions::default()
+        };
+        let imported = read("t.cif", text, &options).unwrap();
+        let sticks = names(&imported).into_iter().map(String::from);
+        (
+            sticks.filter(|it| it.contains(" to ")).collect::<Vec<_>>(),
+            imported.warnings,
+        )
+    };
+    let sulfur = ["Y/ZN 7/ZN to X/CYS 2/SG", "X/CYS 2/SG to Y/ZN 7/ZN"];
+    let nitrogen = ["Y/ZN 7/ZN to X/HIS 1/NE2", "X/HIS 1/NE2 to Y/ZN 7/ZN"];
+    assert_eq!(
+        sticks(&text, None),
+        (sulfur.map(String::from).to_vec(), vec![])
+    );
+    let both = [nitrogen, sulfur].concat();
+    assert_eq!(sticks(&text, Some('B')).0, both);
+    let missing = text.replace("NE2 B Y 7", "NE2 C Y 7");
+    assert_eq!(
+        sticks(&missing, None).1,
+        [
+            "t.cif:31: struct_conn names the atom X/1/NE2 at the alternate location C, which the file lacks; the bond is left out"
+        ]
+    );
 }
 
 #[test]

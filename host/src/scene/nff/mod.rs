@@ -12,6 +12,8 @@
 //!   highlight, up to 1 - Ks. T filters the transmitted light by the color. Shine is the exponent
 //!   of Phong's cosine, between the view and the mirrored light. The halfway vector leans half as
 //!   far, so the exponent is four times as large.
+//! * Values beyond those of a blob are limited, with a warning: lights and the background to 2047, the parts of
+//!   materials to 1, and Shine to 256.
 //! * A negative radius (only the inside is visible) counts as its absolute value, since both sides
 //!   are drawn.
 //! * Polygons and patches are one mesh each, every other primitive one object, in file order.
@@ -32,6 +34,11 @@ use std::collections::{BTreeSet, HashMap};
 
 /// The factor from the exponent of Phong's cosine to that of the halfway vector's.
 const PHONG_TO_HALFWAY: f64 = 4.0;
+
+/// The largest exponent of Phong's cosine that a material holds.
+const MOST_SHINE: f64 = 1024.0 / PHONG_TO_HALFWAY;
+/// The brightest light that a blob holds.
+const BRIGHTEST: f64 = 2047.0;
 
 pub(super) const IMPORTER: Entry = Entry {
     name: "NFF",
@@ -139,7 +146,9 @@ impl<'a> Importer<'a> {
 
     fn background(&mut self, line: &Line<'a>) -> Result<(), SceneError> {
         let numbers = line.numbers::<3>(self.source, &mut self.warnings, 1, "b r g b")?;
-        self.scene.background = Some(self.color(line, numbers)?);
+        let color = self.color(line, numbers)?;
+        let color = self.limited(line, "the background", BRIGHTEST, color);
+        self.scene.background = Some(color);
         Ok(())
     }
 
@@ -153,7 +162,8 @@ impl<'a> Importer<'a> {
             given if given >= 6 => {
                 let [_, _, _, color @ ..] =
                     line.numbers::<6>(self.source, &mut self.warnings, 1, "l x y z r g b")?;
-                self.color(line, color)?
+                let color = self.color(line, color)?;
+                self.limited(line, "the color of a light", BRIGHTEST, color)
             }
             _ => {
                 return Err(self.source.error_at(
@@ -188,6 +198,15 @@ impl<'a> Importer<'a> {
             ));
         }
         Ok(color)
+    }
+
+    /// Limits a color to what a blob holds.
+    fn limited(&mut self, line: &Line<'a>, what: &str, most: f64, color: Color) -> Color {
+        if color.iter().any(|&channel| channel > most) {
+            let sentence = format!("{what} is limited to the range 0 to {most}");
+            self.warnings.add(self.source, line.number, sentence);
+        }
+        color.map(|channel| channel.min(most))
     }
 
     fn fill(&mut self, line: &Line<'a>) -> Result<(), SceneError> {
@@ -244,14 +263,29 @@ impl<'a> Importer<'a> {
                 ),
             );
         }
+        let diffuse = [r, g, b].map(|c| c * kd * (1.0 - transmit).max(0.0));
+        let diffuse = self.limited(
+            line,
+            "the color of a material times Kd (1 - T)",
+            1.0,
+            diffuse,
+        );
+        let mirror = self.limited(line, "Ks", 1.0, [ks; 3]);
+        let transmitted = [r, g, b].map(|c| c * transmit);
+        let transmitted = self.limited(line, "the color of a material times T", 1.0, transmitted);
+        let highlight = ks.min((1.0 - ks).max(0.0));
+        if highlight > 0.0 && shine > MOST_SHINE {
+            let sentence = format!("Shine is limited to the range 0 to {MOST_SHINE}");
+            self.warnings.add(self.source, line.number, sentence);
+        }
         let index = self.scene.materials.len();
         self.scene.materials.push(Material {
             name: format!("fill {}", index + 1),
-            diffuse: Diffuse::Plain([r, g, b].map(|c| c * kd * (1.0 - transmit).max(0.0))),
-            highlight: [ks.min((1.0 - ks).max(0.0)); 3],
-            shininess: (PHONG_TO_HALFWAY * shine).round().clamp(1.0, 1024.0) as u16,
-            mirror: [ks; 3],
-            transmit: [r, g, b].map(|c| c * transmit),
+            diffuse: Diffuse::Plain(diffuse),
+            highlight: [highlight; 3],
+            shininess: (PHONG_TO_HALFWAY * shine.min(MOST_SHINE)).round().max(1.0) as u16,
+            mirror,
+            transmit: transmitted,
             ior: ior.clamp(1.0, 4.0),
             place: self.source.place(line.number),
             ..Material::default()

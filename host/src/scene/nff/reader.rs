@@ -4,12 +4,17 @@ use crate::scene::SceneError;
 use crate::scene::text::{Source, Warnings};
 use std::str::Lines as TextLines;
 
+/// The most words of a line that are kept. No entity has as many, and a line of one letter each would take more memory
+/// than the file.
+const MOST_WORDS: usize = 64;
+
 /// A line that is neither empty nor a comment.
 pub(super) struct Line<'a> {
     /// Counted from 1.
     pub(super) number: usize,
     /// Without comment and surrounding space.
     pub(super) text: &'a str,
+    /// The first [`MOST_WORDS`].
     pub(super) words: Vec<&'a str>,
 }
 
@@ -86,7 +91,7 @@ impl<'a> Lines<'a> {
             self.number += 1;
             let text = line.split('#').next().unwrap_or("").trim();
             if !text.is_empty() {
-                let words = text.split_whitespace().collect();
+                let words = text.split_whitespace().take(MOST_WORDS).collect();
                 return Some(Line {
                     number: self.number,
                     text,

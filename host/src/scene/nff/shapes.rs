@@ -158,6 +158,14 @@ impl<'a> Importer<'a> {
                 given.numbers::<3>(self.source, &mut self.warnings, 0, "x y z")?
             };
             vertices.push(DVec3::new(x, y, z));
+            self.reject_excess(
+                &given,
+                Size {
+                    objects: 1,
+                    names: 0,
+                    triangles: vertices.len() as u64,
+                },
+            )?;
         }
         let Some(result) = polygon::triangulate(&vertices) else {
             return Err(self.source.error_at(
@@ -189,6 +197,16 @@ impl<'a> Importer<'a> {
         Ok(())
     }
 
+    /// Rejects an object of this size if it no longer fits into memory.
+    fn reject_excess(&self, line: &Line<'a>, size: Size) -> Result<(), SceneError> {
+        let Some(excess) = self.size.plus(size).excess() else {
+            return Ok(());
+        };
+        let cause = format!("up to this object the file takes {excess}");
+        let remedy = "leave objects out, or use larger ones";
+        Err(self.source.error_at(line.text, cause, remedy))
+    }
+
     fn add(&mut self, kind: &str, line: &Line<'a>, shape: Shape) -> Result<(), SceneError> {
         let material = self.material.unwrap_or_else(|| {
             self.warnings.add(
@@ -208,12 +226,9 @@ impl<'a> Importer<'a> {
         *count += 1;
         let name = format!("{kind} {count}");
         let attributes = Attributes::default();
-        self.size = self.size.plus(Size::of(&shape, name.len(), &attributes));
-        if let Some(excess) = self.size.excess() {
-            let cause = format!("up to this object the file takes {excess}");
-            let remedy = "leave objects out, or use larger ones";
-            return Err(self.source.error_at(line.text, cause, remedy));
-        }
+        let size = Size::of(&shape, name.len(), &attributes);
+        self.reject_excess(line, size)?;
+        self.size = self.size.plus(size);
         self.scene.objects.push(Object {
             name,
             material,

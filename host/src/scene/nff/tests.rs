@@ -207,6 +207,39 @@ fn dialects_are_read_with_warnings() {
 }
 
 #[test]
+fn values_beyond_a_blob_are_limited_with_a_warning() {
+    let text = "b 1 1 3000\nl 0 5 0 5000 1 2047\nl 0 5 0\nf 1 1 1 1.5 0 0 0 1\ns 0 0 0 1\n\
+                f 4 .5 0 .5 1.25 9 2 1\ns 3 0 0 1\nf 1 1 1 .5 .5 300 0 1\ns 6 0 0 1\n\
+                f 2 1 1 .5 0 300 0 1\ns 9 0 0 1\n";
+    let Imported {
+        scene, warnings, ..
+    } = read(text).unwrap();
+    assert_eq!(
+        warnings,
+        [
+            "t.nff:1: the background is limited to the range 0 to 2047",
+            "t.nff:2: the color of a light is limited to the range 0 to 2047",
+            "t.nff:4: the color of a material times Kd (1 - T) is limited to the range 0 to 1",
+            "t.nff:6: Ks is limited to the range 0 to 1",
+            "t.nff:6: the color of a material times T is limited to the range 0 to 1",
+            "t.nff:8: Shine is limited to the range 0 to 256",
+        ]
+    );
+    assert_eq!(scene.background, Some([1.0, 1.0, 2047.0]));
+    let Light::Point { color, .. } = scene.lights[0] else {
+        panic!()
+    };
+    assert_eq!(color, [2047.0, 1.0, 2047.0]);
+    let [white, glass, shiny, within] = &scene.materials[..] else {
+        panic!("{:?}", scene.materials);
+    };
+    assert_eq!(white.diffuse, Diffuse::Plain([1.0; 3]));
+    assert_eq!((glass.mirror, glass.transmit), ([1.0; 3], [1.0, 1.0, 0.0]));
+    assert_eq!(shiny.shininess, 1024);
+    assert_eq!(within.diffuse, Diffuse::Plain([1.0, 0.5, 0.5]));
+}
+
+#[test]
 fn bytes_that_are_not_utf8_are_harmless_in_comments_alone() {
     let read = |bytes: &[u8]| samples::read("t.nff", bytes);
     assert!(read(b"# caf\xe9\ns 0 0 0 1\n").is_ok());

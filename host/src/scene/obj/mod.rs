@@ -6,15 +6,16 @@
 //!
 //! Every `o`, `g` and change of `usemtl` starts a new mesh, in file order, which holds only the vertices that it uses.
 //! Faces are cut into triangles in file order. A face whose corners all have normals is smooth. Smoothing groups are
-//! ignored, with a warning. Colors of vertices are in sRGB. Zero-area triangles are kept for the compiler to report.
+//! ignored, with a warning. Colors of vertices are in sRGB. Zero-area triangles are kept for the compiler to report. A
+//! backslash at the end of a line continues it on the next one, also within names.
 
+mod lines;
 mod mtl;
 mod parser;
 
 use super::access::Access;
 use super::importer::{Importer, Input};
 use super::polygon::{self, MAX_CONCAVE};
-use super::size::Size;
 use super::text::{Source, Warnings};
 use super::texture::Images;
 use super::{Attributes, Color, Imported, Material, Normals, Object, Scene, SceneError, Shape};
@@ -58,11 +59,11 @@ fn read(input: Input<'_>) -> Result<Imported, SceneError> {
 
 fn import(source: &Source, access: &Access) -> Result<Imported, SceneError> {
     let mut warnings = Warnings::default();
-    let parsed = parser::parse(source, &mut warnings)?;
+    let continued = lines::continued(source);
+    let parsed = parser::parse(source, &continued, &mut warnings)?;
     if parsed.parts.is_empty() {
         return Err(without_faces(source, &parsed));
     }
-    check_size(source, &parsed)?;
     let library = read_libraries(source, &parsed, access, &mut warnings)?;
     let mut materials = Materials {
         library,
@@ -120,27 +121,6 @@ fn without_faces(source: &Source, parsed: &Parsed<'_>) -> SceneError {
     }
 }
 
-/// Rejects files whose parts repeat a long name until no memory holds it.
-fn check_size(source: &Source, parsed: &Parsed<'_>) -> Result<(), SceneError> {
-    let mut size = Size::default();
-    for part in &parsed.parts {
-        size = size.plus(Size {
-            objects: 1,
-            names: part.name.len() as u64,
-            triangles: (part.corners.len() - 2 * part.faces.len()) as u64,
-        });
-        if let Some(excess) = size.excess() {
-            return Err(source
-                .error(
-                    format!("up to this part the file takes {excess}"),
-                    "give objects and groups shorter names, or export a part of the scene",
-                )
-                .at_line(part.line));
-        }
-    }
-    Ok(())
-}
-
 /// Reads the files that `mtllib` names. A missing one only causes a warning: it is often not delivered, and the
 /// geometry is complete.
 fn read_libraries(
@@ -164,7 +144,8 @@ fn read_libraries(
         let names: Vec<&str> = if allowed(names).is_ok_and(|whole| access.is_file(&whole)) {
             vec![names]
         } else {
-            names.split_whitespace().collect()
+            let names = names.split_whitespace();
+            names.take_while(|word| !word.starts_with('#')).collect()
         };
         for name in names {
             let path = allowed(name)?;

@@ -355,7 +355,15 @@ impl Reader<'_> {
             ));
         }
         let name = rest.replace('\\', "/");
-        match images.file(&self.source.path, &name) {
+        let mut found = images.file(&self.source.path, &name);
+        // Names may have number signs, so what follows one is a comment only where the whole is no file.
+        let mut signs = name.match_indices('#').map(|(at, _)| &name[..at]);
+        if let Err(FileError::Unreadable(_)) = found
+            && let Some(before) = signs.find(|it| it.ends_with(char::is_whitespace))
+        {
+            found = images.file(&self.source.path, before.trim_end());
+        }
+        match found {
             Ok(image) => Ok(Some(Texture {
                 wrap: [if clamps { Wrap::Clamp } else { Wrap::Repeat }; 2],
                 // Coordinates have v downwards here, and upwards there.

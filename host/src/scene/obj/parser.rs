@@ -1,9 +1,11 @@
 //! The lines of an OBJ file: vertices, and parts of faces that share a name and a material.
 
+use super::lines::{MOST_WORDS, WholeLines};
+use crate::scene::size::{Size, lists_fit};
 use crate::scene::text::{Source, Warnings};
 use crate::scene::{Color, SceneError};
 use crate::srgb::linear_of_srgb;
-use crate::table::shortened;
+use crate::table::{grouped, shortened};
 use glam::{DVec2, DVec3};
 
 #[derive(Default)]
@@ -62,17 +64,21 @@ pub(super) struct Face {
     pub(super) corners: usize,
 }
 
+/// Bytes of a vertex: its position, its color, and its number in a mesh.
+const VERTEX: usize = size_of::<DVec3>() + size_of::<Color>() + size_of::<(usize, u32)>();
+
 /// Statements about parts that are not drawn, or not needed to draw.
 const PASSED_OVER: [&str; 8] = [
     "vp", "mg", "bevel", "c_interp", "d_interp", "lod", "maplib", "call",
 ];
 
-/// Reads all lines.
+/// Reads all lines; `continued` are the [continued](super::lines::continued) ones of the file.
 ///
 /// # Errors
 /// If a vertex is not finite, or a face names a vertex that does not exist.
 pub(super) fn parse<'a>(
     source: &'a Source,
+    continued: &'a [String],
     warnings: &mut Warnings,
 ) -> Result<Parsed<'a>, SceneError> {
     let mut parser = Parser {
@@ -83,17 +89,19 @@ pub(super) fn parse<'a>(
         fresh: true,
         highest: None,
         smoothing: None,
+        size: Size::default(),
     };
-    let mut lines = source.lines();
-    while let Some((number, line)) = lines.next() {
-        let mut words: Vec<&str> = Vec::new();
-        let mut rest = line.trim_end();
-        // A backslash at its end continues a line on the next one, unless a comment ends so.
-        while let Some(continued) = rest.strip_suffix('\\').filter(|it| !has_comment(it)) {
-            words.extend(continued.split_whitespace());
-            rest = lines.next().map_or("", |(_, line)| line.trim_end());
+    let mut continued = continued.iter();
+    let mut words: Vec<&str> = Vec::new();
+    for (number, line, parts) in WholeLines(source.lines()) {
+        words.clear();
+        let all = parts.iter().flat_map(|part| part.split_whitespace());
+        words.extend(all.take(MOST_WORDS + 1));
+        if words.len() > MOST_WORDS || parts.len() > MOST_WORDS {
+            let cause = format!("the line has more than {} words", grouped(MOST_WORDS));
+            let remedy = "split it, or export a part of the scene";
+            return Err(source.error(cause, remedy).at_line(number));
         }
-        words.extend(rest.split_whitespace());
         // A comment may follow numbers; in names a number sign is common.
         let end = words
             .iter()
@@ -104,24 +112,23 @@ pub(super) fn parse<'a>(
             Some(&"vt") => parser.texture_vertex(line, &words[1..end])?,
             Some(&"vn") => parser.normal(number, line, &words[1..end], warnings)?,
             Some(&"f") => parser.face(number, &words[1..end], warnings)?,
-            _ => parser.statement(number, line.trim(), warnings),
+            _ if parts.len() > 1 => {
+                let whole = continued.next().map_or(line, |it| it.as_str());
+                parser.statement(number, whole.trim(), warnings);
+            }
+            _ => parser.statement(number, line, warnings),
         }
     }
     parser.finish(warnings)
 }
 
-/// Returns whether a word of a line begins a comment.
-fn has_comment(line: &str) -> bool {
-    line.split_whitespace().any(|word| word.starts_with('#'))
-}
-
-/// Reads the index of a normal or of texture coordinates, and returns it counted from 0. `count` is how many the file
-/// has so far. Returns [`OUT_OF_RANGE`] for an index that is out of range.
-fn number_of(index: &str, count: usize) -> u32 {
-    let index = index.parse::<i64>().ok().filter(|it| *it != 0);
-    let index = index.map(|it| if it < 0 { count as i64 + it } else { it - 1 });
-    let index = index.and_then(|it| u32::try_from(it).ok());
-    index.map_or(OUT_OF_RANGE, |it| it.min(OUT_OF_RANGE))
+/// Returns whether this many vertices, normals and texture coordinates fit into memory.
+pub(super) fn fit([vertices, normals, coordinates]: [usize; 3]) -> bool {
+    lists_fit(&[
+        (vertices, VERTEX),
+        (normals, size_of::<DVec3>()),
+        (coordinates, size_of::<DVec2>()),
+    ])
 }
 
 struct Parser<'a> {
@@ -135,6 +142,8 @@ struct Parser<'a> {
     highest: Option<(u64, &'a str)>,
     /// The first smoothing group.
     smoothing: Option<usize>,
+    /// The size of the scene up to the last face.
+    size: Size,
 }
 
 impl<'a> Parser<'a> {
@@ -147,7 +156,7 @@ impl<'a> Parser<'a> {
     ) -> Result<(), SceneError> {
         if words.len() < 3 {
             return Err(self.source.error_at(
-                line.trim(),
+                line,
                 format!("a vertex has {} of 3 coordinates", words.len()),
                 "write `v x y z`",
             ));
@@ -198,13 +207,34 @@ impl<'a> Parser<'a> {
             self.parsed.colors.push([1.0; 3]);
         }
         self.parsed.vertices.push(DVec3::from_array(position));
-        Ok(())
+        self.check_lists(line)
+    }
+
+    /// Rejects more vertices, normals and texture coordinates than fit into memory. Faces may use none of them.
+    fn check_lists(&self, line: &str) -> Result<(), SceneError> {
+        let Parsed {
+            vertices,
+            normals,
+            coordinates,
+            ..
+        } = &self.parsed;
+        let counts = [vertices.len(), normals.len(), coordinates.len()];
+        if fit(counts) {
+            return Ok(());
+        }
+        let [vertices, normals, coordinates] = counts.map(grouped);
+        let cause = format!(
+            "up to this line there are {vertices} vertices, {normals} normals and {coordinates} texture coordinates, \
+             more than fit into memory"
+        );
+        let remedy = "export a part of the scene, or leave normals or texture coordinates out";
+        Err(self.source.error_at(line, cause, remedy))
     }
 
     fn texture_vertex(&mut self, line: &'a str, words: &[&'a str]) -> Result<(), SceneError> {
         let &[u, ..] = words else {
             return Err(self.source.error_at(
-                line.trim(),
+                line,
                 "texture coordinates are missing",
                 "write `vt u v`",
             ));
@@ -215,7 +245,7 @@ impl<'a> Parser<'a> {
             *value = number.transpose()?.unwrap_or(0.0);
         }
         self.parsed.coordinates.push(DVec2::from_array(coordinates));
-        Ok(())
+        self.check_lists(line)
     }
 
     fn normal(
@@ -227,7 +257,7 @@ impl<'a> Parser<'a> {
     ) -> Result<(), SceneError> {
         let &[x, y, z, ..] = words else {
             return Err(self.source.error_at(
-                line.trim(),
+                line,
                 format!("a normal has {} of 3 components", words.len()),
                 "write `vn x y z`",
             ));
@@ -241,7 +271,7 @@ impl<'a> Parser<'a> {
             warnings.add(self.source, number, sentence);
         }
         self.parsed.normals.push(DVec3::from_array(normal));
-        Ok(())
+        self.check_lists(line)
     }
 
     fn face(
@@ -256,12 +286,12 @@ impl<'a> Parser<'a> {
         for word in words {
             let mut indices = word.split('/');
             corners.push(self.corner(word, indices.next().unwrap_or(""))?);
-            let mut next = |count: usize| match indices.next() {
-                None | Some("") => NO_INDEX,
-                Some(index) => number_of(index, count),
+            let mut next = |count: usize, what: &str| match indices.next() {
+                None | Some("") => Ok(NO_INDEX),
+                Some(index) => self.number_of([word, index], count, what),
             };
-            coordinates.push(next(self.parsed.coordinates.len()));
-            normals.push(next(self.parsed.normals.len()));
+            coordinates.push(next(self.parsed.coordinates.len(), "texture coordinate")?);
+            normals.push(next(self.parsed.normals.len(), "normal")?);
         }
         if corners.len() < 3 {
             let sentence = format!(
@@ -271,6 +301,7 @@ impl<'a> Parser<'a> {
             self.skip(line, &sentence, warnings);
             return Ok(());
         }
+        self.weigh(line, corners.len() - 2)?;
         if self.fresh {
             self.parsed.parts.push(Part {
                 name: self.name,
@@ -299,6 +330,21 @@ impl<'a> Parser<'a> {
             part.corners.extend(corners);
         }
         Ok(())
+    }
+
+    /// Rejects a face at which the scene no longer fits into memory, or parts that repeat a long name until it does not.
+    fn weigh(&mut self, line: usize, triangles: usize) -> Result<(), SceneError> {
+        if self.fresh {
+            self.size.objects += 1;
+            self.size.names += self.name.len() as u64;
+        }
+        self.size.triangles += triangles as u64;
+        let Some(excess) = self.size.excess() else {
+            return Ok(());
+        };
+        let cause = format!("up to this face the file takes {excess}");
+        let remedy = "give objects and groups shorter names, or export a part of the scene";
+        Err(self.source.error(cause, remedy).at_line(line))
     }
 
     /// Warns of a line that is passed over.
@@ -340,6 +386,31 @@ impl<'a> Parser<'a> {
                 Ok((index - 1) as u32)
             }
         }
+    }
+
+    /// Reads the index of a normal or of texture coordinates, `what`, of a corner. Returns it counted from 0; `count` is
+    /// how many the file has so far. Returns [`OUT_OF_RANGE`] for an index that is out of range.
+    fn number_of(
+        &self,
+        [word, index]: [&str; 2],
+        count: usize,
+        what: &str,
+    ) -> Result<u32, SceneError> {
+        let index = index.parse::<i64>().map_err(|_| {
+            let cause = format!(
+                "a face has the vertex {quoted:?}, whose {what} is not an index",
+                quoted = shortened(word)
+            );
+            let remedy = "normals and texture coordinates are counted from 1, or backwards from -1";
+            self.source.error_at(word, cause, remedy)
+        })?;
+        let index = match index {
+            0 => None,
+            index if index < 0 => Some(count as i64 + index),
+            index => Some(index - 1),
+        };
+        let index = index.and_then(|it| u32::try_from(it).ok());
+        Ok(index.map_or(OUT_OF_RANGE, |it| it.min(OUT_OF_RANGE)))
     }
 
     fn statement(&mut self, number: usize, line: &'a str, warnings: &mut Warnings) {

@@ -65,6 +65,42 @@ fn comments_that_end_in_a_backslash_do_not_continue() {
 }
 
 #[test]
+fn names_continue_on_the_next_line() {
+    let text = format!("{CORNERS}g a \\\n  b \\\nc\nusemtl \\\nred wood\nf 1 2 3\n");
+    let Imported {
+        scene, warnings, ..
+    } = read(&text).unwrap();
+    assert_eq!(scene.objects[0].name, "a b c");
+    assert_eq!(scene.objects[0].place.line, 10);
+    assert_eq!(
+        warnings,
+        ["t.obj:10: the material \"red wood\" is defined nowhere; the default is used"]
+    );
+    // Each continued statement gets its own line, those of numbers in between.
+    let text = format!("{CORNERS}vn 0 \\\n0 1\no a\\\n\nf 1 \\\n2 3\n\\\no b \\\nc\nf 1 3 4\n");
+    let scene = read(&text).unwrap().scene;
+    let names: Vec<_> = scene.objects.iter().map(|it| it.name.as_str()).collect();
+    assert_eq!(names, ["a", "b c"]);
+}
+
+#[test]
+fn names_of_material_files_continue_and_end_at_a_comment() {
+    let folder = tempfile::tempdir().unwrap();
+    for (name, material) in [("a", "newmtl a\nKd 1 0 0\n"), ("b", "newmtl b\nKd 0 1 0\n")] {
+        std::fs::write(folder.path().join(format!("{name}.mtl")), material).unwrap();
+    }
+    let path = folder.path().join("t.obj");
+    for libraries in ["a.mtl \\\nb.mtl", "a.mtl b.mtl # c.mtl"] {
+        let text = format!("mtllib {libraries}\n{CORNERS}usemtl b\nf 1 2 3\n");
+        std::fs::write(&path, text).unwrap();
+        let imported = load(&path).unwrap();
+        assert_eq!(imported.warnings, [] as [&str; 0], "{libraries}");
+        let diffuse = imported.scene.materials[0].diffuse;
+        assert_eq!(diffuse, Diffuse::Plain([0.0, 1.0, 0.0]), "{libraries}");
+    }
+}
+
+#[test]
 fn faces_may_come_before_their_vertices() {
     let scene = read(&format!("f 1 2 3\no later\n{CORNERS}")).unwrap().scene;
     assert_eq!(mesh(&scene.objects[0]).0.len(), 3);
@@ -140,6 +176,14 @@ fn faults_name_line_and_cause() {
     assert_eq!(
         fault(&format!("{CORNERS}f 1 2 x/1\n")),
         "t.obj:5: a face has the vertex \"x/1\", which is not an index"
+    );
+    assert_eq!(
+        fault(&format!("{CORNERS}f 1//x 2//x 3//x\n")),
+        "t.obj:5: a face has the vertex \"1//x\", whose normal is not an index"
+    );
+    assert_eq!(
+        fault(&format!("{CORNERS}f 1/1.5 2/1 3/1\n")),
+        "t.obj:5: a face has the vertex \"1/1.5\", whose texture coordinate is not an index"
     );
 }
 
@@ -344,6 +388,14 @@ fn parts_with_a_long_name_are_rejected_with_the_figure() {
         "{error}"
     );
     assert!(error.line.is_some());
+}
+
+#[test]
+fn lists_that_no_face_uses_are_limited() {
+    assert!(parser::fit([8_000_000, 50_000_000, 10_000_000]));
+    for many in [[60_000_000, 0, 0], [0, 80_000_000, 0], [0, 0, 120_000_000]] {
+        assert!(!parser::fit(many), "{many:?}");
+    }
 }
 
 #[test]

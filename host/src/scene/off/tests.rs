@@ -66,6 +66,14 @@ fn attributes_of_vertices_are_ignored_with_a_warning_each() {
     holds_the_square(&with("NOFF", "0 0 1"), &[normal]);
     holds_the_square(&with("CNOFF", "0 0 1 255 0 0 255"), &[color, normal]);
     holds_the_square(&with("STCNOFF", "0 0 1 1 0 0 1 0 0"), &[color, normal, texture]);
+    // As MeshLab writes them: the prefixes in other order, and the color before the normal.
+    holds_the_square(&with("NCOFF", "255 0 0 255 0 0 1"), &[color, normal]);
+    holds_the_square(&with("CSTOFF", "255 0 0 255 0.5 1"), &[color, texture]);
+    holds_the_square(&with("NSTOFF", "0 0 1 0.5 1"), &[normal, texture]);
+    holds_the_square(&with("NCSTOFF", "255 0 0 255 0 0 1 0.5 1"), &[color, normal, texture]);
+    holds_the_square(&with("ncstoff", "255 0 0 255 0 0 1 0.5 1"), &[color, normal, texture]);
+    holds_the_square(&with("noff", "0 0 1"), &[normal]);
+    holds_the_square(&with("off", ""), &[]);
     assert_eq!(
         fault(&with("NOFF", "")),
         (
@@ -139,6 +147,10 @@ fn faults_name_line_cause_and_remedy() {
         (String::from("OFF BINARY\n\0\0\0\x04"), "the file is binary OFF, which is not read", Some(1)),
         (String::from("4OFF\n1 1 1\n"), "the vertices of 4OFF have not three coordinates", Some(1)),
         (String::from("nOFF 3\n1 1 1\n"), "the vertices of nOFF have not three coordinates", Some(1)),
+        (String::from("CNCOFF\n1 1 1\n"), "the keyword \"CNCOFF\" is unknown", Some(1)),
+        (String::from("XOFF\n1 1 1\n"), "the keyword \"XOFF\" is unknown", Some(1)),
+        (String::from("4off\n1 1 1\n"), "the vertices of 4off have not three coordinates", Some(1)),
+        (String::from("NCnOFF 3\n1 1 1\n"), "the vertices of NCnOFF have not three coordinates", Some(1)),
         (String::from("PLY\n"), "the number of vertices is \"PLY\", which is not a whole number", Some(1)),
         (square("4 1 4", "4 -1 4"), "the number of faces is \"-1\", which is not a whole number", Some(2)),
         (square("4 1 4", "4 0 0"), "the file has no faces", None),

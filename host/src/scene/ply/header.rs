@@ -7,6 +7,7 @@ use super::payload::{Skipped, range};
 use crate::table::{grouped, printable, shortened};
 use ply_rs_bw::parser::{ParseError, Parser, Reader};
 use ply_rs_bw::ply::{ElementDef, Header, PropertyType};
+use std::collections::HashMap;
 use std::io::ErrorKind;
 use std::path::Path;
 
@@ -20,8 +21,69 @@ pub(super) fn read(
     let parser = Parser::<Skipped>::new();
     let header = parser.read_header(reader);
     let header = header.map_err(|error| fault(path, bytes, &error))?;
+    reject_doubled(path, bytes)?;
     ignored(path, bytes, warnings);
     Ok(header)
+}
+
+/// Rejects elements of one name, and properties of one name in an element. The crate keeps the last of them only, and
+/// would read all that follows at the wrong places.
+fn reject_doubled(path: &Path, bytes: &[u8]) -> Result<(), SceneError> {
+    let (mut elements, mut properties) = (HashMap::new(), HashMap::new());
+    for (number, line) in (1..).zip(lines(bytes)) {
+        let text = String::from_utf8_lossy(line);
+        let words: Vec<&str> = text.split_whitespace().collect();
+        let (known, name) = match words[..] {
+            ["end_header", ..] => break,
+            ["element", name, _] => {
+                properties.clear();
+                (&mut elements, name)
+            }
+            ["property", .., name] => (&mut properties, name),
+            _ => continue,
+        };
+        let first = *known.entry(name.to_owned()).or_insert(number);
+        if first != number {
+            let cause = format!(
+                "the header announces another {} {:?}; the first is in line {first}",
+                words[0],
+                shortened(name)
+            );
+            let remedy = "give each element, and each property of an element, a name of its own";
+            return Err(SceneError::new(path, cause, remedy).at_line(number));
+        }
+    }
+    Ok(())
+}
+
+/// The names of the components of normals.
+pub(super) const NORMAL: [&[&str]; 3] = [&["nx"], &["ny"], &["nz"]];
+/// The names of the channels of colors.
+pub(super) const COLOR: [&[&str]; 3] = [
+    &["red", "diffuse_red", "r"],
+    &["green", "diffuse_green", "g"],
+    &["blue", "diffuse_blue", "b"],
+];
+
+/// How many of three properties the vertices of a file have.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub(super) enum Announced {
+    None,
+    Some,
+    All,
+}
+
+/// Returns how many of three properties the header announces for vertices.
+pub(super) fn announced(header: &Header, names: [&[&str]; 3]) -> Announced {
+    let vertex = header.elements.get("vertex");
+    let has = |names: &[&str]| {
+        vertex.is_some_and(|it| names.iter().any(|name| it.properties.contains_key(*name)))
+    };
+    match names.map(has) {
+        [true, true, true] => Announced::All,
+        [false, false, false] => Announced::None,
+        _ => Announced::Some,
+    }
 }
 
 fn lines(bytes: &[u8]) -> impl Iterator<Item = &[u8]> {
@@ -99,6 +161,9 @@ fn quoted(line: &[u8]) -> String {
     )
 }
 
+/// The remedy of files that fit into no memory.
+pub(super) const TOO_LARGE: &str = "export a part of the mesh, or one with fewer faces";
+
 /// Bytes that a vertex takes until the scene is made, measured as the growth of the peak memory.
 const VERTEX: u64 = 128;
 
@@ -134,7 +199,7 @@ pub(super) fn check(path: &Path, element: &ElementDef, bytes: usize) -> Result<(
                 element.name,
                 grouped(most)
             ),
-            "export a part of the mesh, or one with fewer faces",
+            TOO_LARGE,
         ));
     }
     for property in element.properties.values() {

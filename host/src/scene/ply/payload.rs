@@ -1,8 +1,10 @@
 //! The elements of a PLY file. Those of a text file stand on a line each, as numbers that C's `strtod` reads.
 
+use super::super::size::{MOST_PRIMITIVES, Size};
 use super::super::text::Warnings;
 use super::super::{SceneError, SourceSpan};
-use crate::table::{printable, shortened};
+use super::header::TOO_LARGE;
+use crate::table::{grouped, printable, shortened};
 use ply_rs_bw::parser::{Parser, Reader};
 use ply_rs_bw::ply::{
     ElementDef, Encoding, Header, Property, PropertyAccess, PropertyType, ScalarType,
@@ -22,9 +24,16 @@ impl PropertyAccess for Skipped {
     }
 }
 
+/// The number of binary elements that are read at once, before their size is checked.
+const AT_ONCE: usize = 4096;
+/// The most numbers of a list in a text file: of strips of a triangle each, as many as a scene holds.
+const MOST_ENTRIES: usize = 4 * MOST_PRIMITIVES as usize;
+
 /// The rest of a file behind what was read.
 pub(super) struct Payload<'p> {
     path: &'p Path,
+    /// The size of the scene up to what was read.
+    pub(super) size: Size,
     encoding: Encoding,
     reader: Reader<&'p [u8]>,
     /// The next line of a text file, counted from 1.
@@ -37,6 +46,10 @@ impl<'p> Payload<'p> {
     pub(super) fn new(path: &'p Path, encoding: Encoding, reader: Reader<&'p [u8]>) -> Self {
         Self {
             path,
+            size: Size {
+                objects: 1,
+                ..Size::default()
+            },
             encoding,
             line: reader.line(),
             reader,
@@ -44,16 +57,35 @@ impl<'p> Payload<'p> {
         }
     }
 
-    /// Reads all elements of a name, which come next.
+    /// Reads all elements of a name, which come next. `triangles` returns how many one makes, or fewer.
     pub(super) fn read<E: PropertyAccess>(
         &mut self,
         element: &ElementDef,
         header: &Header,
+        triangles: impl Fn(&E) -> usize,
     ) -> Result<Vec<E>, SceneError> {
         match self.encoding {
-            Encoding::Ascii => self.text(element),
-            _ => self.binary(element, header),
+            Encoding::Ascii => self.text(element, triangles),
+            _ => self.binary(element, header, triangles),
         }
+    }
+
+    /// Adds the triangles of elements, unless they are too many; the first has this number.
+    fn weigh(
+        &mut self,
+        element: &ElementDef,
+        triangles: impl Iterator<Item = usize>,
+        first: usize,
+    ) -> Result<(), SceneError> {
+        for (triangles, number) in triangles.zip(first..) {
+            self.size.triangles += triangles as u64;
+            if let Some(excess) = self.size.excess() {
+                let name = shortened(&element.name);
+                let cause = format!("up to {name} {number} (from 0) the file takes {excess}");
+                return Err(SceneError::new(self.path, cause, TOO_LARGE));
+            }
+        }
+        Ok(())
     }
 
     /// Warns of the parts that were ignored.
@@ -76,26 +108,40 @@ impl<'p> Payload<'p> {
         &mut self,
         element: &ElementDef,
         header: &Header,
+        triangles: impl Fn(&E) -> usize,
     ) -> Result<Vec<E>, SceneError> {
-        let before = self.reader.line();
-        let parser = Parser::<E>::new();
-        let read = parser.read_payload_for_element(&mut self.reader, element, header);
-        read.map_err(|error| {
-            // The parser counts elements as lines.
-            let number = error.line().map_or(0, |line| line.saturating_sub(before));
-            if error.kind() == ErrorKind::UnexpectedEof {
-                return self.ends_early(element, number);
-            }
-            let cause = format!(
-                "a list of {} {number} (from 0) has a length that is not a whole number at or above 0",
-                element.name
-            );
-            SceneError::new(
-                self.path,
-                cause,
-                "copy the file again, as binary, or export it again",
-            )
-        })
+        let mut elements = Vec::new();
+        let mut few = element.clone();
+        while elements.len() < element.count {
+            let done = elements.len();
+            few.count = AT_ONCE.min(element.count - done);
+            let before = self.reader.line();
+            let read = Parser::new().read_payload_for_element(&mut self.reader, &few, header);
+            let read: Vec<E> = read.map_err(|error| {
+                // The parser counts elements as lines.
+                let number = error.line().map_or(0, |line| line.saturating_sub(before));
+                self.broken(element, done + number, error.kind())
+            })?;
+            self.weigh(element, read.iter().map(&triangles), done)?;
+            elements.extend(read);
+        }
+        Ok(elements)
+    }
+
+    /// The error of a binary element.
+    fn broken(&self, element: &ElementDef, number: usize, kind: ErrorKind) -> SceneError {
+        if kind == ErrorKind::UnexpectedEof {
+            return self.ends_early(element, number);
+        }
+        let cause = format!(
+            "a list of {} {number} (from 0) has a length that is not a whole number at or above 0",
+            element.name
+        );
+        SceneError::new(
+            self.path,
+            cause,
+            "copy the file again, as binary, or export it again",
+        )
     }
 
     fn ends_early(&self, element: &ElementDef, number: usize) -> SceneError {
@@ -108,7 +154,11 @@ impl<'p> Payload<'p> {
         SceneError::new(self.path, cause, remedy)
     }
 
-    fn text<E: PropertyAccess>(&mut self, element: &ElementDef) -> Result<Vec<E>, SceneError> {
+    fn text<E: PropertyAccess>(
+        &mut self,
+        element: &ElementDef,
+        triangles: impl Fn(&E) -> usize,
+    ) -> Result<Vec<E>, SceneError> {
         let mut elements = Vec::new();
         for number in 0..element.count {
             let Some(line) = self.next_line() else {
@@ -125,6 +175,7 @@ impl<'p> Payload<'p> {
             let (read, more) = read.map_err(|[cause, remedy]| {
                 SceneError::new(self.path, cause, remedy).at_line(self.line)
             })?;
+            self.weigh(element, [triangles(&read)].into_iter(), number)?;
             elements.push(read);
             if more > 0 {
                 let (_, count) = self.surplus.get_or_insert((self.line, 0));
@@ -284,14 +335,28 @@ impl<'w> Words<'w> {
                 String::from("write how many numbers follow, and then these"),
             ]
         })?;
-        let entries = (0..length).map(|entry| self.number(kind, Word::Entry(entry), property));
-        let entries: Vec<f64> = entries.collect::<Result<_, _>>()?;
+        let entry = |entry| {
+            if entry >= MOST_ENTRIES {
+                let most = grouped(MOST_ENTRIES);
+                let cause = format!("; at most {most} numbers are read");
+                let cause = self.wrong((Word::Length, property), text, cause);
+                return Err([cause, TOO_LARGE.to_owned()]);
+            }
+            self.number(kind, Word::Entry(entry), property)
+        };
+        let entries = (0..length).map(entry);
         let is_signed = range(kind).map(|range| *range.start() < 0);
         // Each number is of its type, so that none changes here.
         Ok(match is_signed {
-            Some(true) => Property::ListInt(entries.iter().map(|&it| it as i32).collect()),
-            Some(false) => Property::ListUInt(entries.iter().map(|&it| it as u32).collect()),
-            None => Property::ListDouble(entries),
+            Some(true) => {
+                let entries = entries.map(|it| it.map(|it| it as i32));
+                Property::ListInt(entries.collect::<Result<_, _>>()?)
+            }
+            Some(false) => {
+                let entries = entries.map(|it| it.map(|it| it as u32));
+                Property::ListUInt(entries.collect::<Result<_, _>>()?)
+            }
+            None => Property::ListDouble(entries.collect::<Result<_, _>>()?),
         })
     }
 }

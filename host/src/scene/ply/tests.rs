@@ -1,3 +1,5 @@
+mod limits;
+
 use super::*;
 use crate::scene::tests::samples::{self, load, mesh};
 

@@ -131,6 +131,21 @@ fn binary_files_share_vertices_and_say_what_is_too_much() {
 }
 
 #[test]
+fn binary_files_of_too_many_triangles_are_rejected_before_they_are_read() {
+    let path = Path::new("thing.stl");
+    let mut bytes = file(&[]);
+    for (count, expected) in [
+        (1 << 24, "the file has no triangles"),
+        (17_000_000, "the file takes about 3.8 GB of memory"),
+        (u32::MAX, "the file takes about 962.1 GB of memory"),
+    ] {
+        bytes[80..84].copy_from_slice(&count.to_le_bytes());
+        let error = binary(path, &bytes, Warnings::default()).unwrap_err();
+        assert!(error.cause.starts_with(expected), "{error}");
+    }
+}
+
+#[test]
 fn faults_name_line_or_triangle() {
     let cut = &file(&[[[0.0; 3]; 3]; 2])[..150];
     let solid = cut.to_vec();

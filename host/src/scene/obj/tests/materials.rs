@@ -116,7 +116,9 @@ fn textured(faces: &str, material: &str) -> Result<Imported, SceneError> {
     .unwrap();
     let pixels = [[255, 0, 0, 255], [0, 0, 255, 255]];
     let image = crate::scene::image::tests::png_of(2, 1, &pixels);
-    std::fs::write(folder.path().join("two colors.png"), image).unwrap();
+    for name in ["two colors.png", "wood # 2.png"] {
+        std::fs::write(folder.path().join(name), &image).unwrap();
+    }
     for broken in ["broken.png", "it cannot be read.png"] {
         std::fs::write(folder.path().join(broken), "PNG").unwrap();
     }
@@ -154,6 +156,25 @@ fn textures_are_read_with_their_options() {
     );
     assert_eq!(placed.warnings.len(), 1);
     assert!(placed.warnings[0].ends_with("the option -bm of a texture is ignored"));
+}
+
+#[test]
+fn comments_behind_names_of_textures_are_cut() {
+    let square = "f 1/1 2/2 3/3 4/4\n";
+    for name in [
+        "two colors.png # oak",
+        "two colors.png\t#1 # 2",
+        "wood # 2.png",
+    ] {
+        let imported = textured(square, &format!("map_Kd -clamp on {name}")).unwrap();
+        assert_eq!(imported.warnings, [] as [&str; 0], "{name}");
+        assert!(imported.scene.materials[0].texture.is_some(), "{name}");
+    }
+    let missing = textured(square, "map_Kd none.png # oak").unwrap();
+    let [warning] = &missing.warnings[..] else {
+        panic!("{:?}", missing.warnings);
+    };
+    assert!(warning.contains("none.png cannot be read"), "{warning}");
 }
 
 #[test]
