@@ -22,6 +22,10 @@ mod _gridel {
     #[pymodule_export]
     use crate::scene::NativeScene;
 
+    /// The version of the package.
+    #[pymodule_export]
+    const VERSION: &str = env!("CARGO_PKG_VERSION");
+
     /// Fewest and most bits of a lattice.
     #[pymodule_export]
     const LATTICE_BITS: (u8, u8) = (*compile::LATTICE_BITS.start(), *compile::LATTICE_BITS.end());

@@ -1,6 +1,7 @@
 """Scenes, formats, structures, errors, threads."""
 
 import copy
+import importlib.metadata
 import os
 import pickle
 import subprocess
@@ -520,3 +521,7 @@ def test_meshes_lie_at_up_to_5e8_times_their_size_from_the_origin():
     assert scene.cast([[*near, 0, 0, 1.0]]).t[0] == 2
     with pytest.raises(ValueError, match="nearer to the origin"):
         gridel.Scene.from_arrays(CUBE + 1e9, FACES)
+
+
+def test_version_is_that_of_the_package():
+    assert gridel.__version__ == importlib.metadata.version("gridel")

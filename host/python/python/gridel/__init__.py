@@ -19,6 +19,7 @@ names in trimesh and Open3D.
 """
 
 from . import open3d, trimesh
+from ._gridel import VERSION as __version__
 from ._scene import MISS, AllHits, Hits, Scene
 
-__all__ = ["MISS", "AllHits", "Hits", "Scene", "open3d", "trimesh"]
+__all__ = ["__version__", "MISS", "AllHits", "Hits", "Scene", "open3d", "trimesh"]

@@ -14,6 +14,9 @@ _HitArrays = Tuple[
     NDArray[np.float32],
 ]
 
+#: The version of the package.
+VERSION: str
+
 #: Fewest and most bits of a lattice.
 LATTICE_BITS: Tuple[int, int]
 
