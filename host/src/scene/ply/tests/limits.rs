@@ -90,6 +90,28 @@ fn faces_are_limited_while_they_are_read() {
     }
 }
 
+/// Elements are read some thousands at once.
+#[test]
+fn binary_elements_keep_their_numbers_beyond_those_that_are_read_at_once() {
+    let header = "ply\nformat binary_little_endian 1.0\nelement vertex 9000\nproperty uchar x\n\
+                  property uchar y\nproperty uchar z\nelement face 1\n\
+                  property list uchar ushort vertex_indices\nend_header\n";
+    let mut bytes = header.as_bytes().to_vec();
+    bytes.extend((0..9000_u32).flat_map(|it| [it as u8, (it >> 8) as u8, 0]));
+    let vertices = bytes.len();
+    bytes.push(3);
+    bytes.extend([1_u16, 5000, 8999].into_iter().flat_map(u16::to_le_bytes));
+    let imported = read(&bytes).unwrap();
+    let (points, triangles) = mesh(&imported.scene.objects[0]);
+    assert_eq!(triangles, [[1, 5000, 8999]]);
+    assert_eq!(points[8999], DVec3::new(39.0, 35.0, 0.0));
+    let error = read(&bytes[..vertices - 1]).unwrap_err();
+    assert_eq!(
+        error.cause,
+        "the file ends behind 8999 of 9000 elements \"vertex\""
+    );
+}
+
 #[test]
 fn corners_take_no_more_memory_than_in_the_file() {
     let bytes = [&[255][..], &[0; 255]].concat();
