@@ -334,7 +334,7 @@ fn add_strips(
             if let Some(excess) = size.excess() {
                 let cause =
                     format!("up to triangle strips {number} (from 0) the file takes {excess}");
-                return Err(SceneError::new(path, cause, header::TOO_LARGE));
+                return Err(SceneError::new(path, cause, payload::TOO_LARGE));
             }
         }
     }

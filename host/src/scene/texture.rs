@@ -1,6 +1,5 @@
 //! Textures of materials.
 
-use super::Color;
 use super::access::Access;
 use super::access::FileError;
 use super::image::{Fault, Image};
@@ -89,7 +88,7 @@ pub(super) struct ImageMeans(HashMap<*const Image, (Arc<Image>, Mean)>);
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Mean {
     /// As linear light.
-    pub(super) color: Color,
+    pub(super) color: [f64; 3],
     /// Of red, where it is a number rather than light.
     pub(super) red: f64,
 }

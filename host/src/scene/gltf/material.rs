@@ -23,10 +23,17 @@
 //! Where the alpha mode is `BLEND`, alpha is the part of the material that is present, and the rest is a pane. Textures
 //! with alpha are the exception.
 
-use super::means::Means;
 use crate::scene::{Alpha, Color, Diffuse, Material};
 use crate::table::shortened;
 use gltf::material::AlphaMode;
+
+/// The weights of a material's factors: 1 without a texture, and 0 for one that cannot be read.
+pub(super) struct Means {
+    /// The mean of the emissive texture, as linear light.
+    pub(super) emission: Color,
+    /// The mean of red of the transmission texture.
+    pub(super) transmission: f64,
+}
 
 pub(super) fn name(material: &gltf::Material<'_>) -> String {
     material.name().map_or_else(

@@ -3,18 +3,11 @@
 //! Programs write the factor 1 wherever there is such a texture. The factor alone would let a whole mesh glow that has
 //! one small lamp.
 
-use super::{Importer, material};
-use crate::scene::{Color, Image, SceneError};
+use super::Importer;
+use super::material::{self, Means};
+use crate::scene::{Image, SceneError};
 use crate::table::shortened;
 use std::sync::Arc;
-
-/// The weights of a material's factors: 1 without a texture, and 0 for one that cannot be read.
-pub(super) struct Means {
-    /// The mean of the emissive texture, as linear light.
-    pub(super) emission: Color,
-    /// The mean of red of the transmission texture.
-    pub(super) transmission: f64,
-}
 
 impl Importer<'_> {
     /// Reads the means of a material's textures, and warns of those that are not drawn. A texture whose factor is 0 is

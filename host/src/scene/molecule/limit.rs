@@ -1,20 +1,10 @@
 //! Limits of the content of a file, so that it fits into memory.
 
-use super::parsed::{Atom, Bond, Group, Matrix, Model, Parsed};
+use super::parsed::{Atom, Bond, Group, Left, Matrix, Model, Parsed};
 use crate::scene::SceneError;
 use crate::scene::size::{MOST_BYTES, Size};
 use crate::scene::text::Source;
 use crate::table::counted;
-
-/// The bytes that are left for the content of a file. A line can be shorter than the memory of what it states.
-pub(super) struct Left(pub(super) usize);
-
-impl Default for Left {
-    fn default() -> Self {
-        // While a list grows, it takes its bytes twice.
-        Self(MOST_BYTES as usize / 2)
-    }
-}
 
 /// Bytes of an entry of an index, with the part of the index that is empty.
 const INDEX: usize = 64;

@@ -1,10 +1,20 @@
 //! The content of a molecule file.
 
 use super::element::Element;
-use super::limit::Left;
+use crate::scene::size::MOST_BYTES;
 use glam::DVec3;
 use std::collections::HashMap;
 use std::rc::Rc;
+
+/// The bytes that are left for the content of a file. A line can be shorter than the memory of what it states.
+pub(super) struct Left(pub(super) usize);
+
+impl Default for Left {
+    fn default() -> Self {
+        // While a list grows, it takes its bytes twice.
+        Self(MOST_BYTES as usize / 2)
+    }
+}
 
 /// An element at a position in angstroms.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -3,7 +3,7 @@
 use super::super::size::{MOST_BYTES, MOST_PRIMITIVES};
 use super::super::text::Warnings;
 use super::super::{SceneError, SourceSpan};
-use super::payload::{Skipped, range};
+use super::payload::{Skipped, TOO_LARGE, range};
 use crate::table::{grouped, printable, shortened};
 use ply_rs_bw::parser::{ParseError, Parser, Reader};
 use ply_rs_bw::ply::{ElementDef, Header, PropertyType};
@@ -160,9 +160,6 @@ fn quoted(line: &[u8]) -> String {
         printable(&String::from_utf8_lossy(line.trim_ascii()))
     )
 }
-
-/// The remedy of files that fit into no memory.
-pub(super) const TOO_LARGE: &str = "export a part of the mesh, or one with fewer faces";
 
 /// Bytes that a vertex takes until the scene is made, measured as the growth of the peak memory.
 const VERTEX: u64 = 128;

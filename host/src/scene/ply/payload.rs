@@ -3,7 +3,6 @@
 use super::super::size::{MOST_PRIMITIVES, Size};
 use super::super::text::Warnings;
 use super::super::{SceneError, SourceSpan};
-use super::header::TOO_LARGE;
 use crate::table::{grouped, printable, shortened};
 use ply_rs_bw::parser::{Parser, Reader};
 use ply_rs_bw::ply::{
@@ -24,6 +23,8 @@ impl PropertyAccess for Skipped {
     }
 }
 
+/// The remedy of files that fit into no memory.
+pub(super) const TOO_LARGE: &str = "export a part of the mesh, or one with fewer faces";
 /// The number of binary elements that are read at once, before their size is checked.
 const AT_ONCE: usize = 4096;
 /// The most numbers of a list in a text file: of strips of a triangle each, as many as a scene holds.

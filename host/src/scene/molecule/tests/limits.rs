@@ -1,6 +1,7 @@
 //! Files that fit into no memory.
 
-use super::super::limit::{Left, check_size};
+use super::super::limit::check_size;
+use super::super::parsed::Left;
 use super::*;
 
 /// The number of atoms, bonds, groups and operators that are read from a file where so much memory is left, or the
