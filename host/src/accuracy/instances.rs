@@ -9,7 +9,7 @@ pub fn instance_notes(instances: &InstanceCount) -> Vec<String> {
     let mut notes = vec![format!("{}.", instances.text())];
     if let Some(parts) = instances.parts {
         let parts_text = counted(parts, "part");
-        notes.extend(Programs::recorded().part_view().map(|bytes| {
+        notes.extend(Programs::recorded().part_view(&["instances"]).map(|bytes| {
             let bytes = grouped(bytes * parts as u64);
             format!("On a board the views of {parts_text} take at most {bytes} bytes of RAM more.")
         }));

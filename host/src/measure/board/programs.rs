@@ -154,10 +154,23 @@ impl Programs {
         })
     }
 
-    /// Returns the RAM for the view of a part, at most; `None` where no program with parts was built.
-    pub fn part_view(&self) -> Option<u64> {
-        let programs = self.0.values().flat_map(Built::values);
-        let footprints = programs.flat_map(|program| [program.fast, program.small]);
+    /// Returns the RAM for the view of a part in a program with code for some parts, which is the same on all boards:
+    /// measured, or at most that of programs with code for more. `None` where no such program was built.
+    pub fn part_view(&self, parts: &[&str]) -> Option<u64> {
+        let own = key(parts);
+        let holds = |built: &str| {
+            let built: Vec<&str> = built.split(' ').collect();
+            parts.iter().all(|part| built.contains(part))
+        };
+        self.largest_part_view(|built| built == own)
+            .or_else(|| self.largest_part_view(holds))
+    }
+
+    /// The largest view of a part among the programs whose key a function accepts.
+    fn largest_part_view(&self, accepts: impl Fn(&str) -> bool) -> Option<u64> {
+        let programs = self.0.values().flatten();
+        let programs = programs.filter(|(key, _)| accepts(key));
+        let footprints = programs.flat_map(|(_, program)| [program.fast, program.small]);
         footprints.flatten().filter_map(|it| it.part_view).max()
     }
 
@@ -233,6 +246,29 @@ mod tests {
         let programs = programs(&[(&["sphere"], 1000), (&["sphere", "shadow"], 1200)]);
         let known = code(&programs, &["shadow", "sphere"]);
         assert_eq!(known.map(|it| (it.bytes, it.measured)), Some((1200, true)));
+    }
+
+    #[test]
+    fn views_of_parts_are_those_of_the_program_or_of_programs_with_more() {
+        let mut programs = Programs::default();
+        for (board, parts, view) in [
+            (0, &["sphere", INSTANCES][..], 196),
+            (1, &["sphere", INSTANCES], 200),
+            (0, &["sphere", "shadow", "mirror", INSTANCES], 332),
+        ] {
+            let footprint = Footprint {
+                code: 1,
+                call_stack: 1,
+                part_view: Some(view),
+            };
+            let place = (&BOARDS[board], Format::Fixed, Structure::DualSplit);
+            programs.insert(place, parts, Profile::Fast, footprint);
+        }
+        let view = |parts: &[&str]| programs.part_view(parts);
+        assert_eq!(view(&[INSTANCES, "sphere"]), Some(200));
+        assert_eq!(view(&["sphere", "shadow", INSTANCES]), Some(332));
+        assert_eq!(view(&[INSTANCES]), Some(332));
+        assert_eq!(view(&["torus", INSTANCES]), None);
     }
 
     #[test]

@@ -61,7 +61,9 @@ pub(super) fn rows(programs: &Programs, scene: &Scene<'_>, blob: &[u8]) -> Vec<W
     let mut rows = Vec::new();
     let parts = scene.parts().len();
     if parts > 0 {
-        let bytes = programs.part_view().map(|view| parts as u64 * view);
+        let required: Vec<&str> = scene.features().collect();
+        let view = programs.part_view(&required);
+        let bytes = view.map(|view| parts as u64 * view);
         rows.push(row(
             format!("views of {}, at most", counted(parts, "part")),
             bytes,
