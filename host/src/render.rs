@@ -23,6 +23,9 @@ use rayon::prelude::*;
 use std::ops::Range;
 use std::slice::from_ref;
 
+/// Most pixels of a picture in memory at once.
+pub const MOST_PIXELS: usize = 1 << 26;
+
 /// Linear pixels of some rows of a picture, and what they cost.
 #[derive(Clone, Debug)]
 pub struct Picture {

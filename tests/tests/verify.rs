@@ -387,7 +387,7 @@ fn a_broken_structure_is_caught() {
     assert!(caught > 20, "{caught}");
 
     // And rays get out of a mesh through it.
-    let [closed] = &ClosedMesh::all(&scene)[..] else {
+    let [closed] = &ClosedMesh::all(&scene).0[..] else {
         panic!("one closed mesh");
     };
     let mut leaks = [0; 2];

@@ -68,10 +68,17 @@ impl<N: Number> PrimitiveHit<N> {
         /// # Ok::<(), Box<dyn std::error::Error>>(())
         /// ```
         pub fn normal(&self, scene: &Scene<'_>, ray: &Ray<N>) -> Option<[N; 3]> {
-            match self.best.normal() {
-                Some(normal) if self.instance().is_none() => Some(flat::unit_normal(normal)),
-                _ => Some(self.hit(scene, ray)?.normal),
+            if self.instance().is_some() {
+                return Some(self.hit(scene, ray)?.normal);
             }
+            let best = self.best;
+            if let Some(normal) = best.normal() {
+                return Some(flat::unit_normal(normal));
+            }
+            let point = ray.at(best.t);
+            let shapes = &scene.space.shapes;
+            let (surface, _) = shapes.surface(best.place, best.part, ray, point)?;
+            Some(surface.normal)
         }
     );
 

@@ -8,6 +8,7 @@ use crate::format::{BlobError, Effects, SectionKind};
 use crate::scene::Scene;
 use crate::scene::check::{check_light, check_material};
 use crate::scene::read::{check_lens, check_view};
+use crate::target::DepthOfFieldOnly;
 
 impl<'a> Scene<'a> {
     /// Returns the scene seen by another camera, in other surroundings or with other defaults for pictures.
@@ -42,6 +43,22 @@ impl<'a> Scene<'a> {
             effects,
             ..*self
         })
+    }
+
+    /// Returns the scene as a pinhole sees it: in focus everywhere.
+    ///
+    /// ```
+    /// # static BLOB: &[u8] =
+    /// #     gridel_core::include_blob!(concat!(env!("CARGO_MANIFEST_DIR"), "/../fixtures/blobs/dual-split.gridel"));
+    /// let scene = gridel_core::Scene::from_bytes(BLOB)?;
+    /// assert!(scene.without_lens().lens().is_none());
+    /// # Ok::<(), gridel_core::BlobError>(())
+    /// ```
+    pub fn without_lens(&self) -> Self {
+        Self {
+            lens: DepthOfFieldOnly::new(|| &[][..]),
+            ..*self
+        }
     }
 
     /// Returns the scene with other lights, of which there can be more or fewer than before.

@@ -54,6 +54,9 @@ mod trace;
 mod tree;
 mod world;
 
+/// Most pixels that are certified: their state takes 320 MiB.
+pub const MOST_PIXELS: usize = 1 << 22;
+
 pub use page::{Pictures, page, sentence};
 pub use picture::{Enclosed, LEVELS, code, enclose, explain, linear};
 pub use reason::Reason;

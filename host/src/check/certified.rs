@@ -2,7 +2,7 @@
 
 use super::report::{Figure, Key, Outcome};
 use super::run::{Compared, Run};
-use crate::certify::{Enclosed, Report, World, certify};
+use crate::certify::{self, Enclosed, Report, World, certify};
 use crate::render::{Job, render};
 use gridel_core::{Scene, Structure};
 use std::convert::Infallible;
@@ -20,7 +20,7 @@ impl Run<'_> {
             return Ok(());
         }
         let failed = |error: String| format!("{}: {error}", check.scene.path.display());
-        let settings = self.settings(scene);
+        let settings = self.settings(scene, certify::MOST_PIXELS)?;
         let mut pictures = Vec::new();
         for &format in &check.formats {
             let job = Job::whole(format, structure, settings);

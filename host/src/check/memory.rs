@@ -20,7 +20,7 @@ impl Run<'_> {
             let rendering = Rendering {
                 format,
                 structure,
-                width: self.settings(scene).width,
+                width: self.size(scene)[0],
             };
             self.memory_in(board, &rendering, scene, blob);
         }

@@ -9,8 +9,10 @@ use crate::compile::{self, Options};
 use crate::explained;
 use crate::measure::{Deforming, Rendered};
 use crate::picture::hash;
+use crate::render::MOST_PIXELS;
 use crate::scene::{self, ImportOptions, Posed};
 use crate::state::{State, ticks};
+use crate::table::grouped;
 use gridel_core::{Format, Scene, Settings, Structure, Tracks};
 use std::io;
 
@@ -140,6 +142,7 @@ impl Run<'_> {
                 ("lattice_bits", check.lattice_bits.is_some()),
                 ("instances", check.instances.is_some()),
                 ("assembly", check.assembly.is_some()),
+                ("allow_outside", check.allow_outside),
             ];
             if let Some((key, _)) = keys.into_iter().find(|&(_, given)| given) {
                 return Err(format!(
@@ -202,7 +205,7 @@ impl Run<'_> {
         if check.hash.is_none() && check.reference.is_none() && tests.is_none() {
             return Ok(());
         }
-        let settings = self.settings(scene);
+        let settings = self.settings(scene, MOST_PIXELS)?;
         let with = (structure, format);
         let rendered = self.render(scene, with, settings, tests.is_some())?;
         if let Some(most) = tests {
@@ -230,13 +233,29 @@ impl Run<'_> {
         Ok(())
     }
 
-    pub(super) fn settings(&self, scene: &Scene<'_>) -> Settings {
-        let mut settings = Settings::of(scene);
-        if let Some([width, height]) = self.check.size {
-            (settings.width, settings.height) = (width, height);
+    /// The width and the height of pictures.
+    pub(super) fn size(&self, scene: &Scene<'_>) -> [u16; 2] {
+        let Settings { width, height, .. } = Settings::of(scene);
+        self.check.size.unwrap_or([width, height])
+    }
+
+    /// The settings of pictures, unless they have too many pixels.
+    pub(super) fn settings(&self, scene: &Scene<'_>, most: usize) -> Result<Settings, String> {
+        let [width, height] = self.size(scene);
+        let pixels = usize::from(width) * usize::from(height);
+        if pixels > most {
+            let [pixels, most] = [pixels, most].map(grouped);
+            return Err(format!(
+                "{pixels} pixels exceed the largest size of {most}; choose a smaller `size`"
+            ));
         }
-        settings.samples = self.check.samples.unwrap_or(settings.samples);
-        settings
+        let own = Settings::of(scene);
+        Ok(Settings {
+            width,
+            height,
+            samples: self.check.samples.unwrap_or(own.samples),
+            ..own
+        })
     }
 
     fn render(

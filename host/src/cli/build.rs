@@ -135,9 +135,8 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
 fn check_outputs(arguments: &Arguments) -> Result<(), Failure> {
     reject_same(&arguments.scene, &arguments.output)?;
     check_extension(&arguments.output, &["gridel", "bin"], "blob")?;
-    if is_standard(&arguments.output) {
-        check_writable(&arguments.output)?;
-    } else {
+    check_writable(&arguments.output)?;
+    if !is_standard(&arguments.output) {
         reject_foreign(&arguments.output, "blob", is_blob)?;
     }
     let Some(folder) = &arguments.emit_rust else {
@@ -148,6 +147,9 @@ fn check_outputs(arguments: &Arguments) -> Result<(), Failure> {
             format!("{} is not a folder", folder.display()),
             "give the folder that the module and its blob lie in; it need not exist",
         ));
+    }
+    if folder.exists() {
+        check_writable(&folder.join(emit::BLOB))?;
     }
     reject_foreign(&folder.join(emit::BLOB), "blob", is_blob)?;
     reject_foreign(

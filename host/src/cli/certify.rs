@@ -10,7 +10,7 @@ use clap::Args;
 use gridel_core::format::checksum;
 use gridel_core::{Format, Settings, Structure};
 use gridel_host::certify::{
-    Enclosed, Pictures, Report, World, certify, exact_picture, map, page, sentence,
+    Enclosed, MOST_PIXELS, Pictures, Report, World, certify, exact_picture, map, page, sentence,
 };
 use gridel_host::compile;
 use gridel_host::output::write_whole;
@@ -68,9 +68,6 @@ const JSON: &str = "certify.json";
 const MAP: &str = "map.png";
 const EXACT: &str = "exact.png";
 const STATE: &str = "certify.state";
-
-/// Most pixels that are certified: their state takes 320 MiB.
-const MOST_PIXELS: usize = 1 << 22;
 
 /// The version of what is proved and how. Raise it with every change, so that older states are not continued.
 const RULES: u32 = 7;

@@ -2,7 +2,8 @@
 
 use super::arguments::TargetPoint;
 use super::arguments::{
-    self, SceneOptions, StructureOptions, check_hierarchy, distinct, scene_help, scene_long_help,
+    self, SceneOptions, StructureOptions, check_hierarchy, check_room, distinct, scene_help,
+    scene_long_help,
 };
 use super::failure::Failure;
 use super::output::{print, print_json_warned, write_texts};
@@ -97,6 +98,7 @@ pub fn run(arguments: &Arguments, memory: &PeakAlloc) -> Result<(), Failure> {
         asked => distinct(asked),
     };
     check_hierarchy("--builder", !arguments.builder.is_empty(), &structures)?;
+    check_room(arguments.scene_options.geometry.room, &arguments.accel)?;
     let lattice_bits = arguments.scene_options.geometry.lattice_bits;
     let compiling = arguments.structure_options.apply(compile::Options {
         structures: structures.clone(),

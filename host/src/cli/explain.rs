@@ -3,7 +3,7 @@
 use super::arguments::TargetPoint;
 use super::arguments::{PictureOptions, SceneOptions, TraceOptions, seconds};
 use super::failure::Failure;
-use super::output::{print, print_json, print_json_warned};
+use super::output::{print, print_json_warned};
 use super::source::Source;
 use clap::{ArgGroup, Args};
 use glam::DVec3;
@@ -62,7 +62,7 @@ pub struct Arguments {
     all_walks: bool,
 
     /// Show the exact pixel as `certify` encloses it: the intervals along its rays, of linear values
-    #[arg(long, conflicts_with_all = ["ray", "all_walks"])]
+    #[arg(long, conflicts_with_all = ["ray", "all_walks", "format", "accel"])]
     interval: bool,
 
     /// Show a scene that moves at this time, in seconds [default: as its file states it, without tracks]
@@ -121,7 +121,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         (None, None) => return Ok(()),
     };
     if let (true, Subject::Pixel(pixel)) = (arguments.interval, subject) {
-        return intervals(arguments, &scene, &source.names(&scene), &settings, pixel);
+        return intervals(arguments, &source, &scene, &settings, pixel);
     }
     let explanation = explain(&scene, arguments.with.format, structure, settings, subject)
         .map_err(|error| failure(&error))?;
@@ -146,8 +146,8 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
 /// Explains the intervals of the exact pixel.
 fn intervals(
     arguments: &Arguments,
+    source: &Source,
     scene: &Scene<'_>,
-    names: &Names,
     settings: &Settings,
     pixel: [u16; 2],
 ) -> Result<(), Failure> {
@@ -166,11 +166,11 @@ fn intervals(
         high: enclosed.high,
         proved: enclosed.proved().is_some(),
         open,
-        lights: light_names(&steps, names),
+        lights: light_names(&steps, &source.names(scene)),
         steps,
     };
     if arguments.json {
-        return print_json(&intervals);
+        return print_json_warned(&intervals, &source.warnings);
     }
     print(intervals.text())
 }

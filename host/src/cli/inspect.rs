@@ -232,15 +232,16 @@ pub fn longest_leaf(scene: &Scene<'_>) -> u16 {
 fn contents(scene: &Scene<'_>) -> Contents {
     let header = scene.header();
     let all = || std::iter::once(scene).chain(scene.parts());
-    let count = |kind| all().map(|scene| scene.count(kind)).sum::<usize>();
-    let kinds = Kind::ALL.map(|kind| (kind.name(), count(kind)));
+    let mut kinds = Kind::ALL.map(|kind| (kind.name(), 0));
     // A triangle that was cut has several slots.
     let mut kept = vec![false; header.primitives as usize];
     let parts = (0..).map_while(|part| scene.first_primitive_of_part(part));
     for (scene, first) in all().zip(std::iter::once(0).chain(parts)) {
-        for kind in Kind::ALL {
+        for (kind, (_, count)) in Kind::ALL.into_iter().zip(&mut kinds) {
             for slot in 0..scene.count(kind) as u32 {
-                kept[(first + scene.primitive(kind, slot)) as usize] = true;
+                let kept = &mut kept[(first + scene.primitive(kind, slot)) as usize];
+                *count += usize::from(!*kept);
+                *kept = true;
             }
         }
     }

@@ -3,7 +3,7 @@
 mod frames;
 
 use super::failure::Failure;
-use super::output::{print, print_json, reject_same, unsupported, write_file};
+use super::output::{check_writable, print, print_json, reject_same, unsupported, write_file};
 use super::progress::Progress;
 use clap::Args;
 use gridel_host::animation::AnimationFormat;
@@ -68,6 +68,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         }
         reject_same(part, output)?;
     }
+    check_writable(output)?;
     let progress = Progress::steps("merging", arguments.parts.len() as u64);
     let mut merge = Merge::default();
     for path in &arguments.parts {

@@ -16,11 +16,11 @@ use clap::Args;
 use frames::{Output, Shot, TimeOptions, rejected};
 use gridel_core::{Counters, Scene, Settings, Structure};
 use gridel_host::picture::{Exposure, Moment, RenderMetadata};
-use gridel_host::render::{Job, Picture};
+use gridel_host::render::{Job, MOST_PIXELS, Picture};
 use gridel_host::resolution::Unresolved;
 use gridel_host::state::ticks;
 use gridel_host::table::{Align, Table, counted, grouped};
-use outputs::{AovFile, HeatMapFile, MOST_PIXELS, OutputOptions, Outputs};
+use outputs::{AovFile, HeatMapFile, OutputOptions, Outputs};
 use serde::Serialize;
 use shutter::scenes;
 use std::ops::Range;
@@ -314,7 +314,14 @@ fn job(
                 grouped(pixels),
                 grouped(most_pixels)
             ),
-            format!("render at most {most} rows at a time, with `--rows 0..{most}` and so on"),
+            match arguments.time.frames {
+                Some(_) => String::from("ask for a smaller `--size`"),
+                None => {
+                    format!(
+                        "render at most {most} rows at a time, with `--rows 0..{most}` and so on"
+                    )
+                }
+            },
         ));
     }
     Ok(Job {

@@ -1,6 +1,6 @@
 //! `gridel verify`: tests the properties of a scene.
 
-use super::arguments::{self, GeometryOptions, check_quality, distinct, quoted};
+use super::arguments::{self, GeometryOptions, check_quality, check_room, distinct, quoted};
 use super::failure::Failure;
 use super::output::{print, print_json_warned};
 use super::progress::Progress;
@@ -71,6 +71,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         ..compile::Options::default()
     };
     check_quality(arguments.quality, &compiling.structures)?;
+    check_room(arguments.geometry.room, &arguments.accel)?;
     let accel = (!arguments.accel.is_empty()).then_some("--accel");
     let other = accel.or(arguments.quality.map(|_| "--quality"));
     let options = arguments.geometry.clone().into();
@@ -102,11 +103,22 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
 }
 
 fn text(arguments: &Arguments, report: &Report) -> String {
+    let [all, aimed_from] = [report.closed_meshes, report.closed_meshes_aimed_from];
+    let inside = match aimed_from {
+        0 => String::new(),
+        _ if aimed_from == all => {
+            format!(", and as many from inside {}", counted(all, "closed mesh"))
+        }
+        _ => format!(
+            ", and as many from inside {} of {}",
+            grouped(aimed_from),
+            counted(all, "closed mesh")
+        ),
+    };
     let mut text = format!(
-        "{}: {}, and as many from inside {}, in {}\n\n",
+        "{}: {}{inside}, in {}\n\n",
         arguments.input.display(),
         counted(report.rays as usize, "ray"),
-        counted(report.closed_meshes, "closed mesh"),
         report.structures.join(", ")
     );
     let mut table = Table::new([

@@ -6,6 +6,7 @@ use super::output::print;
 use super::source::Source;
 use clap::Args;
 use gridel_core::{Scene, Settings, Structure};
+use gridel_host::render::MOST_PIXELS;
 use gridel_host::view::terminal::{self, fitting_size};
 use gridel_host::view::{Refiner, State, key_help};
 use std::io::{self, IsTerminal};
@@ -51,9 +52,6 @@ pub struct Arguments {
 /// Hierarchies that a scene file is compiled for, among which a key switches. They take little more time to build
 /// together than one alone.
 const STRUCTURES: [Structure; 3] = [Structure::Wide, Structure::Flagged, Structure::Bvh];
-
-/// Largest number of pixels in memory at once.
-const MOST_PIXELS: usize = 1 << 26;
 
 /// Shows a scene.
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {

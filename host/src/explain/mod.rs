@@ -1,11 +1,13 @@
 //! Explains a ray or a pixel: the nodes that are visited, the hits, and the light that they bring.
 //!
-//! The renderer reports events through [`Observer::event`]; this module only orders them. `walk.rs` records a query's
+//! The renderer reports events through [`Observer::event`](gridel_core::Observer::event); this module only orders
+//! them. `recorder.rs` keeps them, `walk.rs` records a query's
 //! path through a structure, and `reader.rs` finds the rays. `explanation.rs` has their sums, and `text.rs` writes them
 //! for people.
 
 mod explanation;
 mod reader;
+mod recorder;
 mod text;
 mod walk;
 
@@ -20,9 +22,9 @@ use gridel_core::accel::DynAccel;
 use gridel_core::format::limits::MAX_STACK_DEPTH;
 use gridel_core::render::{Pixel, RenderError};
 use gridel_core::{
-    Effects, Event, Fixed, Format, Number, Observer, Renderer, Rgb888, Scene, Settings, Structure,
-    Workspace,
+    Effects, Fixed, Format, Number, Renderer, Rgb888, Scene, Settings, Structure, Workspace,
 };
+use recorder::Recorder;
 
 /// The subject of an explanation.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -85,8 +87,7 @@ pub fn explain(
         Format::F32 => watch::<f32>(scene, settings, subject),
         Format::F64 => watch::<f64>(scene, settings, subject),
     }?;
-    let mut explanation =
-        Explanation::of(scene, format, &subject, (&recorder.events, recorder.begin));
+    let mut explanation = Explanation::of(scene, format, &subject, &recorder);
     if let Subject::Pixel(pixel) = subject {
         explanation.pixel = Some(pixel);
         explanation.picture = Some([settings.width, settings.height]);
@@ -114,40 +115,4 @@ fn watch<N: Number>(scene: &Scene<'_>, settings: Settings, subject: Subject) -> 
         }
     };
     Ok((linear, recorder))
-}
-
-/// Records events, but not every primitive of a long list that a ray passes by.
-#[derive(Default)]
-struct Recorder {
-    events: Vec<Event>,
-    /// The zero of the kernels' count on a ray of the caller's own, in units along its major axis.
-    begin: f64,
-    /// Recorded steps of the current query.
-    steps: usize,
-}
-
-/// Steps of a query that are kept, not counting hits of candidates. A walk through a hierarchy has some hundreds, brute
-/// force as many as there are primitives.
-const MOST_STEPS: usize = 20_000;
-
-impl Observer for Recorder {
-    const ENABLED: bool = true;
-
-    fn event(&mut self, event: Event) {
-        match event {
-            Event::Query { .. } => self.steps = 0,
-            Event::Tested { .. }
-            | Event::Empty(_)
-            | Event::Opened(_)
-            | Event::NodeSkipped { .. }
-            | Event::Candidate { crossing: None, .. } => {
-                self.steps += 1;
-                if self.steps > MOST_STEPS {
-                    return;
-                }
-            }
-            _ => {}
-        }
-        self.events.push(event);
-    }
 }

@@ -2,21 +2,23 @@
 
 use super::Subject;
 use super::explanation::{Explanation, Ray, Sample, kind_name};
+use super::recorder::{Recorder, Unlisted};
 use super::walk::{Given, Walk};
 use crate::trace::Frame;
 use gridel_core::{Event, Format, RayKind, Scene};
+use std::slice::Iter;
 
 impl Explanation {
-    /// Puts events in order. `begin` is where the kernels count 0 on a ray of the caller's own: see [`Given::begin`].
+    /// Puts events in order.
     pub(super) fn of(
         scene: &Scene<'_>,
         format: Format,
         subject: &Subject,
-        (events, begin): (&[Event], f64),
+        recorder: &Recorder,
     ) -> Self {
         let mut explanation = Explanation::default();
-        let mut reader = Reader::new(scene, format, subject, begin);
-        for event in events {
+        let mut reader = Reader::new(scene, format, subject, recorder);
+        for event in &recorder.events {
             if let Event::SampleFinished { at, radiance } = *event {
                 explanation.samples.push(reader.finish(at, radiance));
             } else {
@@ -39,17 +41,24 @@ struct Reader<'t> {
     waiting: Vec<usize>,
     /// True if the current query is a light's.
     light: bool,
+    /// What is not listed of the queries to come.
+    unlisted: Iter<'t, Unlisted>,
 }
 
 impl<'t> Reader<'t> {
-    fn new(scene: &'t Scene<'t>, format: Format, subject: &Subject, begin: f64) -> Self {
+    fn new(
+        scene: &'t Scene<'t>,
+        format: Format,
+        subject: &Subject,
+        recorder: &'t Recorder,
+    ) -> Self {
         let frame = Frame::of(scene);
         Self {
             scene,
             frame,
             format,
             first: match subject {
-                Subject::Ray(ray) => Given::new(ray, begin),
+                Subject::Ray(ray) => Given::new(ray, recorder.begin),
                 Subject::Pixel(_) => {
                     let eye = scene.view().eye.map(|x| x as f64 / 8192.0);
                     Given::from_origin(frame.place(eye))
@@ -58,6 +67,7 @@ impl<'t> Reader<'t> {
             sample: Sample::default(),
             waiting: Vec::new(),
             light: false,
+            unlisted: recorder.unlisted.iter(),
         }
     }
 
@@ -82,6 +92,8 @@ impl<'t> Reader<'t> {
                 if matches!(event, Event::Sent { .. }) {
                     self.waiting.push(current);
                 }
+                let is_query = matches!(event, Event::Query { .. });
+                let unlisted = is_query.then(|| self.unlisted.next()).flatten();
                 let Self {
                     scene,
                     frame,
@@ -95,7 +107,11 @@ impl<'t> Reader<'t> {
                     // Through a lens it starts from there.
                     let from = ray.from_lens.map(|point| Given::from_origin(point.into()));
                     let given = first.map(|first| from.unwrap_or(first));
-                    let begin = |event: &Event| Walk::begin(frame, *format, given, event);
+                    let begin = |event: &Event| {
+                        let mut walk = Walk::begin(frame, *format, given, event)?;
+                        walk.leave_out(unlisted.copied().unwrap_or_default());
+                        Some(walk)
+                    };
                     ray.record(scene, frame, begin, event, light);
                 }
             }

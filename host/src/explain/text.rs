@@ -3,10 +3,11 @@
 mod walk;
 mod words;
 
-use super::explanation::{Explanation, Hit, LightOutcome, Lighting, Ray, Sample};
+use super::explanation::{Explanation, Hit, LightOutcome, Lighting, Ray, Sample, kind_name};
 use super::walk::Walk;
 use crate::compile::Names;
 use crate::table::{counted, printable, significant};
+use gridel_core::RayKind;
 use std::fmt::{self, Display, Formatter};
 use words::{bound, color, counted_were, peak, precise, vector};
 
@@ -155,20 +156,29 @@ impl Shown<'_> {
                 format!("{background} of {all} samples hit nothing and show the background.")
             });
         }
-        if let Some(unlit) = primary().find(|ray| {
-            let dark = ray
-                .lights
-                .iter()
-                .all(|light| light.outcome != LightOutcome::Lit);
-            ray.hit.is_some() && !ray.lights.is_empty() && dark
-        }) {
+        let is_dark = |ray: &&Ray| {
+            let lit = |light: &Lighting| light.outcome == LightOutcome::Lit;
+            ray.hit.is_some() && !ray.lights.is_empty() && !ray.lights.iter().any(lit)
+        };
+        if let Some(unlit) = primary().find(is_dark) {
             let reasons: Vec<_> = unlit.lights.iter().map(|l| self.outcome(l)).collect();
-            sentences.push(format!(
-                "No light reaches the first hit: {}.",
-                reasons.join("; ")
-            ));
+            let reasons = reasons.join("; ");
+            let [dark, all] = [primary().filter(is_dark).count(), primary().count()];
+            sentences.push(match dark == all {
+                true => format!("No light reaches the first hit: {reasons}."),
+                false => {
+                    format!("In {dark} of {all} samples no light reaches the first hit: {reasons}.")
+                }
+            });
         }
-        if rays().any(|ray| ray.hit.is_some() && ray.lights.is_empty()) {
+        let is_met = |ray: &&Ray| ray.hit.is_some();
+        let of_ambient = |ray: &Ray| ray.ambient.is_some() && ray.lights.is_empty();
+        let others = |ray: &Ray| {
+            let bounces = [RayKind::Diffuse, RayKind::Glossy].map(kind_name);
+            ray.emitted.is_some() || ray.environment.is_some() || bounces.contains(&ray.kind)
+        };
+        let all_ambient = rays().filter(is_met).all(of_ambient);
+        if all_ambient && rays().any(|ray| ray.hit.is_some()) && !rays().any(others) {
             sentences.push(String::from("The scene has only ambient light."));
         }
         let too_deep: Vec<f64> = rays()

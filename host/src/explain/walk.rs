@@ -3,6 +3,7 @@
 mod inside;
 mod planes;
 
+use super::recorder::Unlisted;
 use crate::trace::{Frame, SceneRay};
 use crate::verify::rounded;
 use glam::DVec3;
@@ -26,10 +27,13 @@ pub struct Walk {
     pub moved: f64,
     /// True if any hit suffices.
     pub any: bool,
+    /// The first 20,000, and all primitives that are hit.
     pub steps: Vec<Step>,
+    /// The number of further steps.
+    pub unlisted: usize,
     /// Nodes, leaves and cells that were entered.
     pub opened: usize,
-    /// Nodes, leaves and cells that were tested and not entered.
+    /// Nodes, leaves and cells that were tested and not entered, among the steps that are listed.
     pub culled: usize,
     /// Primitives that were tested.
     pub candidates: usize,
@@ -273,6 +277,7 @@ impl Walk {
             moved,
             any,
             steps: Vec::new(),
+            unlisted: 0,
             opened: 0,
             culled: 0,
             candidates: 0,
@@ -292,6 +297,18 @@ impl Walk {
             },
             inside: None,
         })
+    }
+
+    /// Counts steps that are not listed.
+    pub(super) fn leave_out(&mut self, unlisted: Unlisted) {
+        let Unlisted {
+            opened,
+            candidates,
+            others,
+        } = unlisted;
+        self.opened += opened;
+        self.candidates += candidates;
+        self.unlisted += opened + candidates + others;
     }
 
     /// The distance of a parameter as the caller counts it, in units along the major axis.

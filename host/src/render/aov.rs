@@ -121,7 +121,16 @@ pub fn render_aovs(scene: &Scene<'_>, job: &Job, aovs: &[Aov]) -> Result<Vec<Val
                 let normal = |hit: &Option<PixelHit>| hit.map_or([0.0; 3], |it| it.normal);
                 Values::Vectors(hits.iter().map(normal).collect())
             }
-            Aov::Albedo => Values::Vectors(albedo(scene, job)?),
+            Aov::Albedo => {
+                let mut albedo = albedo(scene, job)?;
+                // An environment is there, and is no surface.
+                let missed = albedo
+                    .iter_mut()
+                    .zip(&hits)
+                    .filter(|(_, hit)| hit.is_none());
+                missed.for_each(|(albedo, _)| *albedo = [0.0; 3]);
+                Values::Vectors(albedo)
+            }
             Aov::Object => all(|hit| hit.object),
             Aov::Primitive => all(|hit| hit.primitive),
             Aov::Uv => {
@@ -135,7 +144,7 @@ pub fn render_aovs(scene: &Scene<'_>, job: &Job, aovs: &[Aov]) -> Result<Vec<Val
     values.collect()
 }
 
-/// The picture under white ambient light alone, on black, as if glass absorbed nothing.
+/// The picture through a pinhole under white ambient light alone, on black, as if glass absorbed nothing.
 fn albedo(scene: &Scene<'_>, job: &Job) -> Result<Vec<[f32; 3]>, RenderError> {
     let view = View {
         background: [0; 3],
@@ -147,6 +156,7 @@ fn albedo(scene: &Scene<'_>, job: &Job) -> Result<Vec<[f32; 3]>, RenderError> {
         material.absorption = [0; 3];
     }
     let lit = scene
+        .without_lens()
         .with_lights(&[])
         .and_then(|scene| scene.with_view(&view))
         .and_then(|scene| scene.with_materials(&materials));

@@ -30,8 +30,9 @@ struct Placed {
 const MOST_PLACED: usize = 64;
 
 impl ClosedMesh {
-    /// Returns the closed meshes of a scene, as they lie on its lattice: the scene's own, and some of instances.
-    pub fn all(scene: &Scene<'_>) -> Vec<Self> {
+    /// Returns the closed meshes of a scene, as they lie on its lattice: the scene's own, and some of instances. Returns
+    /// the number of all, too.
+    pub fn all(scene: &Scene<'_>) -> (Vec<Self>, usize) {
         let mut all = of_objects(scene, |primitive| scene.object(primitive));
         let of_parts: Vec<Vec<Self>> = (0..)
             .zip(scene.parts())
@@ -45,7 +46,9 @@ impl ClosedMesh {
             let meshes = meshes.into_iter().flatten();
             meshes.map(move |mesh| (index, instance, mesh))
         });
-        let step = placed.clone().count().div_ceil(MOST_PLACED).max(1);
+        let of_instances = placed.clone().count();
+        let step = of_instances.div_ceil(MOST_PLACED).max(1);
+        let count = all.len() + of_instances;
         let placed = placed.step_by(step).map(|(index, instance, mesh)| Self {
             instance: Some(Placed {
                 index,
@@ -55,7 +58,7 @@ impl ClosedMesh {
             ..mesh.clone()
         });
         all.extend(placed);
-        all
+        (all, count)
     }
 
     /// Number of its triangles.

@@ -40,6 +40,8 @@ pub struct Report {
     pub formats: Vec<FormatReport>,
     /// Meshes whose every edge has its two triangles.
     pub closed_meshes: usize,
+    /// Those of them inside of which rays started: not all, where instances place many.
+    pub closed_meshes_aimed_from: usize,
     pub properties: Vec<PropertyReport>,
 }
 
@@ -170,7 +172,7 @@ pub fn verify(scene: &Scene<'_>, rays: u64, progress: &(dyn Fn() + Sync)) -> Rep
     let all = (0..chunks).into_par_iter().map(tally);
     let mut all = all.reduce(Tally::default, Tally::plus);
 
-    let meshes = ClosedMesh::all(scene);
+    let (meshes, closed_meshes) = ClosedMesh::all(scene);
     let inside: Vec<_> = meshes
         .iter()
         .filter_map(|mesh| Some((mesh, work.inside(mesh)?)))
@@ -188,7 +190,7 @@ pub fn verify(scene: &Scene<'_>, rays: u64, progress: &(dyn Fn() + Sync)) -> Rep
         tally
     });
     all = all.plus(leaks.reduce(Tally::default, Tally::plus));
-    all.report(scene, rays, meshes.len())
+    all.report(scene, rays, [closed_meshes, inside.len()])
 }
 
 /// A ray from the inside of a closed mesh, in units.
@@ -405,7 +407,12 @@ impl Tally {
         self
     }
 
-    fn report(mut self, scene: &Scene<'_>, rays: u64, closed_meshes: usize) -> Report {
+    fn report(
+        mut self,
+        scene: &Scene<'_>,
+        rays: u64,
+        [closed_meshes, closed_meshes_aimed_from]: [usize; 2],
+    ) -> Report {
         let formats = Format::ALL.map(|format| {
             let tally = self.formats[format as usize].clone();
             FormatReport {
@@ -431,6 +438,7 @@ impl Tally {
             structures: held(scene).map(Structure::name).collect(),
             formats: formats.to_vec(),
             closed_meshes,
+            closed_meshes_aimed_from,
             properties: properties.to_vec(),
         }
     }

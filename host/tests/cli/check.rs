@@ -435,3 +435,23 @@ fn manifests_with_a_byte_order_mark_are_recorded_and_keep_it() {
         folder.done(&["check", "check.toml"]);
     }
 }
+
+/// One check that cannot run leaves the others.
+#[test]
+fn sizes_beyond_memory_fail_one_check() {
+    let folder = folder();
+    let hostile = "[[check]]\nscene = 'quick.toml'\nsize = [65535, 65535]\n\
+        [[check]]\nscene = 'quick.gridel'\nallow_outside = true\n";
+    let manifest = format!("{MANIFEST}\n{hostile}");
+    folder.write("check.toml", manifest.as_bytes());
+    let run = folder.run(&["check", "check.toml"]);
+    assert_eq!(run.code, Some(1), "{run:?}");
+    for words in [
+        "4,294,836,225 pixels exceed",
+        "choose a smaller `size`",
+        "`allow_outside` is for scene files",
+    ] {
+        assert!(run.stdout.contains(words), "{words}: {run:?}");
+    }
+    assert!(run.stdout.contains("skipped\n"), "{run:?}");
+}

@@ -322,3 +322,29 @@ fn explain_shows_a_pixel_at_a_time() {
     assert_ne!(explained(&["--time", "0.25"]), explained(&[]));
     assert_eq!(explained(&["--time", "-1"]), explained(&["--time", "0"]));
 }
+
+#[test]
+fn frames_beyond_memory_have_a_remedy_that_frames_take() {
+    let folder = folder();
+    let render = [
+        "render",
+        "a.toml",
+        "-o",
+        "a.apng",
+        "--frames",
+        "0..2",
+        "--size",
+        "16384x8192",
+    ];
+    let run = folder.run(&render);
+    assert_eq!(run.code, Some(2), "{run:?}");
+    assert!(
+        run.said().contains("smaller `--size`") && !run.said().contains("--rows"),
+        "{run:?}"
+    );
+    folder.fails(
+        1,
+        &["merge", "missing.png", "-o", "a.gif"],
+        &["missing.png cannot be read", "may read"],
+    );
+}

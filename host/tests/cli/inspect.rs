@@ -241,3 +241,23 @@ fn collapsed_primitives_alone_are_stated_without_an_empty_list() {
         "{text}"
     );
 }
+
+#[test]
+fn pieces_of_a_cut_triangle_count_once() {
+    let folder = Folder::new();
+    // A closed tetrahedron with a sliver: its third corner lies next to the middle of an edge.
+    folder.write(
+        "a.obj",
+        b"v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nv 0.5 0.00001 0.00001\n\
+          f 2 1 5\nf 1 3 5\nf 3 2 5\nf 1 2 4\nf 2 3 4\nf 3 1 4\n",
+    );
+    folder.done(&["build", "a.obj", "-o", "a.gridel", "--lattice-bits", "10"]);
+    let contents = &folder.json(&["inspect", "a.gridel"])["contents"];
+    let triangles = contents["kinds"]["triangle"].as_u64().unwrap();
+    let collapsed = contents["collapsed"].as_u64().unwrap();
+    assert!(collapsed > 0, "{contents}");
+    assert_eq!(
+        triangles + collapsed,
+        contents["primitives"].as_u64().unwrap()
+    );
+}

@@ -285,3 +285,36 @@ fn build_states_the_bytes_of_instances_and_of_copies() {
     let advice = format!("`--instances flatten` saves {}", grouped(kept - as_copies));
     folder.fails(3, &most, &[&advice]);
 }
+
+#[test]
+fn verify_says_how_many_closed_meshes_rays_start_in() {
+    let folder = Folder::new();
+    let mut scene = String::from(
+        "[[part]]\nname = 'p'\n[[part.object]]\nkind = 'mesh'\n\
+         vertices = [[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]]\n\
+         faces = [[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]]\n",
+    );
+    let instance = |x: u32| format!("[[instance]]\npart = 'p'\ntranslate = [{x}, 0, 0]\n");
+    scene.extend((0..100).map(|it| instance(2 * it)));
+    folder.write("many.toml", scene.as_bytes());
+    let verify = ["verify", "many.toml", "--accel", "bvh", "--rays", "500"];
+    let text = folder.done(&verify);
+    assert!(
+        text.contains("as many from inside 50 of 100 closed meshes"),
+        "{text}"
+    );
+    let report = folder.json(&verify);
+    assert_eq!(
+        (
+            &report["closed_meshes"],
+            &report["closed_meshes_aimed_from"]
+        ),
+        (&100.into(), &50.into())
+    );
+    folder.write(
+        "ball.toml",
+        b"[[object]]\nkind = 'sphere'\ncenter = [0, 0, 0]\nradius = 1\n",
+    );
+    let text = folder.done(&["verify", "ball.toml", "--accel", "bvh", "--rays", "500"]);
+    assert!(!text.contains("from inside"), "{text}");
+}

@@ -8,6 +8,7 @@ mod certify;
 mod check;
 mod compare;
 mod ending;
+mod explain;
 mod frames;
 mod help;
 mod import;

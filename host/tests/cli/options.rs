@@ -234,6 +234,8 @@ fn scenes_with_room_are_compiled_for_bvh() {
     for start in [
         &["build", "a.toml", "-o", "b.gridel", "--accel", "wide"][..],
         &["render", "a.toml", "-o", "b.png", "--accel", "wide"],
+        &["verify", "a.toml", "--rays", "10", "--accel", "wide"],
+        &["compare", "a.toml", "--accel", "wide"],
     ] {
         folder.fails(
             2,

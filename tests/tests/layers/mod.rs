@@ -72,7 +72,7 @@ fn blobs_come_from_functions_that_are_equal_on_every_machine() {
             continue;
         }
         for (number, line) in source.text.lines().enumerate() {
-            let called = |name: &&str| line.contains(&format!(".{name}("));
+            let called = |name: &&&str| line.contains(&format!(".{name}("));
             if let Some(name) = UNEQUAL.iter().find(called) {
                 let line = number + 1;
                 faults.push(format!(

@@ -104,6 +104,9 @@ fn open(path: &Path) -> io::Result<BufReader<File>> {
 }
 
 fn wrong(path: &Path, error: &PartError) -> Failure {
+    if let PartError::Read(error) = error {
+        return Failure::reading(path, error);
+    }
     Failure::failed(
         format!("{} cannot be merged: {error}", path.display()),
         "frames are what `gridel render --frames A..B -o NAME-%03d.png` writes",

@@ -139,9 +139,9 @@ impl Output {
             .ok_or_else(|| unsupported(path, "image", ".png, .ppm or .rgb565"))?;
         for number in frames.clone() {
             let path = PathBuf::from(name.of(number));
-            reject_inputs([input], [&path], "the input")?;
-            // New files are written as the first of them.
+            // A new file is not the input, and is written as the first of them.
             if number == frames.start || path.exists() {
+                reject_inputs([input], [&path], "the input")?;
                 check_writable(&path)?;
             }
         }

@@ -14,14 +14,12 @@ use gridel_host::openexr;
 use gridel_host::output::place;
 use gridel_host::picture::{PictureFormat, RenderMetadata};
 use gridel_host::render::{
-    Aov, Job, LinearPicture, Picture, Values, render_aovs, render_linear_moments, render_moments,
+    Aov, Job, LinearPicture, MOST_PIXELS, Picture, Values, render_aovs, render_linear_moments,
+    render_moments,
 };
 use gridel_host::report::HeatMap;
 use serde::Serialize;
 use std::path::{Path, PathBuf};
-
-/// Largest number of pixels of pictures for displays in memory at once.
-pub const MOST_PIXELS: usize = 1 << 26;
 
 /// The formats of pictures that this build writes, as messages list them.
 const FORMATS: &str = if cfg!(feature = "exr") {

@@ -1,7 +1,7 @@
 //! The path of a ray through a structure.
 
 use super::Shown;
-use super::words::{precise, vector};
+use super::words::{counted_were, precise, vector};
 use crate::explain::walk::{Culled, Plane, Side, Step, Tested, Verdict, Walk};
 use crate::table::significant;
 use std::fmt::{self, Formatter};
@@ -79,6 +79,13 @@ impl Shown<'_> {
                     writeln!(f, "    {kind} {primitive}{object} {crossing}{verdict}")?;
                 }
             }
+        }
+        if walk.unlisted > 0 {
+            writeln!(
+                f,
+                "    {} not listed; primitives that are hit are listed all the same",
+                counted_were(walk.unlisted, "further step")
+            )?;
         }
         Ok(())
     }

@@ -180,3 +180,34 @@ fn albedo_is_not_absorbed_on_the_way_to_a_surface() {
         }
     }
 }
+
+/// A lens and an environment change no property of a surface.
+#[test]
+fn albedo_is_that_of_the_object_in_the_same_pixel() {
+    let text = "[camera]\neye = [0, 0, 5]\ntarget = [0, 0, 0]\nfov = 60\naperture = 2\nfocus = 2\n\
+        [environment]\nzenith = 1\nhorizon = 0.5\nground = 0.25\n\
+        [material.red]\ndiffuse = [0.5, 0, 0]\n[material.blue]\ndiffuse = [0, 0, 0.5]\n\
+        [[object]]\nkind = 'box'\nmin = [-1, -1, -1]\nmax = [0, 1, 0]\nmaterial = 'red'\n\
+        [[object]]\nkind = 'box'\nmin = [0, -1, -1]\nmax = [1, 1, 0]\nmaterial = 'blue'\n";
+    let blob = blob("lens.toml", text);
+    let scene = blob.scene().expect("a scene");
+    for format in Format::ALL {
+        let job = job(&scene, format, 1);
+        let [_, _, albedo, object, ..] = all(&scene, &job);
+        let mut seen = [0; 3];
+        for (albedo, &object) in vectors(&albedo).iter().zip(numbers(&object)) {
+            let expected = match object {
+                0 => [0.5, 0.0, 0.0],
+                1 => [0.0, 0.0, 0.5],
+                _ => [0.0; 3],
+            };
+            let off = |k: usize| (albedo[k] - expected[k]).abs();
+            assert!(
+                off(0).max(off(1)).max(off(2)) < 1e-4,
+                "{albedo:?} of {object}"
+            );
+            seen[object.min(2) as usize] += 1;
+        }
+        assert!(seen.iter().all(|&pixels| pixels > 0), "{seen:?}");
+    }
+}

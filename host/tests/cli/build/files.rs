@@ -162,3 +162,12 @@ fn files_that_belong_together_are_written_together() {
     ];
     folder.fails(1, &render, &["heat.png cannot be written"]);
 }
+
+/// Outputs are tested before the work.
+#[test]
+fn blobs_that_cannot_be_written_are_rejected_before_the_scene_is_read() {
+    let folder = Folder::new();
+    folder.write("broken.toml", b"[[object]]");
+    let build = ["build", "broken.toml", "-o", "nowhere/n.gridel"];
+    folder.fails(1, &build, &["nowhere", "cannot be written"]);
+}
