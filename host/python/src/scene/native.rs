@@ -20,6 +20,9 @@ const SLACK: f64 = 64.0;
 /// Parts of a scene's size by which number formats may round the t of a hit.
 const ROUNDING: f64 = 1.0 / (1 << 22) as f64;
 
+/// A step of the finest lattice, as a part of a scene's size: so far directions in single precision lead astray.
+const STEP: f64 = 1.0 / (1 << 24) as f64;
+
 type Checked<'b> = Result<Scene<'b>, BlobError>;
 
 self_cell::self_cell!(
@@ -42,6 +45,8 @@ pub struct NativeScene {
     pub(super) displacement: f64,
     /// How far beyond their limits rays are searched, in scene units.
     slack: f64,
+    /// How far from a triangle as it was given its hits are, in scene units: the lattice moved it.
+    pub(super) moved: f64,
     pub(super) middle: Middle,
     pub(super) closed: OnceLock<Vec<bool>>,
 }
@@ -63,9 +68,12 @@ impl NativeScene {
                 first
             });
         let firsts = firsts.collect();
-        let slack = match model {
-            Some(_) => SLACK * displacement.max(size * ROUNDING),
-            None => 0.0,
+        let (slack, moved) = match model {
+            Some(_) => (
+                SLACK * displacement.max(size * ROUNDING),
+                displacement.max(size * STEP),
+            ),
+            None => (0.0, 0.0),
         };
         Ok(Self {
             blob,
@@ -74,6 +82,7 @@ impl NativeScene {
             displacement,
             slack,
             middle,
+            moved,
             closed: OnceLock::new(),
         })
     }
