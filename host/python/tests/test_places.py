@@ -57,3 +57,22 @@ def test_locations_stay_at_triangles_that_the_lattice_turned(small_ball, rays_at
     places, _, triangles = mine.intersects_location(rays_at_ball[:, :3], rays_at_ball[:, 3:])
     on_ball = np.linalg.norm(places[triangles < count], axis=1)
     assert on_ball.max() < RADIUS + 2 * mine.scene.displacement
+
+
+def test_bounds_are_those_of_the_vertices_as_given(tmp_path):
+    vertices = np.random.default_rng(2).normal(size=(60, 3)) * [1, 20, 300] + [1, 2, 3]
+    faces = np.arange(60).reshape(20, 3)
+    expected = np.array([vertices.min(axis=0), vertices.max(axis=0)])
+    around = np.vstack([vertices, [[1e9, 0, np.nan]]])
+    assert np.array_equal(gridel.Scene.from_arrays(around, faces).bounds, expected)
+    lines = ["v %r %r %r" % tuple(map(float, place)) for place in vertices] + ["f %d %d %d" % tuple(face) for face in faces + 1]
+    (tmp_path / "mesh.obj").write_text("\n".join(lines))
+    loaded = gridel.Scene.load(tmp_path / "mesh.obj")
+    assert np.array_equal(loaded.bounds, expected)
+    # Those of a blob are wider, by as much as is documented.
+    wide = gridel.Scene.from_blob(loaded.to_blob()).bounds
+    most = np.ptp(expected, axis=0).max() * 2.0**-15
+    assert (np.abs(wide - expected) < most).all() and not np.array_equal(wide, expected)
+    box = "[[object]]\nkind = 'box'\nmin = [0, 0, 0]\nmax = [3, 1, 1]\n"
+    (tmp_path / "box.toml").write_text(box)
+    assert np.allclose(gridel.Scene.load(tmp_path / "box.toml").bounds, [[0, 0, 0], [3, 1, 1]], atol=3 * 2.0**-15)
