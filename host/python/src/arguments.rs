@@ -1,11 +1,18 @@
 //! Names and numbers that Python gives.
 
-use gridel_core::{Format, Structure};
+use gridel_core::{Format, Scene, Structure};
 use gridel_host::compile::{CompileError, Options};
 use gridel_host::explained;
-use pyo3::exceptions::{PyFileNotFoundError, PyIsADirectoryError, PyValueError};
+use pyo3::exceptions::{PyOSError, PyValueError};
 use pyo3::prelude::*;
+use std::fs;
+use std::io::ErrorKind;
 use std::path::Path;
+
+/// Numbers of errors that Linux, macOS and Windows share.
+const ENOENT: i32 = 2;
+const EISDIR: i32 = 21;
+const EINVAL: i32 = 22;
 
 /// A ValueError of what is wrong.
 pub fn invalid(error: impl std::fmt::Display) -> PyErr {
@@ -52,20 +59,40 @@ pub fn in_file(py: Python<'_>, path: &Path, error: PyErr) -> PyErr {
     }
 }
 
-/// Rejects what is not a file to read.
+/// Rejects what is not a file to read, with the number, text and path that errors of files have in Python.
 pub fn check_file(path: &Path) -> PyResult<()> {
-    if path.is_file() {
-        return Ok(());
-    }
-    let what = match (path.is_dir(), path.exists()) {
-        (true, _) => "a directory; name a scene file in it",
-        (_, true) => "not a regular file; give its bytes to `from_blob`",
-        (_, false) => "no such file",
+    let (number, text) = match fs::metadata(path) {
+        Ok(found) if found.is_file() => return Ok(()),
+        Ok(found) if found.is_dir() => (EISDIR, "a directory; name a scene file in it"),
+        Ok(_) => (EINVAL, "not a regular file; give its bytes to `from_blob`"),
+        Err(_) if path.as_os_str().is_empty() => {
+            (ENOENT, "the path is empty; give the path of a scene file")
+        }
+        Err(error) if error.kind() == ErrorKind::NotFound => (ENOENT, "no such file"),
+        Err(error) => return Err(file_error(error.raw_os_error(), error.to_string(), path)),
     };
-    let sentence = format!("{}: {what}", path.display());
-    Err(match path.is_dir() {
-        true => PyIsADirectoryError::new_err(sentence),
-        false => PyFileNotFoundError::new_err(sentence),
+    Err(file_error(Some(number), text.to_owned(), path))
+}
+
+/// Python chooses the class by the number: FileNotFoundError, IsADirectoryError, PermissionError and others.
+fn file_error(number: Option<i32>, text: String, path: &Path) -> PyErr {
+    PyOSError::new_err((number.unwrap_or(EINVAL), text, path.as_os_str().to_owned()))
+}
+
+/// The error of a structure that a scene does not hold.
+pub fn not_held(structure: Structure, scene: &Scene<'_>) -> PyErr {
+    let held: Vec<_> = scene.structures().map(Structure::name).collect();
+    let sentence = format!(
+        "accel: the scene does not hold the structure `{}`, but {}; compile it with accel=[...]",
+        structure.name(),
+        held.join(", ")
+    );
+    Python::attach(|py| {
+        let class = py
+            .import("gridel._errors")
+            .and_then(|errors| errors.getattr("StructureError"))
+            .and_then(|class| class.call1((sentence,)));
+        class.map_or_else(|error| error, PyErr::from_value)
     })
 }
 

@@ -2,13 +2,12 @@
 
 use crate::arguments::{in_python, rejected};
 use crate::threads::in_pool;
+use glam::DVec3;
 use gridel_host::blob::Blob;
 use gridel_host::compile::{Compiled, LATTICE_BITS, Options, Report, compile};
-use gridel_host::scene::{RenderSettings, Scene};
+use gridel_host::scene::{RenderSettings, Scene, Shape};
 use gridel_host::table::{counted, significant};
-use pyo3::exceptions::PyUserWarning;
 use pyo3::prelude::*;
-use std::ffi::CString;
 use std::path::PathBuf;
 
 /// What a scene is compiled from.
@@ -26,12 +25,11 @@ impl Model {
     }
 
     /// Gives the compiler's warnings. Of arrays only primitives are reported that the lattice leaves nothing of.
-    pub fn warn_of(&self, py: Python<'_>, report: &Report, level: i32) -> PyResult<()> {
+    pub fn warn_of(&self, py: Python<'_>, report: &Report) -> PyResult<()> {
         if let Some(file) = &self.file {
             let warnings = report.warnings(self.options.lattice_bits);
             let mut warnings = warnings.iter().map(|it| in_python(it));
-            return warnings
-                .try_for_each(|it| warn(py, &format!("{}: {it}", file.display()), level));
+            return warnings.try_for_each(|it| warn(py, &format!("{}: {it}", file.display())));
         }
         if report.collapsed.count() == 0 {
             return Ok(());
@@ -46,7 +44,32 @@ impl Model {
             counted(report.collapsed.count(), "primitive"),
             significant(report.step),
         );
-        warn(py, &warning, level)
+        warn(py, &warning)
+    }
+
+    /// The lowest and the highest corner of a scene that consists of meshes, of the vertices that faces use.
+    pub fn bounds(&self) -> Option<[DVec3; 2]> {
+        let scene = &self.scene;
+        let is_larger = !scene.instances.is_empty() || scene.room.is_some();
+        if is_larger || !scene.morph_targets.is_empty() {
+            return None;
+        }
+        let mut corners: Option<[DVec3; 2]> = None;
+        for object in &scene.objects {
+            let Shape::Mesh {
+                vertices,
+                triangles,
+            } = &object.shape
+            else {
+                return None;
+            };
+            for &corner in triangles.as_flattened() {
+                let place = *vertices.get(corner as usize)?;
+                let [low, high] = corners.unwrap_or([place; 2]);
+                corners = Some([low.min(place), high.max(place)]);
+            }
+        }
+        corners
     }
 
     /// Returns the scene for pictures of another shape, where the compiler chooses the camera by their shape.
@@ -71,8 +94,9 @@ impl Model {
     }
 }
 
-/// Issues a UserWarning, of a function so many levels up.
-pub fn warn(py: Python<'_>, warning: &str, level: i32) -> PyResult<()> {
-    let warning = CString::new(warning.replace('\0', " "))?;
-    PyErr::warn(py, &py.get_type::<PyUserWarning>(), &warning, level)
+/// Issues a UserWarning at the line of whoever called the package, so that Python shows it once for each such line.
+pub fn warn(py: Python<'_>, warning: &str) -> PyResult<()> {
+    let warn = py.import("gridel._warnings")?.getattr("warn")?;
+    warn.call1((warning,))?;
+    Ok(())
 }

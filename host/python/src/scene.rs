@@ -52,14 +52,14 @@ impl NativeScene {
             warnings.push(format!("{}: {lost}", path.display()));
         }
         for warning in warnings {
-            warn(py, &in_python(&warning), 2)?;
+            warn(py, &in_python(&warning))?;
         }
         let model = Model {
             scene: imported.scene,
             options,
             file: Some(path.clone()),
         };
-        Self::compiled(py, model, 2).map_err(|error| in_file(py, &path, error))
+        Self::compiled(py, model).map_err(|error| in_file(py, &path, error))
     }
 
     #[staticmethod]
@@ -83,7 +83,7 @@ impl NativeScene {
             },
             file: None,
         };
-        Self::compiled(py, model, 3)
+        Self::compiled(py, model)
     }
 
     /// What [`from_meshes`](Self::from_meshes) was given; `None` of other scenes.
@@ -482,9 +482,7 @@ impl NativeScene {
     /// The box of the scene, in scene units: lowest and highest corner.
     #[getter]
     fn bounds(&self) -> PyResult<([f64; 3], [f64; 3])> {
-        let scene = self.scene()?;
-        let frame = gridel_host::trace::Frame::of(scene);
-        let corner = |side: usize| frame.place(scene.bounds().0.map(|it| f64::from(it[side])));
-        Ok((corner(0).to_array(), corner(1).to_array()))
+        let [low, high] = self.corners_of_box()?.map(|it| it.to_array());
+        Ok((low, high))
     }
 }

@@ -332,23 +332,6 @@ def threads_of_process():
     return len(list(Path("/proc/self/task").iterdir()))
 
 
-def test_errors_name_the_argument(cube):
-    with pytest.raises(ValueError, match="width is 0; it must be 1 to 65535"):
-        cube.render(0, 5)
-    with pytest.raises(ValueError, match="height is 70000"):
-        cube.render(5, 70000)
-    with pytest.raises(ValueError, match="samples is -1"):
-        cube.render(5, 5, samples=-1)
-    with pytest.raises(ValueError, match="depth is 300"):
-        cube.render(5, 5, depth=300)
-    with pytest.raises(ValueError, match="lattice_bits is -1; it must be 10 to 24"):
-        gridel.Scene.from_arrays(CUBE, FACES, lattice_bits=-1)
-    with pytest.raises(TypeError, match="vertices: the array has the type complex128"):
-        gridel.Scene.from_arrays(CUBE.astype(complex), FACES)
-    with pytest.raises(ValueError, match="18446744073709551615.*numbered 0 to 7"):
-        gridel.Scene.from_arrays(CUBE, np.array([[0, 1, 2**64 - 1]], dtype=np.uint64))
-
-
 def test_blobs_keep_the_bits_of_the_lattice():
     coarse = gridel.Scene.from_arrays(CUBE / 3, FACES, lattice_bits=16)
     again = gridel.Scene.from_arrays(CUBE / 3, FACES, accel="bvh", lattice_bits=16)
@@ -363,14 +346,6 @@ def test_uv_are_numbers_at_every_scale(scale):
     hits = scene.cast([[0.3 * scale, 0.6 * scale, -2 * scale, 0, 0, scale]])
     unit = gridel.Scene.from_arrays(CUBE, FACES).cast([[0.3, 0.6, -2, 0, 0, 1]])
     assert np.allclose(hits.t, 2) and np.allclose(hits.uv, unit.uv)
-
-
-def test_load_takes_bytes_and_names_directories(tmp_path):
-    with pytest.raises(IsADirectoryError, match="a directory"):
-        gridel.Scene.load(tmp_path)
-    path = tmp_path / "cube.gridel"
-    path.write_bytes(gridel.Scene.from_arrays(CUBE, FACES).to_blob())
-    assert gridel.Scene.load(str(path).encode()).primitives == 12
 
 
 def test_load_says_the_remedy_and_warns(tmp_path):
@@ -507,12 +482,6 @@ def test_render_is_interrupted():
 def test_the_classes_for_other_libraries_need_no_import_of_their_own():
     code = "import gridel; gridel.trimesh.RayMeshIntersector; gridel.open3d.RaycastingScene()"
     subprocess.run([sys.executable, "-c", code], check=True)
-
-
-def test_from_blob_takes_bytes_alone():
-    for wrong in ("scene.gridel", 10**9):
-        with pytest.raises(TypeError, match="bytes-like"):
-            gridel.Scene.from_blob(wrong)
 
 
 def test_meshes_lie_at_up_to_5e8_times_their_size_from_the_origin():

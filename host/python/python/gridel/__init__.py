@@ -19,7 +19,9 @@ names in trimesh and Open3D.
 """
 
 from . import open3d, trimesh
+from ._errors import StructureError
 from ._gridel import VERSION as __version__
 from ._scene import MISS, AllHits, Hits, Scene
 
-__all__ = ["__version__", "MISS", "AllHits", "Hits", "Scene", "open3d", "trimesh"]
+# Without the two modules: they would replace trimesh and open3d where all of this is imported.
+__all__ = ["__version__", "MISS", "AllHits", "Hits", "Scene", "StructureError"]

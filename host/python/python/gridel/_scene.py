@@ -2,27 +2,24 @@
 
 from __future__ import annotations
 
-import decimal
-import math
-import numbers
-import operator
 import os
-from typing import Any, NamedTuple, Optional, Sequence, Tuple, Union
+import sys
+from typing import TYPE_CHECKING, Any, NamedTuple, Optional, Sequence, Tuple, Union
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ._gridel import LATTICE_BITS, NativeScene
+from ._arguments import LARGEST, Accel, bits, character, flag, integer, mesh, names, query, rows, seconds, structures, text
+from ._gridel import NativeScene
+
+if sys.version_info >= (3, 11):
+    from typing import Self
+elif TYPE_CHECKING:
+    from typing_extensions import Self
 
 #: Stands for "none": the object, primitive and instance of a ray that hits nothing, and also the instance of a hit on an
 #: object that is part of no instance. ``instance == MISS`` therefore does not mean that the ray missed.
 MISS = 0xFFFFFFFF
-
-Accel = Union[str, Sequence[str]]
-
-#: The largest number that is an option.
-_LARGEST = 0xFFFFFFFF
-
 
 class Hits(NamedTuple):
     """The first hits of n rays, as :meth:`Scene.cast` returns them; arrays have the shape of the rays."""
@@ -64,125 +61,6 @@ class AllHits(NamedTuple):
     leaves: NDArray[np.bool_]
 
 
-def _names(accel: Accel) -> list[str]:
-    return [accel] if isinstance(accel, str) else list(accel)
-
-
-def _integer(value: Any, what: str, least: int, most: int) -> int:
-    """An integer from ``least`` to ``most``."""
-    try:
-        number = operator.index(value)
-    except TypeError:
-        raise TypeError(f"{what} is {value!r}; it must be an integer") from None
-    if not least <= number <= most:
-        raise ValueError(f"{what} is {number}; it must be {least} to {most}")
-    return number
-
-
-def _bits(value: Any) -> int:
-    """Bits of a lattice."""
-    return _integer(value, "lattice_bits", *LATTICE_BITS)
-
-
-def _text(value: Any, what: str, *, or_number: bool = False) -> Optional[str]:
-    """A text, or None; some options may be a number from 0 in its place."""
-    if value is None or isinstance(value, str):
-        return value
-    try:
-        if or_number:
-            return str(_integer(value, what, 0, _LARGEST))
-    except TypeError:
-        pass
-    kinds = "a string or an integer" if or_number else "a string"
-    raise TypeError(f"{what} is {value!r}; it must be {kinds}")
-
-
-def _character(value: Any, what: str) -> Optional[str]:
-    """A single character, or None."""
-    text = _text(value, what)
-    if text is not None and len(text) != 1:
-        raise ValueError(f"{what} is {text!r}; it must be one character")
-    return text
-
-
-def _flag(value: Any, what: str) -> bool:
-    """True or False."""
-    if not isinstance(value, (bool, np.bool_)):
-        raise TypeError(f"{what} is {value!r}; it must be True or False")
-    return bool(value)
-
-
-def _seconds(value: Any, what: str) -> Optional[float]:
-    """A time in seconds, or None."""
-    if value is None:
-        return None
-    if not isinstance(value, numbers.Real):
-        raise TypeError(f"{what} is {value!r}; it must be a number of seconds")
-    if not math.isfinite(value):
-        raise ValueError(f"{what} is {value}; it must be finite")
-    return float(value)
-
-
-def _threads(value: Any, what: str = "threads") -> int:
-    """A number of threads, at most as many as the program takes."""
-    return _integer(value, what, 0, 1024)
-
-
-def _numbers(values: ArrayLike, what: str) -> NDArray:
-    """An array of float32 or float64 in C order, without a copy where it is one already."""
-    array = np.asarray(values)
-    if array.dtype not in (np.float32, np.float64):
-        # The values of a DataFrame may be objects, each a number.
-        is_numeric = array.dtype.kind in "iufb" or array.dtype == object and all(
-            isinstance(value, (numbers.Real, decimal.Decimal, np.bool_)) for value in array.flat
-        )
-        if not is_numeric and array.size:
-            raise TypeError(f"{what}: the array has the type {array.dtype}; it must be a type of numbers")
-        array = array.astype(np.float64)
-    return np.require(array, requirements="CA")
-
-
-def _mesh(
-    vertices: ArrayLike, faces: ArrayLike, names: Tuple[str, str] = ("vertices", "faces")
-) -> Tuple[NDArray[np.float64], NDArray[np.int64]]:
-    """Vertices (n, 3) and faces (m, 3) as they are compiled."""
-    vertices = np.require(_numbers(vertices, names[0]), np.float64, "CA")
-    faces = np.asarray(faces)
-    if faces.size and faces.dtype.kind not in "iu":
-        raise TypeError(f"{names[1]}: the array has the type {faces.dtype}; it must be a type of integers")
-    for what, array in zip(names, (vertices, faces)):
-        if array.ndim != 2 or array.shape[1] != 3:
-            raise ValueError(f"{what}: the array has the shape {array.shape}; it must be (n, 3)")
-    is_valid = ((faces >= 0) & (faces < len(vertices))).all(axis=1)
-    if not is_valid.all():
-        place = int(np.argmin(is_valid))
-        raise ValueError(
-            f"{names[1]}: face {place} is {faces[place].tolist()}; "
-            f"vertices are numbered 0 to {len(vertices) - 1}"
-        )
-    is_valid = np.isfinite(vertices).all(axis=1)
-    if not is_valid.all():
-        is_broken = np.zeros(len(vertices), bool)
-        is_broken[faces] = True
-        is_broken &= ~is_valid
-        if is_broken.any():
-            raise ValueError(f"{names[0]}: vertex {int(np.argmax(is_broken))} is not finite")
-        # Those that no face names mean nothing.
-        vertices = np.where(is_valid[:, None], vertices, 0.0)
-    return vertices, np.require(faces, np.int64, "CA")
-
-
-def _rows(values: ArrayLike, widths: Tuple[int, ...], what: str) -> NDArray:
-    """Rows of numbers."""
-    array = _numbers(values, what)
-    if array.ndim == 0 or (array.shape[-1] not in widths):
-        if array.size == 0:
-            return np.zeros((0, widths[0]))
-        expected = " or ".join(str(width) for width in widths)
-        raise ValueError(f"{what}: the array has the shape {array.shape}; its last axis must be {expected}")
-    return array
-
-
 class Scene:
     """A scene, compiled for queries. Make one by :meth:`load`, :meth:`from_arrays` or :meth:`from_blob`.
 
@@ -191,7 +69,8 @@ class Scene:
     a forked process. Arrays of float32 and float64 in C order are read in place.
 
     ``format`` is the number format of a query: ``"f32"``, ``"f64"`` or ``"fixed"`` (integers). ``accel`` is the name of
-    an acceleration structure that the scene holds; the default is the fastest. It changes no result.
+    an acceleration structure that the scene holds; the default is the fastest. It changes no result. A structure that the
+    scene does not hold is a :class:`gridel.StructureError`, which is a ValueError and a KeyError.
 
     Rays may start at any distance. A ray is invalid if its direction is zero or a number of it is nan. It is invalid if
     its origin or direction is infinite, or if its tmin is greater than its tmax. It is also invalid if the t of the scene
@@ -205,6 +84,8 @@ class Scene:
     __slots__ = ("_native", "__weakref__")
 
     def __init__(self, native: NativeScene):
+        if not isinstance(native, NativeScene):
+            raise TypeError(f"Scene takes no {type(native).__name__}; use Scene.load, from_arrays or from_blob")
         self._native = native
 
     @classmethod
@@ -215,7 +96,7 @@ class Scene:
         accel: Optional[Accel] = None,
         lattice_bits: Optional[int] = None,
         quality: Optional[str] = None,
-        without: Union[str, Sequence[str]] = (),
+        without: Union[str, Sequence[str], None] = (),
         texture_bytes: Optional[int] = None,
         camera: Optional[str] = None,
         animation: Union[str, int, None] = None,
@@ -227,7 +108,7 @@ class Scene:
         model: Optional[int] = None,
         altloc: Optional[str] = None,
         allow_outside: bool = False,
-    ) -> "Scene":
+    ) -> Self:
         """Reads a scene file of any format that ``gridel`` reads, or a scene blob.
 
         A scene file is compiled. The options are those of the command line; for a blob, each of them is an error.
@@ -255,25 +136,25 @@ class Scene:
         :param allow_outside: whether the scene file may name files outside of its folder. Default: False.
 
         Warns (UserWarning) of what the file's importer leaves out, and of primitives that are too small for the lattice.
-        Raises FileNotFoundError and IsADirectoryError, and ValueError with file, place, cause and remedy. An option that
-        does not apply to the file is a ValueError as well.
+        Raises FileNotFoundError, IsADirectoryError and other OSErrors with ``errno`` and ``filename``, and ValueError with
+        file, place, cause and remedy. An option that does not apply to the file is a ValueError as well.
         """
         given = {
-            "accel": None if accel is None else _names(accel),
-            "lattice_bits": None if lattice_bits is None else _bits(lattice_bits),
-            "quality": _text(quality, "quality"),
-            "without": _names(without),
-            "texture_bytes": None if texture_bytes is None else _integer(texture_bytes, "texture_bytes", 0, _LARGEST),
-            "camera": _text(camera, "camera"),
-            "animation": _text(animation, "animation", or_number=True),
-            "time": _seconds(time, "time"),
-            "instances": _text(instances, "instances"),
-            "normals": _text(normals, "normals"),
-            "assembly": _text(assembly, "assembly", or_number=True),
-            "style": _text(style, "style"),
-            "model": None if model is None else _integer(model, "model", 1, _LARGEST),
-            "altloc": _character(altloc, "altloc"),
-            "allow_outside": _flag(allow_outside, "allow_outside"),
+            "accel": structures(accel),
+            "lattice_bits": None if lattice_bits is None else bits(lattice_bits),
+            "quality": text(quality, "quality"),
+            "without": [] if without is None else names(without, "without"),
+            "texture_bytes": None if texture_bytes is None else integer(texture_bytes, "texture_bytes", 0, LARGEST),
+            "camera": text(camera, "camera"),
+            "animation": text(animation, "animation", or_number=True),
+            "time": seconds(time, "time"),
+            "instances": text(instances, "instances"),
+            "normals": text(normals, "normals"),
+            "assembly": text(assembly, "assembly", or_number=True),
+            "style": text(style, "style"),
+            "model": None if model is None else integer(model, "model", 1, LARGEST),
+            "altloc": character(altloc, "altloc"),
+            "allow_outside": flag(allow_outside, "allow_outside"),
         }
         return cls(NativeScene.load(os.fsdecode(path), given))
 
@@ -283,9 +164,9 @@ class Scene:
         vertices: ArrayLike,
         faces: ArrayLike,
         *,
-        accel: Accel = "wide",
-        lattice_bits: int = 24,
-    ) -> "Scene":
+        accel: Optional[Accel] = "wide",
+        lattice_bits: Optional[int] = 24,
+    ) -> Self:
         """Compiles a triangle mesh: vertices (n, 3) of numbers, faces (m, 3) of integers.
 
         Vertices are centered in float64 and then rounded to the lattice, which has 10 to 24 ``lattice_bits``. At 24 bits
@@ -294,7 +175,8 @@ class Scene:
         fewer ``lattice_bits``. Its size is 1e-250 to 1e250. Vertices that no face uses are ignored. A face that the array
         has twice counts twice. A closed mesh thinner than a step becomes flat: rays hit it, and it contains nothing. Warns
         (UserWarning) of triangles that are too small for the lattice. Raises ValueError for faces that name no vertex, or
-        one that is not finite, and for meshes that lie too far away.
+        one that is not finite, and for meshes that lie too far away. Such faces can be left out:
+        ``faces[numpy.isfinite(vertices).all(axis=1)[faces].all(axis=1)]``.
         """
         return cls._from_meshes([(vertices, faces)], accel, lattice_bits)
 
@@ -302,15 +184,20 @@ class Scene:
     def _from_meshes(
         cls,
         meshes: Sequence[Tuple[ArrayLike, ArrayLike]],
-        accel: Accel = "wide",
-        lattice_bits: int = 24,
-    ) -> "Scene":
-        arrays = [_mesh(vertices, faces) for vertices, faces in meshes]
-        return cls(NativeScene.from_meshes(arrays, _names(accel), _bits(lattice_bits)))
+        accel: Optional[Accel] = "wide",
+        lattice_bits: Optional[int] = 24,
+    ) -> Self:
+        built = structures(accel) or ["wide"]
+        lattice_bits = bits(24 if lattice_bits is None else lattice_bits)
+        arrays = [mesh(vertices, faces) for vertices, faces in meshes]
+        return cls(NativeScene.from_meshes(arrays, built, lattice_bits))
 
     @classmethod
-    def from_blob(cls, blob: bytes) -> "Scene":
-        """Takes a scene blob, as ``gridel build`` and :meth:`to_blob` make them. Raises ValueError if it is invalid."""
+    def from_blob(cls, blob: Union[bytes, bytearray, memoryview]) -> Self:
+        """Takes a scene blob, as ``gridel build`` and :meth:`to_blob` make them, as any bytes-like object.
+
+        Raises ValueError if it is invalid.
+        """
         return cls(NativeScene.from_blob(bytes(memoryview(blob))))
 
     def cast(
@@ -333,9 +220,9 @@ class Scene:
         - The angle between ray and surface is less than one degree, and the t of the hit is near tmin or tmax: within the
           same distance, measured along the ray.
         """
-        rays = _rows(rays, (6, 8), "rays")
+        rays = rows(rays, (6, 8), "rays")
         shape = rays.shape[:-1]
-        t, obj, primitive, instance, normal, uv = self._native.cast(rays, format, accel, _threads(threads))
+        t, obj, primitive, instance, normal, uv = self._native.cast(rays, *query(format, accel, threads))
         return Hits(
             t.reshape(shape),
             obj.reshape(shape),
@@ -352,8 +239,8 @@ class Scene:
 
         Rays at edges and vertices are rounded as those of :meth:`cast` are.
         """
-        rays = _rows(rays, (6, 8), "rays")
-        return self._native.any(rays, format, accel, _threads(threads)).reshape(rays.shape[:-1])
+        rays = rows(rays, (6, 8), "rays")
+        return self._native.any(rays, *query(format, accel, threads)).reshape(rays.shape[:-1])
 
     def all(
         self, rays: ArrayLike, *, format: str = "f64", accel: Optional[str] = None, threads: int = 0
@@ -365,16 +252,16 @@ class Scene:
         crossing, or two, or one at a border; :meth:`cast` may report a hit there. Surfaces nearer to each other than
         :attr:`displacement` come in the order in which the lattice has them, and may have the same t.
         """
-        rays = _rows(rays, (6, 8), "rays")
-        ray, hits, leaves = self._native.all(rays, format, accel, _threads(threads))
+        rays = rows(rays, (6, 8), "rays")
+        ray, hits, leaves = self._native.all(rays, *query(format, accel, threads))
         return AllHits(ray, *hits, leaves)
 
     def count(
         self, rays: ArrayLike, *, format: str = "f64", accel: Optional[str] = None, threads: int = 0
     ) -> NDArray[np.uint32]:
         """Returns the number of crossings of each ray, as :meth:`all` lists them: (...) uint32."""
-        rays = _rows(rays, (6, 8), "rays")
-        return self._native.count(rays, format, accel, _threads(threads)).reshape(rays.shape[:-1])
+        rays = rows(rays, (6, 8), "rays")
+        return self._native.count(rays, *query(format, accel, threads)).reshape(rays.shape[:-1])
 
     def contains(
         self,
@@ -393,9 +280,9 @@ class Scene:
         closed; with ``closed_only=False`` open meshes contain what one ray leaves through an odd number of their
         triangles.
         """
-        points = _rows(points, (3,), "points")
+        points = rows(points, (3,), "points")
         within = "closed" if closed_only else "object"
-        inside = self._native.contains(points, within, format, accel, _threads(threads))
+        inside = self._native.contains(points, within, *query(format, accel, threads))
         return inside.reshape(points.shape[:-1])
 
     def render(
@@ -420,12 +307,12 @@ class Scene:
             raise ValueError("give both width and height, or neither")
         size = None
         if width is not None:
-            size = [_integer(width, "width", 1, 65535), _integer(height, "height", 1, 65535)]
+            size = [integer(width, "width", 1, 65535), integer(height, "height", 1, 65535)]
         if samples is not None:
-            samples = _integer(samples, "samples", 1, 4096)
+            samples = integer(samples, "samples", 1, 4096)
         if depth is not None:
-            depth = _integer(depth, "depth", 0, 32)
-        return self._native.render(size, samples, depth, format, accel, _threads(threads))
+            depth = integer(depth, "depth", 0, 32)
+        return self._native.render(size, samples, depth, *query(format, accel, threads))
 
     def to_blob(
         self, *, accel: Optional[Accel] = None, lattice_bits: Optional[int] = None
@@ -434,9 +321,7 @@ class Scene:
 
         The scene's own structures and bits are the defaults.
         """
-        names = None if accel is None else _names(accel)
-        bits = None if lattice_bits is None else _bits(lattice_bits)
-        return self._native.to_blob(names, bits)
+        return self._native.to_blob(structures(accel), None if lattice_bits is None else bits(lattice_bits))
 
     @property
     def accels(self) -> Tuple[str, ...]:
@@ -468,19 +353,25 @@ class Scene:
 
     @property
     def bounds(self) -> NDArray[np.float64]:
-        """(2, 3) float64: the lowest and the highest corner of a box around the scene."""
+        """(2, 3) float64: the lowest and the highest corner of a box around the scene.
+
+        Of a scene of meshes without instances and morph targets it is the box of the vertices that faces use, as they were
+        given. Other boxes are those of blobs, wider by up to 2^-15 of their longest side.
+        """
         return np.array(self._native.bounds)
 
-    def __copy__(self, *_: Any) -> "Scene":
+    def __copy__(self, *_: Any) -> Self:
         return self
 
     __deepcopy__ = __copy__
 
     def __reduce__(self) -> Tuple[Any, ...]:
         given = self._native.given()
+        # What a subclass has of its own.
+        state = getattr(self, "__dict__", None) or None
         if given is None:
-            return Scene.from_blob, (self.to_blob(),)
-        return Scene._from_meshes, given
+            return type(self).from_blob, (self.to_blob(),), state
+        return type(self)._from_meshes, given, state
 
     def __repr__(self) -> str:
         objects, primitives, instances = self._native.counts

@@ -7,178 +7,22 @@ need not be changed.
 
 from __future__ import annotations
 
-import operator
 import sys
-from typing import Any, Optional, Tuple
+from typing import TYPE_CHECKING, Any, Optional, Tuple
 
 import numpy as np
 
-from ._scene import MISS, Scene, _integer, _mesh, _rows
+from ._arguments import far_place, finite_faces, indexed, integer, mesh as checked_mesh, number, rows
+from ._cameras import pinhole
+from ._scene import MISS, Scene
+from ._tensors import Array, array_of, is_device, like
 
 __all__ = ["Array", "RaycastingScene"]
 
 
-def _of_elements(function: Any, says: str) -> Any:
-    """A method that is a function of each number, or of each pair of numbers."""
-
-    def method(self: "Array", *values: Any) -> "Array":
-        # One number is a tensor too.
-        return np.asarray(function(self, *values)).view(Array)
-
-    method.__doc__ = f"Returns {says}."
-    return method
-
-
-def _over_dimensions(name: str, says: str) -> Any:
-    """A method of NumPy's over ``axis``, which takes Open3D's ``dim`` and ``keepdim`` as well."""
-    inner = getattr(np.ndarray, name)
-
-    def method(
-        self: "Array", axis: Any = None, *args: Any, dim: Any = None, keepdim: bool = False, **kwargs: Any
-    ) -> "Array":
-        axis = axis if dim is None else dim
-        if axis is not None:
-            axis = axis if np.ndim(axis) == 0 or name.startswith("arg") else tuple(axis)
-            axis = axis[0] if isinstance(axis, (list, tuple)) and len(axis) == 1 else axis
-        if keepdim:
-            kwargs["keepdims"] = True
-        found = inner(self, axis, *args, **kwargs)
-        return found if isinstance(found, np.ndarray) else np.asarray(found).view(Array)
-
-    method.__name__ = name
-    method.__doc__ = f"Returns {says}, of all numbers or along dimensions."
-    return method
-
-
-class Array(np.ndarray):
-    """A NumPy array with the methods of Open3D's tensors that code for ray casting calls.
-
-    Open3D takes it where it takes a tensor or an array. What both have is NumPy's where they differ: ``T`` is an
-    attribute, ``shape`` a tuple, and ``dtype`` a NumPy type, which Open3D's types cannot be compared with.
-    """
-
-    isfinite = _of_elements(np.isfinite, "which numbers are finite")
-    isinf = _of_elements(np.isinf, "which numbers are infinite")
-    isnan = _of_elements(np.isnan, "which numbers are nan")
-    logical_not = _of_elements(np.logical_not, "which numbers are 0 or false")
-    abs = _of_elements(np.abs, "absolute values")
-    neg = _of_elements(np.negative, "numbers with the other sign")
-    sqrt = _of_elements(np.sqrt, "square roots")
-    exp = _of_elements(np.exp, "powers of e")
-    sin = _of_elements(np.sin, "sines")
-    cos = _of_elements(np.cos, "cosines")
-    floor = _of_elements(np.floor, "numbers rounded down")
-    ceil = _of_elements(np.ceil, "numbers rounded up")
-    trunc = _of_elements(np.trunc, "numbers rounded towards 0")
-    logical_and = _of_elements(np.logical_and, "where both are true")
-    logical_or = _of_elements(np.logical_or, "where either is true")
-    logical_xor = _of_elements(np.logical_xor, "where one of both is true")
-    add = _of_elements(np.add, "sums")
-    sub = _of_elements(np.subtract, "differences")
-    mul = _of_elements(np.multiply, "products")
-    div = _of_elements(np.divide, "quotients")
-    eq = _of_elements(np.equal, "where numbers are equal")
-    ne = _of_elements(np.not_equal, "where numbers differ")
-    lt = _of_elements(np.less, "where numbers are less")
-    le = _of_elements(np.less_equal, "where numbers are less or equal")
-    gt = _of_elements(np.greater, "where numbers are greater")
-    ge = _of_elements(np.greater_equal, "where numbers are greater or equal")
-    min = _over_dimensions("min", "the least number")
-    max = _over_dimensions("max", "the greatest number")
-    sum = _over_dimensions("sum", "the sum")
-    mean = _over_dimensions("mean", "the mean")
-    prod = _over_dimensions("prod", "the product")
-    any = _over_dimensions("any", "whether any number is true")
-    all = _over_dimensions("all", "whether all numbers are true")
-    argmin = _over_dimensions("argmin", "where the least number is")
-    argmax = _over_dimensions("argmax", "where the greatest number is")
-
-    def numpy(self) -> np.ndarray:
-        """Returns the plain array, without a copy."""
-        return self.view(np.ndarray)
-
-    def matmul(self, value: Any) -> "Array":
-        """Returns the matrix product."""
-        return np.asarray(np.matmul(self, value)).view(Array)
-
-    def isclose(self, other: Any, rtol: float = 1e-5, atol: float = 1e-8) -> "Array":
-        """Returns where numbers are nearly equal."""
-        return np.isclose(self, other, rtol, atol)
-
-    def allclose(self, other: Any, rtol: float = 1e-5, atol: float = 1e-8) -> bool:
-        """Returns whether all numbers are nearly equal."""
-        return np.allclose(self, other, rtol, atol)
-
-    def append(self, values: Any, axis: Optional[int] = None) -> "Array":
-        """Returns the array with others behind it, all in one row where there is no axis."""
-        return np.append(self, values, axis).view(Array)
-
-    def num_elements(self) -> int:
-        """Returns how many numbers there are."""
-        return self.size
-
-    def clone(self) -> "Array":
-        """Returns a copy."""
-        return self.copy()
-
-    def cpu(self) -> "Array":
-        """Returns itself: arrays are in the memory of the processor."""
-        return self
-
-    def contiguous(self) -> "Array":
-        """Returns the array in C order, without a copy where it is so."""
-        return np.require(self, requirements="C").view(Array)
-
-    def is_contiguous(self) -> bool:
-        """Returns whether the array is in C order."""
-        return self.flags.c_contiguous
-
-    def to(self, dtype: Any = None, copy: bool = False, *, device: Any = None) -> "Array":
-        """Converts to a type of NumPy's or Open3D's. A device of Open3D's in its place, or beside it, changes nothing."""
-        if dtype is None:
-            if device is None:
-                raise TypeError("to takes a dtype, a device or both")
-            return self.copy() if copy else self
-        if not _is_tensor(dtype):
-            return self.astype(dtype, copy=copy)
-        if type(dtype).__name__ == "Device":
-            return self.copy() if copy else self
-        return self.astype(str(dtype).lower(), copy=copy)
-
-    def __getitem__(self, key: Any) -> "Array":
-        # One number is a tensor too.
-        return np.asarray(super().__getitem__(key)).view(Array)
-
-
-def _is_tensor(value: Any) -> bool:
-    return type(value).__module__.startswith("open3d")
-
-
-def _array(value: Any) -> np.ndarray:
-    return value.numpy() if _is_tensor(value) else np.asarray(value)
-
-
-def _like(given: Any, result: np.ndarray) -> Any:
-    """Returns the result in the form of the argument."""
-    if _is_tensor(given):
-        # Not by `ascontiguousarray`, which makes a row of one number.
-        return sys.modules["open3d"].core.Tensor(np.require(result, requirements="C"))
-    return result.view(Array)
-
-
 def _nthreads(value: Any) -> int:
     """A number of threads: as in Open3D one below 0 means all cores, and there is no greatest."""
-    return min(max(_integer(value, "nthreads", -sys.maxsize, sys.maxsize), 0), 1024)
-
-
-def _limit(value: Any, what: str) -> float:
-    """A limit of rays."""
-    try:
-        if isinstance(value, (str, bytes)) or np.ndim(value) != 0:
-            raise TypeError
-        return float(value)
-    except (TypeError, ValueError):
-        raise TypeError(f"{what} is {value!r}; it must be a number") from None
+    return min(max(integer(value, "nthreads", -sys.maxsize, sys.maxsize), 0), 1024)
 
 
 def _between(limit: float, toward: float) -> float:
@@ -208,26 +52,33 @@ class RaycastingScene:
     counted once.
     Directions are rounded to single precision: a ray that is aimed at the border of an open mesh, or at a silhouette, may
     pass beside it. Rays may start at any distance. Invalid rays, as of :class:`gridel.Scene`, hit nothing. A closed mesh
-    thinner than a step of the lattice is met as a flat one. A triangle that was added twice counts twice. There are no
-    queries of distances.
+    thinner than a step of the lattice is met as a flat one. A triangle that was added twice counts twice. Meshes may lie
+    far from the origin: they are compiled about a place near them. There are no queries of distances.
     """
 
     INVALID_ID = MISS
 
     def __init__(self, nthreads: int = 0, device: Any = None):
         # Open3D's are for building alone.
-        del nthreads, device
+        _nthreads(nthreads)
+        if device is not None and not is_device(device):
+            raise TypeError(f"device is {device!r}; it must be a device of Open3D's, or its name, such as 'CPU:0'")
         self._meshes: list[Tuple[np.ndarray, np.ndarray]] = []
+        # Of each mesh the numbers of its triangles that are compiled; None of all.
+        self._kept: list[Optional[np.ndarray]] = []
         self._firsts = np.zeros(1, dtype=np.int64)
         self._scene: Optional[Scene] = None
+        self._place: Optional[np.ndarray] = None
 
     def add_triangles(
         self, vertex_positions: Any = None, triangle_indices: Any = None, *, mesh: Any = None
     ) -> int:
         """Adds a mesh and returns the number of its geometry.
 
-        Give vertices (n, 3) and triangles (m, 3), or an ``open3d.t.geometry.TriangleMesh`` alone. Raises ValueError for
-        triangles that name no vertex, or one that is not finite, and TypeError for indices that are no integers.
+        Give vertices (n, 3) and triangles (m, 3), as tensors, arrays or the vectors of a legacy mesh, or an
+        ``open3d.t.geometry.TriangleMesh`` alone. Triangles with a vertex that is not finite are left out, with a warning;
+        the others keep their numbers. Raises ValueError for triangles that name no vertex, and TypeError for indices that
+        are no integers.
         """
         if mesh is None and triangle_indices is None:
             mesh, vertex_positions = vertex_positions, None
@@ -242,27 +93,49 @@ class RaycastingScene:
                 kind = f"{type(mesh).__module__}.{type(mesh).__qualname__}"
                 raise TypeError(
                     f"mesh is a {kind}; it must be an open3d.t.geometry.TriangleMesh. "
-                    "Give vertices and triangles of other meshes"
+                    "Give vertices and triangles of other meshes: add_triangles(mesh.vertices, mesh.triangles)"
                 ) from None
         names = ("vertex_positions", "triangle_indices")
-        given = _mesh(_array(vertex_positions), _array(triangle_indices), names)
+        vertices, triangles = array_of(vertex_positions, names[0]), array_of(triangle_indices, names[1])
+        vertices, triangles = indexed(vertices, triangles, names)
+        kept = finite_faces(vertices, triangles, names[0])
+        vertices, triangles = checked_mesh(vertices, triangles if kept is None else triangles[kept])
         # Copies, as they are compiled later.
-        vertices, triangles = (array.copy() for array in given)
-        self._meshes.append((vertices, triangles))
+        self._meshes.append((vertices.copy(), triangles.copy()))
+        self._kept.append(kept)
         self._firsts = np.append(self._firsts, self._firsts[-1] + len(triangles))
         self._scene = None
         return len(self._meshes) - 1
 
     @property
     def scene(self) -> Optional[Scene]:
-        """The compiled scene; None without triangles."""
+        """The compiled scene; None without triangles. Its coordinates count from :attr:`scene_origin`."""
         if self._scene is None and self._firsts[-1] > 0:
-            self._scene = Scene._from_meshes(self._meshes)
+            place, meshes = far_place(self._meshes), self._meshes
+            if place is not None:
+                meshes = [(vertices - place, triangles) for vertices, triangles in meshes]
+            self._scene, self._place = Scene._from_meshes(meshes), place
         return self._scene
 
-    @staticmethod
-    def _rays(rays: Any) -> np.ndarray:
-        return _rows(_array(rays), (6,), "rays")
+    @property
+    def scene_origin(self) -> np.ndarray:
+        """(3,) float64: the place from which coordinates of :attr:`scene` count.
+
+        It is 0, or near the meshes where they are farther from the origin than 2^20 times their size.
+        """
+        is_moved = self.scene is not None and self._place is not None
+        return self._place.copy() if is_moved else np.zeros(3)
+
+    def _moved(self, values: np.ndarray) -> np.ndarray:
+        """Rays or points (..., 3 or more) as :attr:`scene` has them."""
+        if self.scene is None or self._place is None:
+            return values
+        values = values.astype(np.float64)
+        values[..., :3] -= self._place
+        return values
+
+    def _rays(self, rays: Any) -> np.ndarray:
+        return self._moved(rows(array_of(rays, "rays"), (6,), "rays"))
 
     def _may_leave_single_precision(self, rays: np.ndarray) -> bool:
         """Whether a hit of any ray (..., 6) can have a t beyond single precision."""
@@ -276,16 +149,25 @@ class RaycastingScene:
         return not 4.0 * farthest < shortest * float(np.finfo(np.float32).max)
 
     def _identify(self, objects: np.ndarray, primitives: np.ndarray) -> np.ndarray:
-        """The numbers of triangles in their own meshes."""
+        """The numbers of triangles in their own meshes, given those among all that are compiled."""
         hit = primitives != MISS
         primitives[hit] -= self._firsts[objects[hit]].astype(np.uint32)
+        return self._numbered(objects, primitives)
+
+    def _numbered(self, objects: np.ndarray, primitives: np.ndarray) -> np.ndarray:
+        """The numbers of triangles as they were given, given those among the compiled ones of their meshes."""
+        for geometry, kept in enumerate(self._kept):
+            if kept is not None:
+                of_mesh = objects == geometry
+                primitives[of_mesh] = kept[primitives[of_mesh]]
         return primitives
 
     def cast_rays(self, rays: Any, nthreads: int = 0) -> dict[str, Any]:
         """Returns the first hits of rays (..., 6).
 
         Keys: ``t_hit`` (...) float32, inf on a miss; ``geometry_ids`` and ``primitive_ids`` (...) uint32,
-        ``INVALID_ID`` on a miss and where t leaves single precision; ``primitive_uvs`` (..., 2) and ``primitive_normals`` (..., 3) float32, 0 on a miss.
+        ``INVALID_ID`` on a miss and where t leaves single precision; ``primitive_uvs`` (..., 2) and ``primitive_normals``
+        (..., 3) float32, 0 on a miss.
         """
         array, threads = self._rays(rays), _nthreads(nthreads)
         shape = array.shape[:-1]
@@ -302,11 +184,11 @@ class RaycastingScene:
             hits = {
                 "t_hit": t.reshape(shape),
                 "geometry_ids": geometries.reshape(shape),
-                "primitive_ids": primitives.reshape(shape),
+                "primitive_ids": self._numbered(geometries, primitives).reshape(shape),
                 "primitive_uvs": uvs.reshape(shape + (2,)),
                 "primitive_normals": normals.reshape(shape + (3,)),
             }
-        return {key: _like(rays, value) for key, value in hits.items()}
+        return {key: like(rays, value) for key, value in hits.items()}
 
     def test_occlusions(
         self, rays: Any, tnear: float = 0.0, tfar: float = float("inf"), nthreads: int = 0
@@ -317,27 +199,27 @@ class RaycastingScene:
         ``tnear`` of 0 is the origin: whether a ray hits the surface on which it starts is not certain.
         """
         array = self._rays(rays)
-        tnear, tfar = _limit(tnear, "tnear"), _limit(tfar, "tfar")
+        tnear, tfar = number(tnear, "tnear"), number(tfar, "tfar")
         threads = _nthreads(nthreads)
         if self.scene is None:
-            return _like(rays, np.zeros(array.shape[:-1], dtype=bool))
+            return like(rays, np.zeros(array.shape[:-1], dtype=bool))
         if tfar == float("inf") and self._may_leave_single_precision(array):
             # Beyond it nothing is met.
             tfar = float(np.finfo(np.float32).max)
         if tnear != 0.0 or tfar != float("inf"):
             array = _limited(array, _between(tnear, -np.inf), _between(tfar, np.inf))
-        return _like(rays, self.scene.any(array, threads=threads))
+        return like(rays, self.scene.any(array, threads=threads))
 
     def count_intersections(self, rays: Any, nthreads: int = 0) -> Any:
         """Returns the number of crossings of rays (..., 6): (...) int32."""
         array, threads = self._rays(rays), _nthreads(nthreads)
         if self.scene is None:
-            return _like(rays, np.zeros(array.shape[:-1], dtype=np.int32))
+            return like(rays, np.zeros(array.shape[:-1], dtype=np.int32))
         if self._may_leave_single_precision(array):
             # Beyond it nothing is met.
             array = _limited(array, 0.0, float(np.finfo(np.float32).max))
         counts = self.scene.count(array, format="f32", threads=threads)
-        return _like(rays, counts.astype(np.int32))
+        return like(rays, counts.astype(np.int32))
 
     def list_intersections(self, rays: Any, nthreads: int = 0) -> dict[str, Any]:
         """Returns all crossings of rays (..., 6), ray by ray.
@@ -369,7 +251,7 @@ class RaycastingScene:
                 uv,
             )
         keys = ("ray_splits", "ray_ids", "geometry_ids", "primitive_ids", "t_hit", "primitive_uvs")
-        return {key: _like(rays, value) for key, value in zip(keys, hits)}
+        return {key: like(rays, value) for key, value in zip(keys, hits)}
 
     def compute_occupancy(self, query_points: Any, nthreads: int = 0, nsamples: int = 1) -> Any:
         """Returns 1 for points (..., 3) that all meshes together enclose an odd number of times, else 0: (...) float32.
@@ -378,81 +260,41 @@ class RaycastingScene:
         ray is enough: ``nsamples``, an odd number, changes nothing.
         Points with nan or infinity are outside.
         """
-        try:
-            nsamples = operator.index(nsamples)
-        except TypeError:
-            raise TypeError(f"nsamples is {nsamples!r}; it must be an integer") from None
+        nsamples = integer(nsamples, "nsamples", -sys.maxsize, sys.maxsize)
         if nsamples < 1 or nsamples % 2 == 0:
             raise ValueError(f"nsamples is {nsamples}; it must be odd and at least 1")
-        points, threads = _rows(_array(query_points), (3,), "query_points"), _nthreads(nthreads)
+        points, threads = rows(array_of(query_points, "query_points"), (3,), "query_points"), _nthreads(nthreads)
         if self.scene is None:
-            return _like(query_points, np.zeros(points.shape[:-1], dtype=np.float32))
-        inside = self.scene._native.contains(points, "scene", "f64", None, threads)
-        return _like(query_points, inside.reshape(points.shape[:-1]).astype(np.float32))
+            return like(query_points, np.zeros(points.shape[:-1], dtype=np.float32))
+        inside = self.scene._native.contains(self._moved(points), "scene", "f64", None, threads)
+        return like(query_points, inside.reshape(points.shape[:-1]).astype(np.float32))
 
     def __getstate__(self) -> dict:
-        return {**self.__dict__, "_scene": None}
+        return {**self.__dict__, "_scene": None, "_place": None}
 
     def __copy__(self) -> "RaycastingScene":
         other = type(self).__new__(type(self))
         # Meshes do not change, nor does what was compiled of them; the list does.
-        other.__dict__.update(self.__dict__, _meshes=list(self._meshes))
+        other.__dict__.update(self.__dict__, _meshes=list(self._meshes), _kept=list(self._kept))
         return other
 
-    def __getattr__(self, name: str) -> Any:
-        if name in ("compute_distance", "compute_signed_distance", "compute_closest_points"):
-            raise AttributeError(
-                f"{name} is not part of gridel.open3d, which has no queries of distances; "
-                "use open3d.t.geometry.RaycastingScene for it"
-            )
-        raise AttributeError(f"{type(self).__name__!r} object has no attribute {name!r}")
+    # Type checkers would believe that every attribute is there.
+    if not TYPE_CHECKING:
+
+        def __getattr__(self, name: str) -> Any:
+            if name in ("compute_distance", "compute_signed_distance", "compute_closest_points"):
+                raise AttributeError(
+                    f"{name} is not part of gridel.open3d, which has no queries of distances; "
+                    "use open3d.t.geometry.RaycastingScene for it"
+                )
+            raise AttributeError(f"{type(self).__name__!r} object has no attribute {name!r}")
 
     @staticmethod
     def create_rays_pinhole(*args: Any, **kwargs: Any) -> Any:
         """Returns rays (height_px, width_px, 6) float32 of a pinhole camera; directions are not normalized.
 
         Two forms, as in Open3D: ``(intrinsic_matrix, extrinsic_matrix, width_px, height_px)`` and ``(fov_deg, center,
-        eye, up, width_px, height_px)`` with a horizontal field of view.
+        eye, up, width_px, height_px)`` with a horizontal field of view in degrees. Raises ValueError for an
+        intrinsic matrix that is singular, and for a view without a direction or along ``up``.
         """
-        by_field_of_view = ("fov_deg", "center", "eye", "up", "width_px", "height_px")
-        by_matrices = ("intrinsic_matrix", "extrinsic_matrix", "width_px", "height_px")
-        names = by_field_of_view if len(args) + len(kwargs) == 6 else by_matrices
-        given = {**dict(zip(names, args)), **kwargs}
-        if set(given) != set(names) or len(args) + len(kwargs) != len(names):
-            raise TypeError(f"create_rays_pinhole takes {', '.join(by_matrices)} or {', '.join(by_field_of_view)}")
-        width, height = (operator.index(given[name]) for name in ("width_px", "height_px"))
-        if width < 1 or height < 1:
-            raise ValueError("width_px and height_px must be above 0")
-
-        def numbers(name: str, shape: Tuple[int, ...]) -> np.ndarray:
-            array = np.asarray(_array(given[name]), dtype=np.float64)
-            if array.shape != shape:
-                raise ValueError(f"{name}: the array has the shape {array.shape}; it must be {shape}")
-            return array
-
-        of_tensors = next((value for value in given.values() if _is_tensor(value)), None)
-        if names is by_matrices:
-            intrinsic = numbers("intrinsic_matrix", (3, 3))
-            extrinsic = numbers("extrinsic_matrix", (4, 4))
-            turn = extrinsic[:3, :3]
-            eye = -turn.T @ extrinsic[:3, 3]
-            into = turn.T @ np.linalg.inv(intrinsic)
-        else:
-            center, eye, up = (numbers(name, (3,)) for name in ("center", "eye", "up"))
-            ahead = center - eye
-            ahead = ahead / np.linalg.norm(ahead)
-            across = np.cross(up, ahead)
-            across = across / np.linalg.norm(across)
-            down = np.cross(ahead, across)
-            focal = 0.5 * width / np.tan(0.5 * np.deg2rad(float(given["fov_deg"])))
-            middle = np.array([0.5 * width, 0.5 * height])
-            into = np.stack(
-                [across / focal, down / focal, ahead - (across * middle[0] + down * middle[1]) / focal],
-                axis=1,
-            )
-        x, y = np.meshgrid(np.arange(width) + 0.5, np.arange(height) + 0.5)
-        pixels = np.stack([x, y, np.ones_like(x)], axis=-1)
-        rays = np.empty((height, width, 6), dtype=np.float32)
-        rays[..., :3] = eye
-        rays[..., 3:] = pixels @ into.T
-        return _like(of_tensors, rays)
+        return pinhole(args, kwargs)

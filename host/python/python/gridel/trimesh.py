@@ -2,6 +2,12 @@
 
 >>> mesh.ray = gridel.trimesh.RayMeshIntersector(mesh)  # doctest: +SKIP
 
+The signatures are those of ``ray_pyembree``, which trimesh uses with embreex; ``ray_triangle`` has other arguments and
+another order. trimesh makes a ray object of its own for each new mesh, also for those of ``mesh.copy()`` and
+``mesh.submesh()``: set ``ray`` of these as well. With embreex, this sets it for all meshes that are made later:
+
+>>> trimesh.ray.ray_pyembree.RayMeshIntersector = gridel.trimesh.RayMeshIntersector  # doctest: +SKIP
+
 No ray slips between two triangles, no surface is counted twice, and there is no most number of hits. Rays may start at
 any distance. Directions are rounded to single precision: a ray that is aimed at the border of an open mesh, or at a
 silhouette, may pass beside it. Invalid rays, as of :class:`gridel.Scene`, hit nothing. A closed mesh thinner than a step
@@ -15,12 +21,13 @@ windings are two surfaces, as the walls of solids that touch are; a ray crosses 
 from __future__ import annotations
 
 import sys
-from typing import Any, Optional, Tuple, Union
+from typing import Any, Literal, NamedTuple, Optional, Tuple, Union, overload
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ._scene import Scene, _integer, _numbers, _threads
+from ._arguments import far_place, finite_faces, indexed, integer, numeric, threads as checked_threads
+from ._scene import Scene
 
 __all__ = ["RayMeshIntersector"]
 
@@ -50,51 +57,92 @@ def _firsts_of_equal(vertices: NDArray[np.float64], faces: NDArray[np.int64]) ->
     return None if is_kept.all() else np.flatnonzero(is_kept)
 
 
+class _Compiled(NamedTuple):
+    """A mesh as it was compiled."""
+
+    #: The mesh's hash.
+    key: int
+    #: None without faces.
+    scene: Optional[Scene]
+    #: The numbers of faces that are compiled; None of all.
+    kept: Optional[NDArray[np.int64]]
+    #: The place from which coordinates count; None for the origin.
+    place: Optional[NDArray[np.float64]]
+
+    def moved(self, places: NDArray) -> NDArray:
+        """Places (n, 3) as the scene has them."""
+        return places if self.place is None else places - self.place
+
+
 class RayMeshIntersector:
-    """Ray queries of a ``trimesh.Trimesh``, with the signatures and dtypes of trimesh's own class.
+    """Ray queries of a ``trimesh.Trimesh``, with the signatures and dtypes of ``trimesh.ray.ray_pyembree``.
 
     ``scale_to_box`` is taken for its place among the arguments and changes nothing: coordinates are always centered and
     scaled. trimesh's two classes name the mesh ``geometry`` and ``mesh``; both names are right. ``threads`` is the number of
     threads, at most 1024, and 0 for one per core. A mesh that changes is compiled anew when it is asked next. A face that
-    the mesh has more than once, in the same winding, counts once.
+    the mesh has more than once, in the same winding, counts once. Faces with a vertex that is not finite are left out, with
+    a warning; the others keep their numbers. A mesh may lie far from the origin: it is compiled about a place near it.
     """
 
     def __init__(self, geometry: Any = None, scale_to_box: bool = True, *, mesh: Any = None, threads: int = 0):
         if (geometry is None) == (mesh is None):
             raise TypeError("RayMeshIntersector takes one mesh, as geometry or as mesh")
-        self.mesh = mesh if geometry is None else geometry
-        self.threads = threads
+        what = "mesh" if geometry is None else "geometry"
+        given = mesh if geometry is None else geometry
+        if not (hasattr(given, "vertices") and hasattr(given, "faces")):
+            raise TypeError(f"{what} is a {type(given).__name__}; it must be a trimesh.Trimesh")
+        self.mesh = given
+        self.threads = checked_threads(threads)
         self._scale_to_box = scale_to_box
-        self._compiled: Optional[Tuple[int, Optional[Scene], Optional[NDArray[np.int64]]]] = None
+        self._compiled: Optional[_Compiled] = None
 
-    def _compile(self) -> Tuple[int, Optional[Scene], Optional[NDArray[np.int64]]]:
-        """The mesh's hash, the compiled mesh, and the numbers of its faces where they are not the mesh's own."""
+    def _compile(self) -> _Compiled:
         key = hash(self.mesh)
-        if self._compiled is None or self._compiled[0] != key:
+        if self._compiled is None or self._compiled.key != key:
             vertices = np.array(self.mesh.vertices, dtype=np.float64, order="C")
             faces = np.asarray(self.mesh.faces, dtype=np.int64)
-            kept = _firsts_of_equal(vertices, faces) if len(faces) else None
+            if len(faces):
+                vertices, faces = indexed(vertices, faces, ("vertices", "faces"))
+            kept = finite_faces(vertices, faces, "vertices") if len(faces) else None
             if kept is not None:
                 faces = faces[kept]
+            firsts = _firsts_of_equal(vertices, faces) if len(faces) else None
+            if firsts is not None:
+                faces = faces[firsts]
+                kept = firsts if kept is None else kept[firsts]
+            place = far_place([(vertices, faces)])
+            if place is not None:
+                vertices = vertices - place
             scene = Scene.from_arrays(vertices, faces) if len(faces) else None
-            self._compiled = (key, scene, kept)
+            self._compiled = _Compiled(key, scene, kept, place)
         return self._compiled
 
     @property
     def scene(self) -> Optional[Scene]:
         """The compiled mesh; None of a mesh without faces.
 
-        Its primitives are the mesh's faces without those that it has more than once.
+        Its primitives are the mesh's faces without those that it has more than once, and those with a vertex that is not
+        finite. Its coordinates count from :attr:`scene_origin`.
         """
-        return self._compile()[1]
+        return self._compile().scene
+
+    @property
+    def scene_origin(self) -> NDArray[np.float64]:
+        """(3,) float64: the place from which coordinates of :attr:`scene` count.
+
+        It is 0, or near the mesh where that is farther from the origin than 2^20 times its size.
+        """
+        place = self._compile().place
+        return np.zeros(3) if place is None else place.copy()
 
     @staticmethod
     def _rays(origins: ArrayLike, directions: ArrayLike) -> Tuple[NDArray, NDArray]:
         """Rays as arrays (n, 3)."""
-        arrays = [_numbers(origins, "ray_origins"), _numbers(directions, "ray_directions")]
+        arrays = [numeric(origins, "ray_origins"), numeric(directions, "ray_directions")]
         if arrays[0].shape != arrays[1].shape:
             raise ValueError("Ray origin and direction don't match!")
-        if arrays[0].size == 0:
+        # Empty lists.
+        if arrays[0].shape == (0,):
             return np.zeros((0, 3)), np.zeros((0, 3))
         if arrays[0].ndim != 2 or arrays[0].shape[1] != 3:
             raise ValueError(f"rays have the shape {arrays[0].shape}; it must be (n, 3)")
@@ -110,6 +158,50 @@ class RayMeshIntersector:
         """
         origins, directions = self._rays(ray_origins, ray_directions)
         return self._locations(origins, directions, multiple_hits, None)
+
+    @overload
+    def intersects_id(
+        self,
+        ray_origins: ArrayLike,
+        ray_directions: ArrayLike,
+        multiple_hits: bool = ...,
+        max_hits: Optional[int] = ...,
+        return_locations: Literal[False] = ...,
+    ) -> Tuple[NDArray[np.int64], NDArray[np.int64]]: ...
+
+    @overload
+    def intersects_id(
+        self,
+        ray_origins: ArrayLike,
+        ray_directions: ArrayLike,
+        multiple_hits: bool = ...,
+        max_hits: Optional[int] = ...,
+        *,
+        return_locations: Literal[True],
+    ) -> Tuple[NDArray[np.int64], NDArray[np.int64], NDArray[np.float64]]: ...
+
+    @overload
+    def intersects_id(
+        self,
+        ray_origins: ArrayLike,
+        ray_directions: ArrayLike,
+        multiple_hits: bool,
+        max_hits: Optional[int],
+        return_locations: Literal[True],
+    ) -> Tuple[NDArray[np.int64], NDArray[np.int64], NDArray[np.float64]]: ...
+
+    @overload
+    def intersects_id(
+        self,
+        ray_origins: ArrayLike,
+        ray_directions: ArrayLike,
+        multiple_hits: bool = ...,
+        max_hits: Optional[int] = ...,
+        return_locations: bool = ...,
+    ) -> Union[
+        Tuple[NDArray[np.int64], NDArray[np.int64]],
+        Tuple[NDArray[np.int64], NDArray[np.int64], NDArray[np.float64]],
+    ]: ...
 
     def intersects_id(
         self,
@@ -138,23 +230,25 @@ class RayMeshIntersector:
     ) -> NDArray[np.int32]:
         """Returns the first triangle of each ray: (n,) int32, -1 for none."""
         origins, directions = self._rays(ray_origins, ray_directions)
-        _, scene, kept = self._compile()
-        if scene is None:
+        compiled = self._compile()
+        if compiled.scene is None:
             return np.full(len(origins), -1, dtype=np.int32)
-        first = scene._native.first(origins, directions, "f32", _threads(self.threads))
-        if kept is None:
+        native, count = compiled.scene._native, checked_threads(self.threads)
+        first = native.first(compiled.moved(origins), directions, "f32", count)
+        if compiled.kept is None:
             return first
-        return np.where(first < 0, first, kept[first]).astype(np.int32)
+        return np.where(first < 0, first, compiled.kept[first]).astype(np.int32)
 
     def intersects_any(
         self, ray_origins: ArrayLike, ray_directions: ArrayLike
     ) -> NDArray[np.bool_]:
         """Returns whether each ray hits the surface: (n,) bool."""
         origins, directions = self._rays(ray_origins, ray_directions)
-        scene = self.scene
-        if scene is None:
+        compiled = self._compile()
+        if compiled.scene is None:
             return np.zeros(len(origins), dtype=bool)
-        return scene._native.any_of(origins, directions, "f32", _threads(self.threads))
+        native, count = compiled.scene._native, checked_threads(self.threads)
+        return native.any_of(compiled.moved(origins), directions, "f32", count)
 
     def contains_points(self, points: ArrayLike) -> NDArray[np.bool_]:
         """Returns whether the mesh contains each point: points (n, 3), the result (n,) bool.
@@ -163,28 +257,32 @@ class RayMeshIntersector:
         point nearer to the surface than ``scene.displacement`` may be on either side. Points with nan or infinity are in
         no mesh.
         """
-        points = _numbers(points, "points")
+        points = numeric(points, "points")
+        # An empty list.
+        if points.shape == (0,):
+            return np.zeros(0, dtype=bool)
         if points.ndim != 2 or points.shape[1] != 3:
-            if points.size == 0:
-                return np.zeros(0, dtype=bool)
             raise ValueError(f"points have the shape {points.shape}; it must be (n, 3)")
-        scene = self.scene
-        if scene is None:
+        compiled = self._compile()
+        if compiled.scene is None:
             return np.zeros(len(points), dtype=bool)
-        return scene.contains(points, closed_only=False, threads=self.threads)
+        return compiled.scene.contains(compiled.moved(points), closed_only=False, threads=self.threads)
 
     def _locations(
         self, origins: NDArray, directions: NDArray, multiple_hits: bool, max_hits: Optional[int]
     ) -> Tuple[NDArray[np.float64], NDArray[np.int64], NDArray[np.int64]]:
         if max_hits is not None:
-            max_hits = _integer(max_hits, "max_hits", 0, sys.maxsize)
-        _, scene, kept = self._compile()
-        if scene is None:
+            max_hits = integer(max_hits, "max_hits", 0, sys.maxsize)
+        compiled = self._compile()
+        if compiled.scene is None:
             return np.zeros((0, 3)), np.zeros(0, dtype=np.int64), np.zeros(0, dtype=np.int64)
-        places, rays, triangles = scene._native.locations(
-            origins, directions, bool(multiple_hits), max_hits, "f32", _threads(self.threads)
+        native, count = compiled.scene._native, checked_threads(self.threads)
+        places, rays, triangles = native.locations(
+            compiled.moved(origins), directions, bool(multiple_hits), max_hits, "f32", count
         )
-        return places, rays, triangles if kept is None else kept[triangles]
+        if compiled.place is not None:
+            places += compiled.place
+        return places, rays, triangles if compiled.kept is None else compiled.kept[triangles]
 
     def __getstate__(self) -> dict:
         return {**self.__dict__, "_compiled": None}

@@ -1,15 +1,15 @@
 //! The scene behind Python's: a blob, and what it was compiled from.
 
-use crate::arguments::{format, invalid, structure};
+use crate::arguments::{format, invalid, not_held, structure};
 use crate::closed::closed;
 use crate::model::Model;
 use crate::query::How;
 use crate::rays::{Array, Middle, Rays};
+use glam::DVec3;
 use gridel_core::{BlobError, Scene};
 use gridel_host::blob::Blob;
 use gridel_host::compile::Compiled;
 use gridel_host::trace::Frame;
-use pyo3::exceptions::PyKeyError;
 use pyo3::prelude::*;
 use std::sync::OnceLock;
 
@@ -19,6 +19,9 @@ const SLACK: f64 = 64.0;
 
 /// Parts of a scene's size by which number formats may round the t of a hit.
 const ROUNDING: f64 = 1.0 / (1 << 22) as f64;
+
+/// A step of the finest lattice, as a part of a scene's size: so far directions in single precision lead astray.
+const STEP: f64 = 1.0 / (1 << 24) as f64;
 
 type Checked<'b> = Result<Scene<'b>, BlobError>;
 
@@ -42,8 +45,11 @@ pub struct NativeScene {
     pub(super) displacement: f64,
     /// How far beyond their limits rays are searched, in scene units.
     slack: f64,
+    /// How far from a triangle as it was given its hits are, in scene units: the lattice moved it.
+    pub(super) moved: f64,
     pub(super) middle: Middle,
     pub(super) closed: OnceLock<Vec<bool>>,
+    bounds: OnceLock<[DVec3; 2]>,
 }
 
 impl NativeScene {
@@ -63,9 +69,12 @@ impl NativeScene {
                 first
             });
         let firsts = firsts.collect();
-        let slack = match model {
-            Some(_) => SLACK * displacement.max(size * ROUNDING),
-            None => 0.0,
+        let (slack, moved) = match model {
+            Some(_) => (
+                SLACK * displacement.max(size * ROUNDING),
+                displacement.max(size * STEP),
+            ),
+            None => (0.0, 0.0),
         };
         Ok(Self {
             blob,
@@ -73,14 +82,16 @@ impl NativeScene {
             firsts,
             displacement,
             slack,
+            moved,
+            bounds: OnceLock::new(),
             middle,
             closed: OnceLock::new(),
         })
     }
 
-    pub(super) fn compiled(py: Python<'_>, model: Model, level: i32) -> PyResult<Self> {
+    pub(super) fn compiled(py: Python<'_>, model: Model) -> PyResult<Self> {
         let Compiled { blob, report } = model.compile(py)?;
-        model.warn_of(py, &report, level)?;
+        model.warn_of(py, &report)?;
         let collapsed = match report.collapsed.count() {
             0 => 0.0,
             _ => report.step,
@@ -105,10 +116,7 @@ impl NativeScene {
             None => scene.best_structure(),
         };
         if !scene.holds(structure) {
-            return Err(PyKeyError::new_err(format!(
-                "the scene does not hold the structure `{}`; compile it with accel=[...]",
-                structure.name()
-            )));
+            return Err(not_held(structure, scene));
         }
         Ok(How {
             format: format(format_name)?,
@@ -133,6 +141,20 @@ impl NativeScene {
             ));
         }
         Ok(found)
+    }
+
+    /// The lowest and the highest corner of a box around the scene: of its vertices as they were given where it has
+    /// nothing but meshes, else in whole steps of its coordinates.
+    pub(super) fn corners_of_box(&self) -> PyResult<[DVec3; 2]> {
+        let scene = self.scene()?;
+        Ok(*self.bounds.get_or_init(|| {
+            let given = self.model.as_ref().and_then(Model::bounds);
+            given.unwrap_or_else(|| {
+                let frame = Frame::of(scene);
+                let sides = scene.bounds().0;
+                [0, 1].map(|side| frame.place(sides.map(|it| f64::from(it[side]))))
+            })
+        }))
     }
 
     /// The rays of an array.

@@ -8,6 +8,9 @@ use gridel_host::scene::Shape;
 use gridel_host::trace::SceneRay;
 use std::collections::TryReserveError;
 
+/// Weights of corners below which a place is beside its triangle, by more than is rounded.
+const BESIDE: f64 = 1e-6;
+
 /// Where a ray meets a triangle.
 pub(super) struct Meeting {
     pub t: f64,
@@ -60,7 +63,7 @@ impl NativeScene {
     }
 
     /// Where a ray meets a triangle as it was given, in double precision; by the hit's own t where the triangle is not a
-    /// mesh's, or nearly parallel to the ray. Never outside of the ray's interval.
+    /// mesh's, or the ray passes beside it. Never outside of the ray's interval.
     // Inlined, it computes what is used there, and nothing else.
     #[inline(always)]
     pub(super) fn place(&self, ray: &SceneRay, hit: &Found) -> Meeting {
@@ -86,7 +89,7 @@ impl NativeScene {
             && ordinary.contains(&ray.direction.length_squared())
             && (a - ray.origin).abs().max_element() < self.middle.far;
         if is_ordinary {
-            meet([a, b, c], ray, hit.t)
+            meet([a, b, c], ray, (hit.t, self.moved))
         } else {
             self.meet_extreme([a, b, c], *ray, hit.t)
         }
@@ -110,7 +113,8 @@ impl NativeScene {
             tmax: near.tmax / stretch,
         };
         let own = (own - begin) / stretch;
-        let met = meet(corners.map(|it| it * scale), &scaled, own);
+        let moved = self.moved * scale;
+        let met = meet(corners.map(|it| it * scale), &scaled, (own, moved));
         Meeting {
             t: ray.within(begin + met.t * stretch),
             place: met.place / scale,
@@ -158,26 +162,38 @@ impl NativeScene {
     }
 }
 
-/// Where a ray meets a triangle; `own` is the hit's t as the query has it.
+/// Where a ray meets a triangle; `own` is the hit's t as the query has it, and `moved` how far the lattice may have moved
+/// the triangle.
 #[inline(always)]
-fn meet([a, b, c]: [DVec3; 3], ray: &SceneRay, own: f64) -> Meeting {
+fn meet(corners: [DVec3; 3], ray: &SceneRay, (own, moved): (f64, f64)) -> Meeting {
+    let [a, b, c] = corners;
     let (to_b, to_c) = (b - a, c - a);
     let normal = to_b.cross(to_c);
     let square = normal.length_squared();
     let approach = normal.dot(ray.direction);
     // Steeper than one in a thousand.
     let is_steep = approach * approach > 1e-6 * square * ray.direction.length_squared();
-    let t = if is_steep {
-        normal.dot(a - ray.origin) / approach
-    } else {
-        meet_grazing([a, b, c], (normal, approach), ray, own)
-    };
-    let t = ray.within(t);
-    let place = ray.origin + ray.direction * t;
-    let relative = place - a;
     let inverse = 1.0 / square;
-    let weight = |area: DVec3| (area.dot(normal) * inverse).clamp(0.0, 1.0);
-    let weights = [weight(relative.cross(to_c)), weight(to_b.cross(relative))];
+    let weights_at = |place: DVec3| {
+        let relative = place - a;
+        [
+            relative.cross(to_c).dot(normal) * inverse,
+            to_b.cross(relative).dot(normal) * inverse,
+        ]
+    };
+    let mut t = ray.within(normal.dot(a - ray.origin) / approach);
+    let mut place = ray.origin + ray.direction * t;
+    let mut weights = weights_at(place);
+    let [of_b, of_c] = weights;
+    let is_beside = of_b.min(of_c).min(1.0 - of_b - of_c) < -BESIDE;
+    if is_beside || !is_steep {
+        let margin = if is_steep { moved } else { 0.0 };
+        t = ray.within(meet_near(corners, (normal, approach), ray, (own, margin)));
+        place = ray.origin + ray.direction * t;
+        weights = weights_at(place);
+    }
+    let of_b = weights[0].clamp(0.0, 1.0);
+    let of_c = weights[1].clamp(0.0, 1.0).min(1.0 - of_b);
     // A triangle without an area, of which the lattice made one, has any normal across its longer side.
     let across = || {
         let is_longer = to_c.length_squared() > to_b.length_squared();
@@ -186,7 +202,7 @@ fn meet([a, b, c]: [DVec3; 3], ray: &SceneRay, own: f64) -> Meeting {
     Meeting {
         t,
         place,
-        weights,
+        weights: [of_b, of_c],
         normal: if square >= f64::MIN_POSITIVE {
             Some(normal * inverse.sqrt())
         } else {
@@ -195,22 +211,23 @@ fn meet([a, b, c]: [DVec3; 3], ray: &SceneRay, own: f64) -> Meeting {
     }
 }
 
-/// The t at which a ray that is nearly parallel to a triangle meets its plane, or the nearest t at which it is above or
-/// below the triangle: the lattice may have tilted the plane by more than the ray's slope. The hit's own t where it never
-/// is.
+/// The t at which a ray meets the plane of a triangle, or the nearest t at which it is above or below the triangle made
+/// wider by a margin: the lattice may have moved the triangle so that the ray meets the plane far beside it. The hit's own
+/// t where it never is.
 #[cold]
 #[inline(never)]
-fn meet_grazing(
+fn meet_near(
     corners: [DVec3; 3],
     (normal, approach): (DVec3, f64),
     ray: &SceneRay,
-    own: f64,
+    (own, margin): (f64, f64),
 ) -> f64 {
     let [mut enters, mut leaves] = [f64::NEG_INFINITY, f64::INFINITY];
     for side in 0..3 {
         let [from, to] = [corners[side], corners[(side + 1) % 3]];
         let inward = normal.cross(to - from);
-        let (height, change) = (inward.dot(ray.origin - from), inward.dot(ray.direction));
+        let height = inward.dot(ray.origin - from) + margin * inward.length();
+        let change = inward.dot(ray.direction);
         let crosses = -height / change;
         if change > 0.0 {
             enters = enters.max(crosses);
