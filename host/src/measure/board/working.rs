@@ -132,7 +132,8 @@ mod tests {
             [3 * 92, 2 * 64]
         );
         // With the view of the part, they count beside the workspace.
-        let view = Programs::recorded().part_view().unwrap();
+        let required: Vec<&str> = scene.features().collect();
+        let view = Programs::recorded().part_view(&required).unwrap();
         let workspace = board_memory(&scene, Format::Fixed, 0).workspace as u64;
         assert_eq!(
             working_bytes(&scene, bytes, Format::Fixed, 0),

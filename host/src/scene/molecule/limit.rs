@@ -2,7 +2,7 @@
 
 use super::parsed::{Atom, Bond, Group, Left, Matrix, Model, Parsed};
 use crate::scene::SceneError;
-use crate::scene::size::{MOST_BYTES, Size};
+use crate::scene::size::Size;
 use crate::scene::text::Source;
 use crate::table::counted;
 
