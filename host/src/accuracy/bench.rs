@@ -6,7 +6,8 @@ use crate::blob::Blob;
 use crate::compile::{self, CompileError, Compiled, Quality};
 use crate::measure::board::instructions;
 use crate::measure::{
-    Errors, FirstHit, InstanceCount, Rendered, board_memory, first_hits, rmse_and_largest, time,
+    Errors, FirstHit, InstanceCount, Rendered, board_memory, first_hits, median, rmse_and_largest,
+    time,
 };
 use crate::scene::Scene;
 use gridel_core::format::checksum;
@@ -63,7 +64,7 @@ pub struct Cost {
 impl Cost {
     /// Returns the median of the repeats.
     pub fn time(&self) -> f64 {
-        time::median(&self.seconds).unwrap_or(0.0)
+        median(&self.seconds).unwrap_or(0.0)
     }
 
     /// Returns the least and the largest of the repeats: see [`time::interval`].
