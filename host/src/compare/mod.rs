@@ -18,7 +18,7 @@ mod options;
 
 pub use crate::measure::rays::{Work, Works};
 #[cfg(not(target_family = "wasm"))]
-pub use charts::charts;
+pub use charts::{CHARTS, charts, is_chart};
 pub use comparison::{Comparison, RayCounts, Rejected, Row};
 pub use findings::findings;
 pub use growth::{Growth, Step, growth, growth_steps};
