@@ -30,8 +30,8 @@ use std::path::{Path, PathBuf};
 /// not measured, and the exit code is 1.
 ///
 /// Times are medians on one thread, those of building among them; the structures take turns. A structure that has taken
-/// a second to build is built three times at most. Memory while building is that on one thread, too. Findings compare
-/// times of three repeats and more. Compare times within one run only.
+/// a second to build is not built again. Memory while building is that on one thread, too. Findings compare times where
+/// there are three runs and more. Compare times within one run only.
 ///
 /// Instances are kept as `gridel render` keeps them, or copied with --instances flatten. Kept ones lie in a
 /// hierarchy of boxes, which all structures share and which is counted with each; brute force tests every primitive

@@ -3,7 +3,6 @@
 //! Times are taken on one thread, and the structures take turns.
 
 use super::comparison::Row;
-use super::findings::REPEATS;
 use super::judge::Mismatch;
 use super::options::{CompareError, Contender, Options};
 use crate::compile::{self, Builder, Compiled, compile};
@@ -13,10 +12,8 @@ use crate::scene;
 use gridel_core::{Scene, Structure};
 use rayon::{ThreadPool, ThreadPoolBuilder};
 
-/// Fewest times that a structure is built where times are compared, however long it takes.
-const FEWEST: usize = REPEATS;
-
-/// Seconds after which a structure is not built any more.
+/// Seconds after which a structure is not built again. Noise hardly changes such times, and some structures take many
+/// seconds.
 const SECONDS: f64 = 1.0;
 
 /// A structure in a blob of its own.
@@ -115,9 +112,9 @@ pub(super) fn repeat(
     options: &Options<'_>,
     built: &mut [Built],
 ) -> Result<(), CompareError> {
-    for round in 1..options.repeats {
+    for _ in 1..options.repeats {
         for it in &mut *built {
-            if is_due(round, &it.setups) {
+            if is_due(&it.setups) {
                 let contender = (it.structure, it.builder);
                 let compiled = compile(scene, &compiling(options, contender))?;
                 it.setups.push(compiled.report.setup.as_secs_f64());
@@ -128,8 +125,8 @@ pub(super) fn repeat(
 }
 
 /// Returns whether a structure is built in another round.
-fn is_due(round: usize, setups: &[f64]) -> bool {
-    round < FEWEST || setups.iter().sum::<f64>() < SECONDS
+fn is_due(setups: &[f64]) -> bool {
+    setups.iter().sum::<f64>() < SECONDS
 }
 
 #[cfg(test)]
@@ -137,8 +134,30 @@ mod tests {
     use super::*;
 
     #[test]
-    fn slow_structures_are_built_three_times() {
-        assert!(is_due(1, &[60.0]) && is_due(2, &[60.0; 2]));
-        assert!(!is_due(3, &[60.0; 3]) && is_due(3, &[0.1; 3]));
+    fn structures_are_built_again_until_they_have_taken_a_second() {
+        assert!(is_due(&[0.3; 3]) && !is_due(&[0.3; 4]) && !is_due(&[60.0]));
+    }
+
+    /// Times are those of one thread, as often as they are repeated, and their median counts.
+    #[test]
+    fn set_ups_are_repeated_on_one_thread() {
+        let scene = crate::sample::diamond(8.0);
+        let options = Options {
+            repeats: 5,
+            ..Options::default()
+        };
+        let pool = one_thread().expect("a thread");
+        assert_eq!(pool.current_num_threads(), 1);
+        let contenders = [(Structure::Bvh, None), (Structure::List, None)];
+        let built = contenders.map(|it| build(&scene, &options, it).expect("a blob"));
+        let mut built: Vec<Built> = built.into();
+        repeat(&scene, &options, &mut built).expect("blobs");
+        for it in &mut built {
+            assert_eq!(it.setups.len(), 5);
+            it.setups = vec![5.0, 1.0, 2.0, 4.0, 9.0];
+        }
+        let scene = built[0].compiled.blob.scene().expect("a scene");
+        let row = built[0].row(&scene, &built[1], None, None, &options);
+        assert_eq!(row.setup_seconds, 4.0);
     }
 }

@@ -66,7 +66,7 @@ pub struct Row {
     /// have one each.
     pub sah_cost: Option<f64>,
     /// Time to build the structure on one thread, from primitives on the lattice to records: the median of the repeats.
-    /// A structure that has taken a second is built three times at most.
+    /// A structure that has taken a second is not built again.
     pub setup_seconds: f64,
     /// The most memory at any time while the scene was compiled on one thread, beyond the scene itself.
     pub peak_bytes: Option<usize>,

@@ -48,7 +48,7 @@ const MEASURES: [Measure; 7] = [
 ];
 
 /// Fewest repeats whose times are compared.
-pub(super) const REPEATS: usize = 3;
+const REPEATS: usize = 3;
 
 pub(super) fn primary_rate(row: &Row) -> Option<f64> {
     row.work?.primary.rays_per_second
