@@ -2,8 +2,8 @@
 
 use gridel_core::{Format, Structure};
 use gridel_host::accuracy::{
-    Bench, Limits, Parameter, Point, Results, answers, cheapest, cheapest_within, frontier,
-    given_up, most_accurate, page, plot, reference_setting, sentences, sweep, worths,
+    Bench, Limits, Parameter, Point, Results, answers, cheapest, cheapest_within, effect_costs,
+    frontier, given_up, most_accurate, page, plot, reference_setting, sentences, sweep,
 };
 use gridel_host::measure::board::PICTURE_COSTS;
 use gridel_tests::scenes;
@@ -13,9 +13,11 @@ fn swept(name: &str) -> Results {
     let path = scenes::fixture_folder().join(name).with_extension("toml");
     let scene = scenes::read(&path);
     let mut bench = Bench::new(&scene, Structure::Flagged, [32, 24]);
-    let reference = bench.reference(64).expect("a reference");
+    let settings = sweep(bench.base(), bench.effects().expect("a blob"));
+    let reference = reference_setting(64, &settings);
+    let reference = bench.reference(&reference).expect("a reference");
     let mut points = Vec::new();
-    for setting in sweep(bench.base(), bench.effects().expect("a blob")) {
+    for setting in settings {
         let (mut point, _) = bench.measure(&setting, &reference).expect("a point");
         let work = point.cost.tests + point.cost.rays;
         point.cost.seconds = vec![1e-6 * work as f64; 2];
@@ -29,7 +31,7 @@ fn swept(name: &str) -> Results {
         points,
         effects: Vec::new(),
     };
-    results.effects = worths(&mut bench, &results).expect("blobs");
+    results.effects = effect_costs(&mut bench, &results).expect("blobs");
     results
 }
 
@@ -47,7 +49,7 @@ fn more_work_is_more_right() {
     let rmse = |parameter, value| of(parameter, value).errors.rmse;
     assert!(rmse(Parameter::Samples, "64") < 0.5 * rmse(Parameter::Samples, "1"));
     assert!(rmse(Parameter::Depth, "0") > rmse(Parameter::Depth, "6"));
-    assert!(rmse(Parameter::Cutoff, "0.125") > rmse(Parameter::Cutoff, "0.00195"));
+    assert!(rmse(Parameter::Cutoff, "0.125") > rmse(Parameter::Cutoff, "0.001953125"));
     assert!(rmse(Parameter::LatticeBits, "10") > rmse(Parameter::LatticeBits, "24"));
     // Distances of single precision are right to a few units of its last place, and those of double precision exactly.
     // On a coarse lattice they are off by many.
@@ -84,12 +86,12 @@ fn more_work_is_more_right() {
         page.matches("http://").count(),
         page.matches("http://www.w3.org").count()
     );
-    assert!(page.contains("What each effect is worth"));
+    assert!(page.contains("What each effect costs"));
     assert!(plot(&results).expect("a plot").starts_with("<svg"));
     assert_eq!(answers(&results).len(), 3);
 
     parts_of_errors_are_those_of_formats_and_samples(&results);
-    effects_are_ordered_by_what_they_are_worth(&results);
+    effects_are_ordered_by_what_they_cost(&results);
 
     // Limits of rays hold, alone and with one of the error.
     let few = most_accurate(&results.points, 8.0, None).expect("a setting");
@@ -132,7 +134,7 @@ fn parts_of_errors_are_those_of_formats_and_samples(results: &Results) {
 }
 
 /// Every effect of the scene has a setting without it. The first to leave out changes the picture least for its saving.
-fn effects_are_ordered_by_what_they_are_worth(results: &Results) {
+fn effects_are_ordered_by_what_they_cost(results: &Results) {
     let base = results.base;
     let left_out = |it: &&Point| it.setting.differs(&base) == [Parameter::Effects];
     let alone: Vec<&Point> = results.points.iter().filter(left_out).collect();
@@ -140,13 +142,13 @@ fn effects_are_ordered_by_what_they_are_worth(results: &Results) {
     assert_eq!(results.effects.len(), alone.len());
     let all = &results.points[0];
     let work = (all.cost.rays + all.cost.tests) as f64 / all.cost.pixels as f64;
-    let prices = results.effects.iter().map(|worth| {
+    let prices = results.effects.iter().map(|cost| {
         let point = alone
             .iter()
-            .find(|it| it.name == worth.without)
+            .find(|it| it.name == cost.without)
             .expect("a point");
-        assert_eq!(Some(worth.lost), point.lost);
-        worth.lost.rmse / ((worth.rays + worth.tests) / work).max(0.01)
+        assert_eq!(Some(cost.lost), point.lost);
+        cost.lost.rmse / ((cost.rays + cost.tests) / work).max(0.01)
     });
     assert!(prices.collect::<Vec<_>>().is_sorted());
     let shadow = results
@@ -167,10 +169,9 @@ fn effects_are_ordered_by_what_they_are_worth(results: &Results) {
 fn the_same_picture_has_no_error() {
     let scene = scenes::read(&scenes::fixture_folder().join("quick.toml"));
     let mut bench = Bench::new(&scene, Structure::Flagged, [24, 18]);
-    let reference = bench.reference(4).expect("a reference");
-    let (point, _) = bench
-        .measure(&reference_setting(4), &reference)
-        .expect("a point");
+    let setting = reference_setting(4, &[]);
+    let reference = bench.reference(&setting).expect("a reference");
+    let (point, _) = bench.measure(&setting, &reference).expect("a point");
     let errors = point.errors;
     assert_eq!(
         (errors.rmse, errors.largest, errors.pixels_off),
@@ -204,7 +205,9 @@ fn boards_are_the_recorded_ones() {
                 format: board.format,
                 ..bench.base()
             };
-            let reference = bench.reference(1).expect("a reference");
+            let reference = bench
+                .reference(&reference_setting(1, &[]))
+                .expect("a reference");
             let (point, _) = bench.measure(&setting, &reference).expect("a point");
             let found = instructions / point.cost.rays as f64;
             eprintln!("{build}: {found:.0} instructions per ray");
@@ -225,7 +228,9 @@ fn boards_estimate_instances_of_the_arm() {
     let mut bench = Bench::new(&scene, Structure::DualSplit, [64, 64]);
     let instances = bench.instances().expect("a blob").expect("instances");
     assert!(instances.are_kept());
-    let reference = bench.reference(1).expect("a reference");
+    let reference = bench
+        .reference(&reference_setting(1, &[]))
+        .expect("a reference");
     let mut measured = 0;
     for board in PICTURE_COSTS {
         let (machine, format) = (board.machine, board.format.name());

@@ -15,7 +15,7 @@ pub fn answers(results: &Results) -> Vec<String> {
     let answers = [
         setting_answer(results),
         format_answer(results, all),
-        sacrifice_answer(results, all),
+        saving_answer(results, all),
     ];
     answers.into_iter().flatten().collect()
 }
@@ -117,7 +117,7 @@ fn format_answer(results: &Results, all: &Point) -> Option<String> {
 }
 
 /// The change of one parameter that adds the least error for the rays and tests that it saves.
-fn sacrifice_answer(results: &Results, all: &Point) -> Option<String> {
+fn saving_answer(results: &Results, all: &Point) -> Option<String> {
     let work = |point: &Point| (point.cost.rays + point.cost.tests) as f64;
     let saved = |point: &Point| 1.0 - work(point) / work(all).max(1.0);
     let added = |point: &Point| {

@@ -1,16 +1,17 @@
 //! Builds and renders settings, and measures the errors of the pictures and their cost.
 
-use super::setting::Setting;
+use super::plan::{HitsKey, Plan, hits_key, in_f64, with_all};
+use super::setting::{Key, Setting};
 use super::truth::{Truth, exact_pixels};
 use crate::blob::Blob;
 use crate::compile::{self, CompileError, Compiled, Quality};
 use crate::measure::board::instructions;
 use crate::measure::{
-    Errors, FirstHit, InstanceCount, Rendered, board_memory, first_hits, rmse_and_largest, time,
+    Errors, FirstHit, InstanceCount, Rendered, board_memory, first_hits, median, rmse_and_largest,
+    time,
 };
 use crate::scene::Scene;
 use gridel_core::format::checksum;
-use gridel_core::format::limits::MAX_RAY_DEPTH;
 use gridel_core::render::RenderError;
 use gridel_core::{Effects, Format, Settings, Structure};
 use serde::{Deserialize, Serialize};
@@ -63,7 +64,7 @@ pub struct Cost {
 impl Cost {
     /// Returns the median of the repeats.
     pub fn time(&self) -> f64 {
-        time::median(&self.seconds).unwrap_or(0.0)
+        median(&self.seconds).unwrap_or(0.0)
     }
 
     /// Returns the least and the largest of the repeats: see [`time::interval`].
@@ -107,6 +108,9 @@ impl Point {
 pub struct Reference {
     /// Samples a pixel.
     pub samples: u16,
+    /// A secondary ray that can change no channel by more than this is not traced.
+    #[serde(default)]
+    pub cutoff: f64,
     #[serde(default)]
     pub truth: Truth,
     /// Pixels of an exact picture that are open.
@@ -141,11 +145,11 @@ pub enum MeasureError {
 /// # let file = "[[object]]\nkind = 'sphere'\ncenter = [0, 0, 0]\nradius = 1\nname = 'ball'";
 /// # let imported = gridel_host::scene::read("ball.toml".as_ref(), file.into(), &Default::default())?;
 /// use gridel_core::Structure;
-/// use gridel_host::accuracy::Bench;
+/// use gridel_host::accuracy::{Bench, reference_setting};
 ///
 /// let mut bench = Bench::new(&imported.scene, Structure::Flagged, [16, 12]);
-/// let reference = bench.reference(16)?;
 /// let base = bench.base();
+/// let reference = bench.reference(&reference_setting(16, &[base]))?;
 /// let (point, pixels) = bench.measure(&base, &reference)?;
 /// assert_eq!(pixels.len(), 16 * 12);
 /// assert!(point.errors.rmse < 0.2 && point.cost.rays >= 16 * 12);
@@ -158,26 +162,23 @@ pub struct Bench<'s> {
     size: [u16; 2],
     copied: usize,
     truth: Truth,
-    compiled: HashMap<(u8, u64, u32), Compiled>,
-    hits: HashMap<(u8, u64, u32, &'static str), Vec<Option<FirstHit>>>,
-    /// Pictures that others are measured against, by the names of their settings.
-    pictures: HashMap<String, Vec<[u16; 3]>>,
-    /// Exact pictures, and how many of their pixels are open, by settings of `f64`.
-    exact: HashMap<String, (Vec<[u16; 3]>, usize)>,
+    /// Scenes as they were compiled, the last one that was used at the end.
+    compiled: Vec<(BlobKey, Compiled)>,
+    /// Most bytes of their blobs.
+    most_blob_bytes: usize,
+    plan: Plan,
+    hits: HashMap<HitsKey, Vec<Option<FirstHit>>>,
+    /// Pictures that others are measured against.
+    pictures: HashMap<Key, Vec<[u16; 3]>>,
+    /// Exact pictures of `f64`, and how many of their pixels are open.
+    exact: HashMap<Key, (Vec<[u16; 3]>, usize)>,
 }
 
-/// Returns the setting of the reference: double precision, the finest lattice, all reflections that a picture could
-/// show.
-pub fn reference_setting(samples: u16) -> Setting {
-    Setting {
-        format: Format::F64,
-        lattice_bits: 24,
-        samples,
-        depth: MAX_RAY_DEPTH as u8,
-        cutoff: f64::powi(2.0, -14),
-        without: Effects::NONE,
-    }
-}
+/// What compiling goes by: lattice bits, cutoff, effects left out.
+type BlobKey = (u8, u64, Effects);
+
+/// Most bytes of blobs that are kept. Others are compiled again when they are needed.
+const MOST_BLOB_BYTES: usize = 256 << 20;
 
 impl<'s> Bench<'s> {
     pub fn new(scene: &'s Scene, structure: Structure, size: [u16; 2]) -> Self {
@@ -188,7 +189,9 @@ impl<'s> Bench<'s> {
             size,
             copied: 0,
             truth: Truth::F64,
-            compiled: HashMap::new(),
+            compiled: Vec::new(),
+            most_blob_bytes: MOST_BLOB_BYTES,
+            plan: Plan::default(),
             hits: HashMap::new(),
             pictures: HashMap::new(),
             exact: HashMap::new(),
@@ -212,6 +215,21 @@ impl<'s> Bench<'s> {
     #[must_use]
     pub fn with_truth(self, truth: Truth) -> Self {
         Self { truth, ..self }
+    }
+
+    /// States the settings that are going to be measured. From then on only the pictures that one of them needs are kept,
+    /// until it was measured; without a plan all are.
+    pub fn plan(&mut self, settings: Vec<Setting>) {
+        self.plan = Plan::of(settings);
+        self.forget();
+    }
+
+    /// Drops the pictures that the plan does not need any more.
+    fn forget(&mut self) {
+        let plan = &self.plan;
+        self.hits.retain(|key, _| plan.needs_hits(key));
+        self.pictures.retain(|key, _| plan.needs_picture(key));
+        self.exact.retain(|key, _| plan.needs_picture(key));
     }
 
     /// Width and height of the pictures.
@@ -263,22 +281,33 @@ impl<'s> Bench<'s> {
 
     fn compiled(&mut self, setting: &Setting) -> Result<&Compiled, MeasureError> {
         let cutoff = setting.cutoff.to_bits();
-        let key = (setting.lattice_bits, cutoff, setting.without.0);
-        if !self.compiled.contains_key(&key) {
-            let mut scene = self.scene.clone();
-            scene.render.cutoff = setting.cutoff;
-            scene.remove_effects(setting.without);
-            [scene.render.width, scene.render.height] = self.size.map(u32::from);
-            let options = compile::Options {
-                structures: vec![self.structure],
-                lattice_bits: setting.lattice_bits,
-                quality: self.quality,
-                ..compile::Options::default()
-            };
-            let compiled = compile::compile(&scene, &options)?;
-            self.compiled.insert(key, compiled);
+        let key = (setting.lattice_bits, cutoff, setting.without);
+        let found = self.compiled.iter().position(|(it, _)| *it == key);
+        let last = match found {
+            Some(place) => self.compiled.remove(place),
+            None => (key, self.compile(setting)?),
+        };
+        self.compiled.push(last);
+        let bytes = |(_, compiled): &(BlobKey, Compiled)| compiled.blob.bytes().len();
+        let mut all: usize = self.compiled.iter().map(bytes).sum();
+        while all > self.most_blob_bytes && self.compiled.len() > 1 {
+            all -= bytes(&self.compiled.remove(0));
         }
-        Ok(&self.compiled[&key])
+        Ok(&self.compiled[self.compiled.len() - 1].1)
+    }
+
+    fn compile(&self, setting: &Setting) -> Result<Compiled, CompileError> {
+        let mut scene = self.scene.clone();
+        scene.render.cutoff = setting.cutoff;
+        scene.remove_effects(setting.without);
+        [scene.render.width, scene.render.height] = self.size.map(u32::from);
+        let options = compile::Options {
+            structures: vec![self.structure],
+            lattice_bits: setting.lattice_bits,
+            quality: self.quality,
+            ..compile::Options::default()
+        };
+        compile::compile(&scene, &options)
     }
 
     fn rendered(&mut self, setting: &Setting, count: bool) -> Result<Rendered, MeasureError> {
@@ -288,16 +317,19 @@ impl<'s> Bench<'s> {
         Ok(Rendered::new(&scene, with, settings, count)?)
     }
 
-    /// Renders the reference, on all threads of the pool that this is called in.
-    pub fn reference(&mut self, samples: u16) -> Result<Reference, MeasureError> {
-        let setting = reference_setting(samples);
-        let (pixels, open) = self.true_picture(&setting)?;
+    /// Renders the reference, on all threads of the pool that this is called in. Its setting is that of
+    /// [`reference_setting`](super::reference_setting).
+    pub fn reference(&mut self, setting: &Setting) -> Result<Reference, MeasureError> {
+        let (pixels, open) = self.true_picture(setting)?;
+        let hits = self.first_hits(setting)?;
+        self.forget();
         Ok(Reference {
-            samples,
+            samples: setting.samples,
+            cutoff: setting.cutoff,
             truth: self.truth,
             open,
             pixels,
-            hits: self.first_hits(&setting)?,
+            hits,
         })
     }
 
@@ -308,31 +340,28 @@ impl<'s> Bench<'s> {
 
     /// Renders a picture that others are measured against, once.
     fn picture(&mut self, setting: &Setting) -> Result<Vec<[u16; 3]>, MeasureError> {
-        let name = setting.name();
-        if let Some(pixels) = self.pictures.get(&name) {
+        let key = setting.key();
+        if let Some(pixels) = self.pictures.get(&key) {
             return Ok(pixels.clone());
         }
         let pixels = self.rendered(setting, false)?.picture.pixels;
-        self.pictures.insert(name, pixels.clone());
+        self.pictures.insert(key, pixels.clone());
         Ok(pixels)
     }
 
     /// The true picture of a setting in any format, and how many of its pixels are open.
     fn true_picture(&mut self, setting: &Setting) -> Result<(Vec<[u16; 3]>, usize), MeasureError> {
-        let setting = Setting {
-            format: Format::F64,
-            ..*setting
-        };
+        let setting = in_f64(setting);
         if self.truth == Truth::F64 {
             return Ok((self.picture(&setting)?, 0));
         }
-        let name = setting.name();
-        if let Some(exact) = self.exact.get(&name) {
+        let key = setting.key();
+        if let Some(exact) = self.exact.get(&key) {
             return Ok(exact.clone());
         }
         let settings = settings(self.size, &setting);
         let exact = exact_pixels(&self.blob(&setting)?.scene()?, &settings)?;
-        self.exact.insert(name, exact.clone());
+        self.exact.insert(key, exact.clone());
         Ok(exact)
     }
 
@@ -348,10 +377,7 @@ impl<'s> Bench<'s> {
         let full = match setting.without {
             Effects::NONE => None,
             _ => {
-                let with_all = Setting {
-                    without: Effects::NONE,
-                    ..*setting
-                };
+                let with_all = with_all(setting);
                 let hits = self.first_hits(&with_all)?;
                 Some((self.picture(&with_all)?, hits))
             }
@@ -383,14 +409,14 @@ impl<'s> Bench<'s> {
                 working_bytes: working.workspace,
             },
         };
+        self.plan.measured(setting);
+        self.forget();
         Ok((point, rendered.picture.pixels))
     }
 
     /// Returns the first hits of the rays through the middles of pixels.
     fn first_hits(&mut self, setting: &Setting) -> Result<Vec<Option<FirstHit>>, MeasureError> {
-        let name = setting.format.name();
-        let cutoff = setting.cutoff.to_bits();
-        let key = (setting.lattice_bits, cutoff, setting.without.0, name);
+        let key = hits_key(setting);
         if let Some(hits) = self.hits.get(&key) {
             return Ok(hits.clone());
         }
@@ -409,5 +435,42 @@ fn settings([width, height]: [u16; 2], setting: &Setting) -> Settings {
         samples: setting.samples,
         depth: setting.depth,
         dither: false,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::{reference_setting, sweep};
+    use super::*;
+
+    const BALL: &str = "[[object]]\nkind = 'sphere'\ncenter = [0, 0, 0]\nradius = 1\nname = 'ball'\n\
+                        [[object]]\nkind = 'sphere'\ncenter = [2, 0, 1]\nradius = 1\nname = 'other'";
+
+    /// What is dropped and made again changes no figure, and nothing is left when all is measured.
+    #[test]
+    fn bench_keeps_what_later_settings_need_and_no_more() {
+        let imported = crate::scene::read("ball.toml".as_ref(), BALL.into(), &Default::default());
+        let scene = imported.expect("a scene").scene;
+        let bench = || Bench::new(&scene, Structure::Flagged, [8, 6]);
+        let (mut all, mut few) = (bench(), bench());
+        few.most_blob_bytes = 0;
+        let mut settings = sweep(all.base(), all.effects().expect("a blob"));
+        settings.retain(|setting| setting.samples < 8);
+        assert!(settings.iter().any(|it| it.without != Effects::NONE));
+        let with = reference_setting(8, &settings);
+        few.plan(settings.clone());
+        let reference = all.reference(&with).expect("a reference");
+        assert_eq!(few.reference(&with).expect("a reference"), reference);
+        let mut most = 0;
+        for setting in &settings {
+            let measured = |bench: &mut Bench<'_>| bench.measure(setting, &reference);
+            let points = [&mut all, &mut few].map(|it| measured(it).expect("a point"));
+            assert_eq!(points[0], points[1], "{}", setting.name());
+            assert_eq!(few.compiled.len(), 1);
+            most = most.max(few.pictures.len());
+        }
+        assert!(0 < most && most < all.pictures.len() / 2, "{most}");
+        assert!(few.pictures.is_empty() && few.hits.is_empty());
+        assert!(all.compiled.len() > 5);
     }
 }

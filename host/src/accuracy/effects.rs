@@ -1,4 +1,4 @@
-//! The worth of each effect of a scene: the loss without it, its cost, and the order in which to leave effects out.
+//! The cost of each effect of a scene, the loss without it, and the order in which to leave effects out.
 
 use super::{Bench, MeasureError, Parameter, Point, Results, Setting};
 use crate::measure::board::{Board, MemoryReport, Rendering, Target, instructions};
@@ -9,7 +9,7 @@ use serde::{Deserialize, Serialize};
 
 /// An effect, the loss without it, and its cost in the picture that the scene file states.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Worth {
+pub struct EffectCost {
     pub effect: String,
     /// The name of the setting without it.
     pub without: String,
@@ -46,7 +46,7 @@ pub const BOARD: &str = "mps2-an386";
 /// The least part of the work that counts as saved, so that effects that cost no rays are compared, too.
 const LEAST_SAVING: f64 = 0.01;
 
-impl Worth {
+impl EffectCost {
     /// The error that leaving the effect out adds, per part of the rays and tests that it saves. The effect with the
     /// smallest price is left out first.
     fn price(&self, all: &Point) -> f64 {
@@ -57,16 +57,19 @@ impl Worth {
     }
 }
 
-/// Returns the worth of every effect of a scene, in the order in which to leave them out. First are those that change
+/// Returns the cost of every effect of a scene, in the order in which to leave them out. First are those that change
 /// the picture least for the rays and tests that they save.
 ///
 /// # Errors
 /// If a setting cannot be built.
-pub fn worths(bench: &mut Bench<'_>, results: &Results) -> Result<Vec<Worth>, MeasureError> {
+pub fn effect_costs(
+    bench: &mut Bench<'_>,
+    results: &Results,
+) -> Result<Vec<EffectCost>, MeasureError> {
     let Some(all) = results.points.iter().find(|it| it.setting == results.base) else {
         return Ok(Vec::new());
     };
-    let mut worths = Vec::new();
+    let mut effect_costs = Vec::new();
     for (effect, name) in Effects::NAMED {
         let found = results.points.iter().find(|it| {
             it.setting.differs(&results.base) == [Parameter::Effects]
@@ -88,7 +91,7 @@ pub fn worths(bench: &mut Bench<'_>, results: &Results) -> Result<Vec<Worth>, Me
         let blob_bytes = all.cost.blob_bytes as i64 - point.cost.blob_bytes as i64;
         let code = code(bench, &results.base, name)?;
         let format = Board::named(BOARD).map(Board::format);
-        worths.push(Worth {
+        effect_costs.push(EffectCost {
             effect: name.to_owned(),
             without: point.name.clone(),
             shown_without: shown_without(effect).to_owned(),
@@ -105,15 +108,15 @@ pub fn worths(bench: &mut Bench<'_>, results: &Results) -> Result<Vec<Worth>, Me
             ram: all.cost.working_bytes as i64 - point.cost.working_bytes as i64,
         });
     }
-    worths.sort_by(|a, b| a.price(all).total_cmp(&b.price(all)));
-    Ok(worths)
+    effect_costs.sort_by(|a, b| a.price(all).total_cmp(&b.price(all)));
+    Ok(effect_costs)
 }
 
 /// Settings that give effects up one after the other, from the second on.
-pub fn given_up(base: &Setting, worths: &[Worth]) -> Vec<Setting> {
-    let named = |worth: &Worth| crate::scene::effect_named(&worth.effect);
+pub fn given_up(base: &Setting, effect_costs: &[EffectCost]) -> Vec<Setting> {
+    let named = |cost: &EffectCost| crate::scene::effect_named(&cost.effect);
     let mut without = base.without;
-    let settings = worths.iter().filter_map(named).map(|effect| {
+    let settings = effect_costs.iter().filter_map(named).map(|effect| {
         without = without.with(effect);
         Setting { without, ..*base }
     });

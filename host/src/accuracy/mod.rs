@@ -4,10 +4,10 @@
 //! | file | what it does |
 //! |---|---|
 //! | `setting.rs` | what is swept |
-//! | `bench.rs` | renders and compares |
+//! | `bench.rs`, `plan.rs` | renders and compares; what later settings need |
 //! | `truth.rs` | what pictures are compared with |
 //! | `columns.rs` | the figures of a setting, in columns |
-//! | `effects.rs` | what each effect is worth |
+//! | `effects.rs` | what each effect costs |
 //! | `answers.rs` | the answers in three sentences |
 //! | `page.rs`, `page.html` | the page, and its template |
 //! | `plot.rs` | the plot for documents |
@@ -19,20 +19,23 @@ mod columns;
 mod effects;
 mod instances;
 mod page;
+mod plan;
 #[cfg(not(target_family = "wasm"))]
 mod plot;
 mod setting;
 mod truth;
 
 pub use answers::answers;
-pub use bench::{Bench, Cost, ErrorParts, MeasureError, Point, Reference, reference_setting};
+pub use bench::{Bench, Cost, ErrorParts, MeasureError, Point, Reference};
 pub use columns::COLUMNS;
-pub use effects::{BOARD, Worth, given_up, worths};
+pub use effects::{BOARD, EffectCost, effect_costs, given_up};
 pub use instances::instance_notes;
 pub use page::{MOST_PICTURE_BYTES, PagePicture, page};
 #[cfg(not(target_family = "wasm"))]
 pub use plot::plot;
-pub use setting::{MOST_MEASURED_SAMPLES, Parameter, Setting, least_reference_samples, sweep};
+pub use setting::{
+    MOST_MEASURED_SAMPLES, Parameter, Setting, least_reference_samples, reference_setting, sweep,
+};
 pub use truth::Truth;
 
 use crate::measure::InstanceCount;
@@ -50,9 +53,9 @@ pub struct Results {
     pub instances: Option<InstanceCount>,
     pub reference: Reference,
     pub points: Vec<Point>,
-    /// The worth of each effect, in the order in which to leave them out; empty until all is measured.
+    /// The cost of each effect, in the order in which to leave them out; empty until all is measured.
     #[serde(default)]
-    pub effects: Vec<Worth>,
+    pub effects: Vec<EffectCost>,
 }
 
 impl Results {
@@ -62,22 +65,22 @@ impl Results {
     }
 }
 
-/// Returns which points are not beaten. A point beats another if its error is no larger, its cost certainly no higher,
-/// and one of the two is better. Costs are those of [`Cost::is_below`].
+/// Returns which points are on the Pareto frontier: no other dominates them. A point dominates another if its error is no
+/// larger, its cost certainly no higher, and one of the two is better. Costs are those of [`Cost::is_below`].
 pub fn frontier(points: &[Point]) -> Vec<bool> {
     frontier_by(points, |point| point.errors.rmse)
 }
 
 /// Returns the frontier by another error.
 pub fn frontier_by(points: &[Point], error: impl Fn(&Point) -> f64) -> Vec<bool> {
-    let beats = |a: &Point, b: &Point| {
+    let dominates = |a: &Point, b: &Point| {
         let cheaper = a.is_cheaper(b);
         let costs_no_more = cheaper || a.same_work(b);
         let (a, b) = (error(a), error(b));
         costs_no_more && a <= b && (cheaper || a < b)
     };
-    let unbeaten = |b: &Point| !points.iter().any(|a| beats(a, b));
-    points.iter().map(unbeaten).collect()
+    let is_best = |b: &Point| !points.iter().any(|a| dominates(a, b));
+    points.iter().map(is_best).collect()
 }
 
 impl Point {
@@ -405,7 +408,7 @@ mod tests {
 
     #[test]
     fn frontier_keeps_settings_whose_times_differ_by_noise() {
-        // As right, and now one, now the other is faster: neither beats the other.
+        // As right, and now one, now the other is faster: none dominates.
         let [slow, fast] = [&[1.0, 1.3, 4.9][..], &[1.1, 1.2, 1.25]];
         let points = [
             point(BASE, 0.1, slow, 100),

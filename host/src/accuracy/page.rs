@@ -3,7 +3,7 @@
 //! `page.html` is the template, with the page's style and script; its marks `{{NAME}}` are replaced here.
 
 use super::{
-    COLUMNS, Parameter, Point, Results, Setting, Truth, Worth, answers, frontier, frontier_by,
+    COLUMNS, EffectCost, Parameter, Point, Results, Setting, Truth, answers, frontier, frontier_by,
     instance_notes, sentences,
 };
 use crate::measure::board::core_names;
@@ -42,14 +42,15 @@ pub fn page(
 ) -> io::Result<String> {
     let name = escape(scene);
     let mut about = format!(
-        "{} x {} pixels, one thread. The reference: {}, 24 lattice bits, ray depth {MAX_RAY_DEPTH}, {} per pixel. \
-         Errors are of display values from 0 to 1.",
+        "{} x {} pixels, one thread. The reference: {}, 24 lattice bits, ray depth {MAX_RAY_DEPTH}, cutoff {}, {} per \
+         pixel. Errors are of display values from 0 to 1.",
         size[0],
         size[1],
         match results.reference.truth {
             Truth::F64 => "<code>f64</code>",
             Truth::Exact => "the exact picture that <code>gridel certify</code> proves",
         },
+        power(results.reference.cutoff),
         counted(results.reference.samples.into(), "sample")
     );
     if results.reference.open > 0 {
@@ -107,6 +108,15 @@ const NOTES: &str = "<p>A bar spans the repeats of a time, or the least and the 
 pub(super) fn escape(text: &str) -> String {
     let text = text.replace('&', "&amp;").replace('<', "&lt;");
     text.replace('>', "&gt;").replace('"', "&quot;")
+}
+
+/// A number, as a power of two if it is one.
+fn power(number: f64) -> String {
+    let exponent = number.log2();
+    match exponent.fract() {
+        0.0 => format!("2<sup>{exponent}</sup>"),
+        _ => number.to_string(),
+    }
 }
 
 /// Marks what stands between backticks as code.
@@ -268,40 +278,40 @@ fn effects(results: &Results) -> String {
     let worst = results.effects.iter().map(|it| it.lost.rmse);
     let worst = worst.fold(1e-9, f64::max);
     let mut text = format!(
-        "\n<section aria-labelledby=\"effects-title\">\n<h2 id=\"effects-title\">What each effect is worth</h2>\n\
+        "\n<section aria-labelledby=\"effects-title\">\n<h2 id=\"effects-title\">What each effect costs</h2>\n\
          <div class=\"scroll\" tabindex=\"0\" role=\"region\" aria-labelledby=\"effects-title\"><table><caption>The picture \
-         without an effect against the picture with it, and what is saved. Give up the upper ones first: they change the \
+         without an effect against the picture with it, and what is saved. Leave out the upper ones first: they change the \
          picture least for the rays and tests that they save. Instructions per pixel, flash and RAM are those of {}.\
          </caption>\n<thead><tr><th scope=\"col\">effect</th><th scope=\"col\">RMSE without</th><th scope=\"col\">FLIP</th>\
          <th scope=\"col\">rays and tests</th><th scope=\"col\">time</th><th scope=\"col\">instructions</th>\
          <th scope=\"col\">flash, RAM</th><th scope=\"col\">without it</th></tr></thead>\n<tbody>",
         super::BOARD
     );
-    for worth in &results.effects {
-        let saved = (worth.rays + worth.tests) / work.max(f64::MIN_POSITIVE);
+    for cost in &results.effects {
+        let saved = (cost.rays + cost.tests) / work.max(f64::MIN_POSITIVE);
         let _ = writeln!(
             text,
             "<tr><th scope=\"row\">{}</th><td>{}<span class=\"bar\" style=\"width:{:.0}%\"></span></td><td>{}</td>\
              <td>{:.0} %<span class=\"bar cost\" style=\"width:{:.0}%\"></span></td><td>{}</td><td>{}</td><td>{}</td>\
              <td class=\"text\">{} <button type=\"button\" data-setting=\"{}\" aria-label=\"Compare without {}\">compare</button></td></tr>",
-            escape(&worth.effect),
-            figure(worth.lost.rmse),
-            100.0 * worth.lost.rmse / worst,
-            figure(worth.lost.flip),
+            escape(&cost.effect),
+            figure(cost.lost.rmse),
+            100.0 * cost.lost.rmse / worst,
+            figure(cost.lost.flip),
             100.0 * saved,
             (100.0 * saved).clamp(0.0, 100.0),
-            worth.time_text(),
-            worth.instructions_text(),
-            worth.memory_text(),
-            escape(&worth.shown_without),
-            escape(&worth.without),
-            escape(&worth.effect),
+            cost.time_text(),
+            cost.instructions_text(),
+            cost.memory_text(),
+            escape(&cost.shown_without),
+            escape(&cost.without),
+            escape(&cost.effect),
         );
     }
     text + "</tbody></table></div>\n</section>\n"
 }
 
-impl Worth {
+impl EffectCost {
     /// Returns the part of the time that is saved, or its range.
     pub fn time_text(&self) -> String {
         let percent = |part: f64| (100.0 * part).round();

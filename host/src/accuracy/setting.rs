@@ -1,11 +1,14 @@
 //! The settings of a sweep: six parameters, each alone and together.
 
-use gridel_core::format::limits::MAX_SAMPLES;
+use gridel_core::format::limits::{MAX_RAY_DEPTH, MAX_SAMPLES};
 use gridel_core::{Effects, Format};
 use serde::{Deserialize, Serialize};
 
 /// The most samples per pixel that can be measured: a reference has twice as many.
 pub const MOST_MEASURED_SAMPLES: u16 = MAX_SAMPLES / 2;
+
+/// A key of a setting in maps.
+pub(super) type Key = (Format, u8, u16, u8, u64, Effects);
 
 /// A way to build and render a scene.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -105,7 +108,8 @@ const CUTOFFS: [f64; 6] = [
 ];
 
 impl Setting {
-    /// Returns its short name: `f32-24bit-4spp-6deep-0.002`, and `-without-glass` where effects are left out.
+    /// Returns its short name: `f32-24bit-4spp-6deep-0.002`, and `-without-glass` where effects are left out. Other
+    /// settings have other names: the cutoff has all its digits.
     pub fn name(&self) -> String {
         let effects: String = self
             .without
@@ -119,7 +123,27 @@ impl Setting {
             self.lattice_bits,
             self.samples,
             self.depth,
-            cutoff_text(self.cutoff)
+            self.cutoff
+        )
+    }
+
+    /// Returns a key that distinguishes settings.
+    pub(super) fn key(&self) -> Key {
+        let Self {
+            format,
+            lattice_bits,
+            samples,
+            depth,
+            cutoff,
+            without,
+        } = *self;
+        (
+            format,
+            lattice_bits,
+            samples,
+            depth,
+            cutoff.to_bits(),
+            without,
         )
     }
 
@@ -164,17 +188,10 @@ impl Setting {
             Parameter::LatticeBits => self.lattice_bits.to_string(),
             Parameter::Samples => self.samples.to_string(),
             Parameter::Depth => self.depth.to_string(),
-            Parameter::Cutoff => cutoff_text(self.cutoff),
+            Parameter::Cutoff => self.cutoff.to_string(),
             Parameter::Effects => self.without.to_string(),
         }
     }
-}
-
-fn cutoff_text(cutoff: f64) -> String {
-    // Three digits distinguish them.
-    format!("{cutoff:.2e}")
-        .parse::<f64>()
-        .map_or_else(|_| cutoff.to_string(), |x| x.to_string())
 }
 
 /// Returns the settings of a sweep around the one that the scene file states. First comes that one, then each parameter
@@ -259,9 +276,37 @@ pub fn least_reference_samples(settings: &[Setting]) -> u16 {
     2 * most.min(MOST_MEASURED_SAMPLES)
 }
 
+/// The largest cutoff of a reference.
+const REFERENCE_CUTOFF: f64 = 1.0 / 16_384.0;
+
+/// The least cutoff above 0 that a blob stores. At 0 a ray could cause 2 to the power of the ray depth others.
+const LEAST_CUTOFF: f64 = 1.0 / 1_048_576.0;
+
+/// Returns the setting of a reference for some settings: double precision, the finest lattice, the largest ray depth. Its
+/// cutoff is the least of theirs and 2^-14, but 2^-20 where theirs is less.
+///
+/// ```
+/// use gridel_host::accuracy::reference_setting;
+///
+/// let most = reference_setting(256, &[]);
+/// assert_eq!((most.samples, most.depth, most.cutoff), (256, 32, 1.0 / 16_384.0));
+/// ```
+pub fn reference_setting(samples: u16, measured: &[Setting]) -> Setting {
+    let cutoffs = measured.iter().map(|setting| setting.cutoff);
+    Setting {
+        format: Format::F64,
+        lattice_bits: 24,
+        samples,
+        depth: MAX_RAY_DEPTH as u8,
+        cutoff: cutoffs.fold(REFERENCE_CUTOFF, f64::min).max(LEAST_CUTOFF),
+        without: Effects::NONE,
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+    use std::collections::HashSet;
 
     #[test]
     fn every_lever_is_turned_alone_and_nothing_twice() {
@@ -287,7 +332,7 @@ mod tests {
                 .iter()
                 .all(|s| s.depth == 6 && s.cutoff == base.cutoff)
         );
-        assert_eq!(settings[0].name(), "f32-24bit-1spp-6deep-0.00195");
+        assert_eq!(settings[0].name(), "f32-24bit-1spp-6deep-0.001953125");
         let bare = Setting {
             samples: 4,
             without: Effects::SHADOW.with(Effects::MIRROR),
@@ -295,11 +340,46 @@ mod tests {
         };
         assert_eq!(
             bare.name(),
-            "f32-24bit-4spp-6deep-0.00195-without-shadow-mirror"
+            "f32-24bit-4spp-6deep-0.001953125-without-shadow-mirror"
         );
         assert_eq!(bare.words(&base), "4 samples, without shadow, mirror");
         let text = serde_json::to_string(&bare).unwrap();
         assert_eq!(serde_json::from_str::<Setting>(&text).unwrap(), bare);
         assert!(!serde_json::to_string(&base).unwrap().contains("without"));
+    }
+
+    /// Cutoffs that differ in the fourth digit alone have other names, which name files.
+    #[test]
+    fn settings_that_differ_have_names_that_differ() {
+        let base = Setting {
+            format: Format::F32,
+            lattice_bits: 24,
+            samples: 1,
+            depth: 6,
+            cutoff: 0.00195,
+            without: Effects::NONE,
+        };
+        let settings = sweep(base, Effects::MIRROR);
+        let names: HashSet<String> = settings.iter().map(Setting::name).collect();
+        assert_eq!(names.len(), settings.len());
+        let keys: HashSet<Key> = settings.iter().map(Setting::key).collect();
+        assert_eq!(keys.len(), settings.len());
+    }
+
+    /// A reference traces all that the settings trace.
+    #[test]
+    fn reference_has_the_least_cutoff_of_all() {
+        let with = |cutoff: f64| Setting {
+            cutoff,
+            ..reference_setting(1, &[])
+        };
+        for (cutoffs, expected) in [
+            (&[1.0 / 512.0, 0.5][..], f64::powi(2.0, -14)),
+            (&[1.0 / 512.0, 1e-5], 1e-5),
+            (&[1.0 / 512.0, 0.0], f64::powi(2.0, -20)),
+        ] {
+            let settings: Vec<Setting> = cutoffs.iter().map(|&it| with(it)).collect();
+            assert_eq!(reference_setting(1, &settings).cutoff, expected);
+        }
     }
 }

@@ -10,13 +10,14 @@ pub use arguments::Arguments;
 
 use super::arguments::{GeometryOptions, SceneOptions, check_quality};
 use super::failure::Failure;
-use super::output::{check_writable, print, print_json_warned, write_texts};
+use super::input::stem;
+use super::output::{check_folder, check_writable, print, print_json_warned, write_texts};
 use super::source::{import, warn_of_file};
 use choice::{Choice, choice};
 use folder::{CSV, PAGE, PLOT, kept, pictures};
 use gridel_host::accuracy::{
-    Bench, MOST_MEASURED_SAMPLES, MeasureError, Point, Setting, Truth, Worth, answers, frontier,
-    least_reference_samples, page, plot, sentences, sweep,
+    Bench, EffectCost, MOST_MEASURED_SAMPLES, MeasureError, Point, Setting, Truth, answers,
+    frontier, least_reference_samples, page, plot, reference_setting, sentences, sweep,
 };
 use gridel_host::measure::InstanceCount;
 use gridel_host::scene::{Imported, RenderSettings};
@@ -29,8 +30,8 @@ use std::path::PathBuf;
 /// Samples per pixel of a reference, where no more are needed.
 const REFERENCE_SAMPLES: u16 = 256;
 
-/// Most pixels that are measured.
-const MOST_PIXELS: usize = 1 << 22;
+/// Most pixels that are measured, each of which takes up to 1 KB of memory.
+const MOST_PIXELS: usize = 1 << 20;
 
 /// The JSON output.
 #[derive(Serialize)]
@@ -40,6 +41,8 @@ struct Printed<'t> {
     #[serde(skip_serializing_if = "Option::is_none")]
     instances: Option<InstanceCount>,
     reference: &'static str,
+    reference_samples: u16,
+    reference_cutoff: f64,
     /// Pixels of an exact reference that are open.
     reference_open: usize,
     points: &'t [Point],
@@ -47,8 +50,8 @@ struct Printed<'t> {
     frontier: Vec<bool>,
     /// Sentences about the setting for a given error, the effect of the number format, and what to leave out first.
     answers: Vec<String>,
-    /// The worth of each effect, in the order in which to leave them out.
-    effects: &'t [Worth],
+    /// The cost of each effect, in the order in which to leave them out.
+    effects: &'t [EffectCost],
     sentences: Vec<String>,
     #[serde(skip_serializing_if = "Option::is_none")]
     cheapest: Option<&'t Choice>,
@@ -58,8 +61,9 @@ struct Printed<'t> {
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let path = &arguments.scene;
     check_quality(arguments.quality, &[arguments.accel])?;
+    arguments.output.as_deref().map_or(Ok(()), check_folder)?;
     let (imported, mut warnings) = read(arguments)?;
-    let stem = path.file_stem().unwrap_or_default().display().to_string();
+    let stem = stem(path);
     let folder = match &arguments.output {
         Some(folder) => folder.clone(),
         None => PathBuf::from(format!("accuracy-{stem}")),
@@ -71,10 +75,10 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         .with_copied(imported.copied)
         .with_truth(arguments.reference);
     let settings = sweep(bench.base(), bench.effects().map_err(failed)?);
-    let reference_samples = reference_samples(arguments, &settings)?;
+    let reference = reference_setting(reference_samples(arguments, &settings)?, &settings);
     warn_of_file(path, bench.warnings().map_err(failed)?, &mut warnings);
     let key = format!(
-        "gridel {} scene {:08x} size {size:?} structure {} reference {}{}",
+        "gridel {} scene {:08x} size {size:?} structure {} reference {}{} cutoff {}",
         env!("CARGO_PKG_VERSION"),
         bench.checksum().map_err(failed)?,
         arguments.accel.name(),
@@ -82,7 +86,8 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
             Truth::F64 => "",
             Truth::Exact => "exact ",
         },
-        reference_samples
+        reference.samples,
+        reference.cutoff
     );
     let kept = kept(&folder, &key)?;
     std::fs::create_dir_all(folder.join("pictures"))
@@ -95,7 +100,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         &mut bench,
         &folder,
         (key, kept),
-        (&settings, reference_samples),
+        (&settings, &reference),
     )?;
     let pictures = pictures(&folder, size, &results)?;
     let fault = |error: std::io::Error| {
@@ -113,6 +118,8 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
             size,
             instances: results.instances,
             reference: results.reference.truth.name(),
+            reference_samples: results.reference.samples,
+            reference_cutoff: results.reference.cutoff,
             reference_open: results.reference.open,
             points: &results.points,
             frontier: frontier(&results.points),
@@ -170,7 +177,7 @@ fn measured_size(arguments: &Arguments, stated: &RenderSettings) -> Result<[u16;
     }
     Err(Failure::usage(
         format!(
-            "{} pixels exceed the largest size of {}",
+            "{} pixels exceed the largest size of {}, which takes about 1 GB of memory",
             grouped(pixels),
             grouped(MOST_PIXELS)
         ),

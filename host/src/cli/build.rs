@@ -9,7 +9,8 @@ use super::arguments::{
 use super::failure::Failure;
 use super::input::is_standard;
 use super::output::{
-    Content, check_extension, check_writable, json, print_about, reject_same, write_files,
+    Content, check_extension, check_folder, check_writable, json, print_about, reject_foreign,
+    reject_same, write_files,
 };
 use super::source::{Compiling, Source};
 use clap::Args;
@@ -21,8 +22,8 @@ use gridel_host::measure::InstanceCount;
 use gridel_host::measure::board::{Board, MemoryReport};
 use gridel_host::state::raised_materials;
 use report::Built;
+use std::fs;
 use std::path::{Path, PathBuf};
-use std::{fs, io};
 
 /// Compile a scene file into a blob
 ///
@@ -142,6 +143,7 @@ fn check_outputs(arguments: &Arguments) -> Result<(), Failure> {
     let Some(folder) = &arguments.emit_rust else {
         return Ok(());
     };
+    check_folder(folder)?;
     if folder.exists() && !folder.is_dir() {
         return Err(Failure::usage(
             format!("{} is not a folder", folder.display()),
@@ -258,29 +260,4 @@ fn print_report(
         false => built.text(),
     };
     print_about(&arguments.output, report)
-}
-
-/// Rejects to write over a file of another sort, such as the buffer of a glTF scene, or a program's own.
-fn reject_foreign(
-    path: &Path,
-    sort: &str,
-    is_one: impl Fn(&Path) -> io::Result<bool>,
-) -> Result<(), Failure> {
-    let is_foreign = match fs::metadata(path) {
-        Ok(there) if there.is_file() && there.len() > 0 => {
-            !is_one(path).map_err(|error| Failure::reading(path, &error))?
-        }
-        // Output to devices and pipes replaces nothing.
-        _ => false,
-    };
-    if is_foreign {
-        return Err(Failure::usage(
-            format!(
-                "{} exists and is not a {sort}: it would be overwritten",
-                path.display()
-            ),
-            "write to another name or folder, or move that file away",
-        ));
-    }
-    Ok(())
 }

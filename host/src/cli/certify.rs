@@ -2,7 +2,8 @@
 
 use super::arguments::{self, GeometryOptions, PictureOptions, distinct, quoted};
 use super::failure::Failure;
-use super::output::{print, print_json_warned, warn, write_files};
+use super::input::stem;
+use super::output::{check_folder, print, print_json_warned, warn, write_files};
 use super::progress::Progress;
 use super::saving::Saving;
 use super::source::{Compiling, Source};
@@ -47,7 +48,8 @@ pub struct Arguments {
     #[arg(long, value_name = "NAME", value_parser = arguments::format())]
     format: Vec<Format>,
 
-    /// Folder for the page, the report and the pictures [default: certify-SCENE]
+    /// Folder for the page, the report and the pictures [default: certify-SCENE, certify-stdin for
+    /// standard input]
     #[arg(short, long, value_name = "FOLDER")]
     output: Option<PathBuf>,
 
@@ -92,6 +94,7 @@ struct Commanded<'r> {
 /// Certifies a picture.
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let input = &arguments.input;
+    arguments.output.as_deref().map_or(Ok(()), check_folder)?;
     let compiling = compile::Options {
         structures: vec![Structure::DualSplit],
         ..compile::Options::default()
@@ -122,7 +125,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
             "leave it out of the scene, an effect with `--without`, or use `gridel accuracy`, which measures without proof",
         )
     })?;
-    let stem = input.file_stem().unwrap_or_default().display().to_string();
+    let stem = stem(input);
     let folder = match &arguments.output {
         Some(folder) => folder.clone(),
         None => PathBuf::from(format!("certify-{stem}")),

@@ -6,28 +6,33 @@ use super::arguments::{
     scene_long_help,
 };
 use super::failure::Failure;
-use super::output::{print, print_json_warned, write_texts};
+use super::input::stem;
+use super::output::{check_folder, print, print_json_warned, reject_foreign, write_texts};
 use super::progress::Progress;
 use super::source::{import, warn_of_file};
 use clap::Args;
 use gridel_core::{Format, Structure};
 use gridel_host::compare::{
-    Comparison, Growth, Options, Work, Works, charts, compare, findings, growth, growth_steps,
+    CHARTS, CompareError, Comparison, Growth, Options, Work, Works, charts, compare, findings,
+    growth, growth_steps, is_chart,
 };
 use gridel_host::compile::{self, Builder};
 use gridel_host::table::{Align, Table, counted, grouped};
 use peak_alloc::PeakAlloc;
 use serde::Serialize;
-use std::path::PathBuf;
+use std::fs;
+use std::path::{Path, PathBuf};
 
 /// Compare acceleration structures on a scene
 ///
 /// Compiles a blob for each structure, and traces the rays of the scene's own picture through all
-/// of them: one sample per pixel, with shadow, reflected and refracted rays. Compares primitive and
+/// of them: one sample per pixel, with shadow rays and bounced rays, which surfaces send on. Compares primitive and
 /// t of every answer with brute force, bit for bit. A structure that differs is marked as wrong and
 /// not measured, and the exit code is 1.
 ///
-/// Times are medians on one thread; the structures take turns. Compare times within one run only.
+/// Times are medians on one thread, those of building among them; the structures take turns. A structure that has taken
+/// a second to build is not built again. Memory while building is that on one thread, too. Findings compare times where
+/// there are three runs and more. Compare times within one run only.
 ///
 /// Instances are kept as `gridel render` keeps them, or copied with --instances flatten. Kept ones lie in a
 /// hierarchy of boxes, which all structures share and which is counted with each; brute force tests every primitive
@@ -60,7 +65,7 @@ pub struct Arguments {
     repeat: u16,
 
     /// Write SVG charts into this folder: tests, rates, and the growth of rates, build times and
-    /// bytes with the scene
+    /// bytes with the scene. Replaces charts of an earlier run, and no other files
     #[arg(long, value_name = "DIR")]
     plot: Option<PathBuf>,
 
@@ -83,7 +88,7 @@ struct Report<'r> {
     scene: String,
     #[serde(flatten)]
     comparison: &'r Comparison,
-    /// Sentences about where each structure is beaten.
+    /// Sentences about the structures that do better than each.
     findings: Vec<String>,
     #[serde(skip_serializing_if = "Option::is_none")]
     growth: Option<&'r Growth>,
@@ -115,7 +120,7 @@ pub fn run(arguments: &Arguments, memory: &PeakAlloc) -> Result<(), Failure> {
             .sized(Some(arguments.size)),
     )?;
     if let Some(folder) = &arguments.plot {
-        std::fs::create_dir_all(folder).map_err(|error| Failure::writing(folder, &error))?;
+        prepare(folder)?;
     }
     if !imported.scene.morph_targets.is_empty() {
         let sentence = "meshes with morph targets are compared as they are at rest";
@@ -136,42 +141,40 @@ pub fn run(arguments: &Arguments, memory: &PeakAlloc) -> Result<(), Failure> {
         memory: Some(memory),
         ..default
     };
-    let mut steps = options.steps();
-    if arguments.plot.is_some() {
-        steps += growth_steps(&imported.scene, &options)
-            .map_err(|error| Failure::in_file(path, error))?;
-    }
-    let progress = Progress::steps("comparing", steps);
-    let show = |what: &str| {
-        progress.show(what);
-        progress.step();
+    let failed = |error: CompareError| Failure::in_file(path, error);
+    let more_steps = match &arguments.plot {
+        Some(_) => growth_steps(&imported.scene, &options).map_err(failed)?,
+        None => 0,
     };
-    let comparison =
-        compare(&imported.scene, &options, &show).map_err(|error| Failure::in_file(path, error))?;
-    let mut warnings = imported.warnings;
-    let grown = match &arguments.plot {
-        Some(_) => Some(
-            growth(&imported.scene, &options, &show)
-                .map_err(|error| Failure::in_file(path, error))?,
-        ),
-        None => None,
-    };
+    let progress = Progress::steps("comparing", options.steps());
+    let comparison = compare(&imported.scene, &options, &|it| progress.pass(it)).map_err(failed)?;
     drop(progress);
+    let mut warnings = imported.warnings;
     warn_of_file(path, comparison.warnings.clone(), &mut warnings);
-    let report = Report {
+    let mut report = Report {
         scene: path.display().to_string(),
         comparison: &comparison,
         findings: findings(&comparison),
-        growth: grown.as_ref(),
+        growth: None,
     };
-    if arguments.json {
-        print_json_warned(&report, &warnings)?;
-    } else {
+    // What is measured is not lost if the growth fails.
+    if !arguments.json {
         print(text(&report))?;
     }
+    let grown = match &arguments.plot {
+        Some(_) => {
+            let progress = Progress::steps("comparing parts", more_steps);
+            growth(&imported.scene, &options, &|it| progress.pass(it)).map(Some)
+        }
+        None => Ok(None),
+    };
+    if arguments.json {
+        report.growth = grown.as_ref().ok().and_then(Option::as_ref);
+        print_json_warned(&report, &warnings)?;
+    }
+    let grown = grown.map_err(failed)?;
     if let (Some(folder), Some(growth)) = (&arguments.plot, &grown) {
-        let name = path.file_stem().unwrap_or_default().display().to_string();
-        let charts = charts(&name, &comparison, growth).map_err(|error| {
+        let charts = charts(&stem(path), &comparison, growth).map_err(|error| {
             Failure::failed(error.to_string(), "report this as a fault of gridel")
         })?;
         write_texts(folder, &charts)?;
@@ -201,11 +204,22 @@ pub fn run(arguments: &Arguments, memory: &PeakAlloc) -> Result<(), Failure> {
     }
 }
 
+/// Makes the folder of the charts, in which no other files are replaced.
+fn prepare(folder: &Path) -> Result<(), Failure> {
+    check_folder(folder)?;
+    for name in CHARTS {
+        reject_foreign(&folder.join(name), "chart of `gridel compare`", |path| {
+            Ok(is_chart(&fs::read(path)?))
+        })?;
+    }
+    fs::create_dir_all(folder).map_err(|error| Failure::writing(folder, &error))
+}
+
 fn text(report: &Report<'_>) -> String {
     let comparison = report.comparison;
     let rays = comparison.rays;
     let mut text = format!(
-        "{}: {}, {} by {} pixels, {}\n{} primary, {} shadow, {} mirrored and refracted rays; \
+        "{}: {}, {} by {} pixels, {}\n{} primary, {} shadow, {} bounced rays; \
          {} compared with brute force\n\n",
         report.scene,
         counted(comparison.primitives, "primitive"),
@@ -250,9 +264,7 @@ fn text(report: &Report<'_>) -> String {
         text += &tests("a shadow ray", comparison, |works| works.shadow);
     }
     if rays.bounced > 0 {
-        text += &tests("a mirrored or refracted ray", comparison, |works| {
-            works.bounced
-        });
+        text += &tests("a bounced ray", comparison, |works| works.bounced);
     }
     for finding in &report.findings {
         text += finding;

@@ -15,6 +15,14 @@ pub fn is_standard(path: &Path) -> bool {
     path == Path::new("-")
 }
 
+/// Returns the name of a scene in titles and in the names of files: `stdin` for standard input.
+pub fn stem(path: &Path) -> String {
+    match is_standard(path) {
+        true => String::from("stdin"),
+        false => path.file_stem().unwrap_or_default().display().to_string(),
+    }
+}
+
 /// A file, or what came from standard input.
 pub struct Input {
     path: PathBuf,

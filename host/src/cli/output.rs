@@ -7,6 +7,7 @@ use gridel_host::table::shown;
 use serde::Serialize;
 use std::collections::BTreeSet;
 use std::fmt::Display;
+use std::fs;
 use std::io::{self, IsTerminal, Write};
 use std::path::Path;
 
@@ -65,6 +66,42 @@ pub fn write_files(files: &[(&Path, Content<'_>)]) -> Result<(), Failure> {
         .iter()
         .filter(is_stream)
         .try_for_each(|(_, write)| write_standard(write))
+}
+
+/// Rejects `-` as a folder: elsewhere it means standard output, which holds no files.
+pub fn check_folder(folder: &Path) -> Result<(), Failure> {
+    if is_standard(folder) {
+        return Err(Failure::usage(
+            "`-` is standard output, and several files are written",
+            "name a folder for them; one that is called `-` is written `./-`",
+        ));
+    }
+    Ok(())
+}
+
+/// Rejects to write over a file of another sort, such as the buffer of a glTF scene, or a program's own.
+pub fn reject_foreign(
+    path: &Path,
+    sort: &str,
+    is_one: impl Fn(&Path) -> io::Result<bool>,
+) -> Result<(), Failure> {
+    let is_foreign = match fs::metadata(path) {
+        Ok(there) if there.is_file() && there.len() > 0 => {
+            !is_one(path).map_err(|error| Failure::reading(path, &error))?
+        }
+        // Output to devices and pipes replaces nothing.
+        _ => false,
+    };
+    if is_foreign {
+        return Err(Failure::usage(
+            format!(
+                "{} exists and is not a {sort}: it would be overwritten",
+                path.display()
+            ),
+            "write to another name or folder, or move that file away",
+        ));
+    }
+    Ok(())
 }
 
 /// Writes texts into a folder, by the names of their files, all of them or none.

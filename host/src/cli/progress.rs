@@ -64,6 +64,12 @@ impl Progress {
         self.bar.set_message(what.to_owned());
     }
 
+    /// Shows the next step, and counts it.
+    pub fn pass(&self, what: &str) {
+        self.show(what);
+        self.step();
+    }
+
     /// One more step is done.
     pub fn step(&self) {
         self.bar.inc(1);

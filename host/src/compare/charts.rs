@@ -4,6 +4,29 @@ use super::findings::{bounced_rate, primary_rate, shadow_rate};
 use super::{Comparison, Growth, Row};
 use crate::report::chart::{ChartError, Curve, Series, bars, curves};
 
+/// The names of the files of all charts.
+pub const CHARTS: [&str; 6] = [
+    "tests.svg",
+    "rates.svg",
+    "growth-rates.svg",
+    "growth-bytes.svg",
+    "growth-peak.svg",
+    "growth-setup.svg",
+];
+
+/// The comment in every chart, by which an earlier one is known.
+const MARK: &str = "<!-- gridel compare -->";
+
+/// Returns whether the content of a file is that of a chart.
+///
+/// ```
+/// assert!(!gridel_host::compare::is_chart(b"<svg></svg>"));
+/// ```
+pub fn is_chart(content: &[u8]) -> bool {
+    let mark = MARK.as_bytes();
+    content.windows(mark.len()).any(|it| it == mark)
+}
+
 /// Draws all charts, and returns the names of files and their content. `name` is the scene's, for
 /// the titles.
 ///
@@ -13,7 +36,7 @@ pub fn charts(
     name: &str,
     comparison: &Comparison,
     growth: &Growth,
-) -> Result<Vec<(&'static str, String)>, ChartError> {
+) -> Result<[(&'static str, String); CHARTS.len()], ChartError> {
     let groups: Vec<String> = comparison.rows.iter().map(|row| row.name.clone()).collect();
     let bar = |name: &str, of: &dyn Fn(&Row) -> Option<f64>| Series {
         name: name.to_owned(),
@@ -31,7 +54,7 @@ pub fn charts(
     let rates = [
         bar("primary", &primary_rate),
         bar("shadow", &shadow_rate),
-        bar("mirrored and refracted", &bounced_rate),
+        bar("bounced", &bounced_rate),
     ];
     let curve = |of: fn(&Row) -> Option<f64>| -> Vec<Curve> {
         let curve = |name: &String| Curve {
@@ -55,13 +78,21 @@ pub fn charts(
     };
     let grown = |what: &str| title(&format!("{what}, over parts of the scene{copied}"));
     let objects = "primitives";
-    Ok(vec![
+    let [
+        tests_name,
+        rates_name,
+        growing_rates,
+        growing_bytes,
+        growing_peak,
+        growing_setup,
+    ] = CHARTS;
+    let charts = [
         (
-            "tests.svg",
+            tests_name,
             bars(&title("tests per ray"), "tests", &groups, &tests)?,
         ),
         (
-            "rates.svg",
+            rates_name,
             bars(
                 &title("rays per second on one thread"),
                 "rays per second",
@@ -70,7 +101,7 @@ pub fn charts(
             )?,
         ),
         (
-            "growth-rates.svg",
+            growing_rates,
             curves(
                 &grown("primary rays per second on one thread"),
                 objects,
@@ -79,7 +110,7 @@ pub fn charts(
             )?,
         ),
         (
-            "growth-bytes.svg",
+            growing_bytes,
             curves(
                 &grown("bytes of the structure"),
                 objects,
@@ -88,22 +119,23 @@ pub fn charts(
             )?,
         ),
         (
-            "growth-peak.svg",
+            growing_peak,
             curves(
-                &grown("most memory while building"),
+                &grown("most memory while building on one thread"),
                 objects,
                 "bytes",
                 &curve(|row| row.peak_bytes.map(|bytes| bytes as f64)),
             )?,
         ),
         (
-            "growth-setup.svg",
+            growing_setup,
             curves(
-                &grown("seconds to set up"),
+                &grown("seconds to set up on one thread"),
                 objects,
                 "seconds",
                 &curve(|row| Some(row.setup_seconds)),
             )?,
         ),
-    ])
+    ];
+    Ok(charts.map(|(name, svg)| (name, svg.replace("</svg>", &format!("{MARK}\n</svg>")))))
 }

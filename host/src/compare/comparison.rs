@@ -50,6 +50,7 @@ pub struct Rejected {
 pub struct RayCounts {
     pub primary: usize,
     pub shadow: usize,
+    /// Rays that surfaces send on: mirrored, refracted and diffusely reflected ones.
     pub bounced: usize,
 }
 
@@ -64,9 +65,10 @@ pub struct Row {
     /// Cost of the hierarchy's boxes by the surface area heuristic; `None` without one, and where a scene and its parts
     /// have one each.
     pub sah_cost: Option<f64>,
-    /// Time to build the structure, from primitives on the lattice to records.
+    /// Time to build the structure on one thread, from primitives on the lattice to records: the median of the repeats.
+    /// A structure that has taken a second is not built again.
     pub setup_seconds: f64,
-    /// The most memory at any time while the scene was compiled, beyond the scene itself.
+    /// The most memory at any time while the scene was compiled on one thread, beyond the scene itself.
     pub peak_bytes: Option<usize>,
     /// Bytes by which the blob is larger than one of the list alone.
     pub own_bytes: usize,

@@ -3,7 +3,7 @@
 //! A scene grows by single primitives, so its instances are copied.
 
 use super::{CompareError, Options, Row, compare};
-use crate::scene::{Instances, Object, Scene, Shape};
+use crate::scene::{Instances, Scene, Shape};
 use glam::DVec3;
 use serde::Serialize;
 use std::borrow::Cow;
@@ -117,20 +117,22 @@ fn part(scene: &Scene, primitives: &[Part]) -> Scene {
     primitives.sort_unstable();
     let objects = primitives.chunk_by(|a, b| a.0 == b.0).map(|same| {
         let object = &scene.objects[same[0].0];
-        let shape = match &object.shape {
-            Shape::Mesh {
-                vertices,
+        let mut taken = object.clone();
+        if let Shape::Mesh { triangles, .. } = &mut taken.shape {
+            // All that an object has for each triangle.
+            let (normals, coordinates) = (&mut taken.normals, &mut taken.attributes);
+            for of_triangles in [
                 triangles,
-            } => Shape::Mesh {
-                vertices: vertices.clone(),
-                triangles: same.iter().map(|&(_, index)| triangles[index]).collect(),
-            },
-            shape => shape.clone(),
-        };
-        Object {
-            shape,
-            ..object.clone()
+                &mut normals.triangles,
+                &mut coordinates.triangles,
+            ] {
+                // An object without normals or coordinates has an empty list.
+                if !of_triangles.is_empty() {
+                    *of_triangles = same.iter().map(|&(_, index)| of_triangles[index]).collect();
+                }
+            }
         }
+        taken
     });
     Scene {
         camera: None,
@@ -153,6 +155,7 @@ fn part(scene: &Scene, primitives: &[Part]) -> Scene {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::scene::Object;
     use crate::shape::Sphere;
 
     #[test]
@@ -183,5 +186,53 @@ mod tests {
             .iter()
             .filter(|object| center(object) < farthest - 1e-9);
         assert!(nearer.count() <= 40);
+    }
+
+    /// A part of a mesh takes along what its triangles have: normals and texture coordinates.
+    #[test]
+    fn parts_of_meshes_keep_normals_and_coordinates_of_their_triangles() {
+        let text = shaded_strip();
+        let whole = crate::scene::read("a.obj".as_ref(), text.into(), &Default::default());
+        let mut whole = whole.expect("a scene").scene;
+        let mesh = &mut whole.objects[0];
+        assert_eq!(mesh.normals.triangles.len(), 140);
+        // Without a texture an importer drops coordinates.
+        let coordinates = (0..140).map(|triangle| [0, 1, triangle % 3]);
+        mesh.attributes.coordinates = vec![glam::DVec2::ZERO, glam::DVec2::X, glam::DVec2::Y];
+        mesh.attributes.triangles = coordinates.collect();
+        let some = part(&whole, &[(0, 139), (0, 7)]);
+        let (some, mesh) = (&some.objects[0], &whole.objects[0]);
+        let taken = |of_triangles: &[[u32; 3]]| [7, 139].map(|index: usize| of_triangles[index]);
+        assert_eq!(some.normals.triangles, taken(&mesh.normals.triangles));
+        assert_eq!(some.attributes.triangles, taken(&mesh.attributes.triangles));
+        let options = Options {
+            structures: vec![gridel_core::Structure::Bvh],
+            size: [8, 6],
+            repeats: 0,
+            ..Options::default()
+        };
+        let growth = growth(&whole, &options, &|_| ()).expect("parts that compile");
+        let sizes = growth.steps.iter().map(|step| step.primitives);
+        assert_eq!(sizes.collect::<Vec<_>>(), [100, 140]);
+    }
+
+    /// A bent strip of 140 triangles with normals and texture coordinates.
+    fn shaded_strip() -> String {
+        use std::fmt::Write;
+        let mut text = String::new();
+        for place in 0..71 {
+            let (x, z) = (f64::from(place), 0.01 * f64::from(place * place));
+            for y in [0, 1] {
+                let slope = -0.02 * x;
+                let _ = writeln!(text, "v {x} {y} {z}\nvt {} {y}\nvn {slope} 0 1", x / 70.0);
+            }
+        }
+        for place in 0..70 {
+            let [a, b, c, d] = [1, 3, 4, 2].map(|corner| 2 * place + corner);
+            for [a, b, c] in [[a, b, c], [a, c, d]] {
+                let _ = writeln!(text, "f {a}/{a}/{a} {b}/{b}/{b} {c}/{c}/{c}");
+            }
+        }
+        text
     }
 }

@@ -2,11 +2,12 @@
 //!
 //! Every structure is compiled into a blob of its own, and all of them trace the same rays. These are the rays of the
 //! scene's own picture, as the ray loop casts them, including those of mirrors, glass and shadows. The answers are
-//! compared bit for bit before anything is measured (see `judge.rs`). Times are medians of repeats on one thread, in
-//! which the structures take turns.
+//! compared bit for bit before anything is measured (see `judge.rs`). Times, those of building among them, are medians of
+//! repeats on one thread, in which the structures take turns (see `built.rs` for building).
 //!
 //! Instances are kept as the scene has them: each part is compiled for the contender's structure, too.
 
+mod built;
 #[cfg(not(target_family = "wasm"))]
 mod charts;
 mod comparison;
@@ -17,21 +18,20 @@ mod options;
 
 pub use crate::measure::rays::{Work, Works};
 #[cfg(not(target_family = "wasm"))]
-pub use charts::charts;
+pub use charts::{CHARTS, charts, is_chart};
 pub use comparison::{Comparison, RayCounts, Rejected, Row};
 pub use findings::findings;
 pub use growth::{Growth, Step, growth, growth_steps};
 pub use judge::Mismatch;
 pub use options::{CompareError, Options};
 
-use crate::compile::{self, Builder, CompileError, Compiled, at_rest, compile};
+use crate::compile::{CompileError, at_rest};
 use crate::measure::rays::{self, Amount, Question, Questions};
-use crate::measure::{InstanceCount, board_memory, primitives};
+use crate::measure::{InstanceCount, primitives};
 use crate::picture_rays::PictureRays;
 use crate::scene;
-use gridel_core::{Effects, Fixed, Format, Number, Scene, Settings, Structure};
-use options::Contender;
-use std::time::Duration;
+use built::{build, one_thread, repeat};
+use gridel_core::{Effects, Fixed, Format, Number, Settings, Structure};
 
 /// Compares structures on a scene. Calls `progress` with a description of each step.
 ///
@@ -92,11 +92,11 @@ fn compare_in<N: Number>(
     };
     progress("casting the picture's rays");
     let picture_rays = PictureRays::<N>::of(&flagged.compiled.blob.scene()?, settings)?;
-    let mut built = Vec::new();
-    let mut rejected = Vec::new();
+    let (mut built, mut rejected) = (Vec::new(), Vec::new());
+    let pool = one_thread()?;
     for contender in options.contenders() {
         progress(&format!("building {}", contender.0.name()));
-        match build(contender) {
+        match pool.install(|| build(contender)) {
             Err(CompareError::Compile(error @ CompileError::OverBudget { .. })) => {
                 rejected.push(Rejected {
                     structure: contender.0.name(),
@@ -106,6 +106,7 @@ fn compare_in<N: Number>(
             other => built.push(other?),
         }
     }
+    pool.install(|| repeat(scene, options, &mut built))?;
     let structures: Vec<_> = built.iter().map(|built| built.structure).collect();
     let scenes = built
         .iter()
@@ -167,91 +168,6 @@ fn compare_in<N: Number>(
             .report
             .warnings(options.compiling.lattice_bits),
     })
-}
-
-/// A structure in a blob of its own.
-struct Built {
-    structure: Structure,
-    builder: Option<Builder>,
-    compiled: Compiled,
-    setup: Duration,
-    peak_bytes: Option<usize>,
-}
-
-fn build(
-    scene: &scene::Scene,
-    options: &Options<'_>,
-    (structure, builder): Contender,
-) -> Result<Built, CompareError> {
-    let compiling = compile::Options {
-        structures: vec![structure],
-        builder: builder.unwrap_or_default(),
-        ..options.compiling.clone()
-    };
-    let before = options.memory.map(|memory| {
-        memory.reset_peak_usage();
-        memory.current_usage()
-    });
-    let compiled = compile(scene, &compiling)?;
-    let peak_bytes = before.zip(options.memory).map(|(before, memory)| {
-        // Other threads may have freed what was counted.
-        memory.peak_usage().saturating_sub(before)
-    });
-    let mut setup = compiled.report.setup;
-    // Fast runs are repeated, so that the first run's page faults do not count.
-    let repeats = if options.repeats == 0 { 0 } else { 4 };
-    for _ in 0..repeats {
-        if setup > Duration::from_millis(100) {
-            break;
-        }
-        setup = setup.min(compile(scene, &compiling)?.report.setup);
-    }
-    Ok(Built {
-        structure,
-        builder,
-        compiled,
-        setup,
-        peak_bytes,
-    })
-}
-
-impl Built {
-    fn row(
-        &self,
-        scene: &Scene<'_>,
-        list: &Self,
-        wrong: Option<Mismatch>,
-        work: Option<Works>,
-        options: &Options<'_>,
-    ) -> Row {
-        let blob_bytes = self.compiled.blob.bytes().len();
-        let memory = board_memory(scene, options.format, scene.view().depth);
-        let builder = self.builder.map(Builder::name);
-        Row {
-            name: match builder {
-                Some(builder) if options.builders.len() > 1 => {
-                    format!("{} {builder}", self.structure.name())
-                }
-                _ => self.structure.name().to_owned(),
-            },
-            structure: self.structure.name(),
-            builder,
-            // The compiler reports that of the scene's own objects.
-            sah_cost: self
-                .compiled
-                .report
-                .sah_cost
-                .filter(|_| scene.instances().is_empty()),
-            setup_seconds: self.setup.as_secs_f64(),
-            peak_bytes: self.peak_bytes,
-            own_bytes: blob_bytes.saturating_sub(list.compiled.blob.bytes().len()),
-            blob_bytes,
-            longest_list: self.compiled.report.longest_list,
-            stack_bytes: memory.stack,
-            wrong,
-            work,
-        }
-    }
 }
 
 #[cfg(test)]

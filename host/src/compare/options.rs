@@ -83,6 +83,9 @@ pub enum CompareError {
     #[error("the growth charts need copies of all instances")]
     #[diagnostic(help("leave `--plot` out, or place fewer instances"))]
     Growth(#[source] SceneError),
+    #[error("the thread that is timed cannot be started: {0}")]
+    #[diagnostic(help("end other programs"))]
+    Thread(String),
     #[error("the compiled blob is rejected: {0}")]
     #[diagnostic(help("this is a fault of gridel: report it with the scene file"))]
     Blob(#[from] BlobError),

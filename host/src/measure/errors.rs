@@ -2,6 +2,7 @@
 
 use super::first_hits::FirstHit;
 use super::flip::{self, flip};
+use super::median;
 use super::ssim::ssim;
 use crate::srgb::srgb_of_linear;
 use gridel_core::Rgb888;
@@ -74,8 +75,7 @@ impl Errors {
                 _ => other_objects += 1,
             }
         }
-        ulps.sort_by(f64::total_cmp);
-        let last = ulps.last().copied().unwrap_or(0.0);
+        let largest_ulps = ulps.iter().copied().fold(0.0, f64::max);
         Self {
             rmse,
             largest,
@@ -83,7 +83,7 @@ impl Errors {
             ssim: ssim(width.into(), &gray(reference.0), &gray(pixels)),
             flip: differences.iter().sum::<f64>() / differences.len().max(1) as f64,
             other_objects,
-            t_ulps: [ulps.get(ulps.len() / 2).copied().unwrap_or(0.0), last],
+            t_ulps: [median(&ulps).unwrap_or(0.0), largest_ulps],
         }
     }
 }
@@ -144,5 +144,21 @@ mod tests {
         assert_eq!(errors.other_objects, 0);
         assert_eq!(errors.t_ulps[0], 0.0);
         assert!(errors.t_ulps[1] > 1e6 && errors.t_ulps[1].is_finite());
+    }
+
+    #[test]
+    fn median_of_two_errors_of_t_is_their_mean() {
+        let hit = |distance| {
+            Some(FirstHit {
+                object: 0,
+                instance: None,
+                distance,
+            })
+        };
+        let pixels = [[0; 3]; 2];
+        let expected = [hit(1.0), hit(1.0)];
+        let found = [hit(1.0), hit(1.0 + 4.0 * f64::from(f32::EPSILON))];
+        let errors = Errors::of(2, (&pixels, &expected), (&pixels, &found));
+        assert_eq!(errors.t_ulps, [2.0, 4.0]);
     }
 }

@@ -5,7 +5,7 @@
 //! |---|---|
 //! | `picture.rs` | a picture with its time, its rays and its tests |
 //! | `rays.rs` | structures on the same rays: counts and times |
-//! | `time.rs` | the median and the spread of repeats |
+//! | `median.rs`, `time.rs` | the median of figures; the spread of repeats |
 //! | `bytes.rs` | the parts of a blob, and working memory |
 //! | `deforming.rs` | the memory of deforming meshes |
 //! | `errors.rs` | pictures and first hits against a reference; `flip.rs` and `ssim.rs` compare as eyes do |
@@ -20,6 +20,7 @@ mod errors;
 mod first_hits;
 mod flip;
 mod instances;
+mod median;
 mod picture;
 pub mod rays;
 mod ssim;
@@ -30,4 +31,5 @@ pub use deforming::Deforming;
 pub use errors::{Errors, difference_picture, rmse_and_largest};
 pub use first_hits::{FirstHit, first_hits};
 pub use instances::{InstanceCount, primitives};
+pub use median::median;
 pub use picture::Rendered;

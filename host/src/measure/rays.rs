@@ -1,6 +1,6 @@
 //! Tracing with counters, and tracing against the clock.
 
-use super::time::median;
+use super::median;
 use crate::observed::Observed;
 use crate::picture_rays::PictureRays;
 use gridel_core::accel::DynAccel;
@@ -93,7 +93,7 @@ fn instance_of<N: Number>(scene: &Scene<'_>, ray: &Ray<N>, hit: &PrimitiveHit<N>
 }
 
 impl<N: Number> Questions<'_, N> {
-    /// Rays from the camera, those to lights, and those that mirrors and glass send on.
+    /// Rays from the camera, those to lights, and those that surfaces send on.
     fn groups(&self) -> [Group<'_, N>; 3] {
         let PictureRays {
             primary,
@@ -207,7 +207,7 @@ pub struct Works {
     pub primary: Work,
     /// Work of rays to lights; `None` without such rays.
     pub shadow: Option<Work>,
-    /// Work of mirrored and refracted rays; `None` without such rays.
+    /// Work of bounced rays: mirrored, refracted and diffusely reflected ones; `None` without such rays.
     pub bounced: Option<Work>,
     pub all: Work,
 }

@@ -1,23 +1,6 @@
-//! The median and the spread of repeats.
+//! The spread of repeats.
 
-/// Returns the median; `None` without repeats.
-///
-/// ```
-/// use gridel_host::measure::time::median;
-/// assert_eq!(median(&[3.0, 1.0, 2.0]), Some(2.0));
-/// assert_eq!(median(&[4.0, 1.0]), Some(2.5));
-/// assert_eq!(median(&[]), None);
-/// ```
-pub fn median(seconds: &[f64]) -> Option<f64> {
-    let mut sorted = seconds.to_vec();
-    sorted.sort_by(f64::total_cmp);
-    let middle = sorted.len() / 2;
-    match sorted.len() {
-        0 => None,
-        count if count % 2 == 1 => Some(sorted[middle]),
-        _ => Some(0.5 * (sorted[middle - 1] + sorted[middle])),
-    }
-}
+use super::median;
 
 /// Returns the least and the largest; `None` for a single repeat, which has no interval.
 ///

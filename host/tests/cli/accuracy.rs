@@ -37,7 +37,10 @@ fn single_repeat_reports_no_spread() {
         .unwrap();
     assert_eq!(columns[name + 2], "-", "{line}");
     let page = String::from_utf8(folder.read("out/page.html")).unwrap();
-    assert!(page.contains("256 samples per pixel"), "no samples");
+    assert!(
+        page.contains("cutoff 2<sup>-14</sup>, 256 samples per pixel"),
+        "no samples"
+    );
     let (body, _) = page.split_once("<script").unwrap();
     assert!(body.contains("<code>fixed</code>") && !body.contains('`'));
     assert!(page.contains("<td>-</td>"));
@@ -140,8 +143,9 @@ fn only_the_same_run_goes_on_in_its_folder() {
     // A picture of another size is not taken for that of a setting.
     let one = std::fs::read_dir(folder.path("out/pictures"))
         .unwrap()
-        .next();
-    let one = one.unwrap().unwrap().path();
+        .map(|entry| entry.unwrap().path())
+        .find(|path| !path.display().to_string().contains("difference"));
+    let one = one.unwrap();
     folder.done(&["render", "ball.toml", "--size", "4x3", "-o", "small.png"]);
     std::fs::copy(folder.path("small.png"), &one).unwrap();
     let run = folder.run(&SMALL);
@@ -152,6 +156,64 @@ fn only_the_same_run_goes_on_in_its_folder() {
     let huge = [&SMALL[..3], &["65535x65535"], &SMALL[4..6], &["-o", "huge"]].concat();
     folder.fails(2, &huge, &["4,294,836,225 pixels", "smaller `--size`"]);
     assert!(!folder.path("huge").exists());
+    let large = [&SMALL[..3], &["1025x1024"], &SMALL[4..6], &["-o", "huge"]].concat();
+    folder.fails(2, &large, &["1,048,576", "about 1 GB of memory"]);
+}
+
+/// A mirror calls for cutoffs, of which one is 0: the reference traces more rays than any setting.
+#[test]
+fn cutoffs_that_differ_in_the_fourth_digit_have_pictures_of_their_own() {
+    let folder = Folder::new();
+    folder.write(
+        "a.toml",
+        b"[material.m]\nmirror = 0.5\n\
+          [[object]]\nkind = 'sphere'\ncenter = [0, 0, 0]\nradius = 1\nmaterial = 'm'\n",
+    );
+    let run = [
+        "accuracy", "a.toml", "--size", "4x3", "--repeat", "1", "-o", "out", "--cutoff", "0.00195",
+    ];
+    let report = folder.json(&run);
+    let names: Vec<_> = report["points"]
+        .as_array()
+        .unwrap()
+        .iter()
+        .map(|point| point["name"].as_str().unwrap().to_owned())
+        .collect();
+    for cutoff in ["0.00195", "0.001953125"] {
+        let ends = |name: &&String| name.ends_with(&format!("deep-{cutoff}"));
+        assert!(names.iter().any(|name| ends(&name)), "{names:?}");
+    }
+    for name in &names {
+        assert!(folder.path(&format!("out/pictures/{name}.png")).exists());
+    }
+    let mut distinct = names.clone();
+    distinct.sort();
+    distinct.dedup();
+    assert_eq!(distinct.len(), names.len());
+    assert_eq!(report["reference_cutoff"], f64::powi(2.0, -20));
+    let page = String::from_utf8(folder.read("out/page.html")).unwrap();
+    assert!(page.contains("cutoff 2<sup>-20</sup>"), "no cutoff");
+}
+
+/// `-` is standard input, and no folder.
+#[test]
+fn standard_input_has_a_folder_of_its_own_name() {
+    let folder = Folder::new();
+    let ball = b"object = [{ kind = \"sphere\", center = [0, 0, 0], radius = 1 }]\n";
+    for (command, page) in [("accuracy", "page.html"), ("certify", "certify.html")] {
+        let small = [command, "-", "--size", "4x3"];
+        let (run, _) = folder.piped(&small, ball);
+        assert_eq!(run.code, Some(0), "{}", run.stderr);
+        assert!(folder.path(&format!("{command}-stdin/{page}")).exists());
+        let (run, _) = folder.piped(&[&small[..], &["-o", "-"]].concat(), ball);
+        assert_eq!(run.code, Some(2), "{}", run.stderr);
+        assert!(
+            run.said().contains("`-` is standard output"),
+            "{}",
+            run.stderr
+        );
+        assert!(!folder.path("-").exists());
+    }
 }
 
 /// The commands that are printed make what was measured.

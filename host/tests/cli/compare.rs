@@ -21,7 +21,12 @@ fn every_structure_has_a_row_with_the_lists_answers() {
     assert_eq!(list["structure"], "list");
     assert_eq!(list["own_bytes"], 0);
     assert_eq!(list["work"]["all"]["primitives"], 17.0);
-    assert_eq!(report["findings"].as_array().unwrap().len(), rows.len());
+    let findings = report["findings"].as_array().unwrap();
+    assert_eq!(findings.len(), rows.len() + 1);
+    assert_eq!(
+        findings[rows.len()],
+        "times were not compared: fewer than 3 repeats"
+    );
 }
 
 #[test]
@@ -63,6 +68,17 @@ fn charts_are_written_whole() {
             "{chart}"
         );
     }
+    // Charts of an earlier run are replaced, and other files are not.
+    let again = [&compare[..], &["--accel", "flagged", "--plot", "charts"]].concat();
+    folder.done(&again);
+    folder.write("charts/growth-peak.svg", b"<svg>my own</svg>");
+    folder.fails(2, &again, &["growth-peak.svg", "would be overwritten"]);
+    assert_eq!(folder.read("charts/growth-peak.svg"), b"<svg>my own</svg>");
+    folder.fails(
+        2,
+        &[&compare[..], &["--plot", "-"]].concat(),
+        &["standard output", "./-"],
+    );
     folder.write("file", b"");
     let into_file = [&compare[..], &["--plot", "file"]].concat();
     folder.fails(1, &into_file, &["file cannot be written"]);
@@ -119,4 +135,58 @@ fn scenes_without_objects_have_a_warning() {
         assert_eq!(run.code, Some(0), "{}", run.stderr);
         assert!(run.said().contains("the scene has no object"), "{command}");
     }
+}
+
+/// The growth takes parts of meshes; where it fails, the comparison is printed already.
+#[test]
+fn growth_of_meshes_with_normals_and_coordinates_is_drawn() {
+    let folder = Folder::new();
+    let mut strip = String::new();
+    for place in 0..71 {
+        let (u, normal) = (f64::from(place) / 70.0, 0.02 * f64::from(place - 35));
+        for y in [0, 1] {
+            strip += &format!("v {place} {y} {}\nvt {u} {y}\nvn {} 0 1\n", u * u, -normal);
+        }
+    }
+    for place in 0..70 {
+        let [a, b, c, d] = [1, 3, 4, 2].map(|corner| 2 * place + corner);
+        strip += &format!("f {a}/{a}/{a} {b}/{b}/{b} {c}/{c}/{c} {d}/{d}/{d}\n");
+    }
+    folder.write("strip.obj", strip.as_bytes());
+    let compare = [
+        "compare",
+        "strip.obj",
+        "--plot",
+        "d",
+        "--repeat",
+        "0",
+        "--size",
+        "16x16",
+        "--accel",
+        "bvh",
+    ];
+    let text = folder.done(&compare);
+    assert!(text.contains("140 primitives"), "{text}");
+    assert!(folder.path("d/growth-rates.svg").exists());
+}
+
+/// Diffuse rays are neither mirrored nor refracted.
+#[test]
+fn rays_that_surfaces_send_on_are_called_bounced() {
+    let folder = Folder::new();
+    folder.write(
+        "a.toml",
+        b"[render]\nbounces = 1\ndepth = 1\n[[light]]\nkind = 'point'\nposition = [3, 3, 3]\n\
+          [[object]]\nkind = 'sphere'\ncenter = [0, 0, 0]\nradius = 1\n\
+          [[object]]\nkind = 'sphere'\ncenter = [2, 0, 0]\nradius = 1\n",
+    );
+    let compare = [
+        "compare", "a.toml", "--size", "16x12", "--repeat", "0", "--accel", "bvh",
+    ];
+    let text = folder.done(&compare);
+    assert!(text.contains("a bounced ray"), "{text}");
+    assert!(
+        !text.contains("mirrored") && !text.contains("refracted"),
+        "{text}"
+    );
 }

@@ -200,7 +200,7 @@ fn pixels(folder: &Folder, name: &str) -> Vec<u8> {
 #[test]
 fn accuracy_measures_the_picture_that_render_draws() {
     let folder = folder();
-    let base = "f32-24bit-2spp-5deep-0.00195";
+    let base = "f32-24bit-2spp-5deep-0.001953125";
     for (choice, option, to) in [("keep", &[][..], "kept"), ("flatten", &FLATTEN, "flat")] {
         let bound = ["--max-error", "0.9", "-o", to];
         let report = folder.json(&[&ACCURACY[..], option, &bound].concat());

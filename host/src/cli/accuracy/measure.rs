@@ -7,7 +7,7 @@ use crate::cli::output::write_file;
 use crate::cli::progress::Progress;
 use crate::cli::saving::Saving;
 use crate::cli::threads;
-use gridel_host::accuracy::{Bench, MeasureError, Point, Results, Setting, given_up, worths};
+use gridel_host::accuracy::{Bench, MeasureError, Point, Results, Setting, effect_costs, given_up};
 use gridel_host::measure::difference_picture;
 use std::io;
 use std::path::Path;
@@ -26,7 +26,7 @@ pub fn measure(
     bench: &mut Bench<'_>,
     folder: &Path,
     (key, kept): (String, Option<Results>),
-    (settings, reference_samples): (&[Setting], u16),
+    (settings, reference): (&[Setting], &Setting),
 ) -> Result<Results, Failure> {
     let mut run = Run {
         arguments,
@@ -42,7 +42,7 @@ pub fn measure(
         },
         None => {
             let progress = Progress::unknown("rendering the reference");
-            let reference = run.bench.reference(reference_samples);
+            let reference = run.bench.reference(reference);
             drop(progress);
             Results {
                 key,
@@ -57,7 +57,7 @@ pub fn measure(
     run.write(&results)?;
     run.all(settings, &mut results)?;
     run.write(&results)?;
-    results.effects = worths(run.bench, &results).map_err(|it| run.failed(it))?;
+    results.effects = effect_costs(run.bench, &results).map_err(|it| run.failed(it))?;
     let more = given_up(&results.base, &results.effects);
     run.all(&more, &mut results)?;
     run.write(&results)?;
@@ -86,6 +86,9 @@ impl Run<'_, '_> {
     /// Measures all of some settings that are not measured yet.
     fn all(&mut self, settings: &[Setting], results: &mut Results) -> Result<(), Failure> {
         let repeats = usize::from(self.arguments.repeat);
+        let is_missing = |it: &&Setting| results.points.iter().all(|point| point.setting != **it);
+        let missing = settings.iter().filter(is_missing);
+        self.bench.plan(missing.copied().collect());
         let progress = Progress::steps("measuring", (settings.len() * (repeats + 1)) as u64);
         for setting in settings {
             if results.point(setting).is_none() {

@@ -57,7 +57,7 @@ pub fn text(folder: &Path, size: [u16; 2], results: &Results, choice: Option<&Ch
     text
 }
 
-/// Returns the worth of each effect; empty for a scene that calls for none.
+/// Returns the cost of each effect; empty for a scene that calls for none.
 fn effects(results: &Results) -> String {
     if results.effects.is_empty() {
         return String::new();
@@ -73,16 +73,16 @@ fn effects(results: &Results) -> String {
         ("instructions", Align::Right),
         (&memory, Align::Right),
     ]);
-    for worth in &results.effects {
+    for cost in &results.effects {
         table.row([
-            worth.effect.clone(),
-            format!("{:.5}", worth.lost.rmse),
-            format!("{:.4}", worth.lost.flip),
-            format!("{:.2}", worth.rays),
-            format!("{:.1}", worth.tests),
-            worth.time_text(),
-            worth.instructions_text(),
-            worth.memory_text(),
+            cost.effect.clone(),
+            format!("{:.5}", cost.lost.rmse),
+            format!("{:.4}", cost.lost.flip),
+            format!("{:.2}", cost.rays),
+            format!("{:.1}", cost.tests),
+            cost.time_text(),
+            cost.instructions_text(),
+            cost.memory_text(),
         ]);
     }
     format!(

@@ -1,6 +1,7 @@
 //! Advice that makes a scene take less of a board's memory.
 
 use super::memory::MemoryReport;
+use crate::measure::bytes::board_memory;
 use crate::table::grouped;
 use gridel_core::accel::Entry;
 use gridel_core::{Effects, Format, Kind, Scene};
@@ -28,23 +29,7 @@ impl MemoryReport {
 
     /// Returns advice that saves RAM.
     pub fn ram_advice(&self, scene: &Scene<'_>) -> Vec<String> {
-        let view = scene.view();
-        let place = if self.format == Format::F64.name() {
-            80
-        } else {
-            40
-        };
-        let mut steps = Vec::new();
-        let places = scene.effects().work_depth(view.depth) as u64;
-        if places > 0 {
-            steps.push(format!(
-                "a ray depth of {} in place of {} saves {place} bytes, and a scene without mirrors and \
-                 glass {}",
-                view.depth - 1,
-                view.depth,
-                place * places
-            ));
-        }
+        let mut steps: Vec<String> = self.depth_advice(scene).into_iter().collect();
         steps.extend(self.small_advice());
         // Where flash is short, too, it is named there.
         if scene.stack_depth() > 0 && self.flash.missing() == 0 {
@@ -55,6 +40,23 @@ impl MemoryReport {
         }
         steps.push(String::from("a narrower picture"));
         steps
+    }
+
+    /// Returns the bytes of waiting rays that are saved at a smaller depth, and without rays that wait.
+    fn depth_advice(&self, scene: &Scene<'_>) -> Option<String> {
+        let format = Format::from_name(self.format)?;
+        let depth = scene.view().depth;
+        let workspace = |depth: u8| board_memory(scene, format, depth).workspace;
+        let saved = |depth_then: u8| workspace(depth).checked_sub(workspace(depth_then));
+        let less = depth.checked_sub(1)?;
+        let [by_one, by_all] = [less, 0].map(|it| saved(it).filter(|&bytes| bytes > 0));
+        let all = by_all.filter(|_| less > 0).map_or(String::new(), |bytes| {
+            format!(", and a ray depth of 0 {}", grouped(bytes))
+        });
+        Some(format!(
+            "a ray depth of {less} in place of {depth} saves {} bytes{all}",
+            grouped(by_one?)
+        ))
     }
 
     /// Returns advice that makes the call stack smaller.

@@ -6,6 +6,7 @@
 //! by the smallest that holds all of it and more.
 
 use super::Board;
+use crate::measure::median;
 use gridel_core::{Effects, Format, Kind, Structure};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
@@ -179,7 +180,7 @@ impl Programs {
     pub fn share(&self, program_key: ProgramKey<'_>, part: &str, profile: Profile) -> Option<u64> {
         let built = self.at(program_key)?;
         let code = |program: &Program| program.footprint(profile).map(|it| it.code);
-        let mut added: Vec<u64> = built
+        let added: Vec<f64> = built
             .iter()
             .filter_map(|(name, program)| {
                 let parts: Vec<&str> = name.split(' ').collect();
@@ -188,11 +189,10 @@ impl Programs {
                 }
                 let rest: Vec<&str> = parts.into_iter().filter(|it| *it != part).collect();
                 let without = built.get(&key(&rest)).and_then(code)?;
-                Some(code(program)?.saturating_sub(without))
+                Some(code(program)?.saturating_sub(without) as f64)
             })
             .collect();
-        added.sort_unstable();
-        added.get(added.len() / 2).copied()
+        median(&added).map(|bytes| bytes.round() as u64)
     }
 }
 
@@ -284,6 +284,18 @@ mod tests {
         all.push((&["sphere", "mirror", "checker"], 1632));
         let known = code(&programs(&all), &["sphere", "shadow"]);
         assert_eq!(known.map(|it| it.bytes), Some(1530));
+    }
+
+    #[test]
+    fn share_of_a_part_is_the_mean_of_two_middle_values() {
+        let programs = programs(&[
+            (&["sphere"], 1000),
+            (&["sphere", "shadow"], 1100),
+            (&["sphere", "mirror"], 2000),
+            (&["sphere", "shadow", "mirror"], 2300),
+        ]);
+        let share = programs.share(PROGRAM, "shadow", Profile::Fast);
+        assert_eq!(share, Some(200));
     }
 
     #[test]

@@ -169,3 +169,40 @@ fn advice_on_flash_is_what_it_saves() {
         }
     }
 }
+
+/// Rays that wait have other sizes with nested glass, and one place more than the depth.
+#[test]
+fn advice_of_a_smaller_depth_states_the_bytes_of_a_board() {
+    let folder = Folder::new();
+    let tumbler = String::from_utf8(fixture("tumbler")).unwrap();
+    assert!(tumbler.contains("\ndepth = "));
+    let render = |depth: &str| {
+        let lines = tumbler
+            .lines()
+            .map(|line| match line.starts_with("depth = ") {
+                true => format!("depth = {depth}\n"),
+                false => format!("{line}\n"),
+            });
+        folder.write("tumbler.toml", lines.collect::<String>().as_bytes());
+        let inspect = [
+            "inspect",
+            "tumbler.toml",
+            "--target",
+            "mps2-an386",
+            "--ram",
+            "100",
+        ];
+        let run = folder.run(&inspect);
+        format!("{} {}", run.stdout.replace('\n', " "), run.said())
+    };
+    let text = render("1");
+    assert!(
+        text.contains("a ray depth of 0 in place of 1 saves 88 bytes"),
+        "{text}"
+    );
+    let text = render("3");
+    assert!(
+        text.contains("a ray depth of 2 in place of 3 saves 44 bytes, and a ray depth of 0 176"),
+        "{text}"
+    );
+}
