@@ -73,7 +73,7 @@ fn blobs_come_from_functions_that_are_equal_on_every_machine() {
         }
         for (number, line) in source.text.lines().enumerate() {
             let called = |name: &&str| line.contains(&format!(".{name}("));
-            if let Some(name) = UNEQUAL.iter().find(called) {
+            if let Some(name) = UNEQUAL.into_iter().find(called) {
                 let line = number + 1;
                 faults.push(format!(
                     "{}:{line}: use libm in place of {name}",
