@@ -68,12 +68,13 @@ fn blobs_come_from_functions_that_are_equal_on_every_machine() {
     let mut faults = Vec::new();
     for source in sources(&host) {
         let module = source::module(&source.file);
-        if !module.first().is_some_and(|it| is_of_blobs(it)) {
+        let is_test = module.iter().any(|it| it == "tests");
+        if is_test || !module.first().is_some_and(|it| is_of_blobs(it)) {
             continue;
         }
         for (number, line) in source.text.lines().enumerate() {
-            let called = |name: &&&str| line.contains(&format!(".{name}("));
-            if let Some(name) = UNEQUAL.iter().find(called) {
+            let called = |name: &&str| line.contains(&format!(".{name}("));
+            if let Some(name) = UNEQUAL.into_iter().find(called) {
                 let line = number + 1;
                 faults.push(format!(
                     "{}:{line}: use libm in place of {name}",

@@ -12,19 +12,20 @@ use std::path::PathBuf;
 
 /// Show what accuracy costs in time
 ///
-/// Changes six settings, each alone and in combinations: number format, lattice bits (10, 12, 16, 20, 24), samples per
-/// pixel (1 to 64, and those of the scene up to 2048), ray depth, the cutoff below which a secondary ray is not traced,
-/// and the effects that the scene calls for, each of which is left out. Builds and renders the scene with every
-/// setting, and compares the picture with a reference: f64, or the exact picture with --reference exact; 24 bits, ray
-/// depth 32, and the samples of --reference-samples. Its cutoff is 2^-14, or the least that is measured; 2^-20 where
-/// that is 0, because without a cutoff glass sends on too many rays at this depth.
+/// Changes six settings, each alone and in combinations: number format, lattice bits (10, 12, 16,
+/// 20, 24), samples per pixel (1 to 64, and those of the scene up to 2048), ray depth, the cutoff
+/// below which a secondary ray is not traced, and the effects that the scene calls for, each of
+/// which is left out. Builds and renders the scene with every setting, and compares the picture
+/// with a reference: f64, or the exact picture with --reference exact; 24 bits, ray depth 32, and
+/// the samples of --reference-samples. Its cutoff is 2^-14, or the least that is measured; 2^-20
+/// where that is 0, because without a cutoff glass sends on too many rays at this depth.
 ///
 /// Errors, of display values (sRGB) from 0 to 1:
 ///   RMSE           root of the mean square difference, over all pixels and channels
 ///   largest        largest difference
 ///   pixels off     pixels with a channel that differs by more than 1/255
-///   SSIM           mean structural similarity (Wang and others 2004) of the gray pictures in windows of
-///                  8 by 8 that do not overlap; 1 is equal
+///   SSIM           mean structural similarity (Wang and others 2004) of the gray pictures in
+///                  windows of 8 by 8 that do not overlap; 1 is equal
 ///   FLIP           mean difference that an eye sees when pictures alternate; 0 is equal
 ///   other objects  rays through the middles of pixels that hit another object, or none
 ///   t              error of the distance of the others, in units of the last place of single

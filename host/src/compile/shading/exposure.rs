@@ -26,13 +26,9 @@ impl Exposure {
         what: impl FnOnce() -> String,
     ) -> Result<Color, CompileError> {
         let exposed = color.map(|channel| channel * self.factor);
-        let largest = exposed.into_iter().fold(0.0, f64::max);
-        if largest > MOST {
-            return Err(CompileError::TooBright {
-                what: what(),
-                value: largest,
-                most: MOST,
-            });
+        // What a scene states itself is white all the same.
+        if self.factor != 1.0 {
+            check(exposed, what)?;
         }
         Ok(exposed)
     }
@@ -50,8 +46,8 @@ impl Exposure {
         let of_lights = tracks.iter_mut();
         for track in of_lights.filter(|it| it.target == TrackTarget::LightColor) {
             for key in &mut track.keys {
-                let [red, green, blue, _] = key.value;
-                self.of_color([red, green, blue], || {
+                let [red, green, blue, _] = key.value.map(|value| value * self.factor);
+                check([red, green, blue], || {
                     let Track { index, place, .. } = track;
                     format!("light {index} at {} s ({place})", key.seconds)
                 })?;
@@ -61,6 +57,19 @@ impl Exposure {
             }
         }
         Ok(())
+    }
+}
+
+/// Rejects a color that records cannot hold.
+fn check(color: Color, what: impl FnOnce() -> String) -> Result<(), CompileError> {
+    let largest = color.into_iter().fold(0.0, f64::max);
+    match largest > MOST {
+        true => Err(CompileError::TooBright {
+            what: what(),
+            value: largest,
+            most: MOST,
+        }),
+        false => Ok(()),
     }
 }
 
