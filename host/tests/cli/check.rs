@@ -440,8 +440,8 @@ fn manifests_with_a_byte_order_mark_are_recorded_and_keep_it() {
 #[test]
 fn sizes_beyond_memory_fail_one_check() {
     let folder = folder();
-    let hostile = "[[check]]\nscene = 'quick.toml'\nsize = [65535, 65535]\nhash = {}\n\
-        [[check]]\nscene = 'quick.gridel'\nallow_outside = true\nhash = {}\n";
+    let hostile = "[[check]]\nname = 'large'\nscene = 'quick.toml'\nsize = [65535, 65535]\nhash = {}\n\
+        [[check]]\nname = 'blob'\nscene = 'quick.gridel'\nallow_outside = true\nhash = {}\n";
     let manifest = format!("{MANIFEST}\n{hostile}");
     folder.write("check.toml", manifest.as_bytes());
     let run = folder.run(&["check", "check.toml"]);
