@@ -1,5 +1,6 @@
 //! Pixels that exact arithmetic proves, compared with a manifest's requirements.
 
+use super::pictures::check_pixels;
 use super::report::{Figure, Key, Outcome};
 use super::run::{Compared, Run};
 use crate::certify::{self, Enclosed, Report, World, certify};
@@ -20,7 +21,8 @@ impl Run<'_> {
             return Ok(());
         }
         let failed = |error: String| format!("{}: {error}", check.scene.path.display());
-        let settings = self.settings(scene, certify::MOST_PIXELS)?;
+        let settings = self.settings(scene);
+        check_pixels(&settings, certify::MOST_PIXELS)?;
         let mut pictures = Vec::new();
         for &format in &check.formats {
             let job = Job::whole(format, structure, settings);

@@ -20,7 +20,7 @@ impl Run<'_> {
             let rendering = Rendering {
                 format,
                 structure,
-                width: self.size(scene)[0],
+                width: self.settings(scene).width,
             };
             self.memory_in(board, &rendering, scene, blob);
         }

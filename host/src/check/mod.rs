@@ -8,6 +8,7 @@ mod image;
 mod junit;
 mod manifest;
 mod memory;
+mod pictures;
 mod report;
 mod run;
 

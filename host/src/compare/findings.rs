@@ -133,7 +133,7 @@ fn finding(row: &Row, rows: &[Row], are_timed: bool) -> String {
         true => "time, tests per ray, bytes or working RAM",
         false => "tests per ray, bytes or working RAM",
     };
-    format!("{name}: no other structure takes less {figures}, by more than 3 %")
+    format!("{name}: no other structure is more than 3 % better in {figures}")
 }
 
 #[cfg(test)]
@@ -195,7 +195,7 @@ mod tests {
         assert_eq!(
             findings(&comparison),
             [
-                "bvh: no other structure takes less tests per ray, bytes or working RAM, by more than 3 %",
+                "bvh: no other structure is more than 3 % better in tests per ray, bytes or working RAM",
                 "wide: more bytes than bvh (2.00 times)",
                 "times were not compared: fewer than 3 repeats",
             ]
@@ -212,7 +212,7 @@ mod tests {
         assert_eq!(
             findings(&comparison),
             [
-                "bvh: no other structure takes less time, tests per ray, bytes or working RAM, by more than 3 %"
+                "bvh: no other structure is more than 3 % better in time, tests per ray, bytes or working RAM"
             ]
         );
     }

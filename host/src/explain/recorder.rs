@@ -49,6 +49,8 @@ impl Observer for Recorder {
                     match event {
                         Event::Opened(_) => unlisted.opened += 1,
                         Event::Candidate { .. } => unlisted.candidates += 1,
+                        // It belongs to the test of its node.
+                        Event::Empty(_) => {}
                         _ => unlisted.others += 1,
                     }
                     return;

@@ -1,6 +1,7 @@
 //! A walk's path into an instance and out of it.
 
-use super::{InUnits, Inside, Step, Verdict, Walk, instance_name};
+use super::step::{Step, Verdict};
+use super::{InUnits, Inside, Walk, instance_name};
 use crate::trace::Frame;
 use gridel_core::{Event, Scene};
 

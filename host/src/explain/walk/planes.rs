@@ -1,6 +1,7 @@
 //! The planes of a tested node, and why a ray does not go into it.
 
-use super::{Culled, InUnits, Plane, Side, Tested, name};
+use super::step::{Culled, Plane, Side, Tested};
+use super::{InUnits, name};
 use gridel_core::observe::event::{NodeId, Sides};
 
 impl InUnits {
