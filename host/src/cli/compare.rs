@@ -97,21 +97,7 @@ struct Report<'r> {
 /// Compares structures on a scene.
 pub fn run(arguments: &Arguments, memory: &PeakAlloc) -> Result<(), Failure> {
     let path = &arguments.scene;
-    let default = Options::default();
-    let structures = match &arguments.accel[..] {
-        [] => default.structures.clone(),
-        asked => distinct(asked),
-    };
-    check_hierarchy("--builder", !arguments.builder.is_empty(), &structures)?;
-    check_room(arguments.scene_options.geometry.room, &arguments.accel)?;
-    let lattice_bits = arguments.scene_options.geometry.lattice_bits;
-    let compiling = arguments.structure_options.apply(compile::Options {
-        structures: structures.clone(),
-        lattice_bits: lattice_bits.unwrap_or(default.compiling.lattice_bits),
-        room: arguments.scene_options.geometry.room.unwrap_or(0.0),
-        texture_bytes: arguments.scene_options.geometry.texture_bytes,
-        ..default.compiling
-    })?;
+    let options = options(arguments)?;
     let mut imported = import(
         path,
         &arguments
@@ -128,18 +114,9 @@ pub fn run(arguments: &Arguments, memory: &PeakAlloc) -> Result<(), Failure> {
         imported.scene = compile::at_rest(&imported.scene).into_owned();
     }
     let options = Options {
-        structures,
-        format: arguments.format,
-        size: arguments.size,
         copied: imported.copied,
-        builders: match &arguments.builder[..] {
-            [] => default.builders.clone(),
-            asked => distinct(asked),
-        },
-        compiling,
-        repeats: arguments.repeat.into(),
         memory: Some(memory),
-        ..default
+        ..options
     };
     let failed = |error: CompareError| Failure::in_file(path, error);
     let more_steps = match &arguments.plot {
@@ -179,21 +156,7 @@ pub fn run(arguments: &Arguments, memory: &PeakAlloc) -> Result<(), Failure> {
         })?;
         write_texts(folder, &charts)?;
     }
-    let steps = grown.iter().flat_map(|growth| &growth.steps);
-    let rows = comparison
-        .rows
-        .iter()
-        .chain(steps.flat_map(|step| &step.rows));
-    let wrong: Vec<_> = rows.filter(|row| row.wrong.is_some()).collect();
-    if let Some(first) = wrong.first() {
-        return Err(Failure::failed(
-            format!(
-                "{} gives answers that differ from brute force",
-                first.structure
-            ),
-            "this is a fault of gridel: report it with the scene file",
-        ));
-    }
+    check_answers(&comparison, grown.as_ref())?;
     // If all structures are compared, some may not fit; a requested one must.
     match comparison.rejected.first() {
         Some(rejected) if !arguments.accel.is_empty() => Err(Failure::rejected(
@@ -201,6 +164,55 @@ pub fn run(arguments: &Arguments, memory: &PeakAlloc) -> Result<(), Failure> {
             "give it a larger `--budget`, or fewer cells",
         )),
         _ => Ok(()),
+    }
+}
+
+/// Returns the options of the comparison, without its memory and whether it copies instances.
+fn options(arguments: &Arguments) -> Result<Options<'static>, Failure> {
+    let default = Options::default();
+    let structures = match &arguments.accel[..] {
+        [] => default.structures.clone(),
+        asked => distinct(asked),
+    };
+    check_hierarchy("--builder", !arguments.builder.is_empty(), &structures)?;
+    let geometry = &arguments.scene_options.geometry;
+    check_room(geometry.room, &arguments.accel)?;
+    let lattice_bits = geometry.lattice_bits;
+    let compiling = arguments.structure_options.apply(compile::Options {
+        structures: structures.clone(),
+        lattice_bits: lattice_bits.unwrap_or(default.compiling.lattice_bits),
+        room: geometry.room.unwrap_or(0.0),
+        texture_bytes: geometry.texture_bytes,
+        ..default.compiling
+    })?;
+    Ok(Options {
+        structures,
+        format: arguments.format,
+        size: arguments.size,
+        builders: match &arguments.builder[..] {
+            [] => default.builders.clone(),
+            asked => distinct(asked),
+        },
+        compiling,
+        repeats: arguments.repeat.into(),
+        ..default
+    })
+}
+
+/// Returns an error if a structure answers otherwise than brute force.
+fn check_answers(comparison: &Comparison, growth: Option<&Growth>) -> Result<(), Failure> {
+    let steps = growth.iter().flat_map(|growth| &growth.steps);
+    let of_steps = steps.flat_map(|step| &step.rows);
+    let mut rows = comparison.rows.iter().chain(of_steps);
+    match rows.find(|row| row.wrong.is_some()) {
+        Some(row) => Err(Failure::failed(
+            format!(
+                "{} gives answers that differ from brute force",
+                row.structure
+            ),
+            "this is a fault of gridel: report it with the scene file",
+        )),
+        None => Ok(()),
     }
 }
 

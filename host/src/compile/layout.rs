@@ -3,6 +3,7 @@
 use super::candidates::lists::Figures;
 use super::cells::Cells;
 use super::pairs::Flat;
+use super::report::TableStats;
 use super::section::Section;
 use gridel_core::Structure;
 
@@ -45,5 +46,13 @@ impl Layout {
             longest_list: cells.longest_list,
             table: None,
         }
+    }
+
+    /// Returns the figures of its lists of candidates, if it has any.
+    pub fn table_stats(&self) -> Option<TableStats> {
+        Some(TableStats {
+            structure: self.structure.name(),
+            figures: self.table?,
+        })
     }
 }

@@ -81,6 +81,7 @@ use gridel_core::format::record::{Gridels, UnitBox};
 use hierarchies::Hierarchies;
 use hierarchy::{Primitive, Splits};
 use instances::{Parts, Placed, Role};
+use layout::Layout;
 use primitives::Primitives;
 use shading::ShadingData;
 use sizes::Sizes;
@@ -221,9 +222,7 @@ fn compile_as(
     let own = own.reduce(|a, b| a.union(&b));
     let mut bounds = placed.around(own).unwrap_or(UnitBox([[0; 2]; 3]));
     if let Role::Whole(parts) = role {
-        if let Some(swept) = parts.reach.swept.on_lattice(&lattice) {
-            bounds = bounds.union(&swept);
-        }
+        bounds = parts.reach.around(bounds, &lattice);
         // Where rays start in a part depends on its box, so that is the same through all structures.
         if structures.contains(&Structure::Octree) {
             let boxes: Vec<_> = order.iter().map(|primitive| primitive.bounds).collect();
@@ -253,15 +252,7 @@ fn compile_as(
         .map(|&structure| structures::lay_out(structure, &context))
         .collect::<Result<Vec<_>, _>>()?;
     let setup = started.map_or(Duration::ZERO, |started| started.elapsed());
-    let tables = layouts
-        .iter()
-        .filter_map(|layout| {
-            Some(TableStats {
-                structure: layout.structure.name(),
-                figures: layout.table?,
-            })
-        })
-        .collect();
+    let tables = layouts.iter().filter_map(Layout::table_stats).collect();
     let longest_lists = layouts.iter().map(|layout| layout.longest_list);
     let longest_list = longest_lists.max().unwrap_or(0);
     let mut sizes = Sizes::of(&layouts, flat.leaves.len() * size_of::<Leaf>());
@@ -278,14 +269,13 @@ fn compile_as(
     drop((root, order, wide));
     let blob = writer::write(parts)?;
     check_bytes(&blob, scene, options, &sizes)?;
-    let fine_steps = lattice.fine_steps() as f32;
-    let displacements = snapped.displacements.iter().map(|it| it / fine_steps);
-    let displacements: Vec<f32> = displacements.collect();
-    let largest_displacement = displacements.iter().copied().fold(0.0, f32::max);
-    let largest_displacement = f64::from(largest_displacement) * lattice.step();
+    let displacements = snapped.displacements_in_steps(&lattice);
+    let most_steps = displacements.iter().copied().fold(0.0, f32::max);
     let report = Report {
         step: lattice.step(),
-        largest_displacement: largest_displacement.max(placed.displacement),
+        largest_displacement: placed
+            .displacement
+            .max(f64::from(most_steps) * lattice.step()),
         displacements,
         far_moved: snapped.far_moved.clone(),
         collapsed: snapped.collapsed.clone(),

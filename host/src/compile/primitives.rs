@@ -356,6 +356,13 @@ impl Primitives {
         Ok(())
     }
 
+    /// Returns the displacements in steps of the lattice.
+    pub fn displacements_in_steps(&self, lattice: &Lattice) -> Vec<f32> {
+        let fine_steps = lattice.fine_steps() as f32;
+        let displacements = self.displacements.iter();
+        displacements.map(|it| it / fine_steps).collect()
+    }
+
     /// Gives the primitive that was just added its number. `displacement` is that of its surface in 1/256 unit.
     fn keep(&mut self, kind: Kind, displacement: f64) {
         self.numbers[kind as usize].push(self.total);

@@ -9,7 +9,9 @@ use crate::scene::{
     Interpolation, Joint, JointTracks, LARGEST_SCALE, LEAST_SCALE, Placement, ScaleRange, Scene,
     Track, control_points,
 };
+use crate::shape::Lattice;
 use glam::{DQuat, DVec3, DVec4};
+use gridel_core::format::record::UnitBox;
 
 /// Largest difference of the axes of rotations about one axis.
 const SAME_AXIS: f64 = 1e-6;
@@ -59,6 +61,12 @@ impl Reach {
             reach.scales.push(scales.map(limit));
         }
         reach
+    }
+
+    /// Widens a box on the lattice to where instances reach.
+    pub fn around(&self, bounds: UnitBox, lattice: &Lattice) -> UnitBox {
+        let swept = self.swept.on_lattice(lattice);
+        swept.map_or(bounds, |swept| bounds.union(&swept))
     }
 }
 
