@@ -78,7 +78,17 @@ pub fn advice(
         }
     }
     for &structure in asked.iter().filter(|_| asked.len() > 1) {
+        let what = format!("leaving out `--accel {}`", structure.name());
         let others = asked.iter().copied().filter(|&it| it != structure);
+        if asked.iter().all(|it| it.is_proved()) {
+            let structures = others.collect();
+            let rest = Options {
+                structures,
+                ..options.clone()
+            };
+            steps.extend(saves(what, rest));
+            continue;
+        }
         let kept: Vec<_> = others
             .flat_map(|it| [Some(it), leads_to(it)])
             .flatten()
@@ -91,11 +101,9 @@ pub fn advice(
         if !stay.iter().any(|size| size.uses_leaves) {
             saved += sizes.leaves;
         }
-        steps.push(format!(
-            "leaving out `--accel {}` saves {} bytes",
-            structure.name(),
-            grouped(saved)
-        ));
+        if saved > 0 {
+            steps.push(format!("{what} saves {} bytes", grouped(saved)));
+        }
     }
     steps.push(String::from("a scene with fewer primitives or instances"));
     steps.join("; ")

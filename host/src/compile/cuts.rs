@@ -5,10 +5,10 @@
 //! because only an edge that two triangles share is watertight. So the neighbor is cut at b into two triangles. b lies
 //! on the edge exactly, so the surface is the same.
 //!
-//! Slivers that share edges form a cluster, which lies on one line. The edges that an odd number of its slivers share
-//! are its border: there a closed mesh has an odd number of other triangles. Each edge of the border is cut at all ends
-//! of others that lie on it. The border is a cycle, because it is that of the slivers. So each of its parts between
-//! neighboring points occurs an even number of times, and the mesh is closed again.
+//! Slivers that share edges form a cluster, which lies on one line. Its edges that other triangles have, too, are its
+//! border. Each edge of the border is cut at all ends of others that lie on it. The slivers of a closed mesh are
+//! surrounded by cycles of such edges. So each part of an edge between neighboring points occurs an even number of
+//! times, and the mesh is closed again. Layers in one place may share slivers: each is cut at the ends of all.
 
 use std::collections::HashMap;
 use std::ops::Range;
@@ -42,22 +42,29 @@ pub struct Cuts {
 }
 
 impl Cuts {
-    /// Returns the cuts that slivers make necessary.
-    pub fn around(slivers: &[Sliver]) -> Self {
-        // For each edge, how many slivers have it, and one of them.
-        let mut shared: HashMap<Edge, (usize, usize)> = HashMap::new();
+    /// Returns the cuts that slivers make necessary in other triangles.
+    pub fn around(slivers: &[Sliver], others: impl Iterator<Item = [Point; 3]>) -> Self {
+        // For each edge, one of its slivers, and whether another triangle has it.
+        let mut shared: HashMap<Edge, (usize, bool)> = HashMap::new();
         let mut clusters = Clusters::new(slivers.len());
         for (number, &sliver) in slivers.iter().enumerate() {
             for edge in edges(sliver) {
-                let (count, first) = shared.entry(edge).or_insert((0, number));
-                *count += 1;
+                let (first, _) = shared.entry(edge).or_insert((number, false));
                 clusters.join(*first, number);
+            }
+        }
+        if shared.is_empty() {
+            return Self::default();
+        }
+        for edge in others.flat_map(edges) {
+            if let Some((_, is_border)) = shared.get_mut(&edge) {
+                *is_border = true;
             }
         }
         let mut border: Vec<(usize, Edge)> = shared
             .into_iter()
-            .filter(|(_, (count, _))| count % 2 == 1)
-            .map(|(edge, (_, sliver))| (clusters.of(sliver), edge))
+            .filter(|&(_, (_, is_border))| is_border)
+            .map(|(edge, (sliver, _))| (clusters.of(sliver), edge))
             .collect();
         border.sort_unstable();
         let mut cuts = Self::default();
@@ -165,11 +172,24 @@ mod tests {
         let point = |x: usize| [x as i32, 0, 0];
         let count = 2000;
         let slivers: Vec<Sliver> = (2..count).map(|x| [point(0), point(1), point(x)]).collect();
-        let cuts = Cuts::around(&slivers);
+        let beside = |x: usize, y: usize| [point(x), point(y), [0, 1, 0]];
+        let others = (2..count).map(|x| beside(0, x)).chain([beside(0, 1)]);
+        let cuts = Cuts::around(&slivers, others);
         // Each edge from 0 is cut where the others end.
-        let far = [point(0), point(count - 1), [0, 1, 0]];
+        let far = beside(0, count - 1);
         assert_eq!(cuts.count(far), count - 1);
         assert_eq!(cuts.pieces(far).len(), count - 1);
         assert_eq!(cuts.ends.len(), count);
+    }
+
+    #[test]
+    fn layers_with_the_same_sliver_are_cut() {
+        let [a, b, c] = [0, 1, 2].map(|x| [x, 0, 0]);
+        let layer = [[a, c, [0, 1, 0]], [a, b, [0, 0, 1]], [b, c, [0, 0, 1]]];
+        for layers in 1..4 {
+            let others = (0..layers).flat_map(|_| layer);
+            let cuts = Cuts::around(&vec![[a, b, c]; layers], others);
+            assert_eq!(layer.map(|it| cuts.count(it)), [2, 1, 1], "{layers}");
+        }
     }
 }

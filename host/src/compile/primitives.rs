@@ -125,12 +125,12 @@ impl Primitives {
 
     /// Cuts the neighbors of slivers at the slivers' corners.
     fn cut(&mut self, distinct: &mut Vertices) -> Result<(), CompileError> {
-        let cuts = cuts::Cuts::around(&self.slivers);
+        let places = |triangle: &[u32; 3]| triangle.map(|vertex| distinct.get(vertex).0);
+        let cuts = cuts::Cuts::around(&self.slivers, self.triangles.iter().map(places));
         if cuts.is_empty() {
             return Ok(());
         }
         // Counted before they are made.
-        let places = |triangle: &[u32; 3]| triangle.map(|vertex| distinct.get(vertex).0);
         let counts = self.triangles.iter().map(|it| cuts.count(places(it)));
         let others: usize = self.numbers.iter().map(Vec::len).sum();
         let pieces = counts.sum::<usize>() + others - self.triangles.len();

@@ -16,8 +16,8 @@ pub struct Report {
     /// its snapped one, and the other way round. For instances it is counted from their rotations: a matrix of a scene
     /// file becomes the nearest one when it is read.
     pub largest_displacement: f64,
-    /// The displacement of each primitive in scene-file order, in steps of the lattice; 0 for those that are
-    /// left out.
+    /// The displacement of each primitive in scene-file order, in steps of the lattice, and of a part's before an
+    /// instance scales it; 0 for those that are left out.
     #[serde(skip)]
     pub displacements: Vec<f32>,
     /// Primitives whose surface was moved by more than four steps of the lattice.

@@ -223,11 +223,12 @@ impl Shape {
         of_shape!(self, it => it.has_extent(), Self::Mesh { .. } => true)
     }
 
-    /// Its box; an inverted one for a mesh without vertices.
+    /// Its box; an inverted one for a mesh without triangles. Vertices that no triangle has do not count.
     pub(crate) fn bounds(&self) -> [DVec3; 2] {
-        of_shape!(self, it => it.bounds(), Self::Mesh { vertices, .. } => {
+        of_shape!(self, it => it.bounds(), Self::Mesh { vertices, triangles } => {
             let none = [DVec3::INFINITY, DVec3::NEG_INFINITY];
-            vertices.iter().fold(none, |[low, high], &it| [low.min(it), high.max(it)])
+            let corners = triangles.iter().flatten().map(|&corner| vertices[corner as usize]);
+            corners.fold(none, |[low, high], it| [low.min(it), high.max(it)])
         })
     }
 

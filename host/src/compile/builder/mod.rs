@@ -11,7 +11,8 @@
 //!
 //! All are bounded. None takes more than `O(n log n)` steps per level or pass, some hundred bytes per primitive, and
 //! [`MAX_LEVELS`](gridel_core::format::limits::MAX_LEVELS) levels. Where a tree would be deeper, its subtrees are
-//! halved instead.
+//! halved instead. Two builders, which are there to be compared, can take up to `n^2` steps: nearest pairing where many
+//! boxes coincide, and reinsertion where most overlap.
 
 mod insertion;
 mod modelled;

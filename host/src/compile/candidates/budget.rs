@@ -56,7 +56,12 @@ impl From<OverBudget> for CompileError {
             needed: over.needed,
             at_least: if over.at_least { "at least " } else { "" },
             budget: over.bytes,
-            remedy: "raise `--budget`, or ask for fewer gridels with `--gridels`, or leave both out",
+            remedy: match over.gridels {
+                Some(_) => {
+                    "raise `--budget`, or ask for fewer gridels with `--gridels`, or leave both out"
+                }
+                None => "raise `--budget`, or leave it out",
+            },
         }
     }
 }

@@ -1,4 +1,4 @@
-//! Builds the lists of a table: in parallel, equal ones once, and never beyond a budget.
+//! Builds the lists of a table: in parallel, equal ones once, and no table beyond a budget.
 //!
 //! Every list is computed twice. The first pass keeps a fingerprint of each list, which shows how many differ and how
 //! many bytes they take. Only if these fit the budget is the table allocated, at its exact size. Then the lists that

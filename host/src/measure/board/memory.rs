@@ -19,7 +19,8 @@ use super::working;
 use crate::measure::bytes::{MemoryMap, board_memory};
 use crate::state::raised_materials;
 use crate::table::grouped;
-use gridel_core::{Prevalidated, Rgb565, Scene, Structure};
+use gridel_core::format::track::Track;
+use gridel_core::{Prevalidated, Rgb565, Scene, Structure, Tracks};
 use serde::Serialize;
 
 /// Why figures of code and call stack are upper bounds.
@@ -48,6 +49,8 @@ pub struct MemoryReport {
     pub measured_on: String,
     /// The emulated board whose core is of the same kind and whose figures these are, if it is not the board itself.
     pub kind: Option<&'static str>,
+    /// True if tracks move the camera, lights or materials: the code that plays these is not counted.
+    pub plays_tracks: bool,
     /// True if the scene's own program was built and measured, in both profiles.
     pub measured: bool,
     /// True if the figures of code and call stack are those of a program with code for more.
@@ -194,6 +197,7 @@ impl MemoryReport {
             structure: structure.name(),
             measured_on: format!("{} in {}", similar.core, its_format.name()),
             kind: (!board.is_emulated()).then_some(board.measured),
+            plays_tracks: plays_tracks(blob),
             measured: all_measured && measured(program.code(Profile::Fast)),
             has_code_for_more: program.has_code_for_more(),
             flash,
@@ -238,6 +242,12 @@ impl MemoryReport {
             bytes(small.call_stack),
             bytes(small.code)
         ) + &self.kind_of_core()
+            + match self.plays_tracks {
+                true => {
+                    "\nThe code that plays tracks of camera, lights and materials is not counted."
+                }
+                false => "",
+            }
     }
 
     /// Names the board that the figures come from, where it is another one.
@@ -316,6 +326,14 @@ impl MemoryReport {
             )
         })
     }
+}
+
+/// Returns true if a blob has tracks of the camera, lights or materials.
+fn plays_tracks(blob: &[u8]) -> bool {
+    // They were checked with the scene.
+    let tracks = Tracks::from_bytes(blob).map_or(&[][..], |tracks| tracks.tracks());
+    let mut targets = tracks.iter().filter_map(Track::target);
+    targets.any(|it| it.is_of_camera() || it.is_of_light() || it.is_of_material())
 }
 
 #[cfg(test)]

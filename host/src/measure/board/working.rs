@@ -1,9 +1,10 @@
-//! The RAM of a board for parts, meshes that deform, and instances that move, besides workspace and call stack.
+//! The RAM of a board for parts, meshes that deform, and all that tracks change, besides workspace and call stack.
 
 use super::programs::Programs;
 use crate::measure::bytes::board_memory;
 use crate::measure::deforming::Deforming;
 use crate::table::counted;
+use gridel_core::format::track::{Track, TrackTarget};
 use gridel_core::{Format, Motion, Poses, Scene, Tracks};
 use serde::Serialize;
 
@@ -16,7 +17,8 @@ pub struct WorkingRow {
     pub bytes: Option<u64>,
 }
 
-/// Returns the RAM of a 32-bit board for the parts of a scene, its meshes that deform, and its instances that move.
+/// Returns the RAM of a 32-bit board for the parts of a scene, its meshes that deform, its instances that move, and its
+/// lights and materials that change.
 ///
 /// ```
 /// # use gridel_host::compile::{Options, compile};
@@ -82,9 +84,29 @@ pub(super) fn rows(programs: &Programs, scene: &Scene<'_>, blob: &[u8]) -> Vec<W
         let what = format!("weights of {}", counted(targets, "morph target"));
         rows.push(row(what, Some((targets * size_of::<i32>()) as u64)));
     }
-    let moving = moving(scene, blob).into_iter();
+    let moving = moving(scene, blob).into_iter().chain(changing(scene, blob));
     rows.extend(moving.map(|(what, bytes)| row(what, Some(bytes))));
     rows
+}
+
+/// Rows of the RAM in which a program changes all lights or materials of a scene where tracks change some.
+fn changing(scene: &Scene<'_>, blob: &[u8]) -> impl Iterator<Item = (String, u64)> {
+    // They were checked with the scene.
+    let tracks = Tracks::from_bytes(blob).map_or(&[][..], |tracks| tracks.tracks());
+    let changes = |is_of: fn(TrackTarget) -> bool| {
+        let mut targets = tracks.iter().filter_map(Track::target);
+        targets.any(is_of)
+    };
+    let lights = changes(TrackTarget::is_of_light).then(|| {
+        let all = scene.lights();
+        (counted(all.len(), "light"), size_of_val(all) as u64)
+    });
+    let materials = changes(TrackTarget::is_of_material).then(|| {
+        let all = scene.materials();
+        (counted(all.len(), "material"), size_of_val(all) as u64)
+    });
+    let rows = lights.into_iter().chain(materials);
+    rows.map(|(all, bytes)| (format!("{all}, some of which change"), bytes))
 }
 
 /// Rows of the RAM in which a program moves the instances of a scene with joints; none without joints. A program that
@@ -113,6 +135,7 @@ fn moving(scene: &Scene<'_>, blob: &[u8]) -> Vec<(String, u64)> {
 mod tests {
     use super::*;
     use crate::compile::{Options, compile};
+    use gridel_core::format::record::{Light, Material};
 
     #[test]
     fn joints_take_ram_for_instances_and_motions() {
@@ -150,5 +173,39 @@ mod tests {
                 "motions of 2 joints"
             ]
         );
+    }
+
+    #[test]
+    fn tracks_of_lights_and_materials_take_ram_for_all_of_them() {
+        let text = |tracks: &str| {
+            format!(
+                "[[light]]\nname = 'l'\nkind = 'point'\nposition = [0, 5, 0]\n\
+                 [[light]]\nkind = 'point'\nposition = [5, 5, 0]\n\
+                 [[material]]\nname = 'm'\n[[material]]\nname = 'n'\n[[material]]\nname = 'o'\n\
+                 [[object]]\nkind = 'sphere'\ncenter = [0, 0, 0]\nradius = 1\nmaterial = 'm'\n\
+                 [[object]]\nkind = 'sphere'\ncenter = [3, 0, 0]\nradius = 1\nmaterial = 'n'\n{tracks}"
+            )
+        };
+        let rows = |tracks: &str| {
+            let text = text(tracks).into_bytes();
+            let imported = crate::scene::read("a.toml".as_ref(), text, &Default::default());
+            let compiled = compile(&imported.unwrap().scene, &Options::default()).unwrap();
+            let scene = compiled.blob.scene().unwrap();
+            let rows = working_rows(&scene, compiled.blob.bytes());
+            rows.into_iter()
+                .map(|row| row.bytes.unwrap())
+                .collect::<Vec<_>>()
+        };
+        let light = "[[track]]\ntarget = 'light.l.color'\ntimes = [0, 1]\nvalues = [[0, 0, 0], [1, 1, 1]]\n";
+        let material = "[[track]]\ntarget = 'material.m.diffuse'\ntimes = [0, 1]\n\
+                        values = [[0, 0, 0], [1, 1, 1]]\n";
+        let [lights, materials] = [
+            2 * size_of::<Light>() as u64,
+            3 * size_of::<Material>() as u64,
+        ];
+        assert_eq!(rows(""), [0; 0]);
+        assert_eq!(rows(light), [lights]);
+        assert_eq!(rows(material), [materials]);
+        assert_eq!(rows(&format!("{light}{material}")), [lights, materials]);
     }
 }
