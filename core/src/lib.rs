@@ -38,6 +38,11 @@
 //!
 //! The page [`boards`] leads from a scene file to a picture on your own board.
 //!
+//! # Features
+//! By default every shape, effect and structure is compiled in. [`Scene::closest_hit`], [`Renderer::new`] and all else
+//! that chooses a structure at run time need the feature `all-structures`. Firmware takes `default-features = false`
+//! and the features that its scene requires, which `gridel inspect` lists. Its code can then be a fifth as long.
+//!
 //! # Memory
 //! The blob stays where it is. Only two things are written to, and the caller owns both. One is a [`Stack`] of 12 bytes
 //! per entry, whose depth the blob's header states and `from_bytes` proves. The other, for pictures, is a list of

@@ -69,7 +69,7 @@ pub enum BlobError {
     Memory {
         /// The section whose records the memory is for.
         section: SectionKind,
-        /// Records for which there is room.
+        /// Records that the program passed.
         found: usize,
         /// Records of the blob.
         needed: usize,
@@ -242,8 +242,7 @@ impl fmt::Display for BlobError {
                 needed,
             } => write!(
                 f,
-                "the program's memory for section {} of the blob is of {found} records: \
-                 change it to {needed}",
+                "the program passed {found} records for section {} of the blob, which has {needed}",
                 section.name()
             ),
             BlobError::NoInstance { number, count } => write!(

@@ -31,7 +31,9 @@ pub(crate) fn build(
         let instance = instances.get(index as usize);
         let bounds = instance.and_then(&around);
         let inside = bounds.filter(|bounds| scene.contains(bounds));
-        let record = Location::Record(SectionKind::Instances, index as usize);
+        // The number that the program knows it by.
+        let number = instance.map_or(index, |instance| instance.number);
+        let record = Location::Record(SectionKind::Instances, number as usize);
         inside.ok_or(record.invalid(Reason::OutsideScene))
     };
     if pairs.is_empty() && !instances.is_empty() {

@@ -193,7 +193,8 @@ fn search_all<N: Number, A: Accel, C: Observer, const ANY: bool>(
     Some(hit)
 }
 
-/// Returns the first hit of a ray in its interval: [`closest_primitive`] with its surface.
+/// Returns the first hit of a ray in its interval: [`closest_primitive`] with its surface. Needs what that needs:
+/// without the structure in the blob, or with a short stack, hits are missed.
 ///
 /// ```
 /// # static BLOB: &[u8] =
@@ -224,7 +225,8 @@ pub fn closest_hit<N: Number, A: Accel, C: Observer>(
 }
 
 inline_on_hosts!(
-    /// Returns true if a ray hits anything in its interval, that is, if [`closest_hit`] returns a hit.
+    /// Returns true if a ray hits anything in its interval, that is, if [`closest_hit`] returns a hit. Needs what
+    /// [`closest_primitive`] needs: without the structure in the blob, or with a short stack, hits are missed.
     ///
     /// ```
     /// # static BLOB: &[u8] =

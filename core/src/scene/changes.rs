@@ -119,6 +119,8 @@ impl<'a> Scene<'a> {
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
     ///
+    /// Materials have the order in which the scene file's objects first have them.
+    ///
     /// # Errors
     /// If there are more or fewer than the blob has, or a number is out of its range. Also if this build lacks an
     /// effect that a material requires.

@@ -128,7 +128,8 @@ impl<'p> PosesView<'p> {
     /// as it was loaded. Searches for the number among all instances.
     ///
     /// # Errors
-    /// If there is no such instance, or it is too far away, too large or too small for the scene's lattice.
+    /// If there is no such instance, or it is too far away, too large or too small for the scene's lattice: a scene
+    /// file's `room` makes that larger. Errors of a place name this number.
     pub fn place(
         &mut self,
         scene: &Scene<'_>,
@@ -157,7 +158,7 @@ impl<'p> PosesView<'p> {
             let (number, count) = (index, rest.len());
             return Err(BlobError::NoInstance { number, count });
         };
-        let location = Location::Record(SectionKind::Instances, index);
+        let location = Location::Record(SectionKind::Instances, rest.number as usize);
         let header = scene.header();
         let mut placed = motion.place(header, rest);
         if check(&placed, location).is_err() {
@@ -183,7 +184,8 @@ impl<'a> Scene<'a> {
     /// scene file's `room` widens it.
     ///
     /// # Errors
-    /// If the number of instances is not the scene's, or one leaves the scene's box.
+    /// If the number of instances is not the scene's, or one leaves the scene's box. The error names its number in
+    /// scene-file order.
     pub fn with_poses(&self, poses: PosesView<'a>) -> Result<Self, BlobError> {
         let PosesView {
             instances,

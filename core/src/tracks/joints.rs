@@ -102,10 +102,10 @@ impl<'a> Tracks<'a> {
         if found == expected {
             return Ok(());
         }
-        Err(BlobError::Count {
+        Err(BlobError::Memory {
             section: SectionKind::Joints,
             found,
-            expected,
+            needed: expected,
         })
     }
 

@@ -253,7 +253,7 @@ fn poses_that_do_not_fit_are_rejected() {
     let error = Poses::<2>::new().at_rest(&loaded).expect_err("no room");
     assert_eq!(
         error.to_string(),
-        "the program's memory for section instances of the blob is of 2 records: change it to 3"
+        "the program passed 2 records for section instances of the blob, which has 3"
     );
     let mut memory = Poses::<3>::new();
     let mut poses = memory.at_rest(&loaded).expect("room");
