@@ -425,9 +425,9 @@ fn a_bound_that_is_too_small_is_caught() {
             let Some(mut hit) = ask::<f32, List>(&scene, &ready).hit else {
                 continue;
             };
-            honest += leave(&scene, &judge, &hit, &mut random).len();
+            honest += leave(&scene, &judge, &hit, &mut random).faults.len();
             hit.error = 0.0;
-            lying += leave(&scene, &judge, &hit, &mut random).len();
+            lying += leave(&scene, &judge, &hit, &mut random).faults.len();
         }
         assert_eq!(honest, 0);
         assert!(lying > 20, "{lying}");

@@ -98,19 +98,24 @@ impl Tracer<'_, '_> {
                 Ok(Some(aim.at(drawn)))
             }
             Some(form) => {
-                let found = on_flat(form, aim, path.point(dimension));
+                let [x, y, z] = aim.way.map(N::abs);
+                let is_near = positive(length::<N>(form.width.into()) - (x + y + z));
+                let is_near = self.known(is_near, Reason::Near, place, point)?;
+                let found = on_flat(form, aim, path.point(dimension), is_near);
                 self.known(found, Reason::Sampling, place, point).map(Some)
             }
         }
     }
 }
 
-/// Returns the way to a random point of a flat light; `None` where it is open how the point is drawn.
-fn on_flat<N: Enclosure>(form: &LightForm, aim: Aim<N>, point: [u32; 2]) -> Option<Aim<N>> {
-    let [x, y, z] = aim.way.map(N::abs);
-    if positive(length::<N>(form.width.into()) - (x + y + z))?
-        && let Some(drawn) = solid_angle::of_flat(form, aim.way, point)?
-    {
+/// Returns the way to a random point of a flat light, of one that is near by solid angle; `None` where that is open.
+fn on_flat<N: Enclosure>(
+    form: &LightForm,
+    aim: Aim<N>,
+    point: [u32; 2],
+    is_near: bool,
+) -> Option<Aim<N>> {
+    if is_near && let Some(drawn) = solid_angle::of_flat(form, aim.way, point)? {
         return Some(aim.at(drawn));
     }
     let way = plus(aim.way, within(form, point));

@@ -10,7 +10,7 @@ use super::number::*;
 use super::world::Cone;
 use std::cmp::Ordering;
 
-/// What is decided of a line and the caps of a solid, or its mantle.
+/// The known part of a line that lies between the caps of a solid, or in its mantle.
 enum Cut<T> {
     /// The line is nowhere between.
     Outside,

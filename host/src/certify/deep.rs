@@ -23,16 +23,18 @@ pub struct Ball(u32);
 /// The balls of one evaluation.
 struct Balls {
     bits: usize,
+    most: usize,
     all: Vec<(Big, f64)>,
 }
 
 thread_local! {
     static BALLS: RefCell<Balls> = const {
-        RefCell::new(Balls { bits: 128, all: Vec::new() })
+        RefCell::new(Balls { bits: 128, most: MOST, all: Vec::new() })
     };
 }
 
-/// Most balls of one evaluation, some 500 MB; [`is_full`] says that they are used up.
+/// Most balls of one evaluation, some 500 MB per thread; [`is_full`] says that they are used up. It is asked before each
+/// test of a primitive, each light and each ray.
 const MOST: usize = 3 << 20;
 
 /// Runs an evaluation with a precision. Balls must not leave it.
@@ -51,7 +53,19 @@ pub fn with_bits<R>(bits: usize, evaluate: impl FnOnce() -> R) -> R {
 
 /// Returns whether an evaluation took more numbers than there is room for.
 pub fn is_full() -> bool {
-    BALLS.with_borrow(|balls| balls.all.len() >= MOST)
+    BALLS.with_borrow(|balls| balls.all.len() >= balls.most)
+}
+
+/// Runs an evaluation with room for fewer balls, and returns how many it took, too.
+#[cfg(test)]
+pub fn with_room<R>(most: usize, evaluate: impl FnOnce() -> R) -> (R, usize) {
+    BALLS.with_borrow_mut(|balls| balls.most = most);
+    let result = evaluate();
+    let taken = BALLS.with_borrow_mut(|balls| {
+        balls.most = MOST;
+        balls.all.len()
+    });
+    (result, taken)
 }
 
 /// A bound of a computed radius, which a few roundings may have made too small.

@@ -46,20 +46,24 @@ pub fn length<N: Enclosure>(path: &Path<N>, hit: &Hit<N>) -> Option<Log2> {
     Some(whole.at_least(0))
 }
 
-/// Returns the side of a square as large as the area of an image that a sample sees. `None` where there is no image, or
-/// no size.
+/// Returns the side of a square as large as the area of an image that a sample sees. `Some(None)` where there is no
+/// image, or no size.
+///
+/// The outer `None` means that the bounds are too wide.
 pub fn footprint<N: Enclosure>(
     world: &World<'_>,
     (path, hit): (&Path<N>, &Hit<N>),
     length: Log2,
     spread: i32,
-) -> Option<Log2> {
-    let density = density(world, hit)?;
+) -> Option<Option<Log2>> {
+    let Some(density) = density(world, hit) else {
+        return Some(None);
+    };
     let largest = largest(path);
     let cosine = dot(path.ray.direction, hit.normal).abs().over(largest)?;
     let stretched = norm(path, largest)?.plus(Log2::of_ratio(cosine).negative());
     let width = length.and(spread - log2_of_power(LENGTH_BITS));
-    Some(width.plus(stretched.half()).and(density))
+    Some(Some(width.plus(stretched.half()).and(density)))
 }
 
 /// Returns the distance of texture coordinates per unit of length.

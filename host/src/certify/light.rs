@@ -9,7 +9,7 @@ use super::number::*;
 use super::paint;
 use super::path::Path;
 use super::reason::Reason;
-use super::search::{Candidate, Stop, Tracer};
+use super::search::{Candidate, ENDED, Stop, Tracer};
 use super::shade;
 use super::world::{NONE, passes};
 use gridel_core::Effects;
@@ -34,6 +34,7 @@ impl Tracer<'_, '_> {
     ) -> Result<Three<N>, Stop> {
         let black = [N::zero(); 3];
         let (hit, depth) = (seen.hit, seen.path.depth);
+        self.check_room(depth, &seen.path.ray)?;
         let Some(aim) = self.aim((number, light), hit.point, seen.path)? else {
             return Ok(black);
         };
@@ -57,21 +58,22 @@ impl Tracer<'_, '_> {
             (Some(ray), Some(form)) => aim::arriving(form, &aim.along(ray.direction), to_light),
         };
         let arriving: Option<Vec<_>> = rays.iter().map(arriving).collect();
-        let arriving = arriving.ok_or(Stop)?;
+        let arriving = self.narrow(arriving, depth, hit)?;
         if arriving.iter().all(|&it| is_nothing(it)) {
             return Ok(black);
         }
         let cos = cos.at_least(N::zero());
         let mut reflected = scale(seen.diffuse, cos);
         if seen.material.highlight != [0; 3] {
-            reflected = shade::highlight(seen, to_light, reflected).ok_or(Stop)?;
+            let highlight = shade::highlight(seen, to_light, reflected);
+            reflected = self.narrow(highlight, depth, hit)?;
         }
         let scene = self.world.scene;
         if let Some(alpha) = scene.roughness(hit.object)
             && facets::reflects(scene, alpha, light)
         {
-            let mirrored = facets::mirrored(alpha, seen, to_light, cos).ok_or(Stop)?;
-            reflected = plus(reflected, mirrored);
+            let mirrored = facets::mirrored(alpha, seen, to_light, cos);
+            reflected = plus(reflected, self.narrow(mirrored, depth, hit)?);
         }
         if is_nothing(reflected) {
             return Ok(black);
@@ -127,7 +129,7 @@ impl Tracer<'_, '_> {
             Some(false) => Vec::new(),
             None => vec![straight],
         };
-        let (reached, step) = shade::lift(self.world, hit).ok_or(Stop)?;
+        let (reached, step) = self.narrow(shade::lift(self.world, hit), depth, hit)?;
         if reached != Some(false) {
             // For lights other than points the direction stays as it is.
             let direction = match light.is_point() {
@@ -190,14 +192,15 @@ impl Tracer<'_, '_> {
                 if candidate.crossing.sure {
                     return Ok(black);
                 }
-                self.note(Reason::Shadow, depth, hit.primitive, hit.point);
+                self.note_near(Reason::Shadow, (depth, hit.primitive), hit.point, ray);
                 is_open = true;
                 continue;
             }
             let mut part = white;
             if boundary.is_none_or(|it| it.is_there()) {
                 part = if material.transmit == [0; 3] {
-                    let alpha = paint::alpha(self.world, &hit, material, None).ok_or(Stop)?;
+                    let alpha = paint::alpha(self.world, &hit, material, None);
+                    let alpha = self.narrow(alpha, depth, &hit)?;
                     let passing = N::one() - alpha.part;
                     if alpha.is_open {
                         self.note(Reason::Texture, depth, hit.primitive, hit.point);
@@ -207,7 +210,8 @@ impl Tracer<'_, '_> {
                     let of_material = Interface::of(hit.front, material);
                     let interface = boundary.and_then(|it| it.interface(scene));
                     let interface = interface.unwrap_or(of_material);
-                    shade::filtered(&hit, material, interface.k, to_light).ok_or(Stop)?
+                    let filtered = shade::filtered(&hit, material, interface.k, to_light);
+                    self.narrow(filtered, depth, &hit)?
                 };
             }
             let medium = media::passed(scene, boundary.as_ref(), inside, hit.object, hit.front);
@@ -220,9 +224,23 @@ impl Tracer<'_, '_> {
             left = if candidate.crossing.sure {
                 passed
             } else {
-                self.note(Reason::Shadow, depth, hit.primitive, hit.point);
+                self.note_near(Reason::Shadow, (depth, hit.primitive), hit.point, ray);
                 hull(left, passed)
             };
+        }
+        // The cutoff is compared where light has passed a surface, before the last stretch absorbs more.
+        if !surfaces.is_empty() {
+            let [red, green, blue] = left;
+            let peak = red.at_least(green).at_least(blue);
+            let is_certain = surfaces.iter().any(|it| it.crossing.sure);
+            match positive(peak - N::scaled(scene.view().cutoff.into(), 20)) {
+                Some(true) => {}
+                Some(false) if is_certain => return Ok(black),
+                _ => {
+                    self.note_ray(Reason::Cutoff, depth, NONE, ray);
+                    is_open = true;
+                }
+            }
         }
         if !is_far && let Some(medium) = inside.material(scene).filter(|it| it.absorption != [0; 3])
         {
@@ -230,18 +248,6 @@ impl Tracer<'_, '_> {
             let before = before.fold(N::zero(), |a, b| a.at_least(b));
             let length = norm2(ray.direction).sqrt() * (N::one() - before).at_least(N::zero());
             left = times(left, shade::absorbed(medium, length));
-        }
-        if !surfaces.is_empty() {
-            let [red, green, blue] = left;
-            let peak = red.at_least(green).at_least(blue);
-            match positive(peak - N::scaled(scene.view().cutoff.into(), 20)) {
-                Some(true) => {}
-                Some(false) => return Ok(black),
-                None => {
-                    self.note(Reason::Cutoff, depth, NONE, ray.origin);
-                    is_open = true;
-                }
-            }
         }
         Ok(if is_open { hull(black, left) } else { left })
     }
@@ -259,7 +265,7 @@ impl Tracer<'_, '_> {
         let end = if is_far { f64::INFINITY } else { 1.0 };
         self.search(ray, end, depth, &mut |candidate, end| {
             if is_dark {
-                return -1.0;
+                return ENDED;
             }
             let mut candidate = candidate;
             if !is_far {
@@ -277,7 +283,7 @@ impl Tracer<'_, '_> {
                 surfaces.push(candidate);
             } else if candidate.crossing.sure {
                 is_dark = true;
-                return -1.0;
+                return ENDED;
             } else {
                 may_be_dark = Some((solid.primitive, candidate.crossing.t));
             }
@@ -288,7 +294,7 @@ impl Tracer<'_, '_> {
         }
         if let Some((primitive, t)) = may_be_dark {
             let point = along(ray.origin, t, ray.direction);
-            self.note(Reason::Shadow, depth, primitive, point);
+            self.note_near(Reason::Shadow, (depth, primitive), point, ray);
         }
         Ok(Some(Passed {
             surfaces,
@@ -311,7 +317,7 @@ impl Tracer<'_, '_> {
             order.unwrap_or(Ordering::Equal)
         });
         if is_open {
-            self.note(Reason::Shadow, depth, NONE, ray.origin);
+            self.note_ray(Reason::Shadow, depth, NONE, ray);
             return Err(Stop);
         }
         Ok(())
@@ -337,7 +343,7 @@ impl Tracer<'_, '_> {
                 None => left.push(*a),
                 Some(first) if first.crossing.sure => {}
                 Some(_) => {
-                    self.note(Reason::Shadow, depth, solid(a).primitive, ray.origin);
+                    self.note_ray(Reason::Shadow, depth, solid(a).primitive, ray);
                     return Err(Stop);
                 }
             }

@@ -15,7 +15,7 @@
 //! | `world.rs`, `tree.rs` | a blob's integers, and a hierarchy of boxes around them |
 //! | `crossing.rs`, `shapes.rs`, `cone.rs`, `torus.rs` | where rays cross primitives |
 //! | `path.rs`, `camera.rs` | a ray on its way from the eye, and how it begins |
-//! | `search.rs`, `hit.rs` | every crossing that may be the nearest, and the surface there |
+//! | `search.rs`, `nearest.rs`, `hit.rs` | crossings, those that may be the nearest, and the surface there |
 //! | `trace.rs`, `surface.rs`, `light.rs`, `aim.rs` | the rays of a sample, what they see, and what arrives from lights |
 //! | `shade.rs`, `paint.rs`, `log2.rs`, `levels.rs`, `bump.rs`, `media.rs`, `facets.rs`, `sky.rs`, `directions.rs` | the rules of effects |
 //! | `tone.rs`, `picture.rs` | from samples to pixels, with more bits where that is needed |
@@ -35,6 +35,7 @@ mod levels;
 mod light;
 mod log2;
 mod media;
+mod nearest;
 mod number;
 mod page;
 mod paint;
@@ -61,7 +62,8 @@ pub use page::{Pictures, page, sentence};
 pub use picture::{Enclosed, LEVELS, code, enclose, explain, linear};
 pub use reason::Reason;
 pub use report::{
-    DifferentPixel, FormatReport, OpenPixel, OpenPixels, Report, Width, certify, exact_picture, map,
+    DifferentPixel, FormatPicture, FormatReport, OpenPixel, OpenPixels, Report, Width, certify,
+    exact_picture, map, pictures,
 };
 pub use search::{Open, Step};
 pub use world::{NONE, Unknown, World};

@@ -36,7 +36,7 @@ pub trait Enclosure:
     /// One of the numbers that are enclosed, exactly.
     fn point(self) -> Self;
 
-    /// At least how far numbers that are enclosed are from [`point`](Self::point).
+    /// An upper bound of the distance of the enclosed numbers from [`point`](Self::point).
     fn radius(self) -> f64;
 
     /// Encloses what both enclose, and all in between.

@@ -55,8 +55,8 @@ pub fn page(
 /// Returns the result in one sentence.
 pub fn sentence(report: &Report) -> String {
     format!(
-        "{:.3} % of {} pixels are proved: {} with 53 bits, {} with 128 and {} with 256.",
-        100.0 * report.certified,
+        "{} % of {} pixels are proved: {} with 53 bits, {} with 128 and {} with 256.",
+        percent(report.proved, report.pixels),
         grouped(report.pixels),
         grouped(report.proved_with_bits[0].1),
         grouped(report.proved_with_bits[1].1),
@@ -64,12 +64,17 @@ pub fn sentence(report: &Report) -> String {
     )
 }
 
+/// Returns a part of pixels in percent, rounded down: 100 means all of them.
+fn percent(count: usize, pixels: usize) -> String {
+    let thousandths = count as u64 * 100_000 / pixels.max(1) as u64;
+    format!("{}.{:03}", thousandths / 1000, thousandths % 1000)
+}
+
 fn formats(report: &Report, explain: &str) -> String {
     let mut table = String::from(
         "<h2>Number formats</h2>\n<div class=\"wide\"><table><tr><th>format<th>proved equal<th>proved different\
          <th>open<th>largest proved error<th>explain it</tr>\n",
     );
-    let part = |count: usize| 100.0 * count as f64 / report.pixels.max(1) as f64;
     for format in &report.formats {
         let command = format.worst.map_or(String::new(), |[x, y]| {
             format!(
@@ -79,10 +84,10 @@ fn formats(report: &Report, explain: &str) -> String {
         });
         let _ = writeln!(
             table,
-            "<tr><td>{}<td>{} ({:.3} %)<td>{}<td>{}<td>{}/255<td>{command}</tr>",
+            "<tr><td>{}<td>{} ({} %)<td>{}<td>{}<td>{}/255<td>{command}</tr>",
             format.format,
             grouped(format.equal),
-            part(format.equal),
+            percent(format.equal, report.pixels),
             grouped(format.different),
             grouped(format.open),
             format.max_proved_error,
@@ -145,7 +150,7 @@ fn reasons(report: &Report, explain: &str) -> String {
          <th>explain the first</tr>\n",
     );
     for reason in &report.reasons {
-        let first = reason.examples.first();
+        let first = reason.open_pixels.first();
         let command = first.map_or(String::new(), |it| {
             let [x, y] = it.pixel;
             format!(
@@ -163,7 +168,7 @@ fn reasons(report: &Report, explain: &str) -> String {
     }
     table.push_str("</table></div>\n");
     for reason in &report.reasons {
-        let commands = reason.examples.iter().map(|it| {
+        let commands = reason.open_pixels.iter().map(|it| {
             let [x, y] = it.pixel;
             format!("{explain}{x},{y} --interval")
         });
@@ -243,6 +248,14 @@ mod tests {
         assert_eq!(shown_size([48, 36]), [480, 360]);
         assert_eq!(shown_size([320, 240]), [320, 240]);
         assert_eq!(shown_size([4000, 1]), [4000, 1]);
+    }
+
+    #[test]
+    fn a_part_of_all_pixels_is_never_shown_as_all() {
+        assert_eq!(percent(1 << 22, 1 << 22), "100.000");
+        assert_eq!(percent((1 << 22) - 1, 1 << 22), "99.999");
+        assert_eq!(percent(69, 1000), "6.900");
+        assert_eq!(percent(0, 0), "0.000");
     }
 
     #[test]

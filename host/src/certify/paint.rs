@@ -50,7 +50,9 @@ pub fn weight<N: Enclosure>(
     let (_, weights) = shade::weights(world, hit, corners, normal)?;
     let mut found = white;
     if let Some(colors) = colors {
-        found.color = [0, 1, 2].map(|channel: usize| mixed(weights, colors.map(|it| it[channel])));
+        for (channel, color) in found.color.iter_mut().enumerate() {
+            *color = mixed(weights, colors.map(|it| it[channel]))?;
+        }
     }
     if let Some(coordinates) = coordinates {
         let texture = texture(world, material, size, (weights, coordinates));
@@ -116,13 +118,13 @@ pub fn alpha<N: Enclosure>(
     })
 }
 
-/// The mean of the squares of roots of 8 bits.
-fn mixed<N: Enclosure>(weights: Three<N>, roots: [u8; 3]) -> N {
+/// The mean of the squares of roots of 8 bits; `None` where its bounds are too wide.
+fn mixed<N: Enclosure>(weights: Three<N>, roots: [u8; 3]) -> Option<N> {
     let squares = roots.map(|root| i64::from(root) * i64::from(root));
     let [a, b, c] = squares.map(N::int);
     let sum = weights[0] * a + weights[1] * b + weights[2] * c;
-    let ratio = sum.over(N::int(255 * 255)).unwrap_or(N::zero());
-    ratio.at_least(N::zero()).at_most(N::one())
+    let ratio = sum.over(N::int(255 * 255))?;
+    Some(ratio.at_least(N::zero()).at_most(N::one()))
 }
 
 /// Calls a function with the multiples at which a texture may be looked up, for each possible footprint of a sample.
@@ -182,5 +184,19 @@ fn texture<N: Enclosure>(
     Weight {
         color: range.map(|[low, high]| ratio_of::<N>(low).hull(ratio_of(high))),
         is_open: range.iter().any(|[low, high]| low != high),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::deep::{Ball, with_bits};
+    use super::*;
+
+    #[test]
+    fn colors_of_corners_without_known_weights_are_open_and_not_black() {
+        with_bits(128, || {
+            let any = Ball::zero().hull(Ball::float(f64::MAX));
+            assert!(mixed([any * any; 3], [255; 3]).is_none());
+        });
     }
 }

@@ -6,7 +6,7 @@ use super::interval::Interval;
 use super::levels;
 use super::number::*;
 use super::reason::Reason;
-use super::search::{Open, Step, Stop, Tracer};
+use super::search::{Open, Step, Tracer};
 use super::tone;
 use super::world::{NONE, World};
 use crate::srgb::linear_of_srgb;
@@ -23,7 +23,7 @@ pub const LEVELS: [usize; 3] = [53, 128, 256];
 /// Outcomes that are followed at each level.
 const BRANCHES: [u32; 3] = [12, 48, 192];
 
-/// An open comparison of 256 bits whose numbers differ by less than this is one of equals.
+/// An open comparison of 256 bits is one of equals if the enclosure of what it depends on has a radius below this.
 const EQUAL: f64 = 1e-40;
 
 /// The known bounds of a pixel: 80 bytes, as they are kept between runs.
@@ -49,7 +49,9 @@ pub struct Enclosed {
     pub on_boundary: u8,
     /// 1 once it is evaluated.
     pub done: u8,
-    pub spare: [u8; 5],
+    /// 1 where there is an open comparison, whose point is known.
+    pub has_point: u8,
+    pub spare: [u8; 4],
 }
 
 impl Enclosed {
@@ -62,6 +64,33 @@ impl Enclosed {
     pub fn width(&self) -> f64 {
         let widths = self.linear.iter().map(|[low, high]| high - low);
         widths.fold(0.0, f64::max)
+    }
+
+    /// Returns the point of an open comparison, in lattice units.
+    pub fn point(&self) -> Option<[f64; 3]> {
+        (self.has_point == 1).then_some(self.point.map(f64::from))
+    }
+
+    /// Takes the reason of an evaluation that left the pixel open, and its place.
+    fn note(&mut self, evaluated: &Evaluated, is_last: bool) {
+        let open = evaluated.open.first();
+        let reason = match open {
+            Some(open) => open.reason,
+            None if evaluated.linear.is_none() => Reason::Width,
+            None => Reason::Rounding,
+        };
+        self.reason = reason as u8;
+        self.primitive = open.map_or(NONE, |open| open.primitive);
+        self.depth = open.map_or(0, |open| open.depth);
+        self.has_point = open.is_some().into();
+        self.point = open.map_or([0.0; 3], |open| open.point.map(|x| x as f32));
+        // Numbers that 256 bits cannot distinguish count as equal.
+        let is_equal = match (open, reason) {
+            (_, Reason::Branches | Reason::Width) => false,
+            (Some(open), _) => open.radius < EQUAL,
+            (None, _) => self.width() < EQUAL,
+        };
+        self.on_boundary = u8::from(is_last && is_equal);
     }
 
     pub fn reason(&self) -> Option<Reason> {
@@ -133,7 +162,9 @@ fn evaluate<N: Enclosure>(
     for sample in 0..settings.samples {
         tracer.left.set(BRANCHES[level]);
         let path = camera::path::<N>(world, settings, pixel, sample);
-        match path.ok_or(Stop).and_then(|path| tracer.radiance(&path)) {
+        let eye = world.scene.view().eye.map(|x| N::scaled(x, 5));
+        let path = tracer.known(path, Reason::Sampling, (0, NONE), eye);
+        match path.and_then(|path| tracer.radiance(&path)) {
             Ok(seen) => {
                 let limit = |x: N| x.at_least(N::zero()).at_most(brightest);
                 sum = plus(sum, seen.map(limit));
@@ -189,7 +220,7 @@ fn rounded(world: &World<'_>, linear: &[[f64; 2]; 3]) -> [[u16; 3]; 2] {
     ]
 }
 
-/// Takes in what another evaluation encloses: both hold the exact value, so what both enclose does.
+/// Intersects the bounds with those of another evaluation. Both hold the exact value, so what they share does.
 fn narrow(known: &mut [[f64; 2]; 3], evaluated: &Evaluated) {
     if let Some(linear) = evaluated.linear {
         for (known, [low, high]) in known.iter_mut().zip(linear) {
@@ -229,23 +260,12 @@ pub fn enclose(world: &World<'_>, settings: &Settings, pixel: [u16; 2], levels: 
         [enclosed.low, enclosed.high] = rounded(world, &enclosed.linear).map(code);
         if enclosed.low == enclosed.high {
             enclosed.reason = 0;
+            enclosed.has_point = 0;
             enclosed.on_boundary = 0;
             return enclosed;
         }
-        let open = evaluated.open.first();
-        let reason = match open {
-            Some(open) => open.reason,
-            None if evaluated.linear.is_none() => Reason::Branches,
-            None => Reason::Rounding,
-        };
-        enclosed.reason = reason as u8;
-        enclosed.primitive = open.map_or(NONE, |open| open.primitive);
-        enclosed.depth = open.map_or(0, |open| open.depth);
-        enclosed.point = open.map_or([0.0; 3], |open| open.point.map(|x| x as f32));
         let is_last = level + 1 == LEVELS.len();
-        let is_narrow = enclosed.width() < EQUAL;
-        // Values that 256 bits cannot distinguish count as equal.
-        enclosed.on_boundary = u8::from(is_last && (reason != Reason::Rounding || is_narrow));
+        enclosed.note(&evaluated, is_last);
     }
     enclosed
 }
@@ -315,6 +335,36 @@ fn to_scene_units(frame: &Frame, step: &mut Step) {
 mod tests {
     use super::*;
     use crate::compile::{Options, compile};
+
+    #[test]
+    fn pixels_lie_on_a_boundary_only_where_256_bits_know_the_ray() {
+        let noted = |open: Option<(Reason, f64)>, is_last: bool| {
+            let open = open.map(|(reason, radius)| Open {
+                reason,
+                depth: 0,
+                primitive: 0,
+                point: [0.0; 3],
+                radius,
+            });
+            let evaluated = Evaluated {
+                linear: None,
+                open: open.into_iter().collect(),
+            };
+            let mut enclosed = Enclosed {
+                high: [255; 3],
+                ..Enclosed::default()
+            };
+            enclosed.note(&evaluated, is_last);
+            (enclosed.reason(), enclosed.on_boundary, enclosed.has_point)
+        };
+        let hit = |radius: f64| Some((Reason::Hit, radius));
+        assert_eq!(noted(hit(1e-60), true), (Some(Reason::Hit), 1, 1));
+        assert_eq!(noted(hit(1e-60), false).1, 0);
+        // Mirrors have made the ray so wide that it says nothing about a boundary.
+        assert_eq!(noted(hit(1e-3), true).1, 0);
+        assert_eq!(noted(Some((Reason::Branches, 0.0)), true).1, 0);
+        assert_eq!(noted(None, true), (Some(Reason::Width), 0, 0));
+    }
 
     #[test]
     fn explained_points_and_distances_are_in_scene_units() {

@@ -33,10 +33,14 @@ pub enum Reason {
     Sampling,
     /// It is open whether a random facet sends a ray off its surface.
     Facet,
+    /// It is open whether a light is so near that a point of it is drawn by solid angle.
+    Near,
+    /// The bounds are so wide that nothing follows from them.
+    Width,
 }
 
 impl Reason {
-    pub const ALL: [Self; 13] = [
+    pub const ALL: [Self; 15] = [
         Self::Hit,
         Self::Shadow,
         Self::Terminator,
@@ -50,6 +54,8 @@ impl Reason {
         Self::Texture,
         Self::Sampling,
         Self::Facet,
+        Self::Near,
+        Self::Width,
     ];
 
     pub fn of_number(number: u8) -> Option<Self> {
@@ -72,6 +78,8 @@ impl Reason {
             Self::Texture => "boundary of texels or of their weights",
             Self::Sampling => "axes of a random direction",
             Self::Facet => "ray level with a rough surface",
+            Self::Near => "distance up to which lights are drawn by solid angle",
+            Self::Width => "bounds too wide",
         }
     }
 }

@@ -3,8 +3,10 @@
 use super::picture::{Enclosed, LEVELS, code, enclose};
 use super::reason::Reason;
 use super::world::{NONE, World};
+use crate::render::{Job, render};
 use crate::trace::Frame;
-use gridel_core::{Format, Settings};
+use gridel_core::render::RenderError;
+use gridel_core::{Format, Scene, Settings, Structure};
 use rayon::prelude::*;
 use serde::Serialize;
 use std::sync::{Mutex, PoisonError};
@@ -56,6 +58,27 @@ pub fn certify<E: Send>(
     })
 }
 
+/// A picture in a format: linear values, 65535 being display white.
+pub type FormatPicture = (Format, Vec<[u16; 3]>);
+
+/// Renders a picture in some formats, to compare with the exact one.
+///
+/// # Errors
+/// If no picture has these settings.
+pub fn pictures(
+    scene: &Scene<'_>,
+    structure: Structure,
+    settings: Settings,
+    formats: &[Format],
+) -> Result<Vec<FormatPicture>, RenderError> {
+    let picture = |&format: &Format| {
+        let job = Job::whole(format, structure, settings);
+        let picture = render(scene, &job, &|| ())?;
+        Ok((format, picture.pixels))
+    };
+    formats.iter().map(picture).collect()
+}
+
 /// The report of a picture.
 #[derive(Clone, Debug, Serialize)]
 pub struct Report {
@@ -84,7 +107,7 @@ pub struct OpenPixels {
     /// Open pixels whose ray lies on the boundary as far as 256 bits can decide.
     pub on_boundary: usize,
     /// All of them, row by row.
-    pub examples: Vec<OpenPixel>,
+    pub open_pixels: Vec<OpenPixel>,
 }
 
 /// An open pixel.
@@ -93,8 +116,9 @@ pub struct OpenPixel {
     pub pixel: [usize; 2],
     #[serde(skip_serializing_if = "Option::is_none")]
     pub primitive: Option<u32>,
-    /// In scene units.
-    pub point: [f64; 3],
+    /// In scene units; none where everything is known but the rounding.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub point: Option<[f64; 3]>,
     pub depth: u8,
 }
 
@@ -143,7 +167,7 @@ impl Report {
         world: &World<'_>,
         settings: &Settings,
         pixels: &[Enclosed],
-        pictures: &[(Format, Vec<[u16; 3]>)],
+        pictures: &[FormatPicture],
     ) -> Self {
         let frame = Frame::of(world.scene);
         let width = usize::from(settings.width);
@@ -161,10 +185,10 @@ impl Report {
             if count == 0 {
                 continue;
             }
-            let example = |(index, it): (usize, &Enclosed)| OpenPixel {
+            let open_pixel = |(index, it): (usize, &Enclosed)| OpenPixel {
                 pixel: place(index),
                 primitive: (it.primitive != NONE).then_some(it.primitive),
-                point: frame.place(it.point.map(f64::from)).to_array(),
+                point: it.point().map(|point| frame.place(point).to_array()),
                 depth: it.depth,
             };
             reasons.push(OpenPixels {
@@ -172,7 +196,7 @@ impl Report {
                 text: reason.text(),
                 pixels: count,
                 on_boundary: open().filter(|(_, it)| it.on_boundary == 1).count(),
-                examples: open().map(example).collect(),
+                open_pixels: open().map(open_pixel).collect(),
             });
         }
         reasons.sort_by_key(|it| std::cmp::Reverse(it.pixels));
@@ -229,7 +253,7 @@ impl Report {
 
 /// Returns a picture of the results: gray where all formats are proved equal, orange where one is proved different,
 /// blue where a pixel is open. As sRGB pixels.
-pub fn map(pixels: &[Enclosed], pictures: &[(Format, Vec<[u16; 3]>)]) -> Vec<u8> {
+pub fn map(pixels: &[Enclosed], pictures: &[FormatPicture]) -> Vec<u8> {
     let color = |index: usize, it: &Enclosed| -> [u8; 3] {
         let errors = pictures
             .iter()
@@ -305,21 +329,29 @@ mod tests {
                 high: [255; 3],
                 reason: Reason::Hit as u8,
                 point: [3.0, 0.0, 0.0],
+                has_point: 1,
                 ..known
             };
             let mut pixels = [known; 24];
             pixels[9..24].fill(open);
+            pixels[10] = Enclosed {
+                has_point: 0,
+                ..open
+            };
             let mut picture = vec![[0; 3]; 24];
             picture[2] = [u16::MAX; 3];
             picture[7] = [0, u16::MAX, 0];
             let report = Report::of(world, settings, &pixels, &[(Format::F32, picture)]);
             let of = |pixel| DifferentPixel { pixel, error: 255 };
             assert_eq!(report.formats[0].different_pixels, [of([2, 0]), of([1, 1])]);
-            assert_eq!(report.reasons[0].examples.len(), 15);
+            let listed = &report.reasons[0].open_pixels;
+            assert_eq!(listed.len(), 15);
             // A place in lattice units is written in scene units.
             let header = world.scene.header();
             let x = header.origin[0] + libm::ldexp(3.0, header.unit_exponent.into());
-            assert_eq!(report.reasons[0].examples[0].point[0], x);
+            assert_eq!(listed[0].point.map(|it| it[0]), Some(x));
+            // Without an open comparison there is no place, as the lattice's origin would be.
+            assert_eq!(listed[1].point, None);
         });
     }
 }

@@ -1,13 +1,14 @@
-//! The search for hits: every crossing that may be the nearest.
+//! The search for crossings, and the surface at one of them.
 
-use super::crossing::{Crossing, Ray, compare};
+use super::crossing::{Crossing, Ray};
+use super::deep;
 use super::hit::Hit;
 use super::interval::Interval;
 use super::number::*;
 use super::reason::Reason;
 use super::shapes;
 use super::tree::Slabs;
-use super::world::{Form, Item, NONE, Space, World};
+use super::world::{Item, NONE, Space, World};
 use gridel_core::Effects;
 use serde::Serialize;
 use std::cell::{Cell, RefCell};
@@ -23,6 +24,10 @@ pub struct Open {
     pub primitive: u32,
     /// In lattice units; [`explain`](super::explain) returns it in scene units.
     pub point: [f64; 3],
+    /// The radius of the enclosure of the point, or of the ray that the comparison depends on: in lattice steps, and of
+    /// directions per length.
+    #[serde(skip)]
+    pub radius: f64,
 }
 
 /// An evaluation that ended without a result.
@@ -72,18 +77,87 @@ pub struct Tracer<'w, 's> {
 /// Most open comparisons that are recorded.
 const RECORDED: usize = 16;
 
+/// The end of a search that finds no more.
+pub const ENDED: f64 = -1.0;
+
+/// The largest radius of an enclosed vector's components.
+fn radius<N: Enclosure>(vector: Three<N>) -> f64 {
+    vector.iter().fold(0.0, |most, x| most.max(x.radius()))
+}
+
+/// The radius of a ray.
+fn radius_of_ray<N: Enclosure>(ray: &Ray<N>) -> f64 {
+    let length = ray.direction.iter().map(|x| x.middle().abs());
+    let length = length.fold(f64::MIN_POSITIVE, f64::max);
+    radius(ray.origin).max(radius(ray.direction) / length)
+}
+
 impl Tracer<'_, '_> {
+    /// Records an open comparison that depends on a point.
     pub fn note<N: Enclosure>(&self, reason: Reason, depth: u8, primitive: u32, point: Three<N>) {
+        self.record(reason, (depth, primitive), point, || radius(point));
+    }
+
+    /// Records an open comparison of what a ray meets, near a point.
+    ///
+    /// Where the ray touches a surface, the point is less exact than what is compared.
+    pub fn note_near<N: Enclosure>(
+        &self,
+        reason: Reason,
+        place: (u8, u32),
+        point: Three<N>,
+        ray: &Ray<N>,
+    ) {
+        self.record(reason, place, point, || radius_of_ray(ray));
+    }
+
+    /// Records an open comparison of what a ray meets, without a place along it.
+    pub fn note_ray<N: Enclosure>(&self, reason: Reason, depth: u8, primitive: u32, ray: &Ray<N>) {
+        self.note_near(reason, (depth, primitive), ray.origin, ray);
+    }
+
+    fn record<N: Enclosure>(
+        &self,
+        reason: Reason,
+        (depth, primitive): (u8, u32),
+        point: Three<N>,
+        radius: impl FnOnce() -> f64,
+    ) {
         let mut open = self.open.borrow_mut();
         if open.len() < RECORDED {
-            let point = point.map(|x| x.middle() / 256.0);
             open.push(Open {
                 reason,
                 depth,
                 primitive,
-                point,
+                point: point.map(|x| x.middle() / 256.0),
+                radius: radius(),
             });
         }
+    }
+
+    /// Returns what follows from a hit, if its bounds are narrow enough.
+    ///
+    /// # Errors
+    /// If there is nothing.
+    pub fn narrow<T, N: Enclosure>(
+        &self,
+        found: Option<T>,
+        depth: u8,
+        hit: &Hit<N>,
+    ) -> Result<T, Stop> {
+        self.known(found, Reason::Width, (depth, hit.primitive), hit.point)
+    }
+
+    /// Returns without an error if there is room for more numbers.
+    ///
+    /// # Errors
+    /// If it is used up.
+    pub fn check_room<N: Enclosure>(&self, depth: u8, ray: &Ray<N>) -> Result<(), Stop> {
+        if self.is_slow && deep::is_full() {
+            self.note_ray(Reason::Branches, depth, NONE, ray);
+            return Err(Stop);
+        }
+        Ok(())
     }
 
     /// Returns the result if it is known.
@@ -152,114 +226,6 @@ impl Tracer<'_, '_> {
         self.world.scene.effects().contains(effects)
     }
 
-    /// Returns every crossing that may be the nearest, and whether the ray may hit nothing.
-    pub fn nearest<N: Enclosure>(
-        &self,
-        ray: &Ray<N>,
-        depth: u8,
-    ) -> Result<(Vec<Candidate<N>>, bool), Stop> {
-        let mut found: Vec<Candidate<N>> = Vec::new();
-        self.search(ray, f64::INFINITY, depth, &mut |candidate, end| {
-            found.push(candidate);
-            let [_, high] = candidate.crossing.t.bounds();
-            if candidate.crossing.sure {
-                end.min(high)
-            } else {
-                end
-            }
-        })?;
-        let world = self.world;
-        let solid = |it: &Candidate<N>| &world.space(it.instance).solids[it.solid as usize];
-        let surface = |it: &Candidate<N>| {
-            let surface = solid(it).surfaces[usize::from(it.crossing.part)];
-            (surface != NONE).then_some((it.instance, surface))
-        };
-        let primitive = |it: &Candidate<N>| (solid(it).primitive, it.solid);
-        // Crossings in one surface have one t, and the first in the scene file counts.
-        let order = |a: &Candidate<N>, b: &Candidate<N>| {
-            let is_one = a.instance == b.instance
-                && solid(a).meets_at_one_t(solid(b), [&a.crossing, &b.crossing]);
-            if is_one {
-                Some(Ordering::Equal)
-            } else {
-                compare(&a.crossing, &b.crossing)
-            }
-        };
-        let beats = |a: &Candidate<N>, b: &Candidate<N>| {
-            if (a.instance, a.solid) == (b.instance, b.solid) {
-                let (first, second) = (&a.crossing, &b.crossing);
-                // A solid is entered before it is left. Those of tori are numbered along the ray.
-                if matches!(solid(a).form, Form::Torus(_)) {
-                    let number = |it: &Crossing<N>| (it.part, it.leaves);
-                    return first.sure && number(first) < number(second);
-                }
-                if second.leaves && !first.leaves {
-                    return first.sure;
-                }
-            }
-            a.crossing.sure
-                && match order(a, b) {
-                    Some(Ordering::Less) => true,
-                    Some(Ordering::Equal) => primitive(a) < primitive(b),
-                    _ => false,
-                }
-        };
-        let is_left = |index: usize| !found.iter().any(|other| beats(other, &found[index]));
-        let mut left: Vec<Candidate<N>> = (0..found.len())
-            .filter(|&index| is_left(index))
-            .map(|index| found[index])
-            .collect();
-        let may_miss = !found.iter().any(|it| it.crossing.sure);
-        // Faces of one object in one plane look the same at their common edge.
-        let alike = |a: &Candidate<N>, b: &Candidate<N>| {
-            let is_plain = |it: &Candidate<N>| {
-                let is_painted = !solid(it).paint.is_plain();
-                !is_painted
-                    && !matches!(
-                        solid(it).form,
-                        Form::Triangle {
-                            smooth: Some(_),
-                            ..
-                        } | Form::Cuboid { .. }
-                            | Form::Cone(_)
-                    )
-            };
-            surface(a).is_some()
-                && surface(a) == surface(b)
-                && solid(a).object == solid(b).object
-                && is_plain(a)
-                && is_plain(b)
-        };
-        // Where planes are crossed at one t, what starts there starts on all of them.
-        for candidate in &mut left {
-            for other in &found {
-                let Some((instance, plane)) = surface(other) else {
-                    continue;
-                };
-                let is_known = instance != candidate.instance
-                    || surface(candidate) == surface(other)
-                    || candidate.also.contains(&plane);
-                if is_known
-                    || compare(&candidate.crossing, &other.crossing) != Some(Ordering::Equal)
-                {
-                    continue;
-                }
-                if let Some(free) = candidate.also.iter_mut().find(|it| **it == NONE) {
-                    *free = plane;
-                }
-            }
-        }
-        let mut index = 0;
-        while index < left.len() {
-            if (0..index).any(|before| alike(&left[before], &left[index])) {
-                left.remove(index);
-            } else {
-                index += 1;
-            }
-        }
-        Ok((left, may_miss))
-    }
-
     /// Calls a function with every crossing before an end. The function may move the end nearer.
     pub fn search<N: Enclosure>(
         &self,
@@ -311,7 +277,12 @@ impl Tracer<'_, '_> {
         let mut crossings: Vec<Crossing<N>> = Vec::with_capacity(4);
         let mut quick: Vec<Crossing<Interval>> = Vec::with_capacity(4);
         let mut stopped = false;
+        // Where the search has ended without a result, an end before all boxes leaves out the others.
         let mut test = |number: u32, end: f64| -> f64 {
+            if stopped || self.check_room(depth, ray).is_err() {
+                stopped = true;
+                return ENDED;
+            }
             let solid = &space.solids[number as usize];
             let named = (solid, instance);
             if let Some(outer) = &outer {
@@ -324,11 +295,9 @@ impl Tracer<'_, '_> {
             }
             crossings.clear();
             if shapes::crossings(named, ray, &mut crossings).is_err() {
-                if !stopped {
-                    self.note(Reason::Grazing, depth, solid.primitive, ray.origin);
-                }
+                self.note_ray(Reason::Grazing, depth, solid.primitive, ray);
                 stopped = true;
-                return end;
+                return ENDED;
             }
             let mut end = end;
             for &crossing in &crossings {

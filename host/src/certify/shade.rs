@@ -31,7 +31,7 @@ pub fn is_odd<N: Enclosure>(hit: &Hit<N>, material: &Material) -> Option<bool> {
             Ordering::Less => {
                 cell = cell - N::one();
                 number -= 1;
-                if (place - cell * size).sign()? == Ordering::Less {
+                if (place - cell * size).sign()? != Ordering::Greater {
                     return None;
                 }
             }
@@ -213,8 +213,10 @@ fn corner_normal<N: Enclosure>(stored: [i16; 2]) -> Three<N> {
     scale(v, root * step)
 }
 
-/// The triangle of a hit that has normals, and the point in its space.
-fn smooth<N: Enclosure>(world: &World<'_>, hit: &Hit<N>) -> Option<Smooth<N>> {
+/// The triangle of a hit that has normals, and the point in its space; `Some(None)` for a surface without them.
+///
+/// The outer `None` means that the bounds are too wide.
+fn smooth<N: Enclosure>(world: &World<'_>, hit: &Hit<N>) -> Option<Option<Smooth<N>>> {
     let solid = &world.space(hit.instance).solids[hit.solid as usize];
     let Form::Triangle {
         corners,
@@ -222,15 +224,15 @@ fn smooth<N: Enclosure>(world: &World<'_>, hit: &Hit<N>) -> Option<Smooth<N>> {
         smooth: Some(normals),
     } = solid.form
     else {
-        return None;
+        return Some(None);
     };
     let (point, weights) = weights(world, hit, corners, normal)?;
-    Some(Smooth {
+    Some(Some(Smooth {
         corners,
         normals,
         point,
         weights,
-    })
+    }))
 }
 
 /// Returns the point of a hit of a triangle in the triangle's space, and the weights of the corners there, whose sum is
@@ -267,7 +269,7 @@ pub fn weights<N: Enclosure>(
 ///
 /// `None` outside where the normals may cancel out.
 pub fn smooth_normal<N: Enclosure>(world: &World<'_>, hit: &Hit<N>) -> Option<Option<Three<N>>> {
-    let Some(smooth) = smooth(world, hit) else {
+    let Some(smooth) = smooth(world, hit)? else {
         return Some(None);
     };
     let mut sum = [N::zero(); 3];
@@ -284,7 +286,7 @@ pub fn smooth_normal<N: Enclosure>(world: &World<'_>, hit: &Hit<N>) -> Option<Op
 /// Returns the way from a hit out to the curved surface of its triangle, and whether that lies above it.
 pub fn lift<N: Enclosure>(world: &World<'_>, hit: &Hit<N>) -> Option<(Option<bool>, Three<N>)> {
     let nowhere = [N::zero(); 3];
-    let Some(smooth) = smooth(world, hit) else {
+    let Some(smooth) = smooth(world, hit)? else {
         return Some((Some(false), nowhere));
     };
     let mut way = nowhere;

@@ -33,11 +33,6 @@ impl Placed {
         }
     }
 
-    /// Converts a direction of the scene to the part, up to its length.
-    pub fn direction<N: Enclosure>(&self, way: Three<N>) -> Three<N> {
-        self.rotate(way)
-    }
-
     /// Converts a normal of the part to the scene, with the part's lattice steps per step along it as its length.
     pub fn normal<N: Enclosure>(&self, normal: Three<N>) -> Three<N> {
         let power = N::float(f64::powi(2.0, self.exponent));
@@ -123,10 +118,7 @@ fn all_crossings<N: Enclosure>(
             }
             Ok(())
         }
-        Form::Sphere { center, radius } => {
-            sphere(center, radius, itself, ray, found);
-            Ok(())
-        }
+        Form::Sphere { center, radius } => sphere(center, radius, itself, ray, found),
         Form::Cuboid { lowest, highest } => {
             if itself.is_some_and(|(_, inward)| !inward) {
                 return Ok(());
@@ -233,7 +225,7 @@ fn sphere<N: Enclosure>(
     itself: Option<(u8, bool)>,
     ray: &Ray<N>,
     found: &mut Vec<Crossing<N>>,
-) {
+) -> Result<(), Grazes> {
     let crossing = |t: N, leaves: bool, sure: bool| Crossing {
         t,
         fraction: None,
@@ -243,26 +235,26 @@ fn sphere<N: Enclosure>(
     };
     let relative = minus(exact(center), ray.origin);
     let length = norm2(ray.direction);
-    let Some(closest) = dot(relative, ray.direction).over(length) else {
-        return;
-    };
-    match itself {
-        Some((_, false)) => return,
+    if itself.is_some_and(|(_, inward)| !inward) {
+        return Ok(());
+    }
+    // Where the length may be 0, nothing is known of the ray: that is open, and no miss.
+    let closest = dot(relative, ray.direction).over(length).ok_or(Grazes)?;
+    if itself.is_some() {
         // The other root is 0.
-        Some((_, true)) => return crossing(closest + closest, true, true).keep(ray.start, found),
-        None => {}
+        crossing(closest + closest, true, true).keep(ray.start, found);
+        return Ok(());
     }
     let apart = norm2(along(relative, -closest, ray.direction));
     let square = N::int(radius).square() - apart;
     let sure = match square.sign() {
-        Some(Ordering::Less) => return,
+        Some(Ordering::Less) => return Ok(()),
         sign => sign.is_some(),
     };
-    let Some(half) = square.over(length).map(N::sqrt) else {
-        return;
-    };
+    let half = square.over(length).ok_or(Grazes)?.sqrt();
     crossing(closest - half, false, sure).keep(ray.start, found);
     crossing(closest + half, true, sure).keep(ray.start, found);
+    Ok(())
 }
 
 /// Returns the last of several crossings, or the first if `sign` is less. Returns each crossing that may be it.
@@ -415,5 +407,72 @@ impl Form {
             self,
             Form::Triangle { .. } | Form::Disc { .. } | Form::Plane { .. }
         )
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::interval::Interval;
+    use super::super::world::{Cone, Paint, Torus};
+    use super::*;
+
+    /// A ray of which nothing is known, as after many mirrors, misses nothing.
+    #[test]
+    fn direction_that_may_be_zero_is_open_for_every_shape() {
+        let (center, axis) = ([0; 3], [0, 0, 256]);
+        let forms = [
+            Form::Triangle {
+                corners: [[0, 0, 0], [256, 0, 0], [0, 256, 0]],
+                normal: [0, 0, 65_536],
+                smooth: None,
+            },
+            Form::Sphere {
+                center,
+                radius: 256,
+            },
+            Form::Disc {
+                center,
+                normal: axis,
+                radius: 256,
+            },
+            Form::Plane {
+                point: center,
+                normal: axis,
+            },
+            Form::Cuboid {
+                lowest: [-256; 3],
+                highest: [256; 3],
+            },
+            Form::Cone(Cone {
+                base: center,
+                axis,
+                base_radius: 256,
+                apex_radius: 128,
+            }),
+            Form::Torus(Torus {
+                center,
+                axis,
+                major: 256,
+                minor: 64,
+            }),
+        ];
+        let ray = Ray {
+            origin: exact([0, 0, 2560]),
+            direction: [Interval::new(-1.0, 1.0); 3],
+            start: Start::Free,
+        };
+        for form in forms {
+            let solid = Solid {
+                form,
+                primitive: 0,
+                object: 0,
+                surfaces: [NONE; 6],
+                twin: 0,
+                paint: Paint::default(),
+            };
+            let mut found = Vec::new();
+            let result = crossings((&solid, NONE), &ray, &mut found);
+            assert_eq!(result, Err(Grazes), "{form:?}: {found:?}");
+        }
     }
 }

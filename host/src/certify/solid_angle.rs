@@ -19,6 +19,13 @@ pub struct Share<N> {
     pub half: N,
 }
 
+/// The ratio of a circle's circumference to its diameter, between sums of two floats.
+pub fn pi<N: Enclosure>() -> N {
+    const REST: f64 = 1.224_646_799_147_353_2e-16;
+    let rest = N::float(REST).hull(N::float(REST.next_up()));
+    N::float(std::f64::consts::PI) + rest
+}
+
 /// Converts a length with 13 fraction bits of a unit, which are 5 fraction bits of a step.
 pub fn length<N: Enclosure>(q13: i64) -> N {
     N::scaled(q13, 5)
@@ -103,7 +110,7 @@ pub fn of_flat<N: Enclosure>(
 
     let area = side * depth;
     let area = match form.shape {
-        LightForm::DISC => area * N::float(std::f64::consts::PI),
+        LightForm::DISC => area * pi(),
         LightForm::TRIANGLE => area.half(),
         _ => area,
     };
@@ -114,4 +121,25 @@ pub fn of_flat<N: Enclosure>(
             half: turn.half() * narrowing * width.half(),
         },
     }))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::deep::{Ball, with_bits};
+    use super::super::interval::Interval;
+    use super::*;
+    use std::f64::consts::PI;
+
+    #[test]
+    fn pi_lies_above_its_float() {
+        let Interval { low, high } = pi();
+        assert_eq!([low, high], [PI, PI.next_up()]);
+        with_bits(128, || {
+            let rest = pi::<Ball>() - Ball::float(PI);
+            let [low, high] = rest.bounds();
+            // The digits of pi after those of the float.
+            assert!(low > 1.224_646_799_147_3e-16 && high < 1.224_646_799_147_4e-16);
+            assert!(rest.radius() < 1e-31);
+        });
+    }
 }

@@ -36,19 +36,24 @@ impl Tracer<'_, '_> {
             let length = hit.t * norm2(path.ray.direction).sqrt();
             weight = times(weight, shade::absorbed(medium, length));
         }
-        let direction = unit(path.ray.direction).ok_or(Stop)?;
+        let direction = self.narrow(unit(path.ray.direction), path.depth, hit)?;
         let mut length = None;
         if self.has(Effects::TEXTURE_LEVELS) {
-            length = Some(levels::length(path, hit).ok_or(Stop)?);
+            length = Some(self.narrow(levels::length(path, hit), path.depth, hit)?);
         }
         let is_leveled = material.maps & Material::MAPS_LEVELS != 0;
-        let size = length
-            .filter(|_| is_leveled)
-            .and_then(|length| levels::footprint(self.world, (path, hit), length, self.spread));
+        let size = match length.filter(|_| is_leveled) {
+            None => None,
+            Some(length) => {
+                let size = levels::footprint(self.world, (path, hit), length, self.spread);
+                self.narrow(size, path.depth, hit)?
+            }
+        };
         let normal = self.normal(hit, (material, size), direction, path.depth)?;
         let mut diffuse = self.diffuse(hit, material, path.depth);
         if self.has(Effects::VERTEX_COLORS) || self.has(Effects::TEXTURE) {
-            let paint = paint::weight(self.world, hit, material, size).ok_or(Stop)?;
+            let paint = paint::weight(self.world, hit, material, size);
+            let paint = self.narrow(paint, path.depth, hit)?;
             if paint.is_open {
                 self.note(Reason::Texture, path.depth, hit.primitive, hit.point);
             }
@@ -56,7 +61,8 @@ impl Tracer<'_, '_> {
         }
         let mut passing = [N::zero(); 3];
         if self.has(Effects::ALPHA) {
-            let alpha = paint::alpha(self.world, hit, material, size).ok_or(Stop)?;
+            let alpha = paint::alpha(self.world, hit, material, size);
+            let alpha = self.narrow(alpha, path.depth, hit)?;
             if alpha.is_open {
                 self.note(Reason::Texture, path.depth, hit.primitive, hit.point);
             }
@@ -96,18 +102,18 @@ impl Tracer<'_, '_> {
         // A mirror or glass does not show its back.
         let turns = material.transmit != [0; 3] || material.mirror != [0; 3];
         let turned = |normal| match turns {
-            true => shade::turned_to_ray(normal, direction).ok_or(Stop),
+            true => self.narrow(shade::turned_to_ray(normal, direction), depth, hit),
             false => Ok(normal),
         };
         let mut normal = hit.facing();
         if self.has(Effects::SMOOTH)
-            && let Some(smooth) = shade::smooth_normal(self.world, hit).ok_or(Stop)?
+            && let Some(smooth) = self.narrow(shade::smooth_normal(self.world, hit), depth, hit)?
         {
             normal = turned(smooth)?;
         }
         if self.has(Effects::NORMAL_MAP) {
             let bumped = bump::bumped(self.world, hit, (material, size), normal);
-            if let Some(bumped) = bumped.ok_or(Stop)? {
+            if let Some(bumped) = self.narrow(bumped, depth, hit)? {
                 if bumped.is_open {
                     self.note(Reason::Texture, depth, hit.primitive, hit.point);
                 }

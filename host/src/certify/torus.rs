@@ -5,8 +5,8 @@
 //! not negative. (Where G is negative lies the inner sheet of a spindle torus, which is inside of the solid.)
 //!
 //! Along a ray F is a quartic. Its roots are isolated by subdivision: coefficients of Bernstein's polynomials whose
-//! signs are known count the roots of a stretch, none or one. Newton's steps narrow each root, and halving where they
-//! do not. A stretch whose signs stay open, where the ray all but touches the surface, may be crossed or not.
+//! signs are known count the roots of a stretch, none or one. Newton's steps narrow each root. A stretch that they do
+//! not narrow is halved. Signs stay open where the ray nearly touches the surface: it may cross such a stretch or not.
 
 use super::crossing::{Crossing, Grazes, Ray, exact};
 use super::number::*;

@@ -5,7 +5,6 @@
 //! ray starts off a surface, which nodes are culled), and here nothing is rounded away.
 
 use super::crossing::Ray;
-use super::deep;
 use super::directions;
 use super::facets::{self, Facets};
 use super::hit::Seen;
@@ -34,13 +33,14 @@ impl Tracer<'_, '_> {
     /// Returns the light of a ray, times its weight.
     pub fn radiance<N: Enclosure>(&self, path: &Path<N>) -> Result<Three<N>, Stop> {
         let Path { ray, depth, .. } = path;
+        self.check_room(*depth, ray)?;
         let (found, may_miss) = self.nearest(ray, *depth)?;
         let mut result: Option<Three<N>> = None;
         if found.len() + usize::from(may_miss) > 1 {
             let first = found[0];
             let point = along(ray.origin, first.crossing.t, ray.direction);
             let solid = &self.world.space(first.instance).solids[first.solid as usize];
-            self.note(Reason::Hit, *depth, solid.primitive, point);
+            self.note_near(Reason::Hit, (*depth, solid.primitive), point, ray);
         }
         for candidate in &found {
             if result.is_some() {
@@ -68,7 +68,7 @@ impl Tracer<'_, '_> {
         };
         let sky = sky::seen(scene, record, path.ray.direction, path.kind);
         if sky.as_ref().is_none_or(|sky| sky.is_open) {
-            self.note(Reason::Texture, path.depth, NONE, path.ray.origin);
+            self.note_ray(Reason::Texture, path.depth, NONE, &path.ray);
         }
         Ok(sky.ok_or(Stop)?.radiance)
     }
@@ -96,10 +96,6 @@ impl Tracer<'_, '_> {
             if seen.is_there {
                 brought = plus(brought, self.bounce(&seen)?);
             }
-        }
-        if deep::is_full() {
-            self.note(Reason::Branches, path.depth, hit.primitive, hit.point);
-            return Err(Stop);
         }
         Ok(brought)
     }
@@ -178,7 +174,8 @@ impl Tracer<'_, '_> {
         let mut mirrored = material.mirror.map(ratio_of);
         if material.transmit != [0; 3] {
             let transmit = material.transmit.map(ratio_of);
-            let split = shade::split(&seen.interface, direction, normal, cos_in).ok_or(Stop)?;
+            let split = shade::split(&seen.interface, direction, normal, cos_in);
+            let split = self.narrow(split, path.depth, hit)?;
             if split.is_open {
                 self.note(Reason::CriticalAngle, path.depth, hit.primitive, hit.point);
             }

@@ -4,6 +4,7 @@ use super::manifest::{Board, Firmware, Manifest, Named, Program};
 use crate::blob::Blob;
 use crate::explained;
 use crate::output::unfinished::{Running, TemporaryFolder};
+use crate::table::grouped;
 use std::collections::BTreeMap;
 use std::fs::{self, File};
 use std::io::{self, Read};
@@ -35,6 +36,9 @@ const ELF: [u8; 4] = *b"\x7fELF";
 
 /// Longest text of a failing program that is shown: its end.
 const SHOWN: usize = 2000;
+
+/// Most bytes that a program may print: a loop without an end would fill the disk.
+const MOST_PRINTED: u64 = 4 << 20;
 
 /// Builds a program if it must be built, and runs it.
 pub(super) fn run(manifest: &Manifest, board: &Board, blob: &Blob) -> BoardRun {
@@ -223,8 +227,17 @@ fn emulate(board: &Board, program: &Path, folder: &Path) -> Result<String, Obsta
         .stderr(file(&complaints)?);
     let running = Running::start(&mut command)
         .map_err(failed(format!("{} cannot be run", board.emulator)))?;
-    let ended = wait(&running, Duration::from_secs(board.seconds.into()))
+    let size = |path: &Path| fs::metadata(path).map_or(0, |it| it.len());
+    let prints_too_much = || size(&printed) + size(&complaints) > MOST_PRINTED;
+    let time = Duration::from_secs(board.seconds.into());
+    let ended = wait(&running, time, &prints_too_much)
         .map_err(failed(format!("{} cannot be run", board.emulator)))?;
+    if prints_too_much() {
+        return Err(Obstacle::Failure(format!(
+            "the program prints more than {} bytes",
+            grouped(MOST_PRINTED)
+        )));
+    }
     let text = |path: &Path| fs::read(path).unwrap_or_default();
     let Some(status) = ended else {
         return Err(Obstacle::Failure(format!(
@@ -244,14 +257,18 @@ fn emulate(board: &Board, program: &Path, folder: &Path) -> Result<String, Obsta
     Ok(String::from_utf8_lossy(&lines).into_owned())
 }
 
-/// Waits for a program; returns `None` if it runs for too long.
-fn wait(running: &Running, time: Duration) -> io::Result<Option<ExitStatus>> {
+/// Waits for a program; returns `None` if it runs for too long, or as soon as it prints too much.
+fn wait(
+    running: &Running,
+    time: Duration,
+    prints_too_much: &dyn Fn() -> bool,
+) -> io::Result<Option<ExitStatus>> {
     let begun = Instant::now();
     loop {
         if let Some(status) = running.ended()? {
             return Ok(Some(status));
         }
-        if begun.elapsed() > time {
+        if begun.elapsed() > time || prints_too_much() {
             return Ok(None);
         }
         std::thread::sleep(Duration::from_millis(20));

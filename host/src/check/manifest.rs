@@ -308,9 +308,9 @@ impl Check {
         };
         if check.expects_nothing() {
             return Err(table.error(
-                "this check expects nothing, so nothing could break it",
-                "add `hash = {}` and let `gridel check --bless` record it, or a `budget`, a \
-                 `reference`, a `target` or a `board` with what it is held to",
+                "this check tests nothing: it states no expected result",
+                "add `hash = {}` and let `gridel check --bless` record it, or add `reference`, `certified`, \
+                 `max_proved_error`, `target`, `[check.budget]` or `[[check.board]]`",
             ));
         }
         Ok(check)

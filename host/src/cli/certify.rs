@@ -1,22 +1,23 @@
 //! `gridel certify`: encloses the exact picture, and measures how far each number format is from it.
 
-use super::arguments::{self, GeometryOptions, PictureOptions, distinct, quoted};
+use super::arguments::{
+    self, GeometryOptions, PictureOptions, SceneOptions, TraceOptions, distinct, quoted, seconds,
+};
 use super::failure::Failure;
 use super::input::stem;
 use super::output::{check_folder, print, print_json_warned, warn, write_files};
 use super::progress::Progress;
 use super::saving::Saving;
-use super::source::{Compiling, Source};
+use super::source::Source;
 use clap::Args;
-use gridel_core::format::checksum;
+use flate2::Crc;
 use gridel_core::{Format, Settings, Structure};
 use gridel_host::certify::{
-    Enclosed, MOST_PIXELS, Pictures, Report, World, certify, exact_picture, map, page, sentence,
+    Enclosed, FormatPicture, MOST_PIXELS, Pictures, Report, World, certify, exact_picture, map,
+    page, pictures, sentence,
 };
-use gridel_host::compile;
 use gridel_host::output::write_whole;
 use gridel_host::picture::write_png;
-use gridel_host::render::{Job, render};
 use gridel_host::table::{Align, Table, grouped};
 use serde::Serialize;
 use std::fmt::Write as _;
@@ -32,8 +33,9 @@ use std::path::{Path, PathBuf};
 /// 128 and 256 bits. The result is the sampled picture, with the scene's samples per pixel, and not
 /// the integral behind it.
 ///
-/// For each number format every pixel is proved equal, proved different, or open with a reason and a
-/// place.
+/// For each number format every pixel is proved equal, proved different, or open with a reason.
+///
+/// A scene that moves is shown as its file states it, or at one time with `--time`.
 ///
 /// Writes certify.html (the page), certify.json, map.png and exact.png to the folder, and
 /// certify.state, from which an interrupted run of the same picture continues.
@@ -52,6 +54,11 @@ pub struct Arguments {
     /// standard input]
     #[arg(short, long, value_name = "FOLDER")]
     output: Option<PathBuf>,
+
+    /// Certify a scene that moves at this time, in seconds [default: as its file states it, without
+    /// tracks]
+    #[arg(long, value_name = "SECONDS", value_parser = seconds, allow_hyphen_values = true)]
+    time: Option<f64>,
 
     /// Print the report as JSON
     #[arg(long)]
@@ -72,7 +79,7 @@ const EXACT: &str = "exact.png";
 const STATE: &str = "certify.state";
 
 /// The version of what is proved and how. Raise it with every change, so that older states are not continued.
-const RULES: u32 = 7;
+const RULES: u32 = 8;
 
 /// The JSON output.
 #[derive(Serialize)]
@@ -95,16 +102,15 @@ struct Commanded<'r> {
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let input = &arguments.input;
     arguments.output.as_deref().map_or(Ok(()), check_folder)?;
-    let compiling = compile::Options {
-        structures: vec![Structure::DualSplit],
-        ..compile::Options::default()
+    let options = SceneOptions::from(arguments.geometry.clone())
+        .sized(arguments.picture.size)
+        .at(arguments.time);
+    let with = TraceOptions {
+        format: Format::F64,
+        accel: None,
+        quality: None,
     };
-    let options = arguments.geometry.clone().into();
-    let compiling = Compiling {
-        options: compiling,
-        chosen: false,
-    };
-    let source = Source::open(input, &options, None, compiling)?;
+    let source = Source::to_trace(input, &options, &with, Structure::DualSplit)?;
     let scene = source.scene()?;
     let structure = source.structure(&scene, None)?;
     let settings = arguments.picture.settings(&scene);
@@ -122,7 +128,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let world = World::of(&scene).map_err(|unknown| {
         Failure::rejected(
             format!("{}: {unknown}", input.display()),
-            "leave it out of the scene, an effect with `--without`, or use `gridel accuracy`, which measures without proof",
+            "compile the scene without it, or use `gridel accuracy`, which measures without proof",
         )
     })?;
     let stem = stem(input);
@@ -133,7 +139,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let results = [PAGE, JSON, MAP, EXACT].map(|name| folder.join(name));
     let state = State {
         path: folder.join(STATE),
-        key: key(scene.header().checksum, &settings),
+        key: key(scene.header().checksum, source.time(), &settings),
     };
     source.reject_lost(results.iter().chain([&state.path]))?;
     reject_foreign(&state, &results)?;
@@ -144,17 +150,12 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         [] => Format::ALL.to_vec(),
         asked => distinct(asked),
     };
-    let mut pictures = Vec::new();
-    for format in formats {
-        let job = Job::whole(format, structure, settings);
-        let picture = render(&scene, &job, &|| ()).map_err(|error| {
-            Failure::usage(
-                error.to_string(),
-                "change the option, or the scene file's `[render]`",
-            )
-        })?;
-        pictures.push((format, picture.pixels));
-    }
+    let pictures = pictures(&scene, structure, settings, &formats).map_err(|error| {
+        Failure::usage(
+            error.to_string(),
+            "change the option, or the scene file's `[render]`",
+        )
+    })?;
 
     let mut pixels = state.read(count)?;
     let progress = Progress::steps("certifying", settings.height.into());
@@ -191,7 +192,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
 }
 
 /// Returns a key of the certified picture, so that the state of another picture is not continued.
-fn key(checksum: u32, settings: &Settings) -> String {
+fn key(checksum: u32, time: Option<i32>, settings: &Settings) -> String {
     let Settings {
         width,
         height,
@@ -199,8 +200,9 @@ fn key(checksum: u32, settings: &Settings) -> String {
         depth,
         ..
     } = settings;
+    let time = time.map_or(String::new(), |ticks| format!(" time {ticks}"));
     format!(
-        "gridel {} certify {RULES} blob {checksum:08x} size {width}x{height} samples {samples} depth {depth}\n",
+        "gridel {} certify {RULES} blob {checksum:08x}{time} size {width}x{height} samples {samples} depth {depth}\n",
         env!("CARGO_PKG_VERSION")
     )
 }
@@ -242,7 +244,7 @@ impl State {
     fn kept<'b>(&self, bytes: &'b [u8]) -> Result<&'b [u8], &'static str> {
         let (all, sum) = bytes.split_last_chunk().ok_or("is damaged")?;
         // The checksum holds for the key, too: without it, a damaged key looks like that of another picture.
-        if u32::from_le_bytes(*sum) != checksum(all) {
+        if u32::from_le_bytes(*sum) != sum_of(&[all]) {
             return Err("is damaged");
         }
         let pixels = all.strip_prefix(self.key.as_bytes());
@@ -250,15 +252,25 @@ impl State {
     }
 
     fn write(&self, pixels: &[Enclosed]) -> Result<(), Failure> {
-        let mut bytes = self.key.clone().into_bytes();
-        bytes.extend_from_slice(bytemuck::cast_slice(pixels));
-        bytes.extend(checksum(&bytes).to_le_bytes());
-        write_whole(&self.path, |out| out.write_all(&bytes))
-            .map_err(|error| Failure::writing(&self.path, &error))
+        // Without a copy, which would be as large as the pixels of the largest picture: 320 MiB.
+        let parts = [self.key.as_bytes(), bytemuck::cast_slice(pixels)];
+        let sum = sum_of(&parts).to_le_bytes();
+        write_whole(&self.path, |out| {
+            parts.iter().try_for_each(|part| out.write_all(part))?;
+            out.write_all(&sum)
+        })
+        .map_err(|error| Failure::writing(&self.path, &error))
     }
 }
 
-type Found<'f> = (&'f Report, &'f [Enclosed], &'f [(Format, Vec<[u16; 3]>)]);
+/// The checksum of the parts of a state.
+fn sum_of(parts: &[&[u8]]) -> u32 {
+    let mut sum = Crc::new();
+    parts.iter().for_each(|part| sum.update(part));
+    sum.sum()
+}
+
+type Found<'f> = (&'f Report, &'f [Enclosed], &'f [FormatPicture]);
 
 /// Rejects files in the place of results where no state says that they are results.
 fn reject_foreign(state: &State, results: &[PathBuf]) -> Result<(), Failure> {
@@ -297,10 +309,13 @@ fn write_results(
         explain: command,
         report,
     };
-    let json = serde_json::to_string_pretty(&commanded).map_err(|error| failed(error.into()))?;
     write_files(&[
         (page_path, &|out| out.write_all(page.as_bytes())),
-        (json_path, &|out| writeln!(out, "{json}")),
+        (json_path, &|out| {
+            // Written as it is made: the report of a large picture is long.
+            serde_json::to_writer_pretty(&mut *out, &commanded)?;
+            writeln!(out)
+        }),
         (map_path, &|out| write_png(out, size, &map, None)),
         (exact_path, &|out| write_png(out, size, &exact, None)),
     ])
@@ -315,8 +330,10 @@ fn explain_command(arguments: &Arguments, settings: &Settings) -> String {
         depth,
         ..
     } = settings;
+    let time = arguments.time.map(|seconds| format!(" --time={seconds}"));
+    let time = time.unwrap_or_default();
     format!(
-        "gridel explain {}{} --size {width}x{height} --samples {samples} --depth {depth} --pixel ",
+        "gridel explain {}{}{time} --size {width}x{height} --samples {samples} --depth {depth} --pixel ",
         quoted(&arguments.input.to_string_lossy()),
         arguments.geometry.written(),
     )
@@ -357,7 +374,7 @@ fn text(folder: &Path, report: &Report, command: &str) -> String {
         }
         let _ = writeln!(text, "{table}");
         for reason in &report.reasons {
-            if let Some(first) = reason.examples.first() {
+            if let Some(first) = reason.open_pixels.first() {
                 let [x, y] = first.pixel;
                 let _ = writeln!(text, "  {command}{x},{y} --interval");
             }

@@ -2,7 +2,9 @@
 
 use super::failure::Failure;
 use super::input::is_standard;
-use super::output::{check_writable, print, print_json, reject_inputs, warn, write_file};
+use super::output::{
+    check_writable, print, print_aside, print_json, reject_inputs, warn, write_file,
+};
 use super::progress::Progress;
 use clap::Args;
 use gridel_host::check::{self, Blessed, Manifest, Outcome, Report};
@@ -35,7 +37,8 @@ pub struct Arguments {
     #[arg(long, value_name = "DIR")]
     diff: Option<PathBuf>,
 
-    /// Write the results as JUnit XML too
+    /// Write the results as JUnit XML too; with `-` for standard output, the table goes to standard
+    /// error
     #[arg(long, value_name = "FILE")]
     junit: Option<PathBuf>,
 
@@ -167,7 +170,12 @@ fn print_findings(
         };
         let summary = format!("{passed} passed, {recorded}{failed} failed, {not_run} skipped\n");
         let reasons = reasons(report);
-        print(format!("{}{reasons}{summary}{diff}", report.table()))
+        let text = format!("{}{reasons}{summary}{diff}", report.table());
+        // Standard output is the XML's alone, so that it can be read.
+        match arguments.junit.as_deref().is_some_and(is_standard) {
+            true => print_aside(text),
+            false => print(text),
+        }
     };
     if not_run > 0 {
         warn(format!(

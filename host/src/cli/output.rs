@@ -185,6 +185,13 @@ pub fn print(text: impl Display) -> Result<(), Failure> {
     to_standard_output(text.to_string().as_bytes())
 }
 
+/// Prints on standard error, where standard output has another document.
+pub fn print_aside(text: impl Display) -> Result<(), Failure> {
+    // Standard error may be closed; that is no reason to stop.
+    let _ = write!(io::stderr(), "{text}");
+    Ok(())
+}
+
 /// Prints one JSON document on standard output.
 pub fn print_json(value: &impl Serialize) -> Result<(), Failure> {
     print(json(value)?)

@@ -142,19 +142,11 @@ fn text(arguments: &Arguments, report: &Report) -> String {
     let _ = writeln!(
         text,
         "A ray grazes a surface within {:.0} degrees of it: an error of one step of the surface is then \
-         an error of many steps of t.\nThe surface is off by at most {} steps. The rays with the \
-         largest errors of t:",
+         an error of many steps of t.\nThe surface is off by at most {} steps.",
         judge::GRAZING.asin().to_degrees(),
         judge::STEPS,
     );
-    for format in &report.formats {
-        for worst in [&format.worst, &format.worst_grazing] {
-            if let Some(ray) = &worst.ray {
-                let command = explain(arguments, ray, format.format, Structure::List.name());
-                let _ = writeln!(text, "  {command}");
-            }
-        }
-    }
+    text.push_str(&worst_rays(arguments, report));
     let mut table = Table::new([
         ("property", Align::Left),
         ("checked", Align::Right),
@@ -182,6 +174,24 @@ fn text(arguments: &Arguments, report: &Report) -> String {
         }
     }
     text
+}
+
+/// The commands that explain the rays with the largest errors; nothing where no t is off.
+fn worst_rays(arguments: &Arguments, report: &Report) -> String {
+    let mut text = String::new();
+    for format in &report.formats {
+        for worst in [&format.worst, &format.worst_grazing] {
+            if let Some(ray) = &worst.ray {
+                let command = explain(arguments, ray, format.format, Structure::List.name());
+                // Writing to a string cannot fail.
+                let _ = writeln!(text, "  {command}");
+            }
+        }
+    }
+    match text.is_empty() {
+        true => text,
+        false => format!("The rays with the largest errors of t:\n{text}"),
+    }
 }
 
 /// The command that explains a ray, in the scene as it was read here.

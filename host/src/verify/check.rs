@@ -66,6 +66,14 @@ pub struct Fault {
     pub what: String,
 }
 
+/// Tests of a property at a hit: not everything can be tested at every hit.
+#[derive(Clone, Debug, Default)]
+pub struct Tested {
+    /// Number of tests.
+    pub tests: u64,
+    pub faults: Vec<Fault>,
+}
+
 /// The answer of one structure.
 #[derive(Clone, Copy, Debug)]
 pub struct StructureAnswer<N: Number> {
@@ -284,11 +292,11 @@ pub fn leave<N: Number>(
     judge: &Judge,
     hit: &Hit<N>,
     random: &mut Random,
-) -> Vec<Fault> {
-    let mut faults = Vec::new();
+) -> Tested {
+    let mut tested = Tested::default();
     let itself = HitId::of(hit);
     let Some(placed) = judge.solid(itself) else {
-        return faults;
+        return tested;
     };
     let solid = placed.solid;
     for outward in [true, false] {
@@ -312,6 +320,7 @@ pub fn leave<N: Number>(
         let ray = Ray::<N>::from_f64(scene.bounds(), from, direction, 0.0, f64::INFINITY);
         let Ok(ray) = ray else { continue };
         let next = ask::<N, List>(scene, &ray).hit;
+        tested.tests += 1;
         let again = next.filter(|next| HitId::of(next) == itself);
         // A ray can hit a shape that is not convex again elsewhere.
         let elsewhere = again.is_some_and(|again| {
@@ -331,7 +340,7 @@ pub fn leave<N: Number>(
             (None, None) if !away => String::from("never leaves it"),
             _ => continue,
         };
-        faults.push(Fault {
+        tested.faults.push(Fault {
             property: Property::SelfHits,
             format: N::FORMAT,
             structure: Structure::List,
@@ -341,7 +350,7 @@ pub fn leave<N: Number>(
             ),
         });
     }
-    faults
+    tested
 }
 
 /// Follows a ray that starts inside of a closed mesh until it hits the mesh. A ray that never does is a fault.

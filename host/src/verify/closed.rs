@@ -26,14 +26,15 @@ struct Placed {
     map: ExactMap,
 }
 
-/// Most placed meshes that rays are aimed from; where there are more, every few of them.
-const MOST_PLACED: usize = 64;
+/// Most meshes that rays are aimed from, of the scene's own and of placed ones each; where there are more, every few of
+/// them. Brute force looks for a point inside of each, so its time grows with the square of their number.
+const MOST: usize = 64;
 
 impl ClosedMesh {
-    /// Returns the closed meshes of a scene, as they lie on its lattice: the scene's own, and some of instances. Returns
-    /// the number of all, too.
+    /// Returns closed meshes of a scene, as they lie on its lattice: some of the scene's own, and some of instances.
+    /// Returns the number of all, too.
     pub fn all(scene: &Scene<'_>) -> (Vec<Self>, usize) {
-        let mut all = of_objects(scene, |primitive| scene.object(primitive));
+        let own = of_objects(scene, |primitive| scene.object(primitive));
         let of_parts: Vec<Vec<Self>> = (0..)
             .zip(scene.parts())
             .map(|(number, part)| {
@@ -47,16 +48,20 @@ impl ClosedMesh {
             meshes.map(move |mesh| (index, instance, mesh))
         });
         let of_instances = placed.clone().count();
-        let step = of_instances.div_ceil(MOST_PLACED).max(1);
-        let count = all.len() + of_instances;
-        let placed = placed.step_by(step).map(|(index, instance, mesh)| Self {
-            instance: Some(Placed {
-                index,
-                number: instance.number,
-                map: ExactMap::of(instance),
-            }),
-            ..mesh.clone()
-        });
+        let step = |count: usize| count.div_ceil(MOST).max(1);
+        let count = own.len() + of_instances;
+        let own_step = step(own.len());
+        let mut all: Vec<Self> = own.into_iter().step_by(own_step).collect();
+        let placed = placed
+            .step_by(step(of_instances))
+            .map(|(index, instance, mesh)| Self {
+                instance: Some(Placed {
+                    index,
+                    number: instance.number,
+                    map: ExactMap::of(instance),
+                }),
+                ..mesh.clone()
+            });
         all.extend(placed);
         (all, count)
     }

@@ -35,7 +35,7 @@ pub enum Mismatch {
 pub struct Judge {
     own: Solids,
     parts: Vec<Solids>,
-    placed: Vec<PlacedPart>,
+    placed: Vec<Option<PlacedPart>>,
 }
 
 /// The primitives of a blob without its parts, in ascending order of their numbers. The pieces of a cut triangle share
@@ -83,7 +83,9 @@ impl Judge {
 
     /// The shapes of the pieces of a primitive.
     fn pieces(&self, hit: HitId) -> impl Iterator<Item = PlacedSolid<'_>> {
-        let placed = hit.instance.map(|it| self.placed.get(it as usize));
+        let placed = hit
+            .instance
+            .map(|it| self.placed.get(it as usize)?.as_ref());
         let (solids, first, map) = match placed {
             None => (Some(&self.own), 0, None),
             Some(None) => (None, 0, None),
@@ -183,6 +185,9 @@ impl Nearest<'_> {
     fn among_placed(&self) -> Result<(), Mismatch> {
         let RoundedRay { start, slope, .. } = *self.ray;
         for (instance, placed) in (0..).zip(&self.judge.placed) {
+            let Some(placed) = placed else {
+                continue;
+            };
             if !may_meet(start, slope, &placed.bounds) {
                 continue;
             }

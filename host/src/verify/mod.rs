@@ -17,7 +17,7 @@ mod shadow;
 
 pub use crate::trace::UnitRay;
 pub use check::{
-    Fault, Outcome, Property, StructureAnswer, ask, ask_all, check, depart, leave, sealed,
+    Fault, Outcome, Property, StructureAnswer, Tested, ask, ask_all, check, depart, leave, sealed,
 };
 pub use closed::ClosedMesh;
 pub use rays::Targets;
@@ -40,7 +40,7 @@ pub struct Report {
     pub formats: Vec<FormatReport>,
     /// Meshes whose every edge has its two triangles.
     pub closed_meshes: usize,
-    /// Those of them inside of which rays started: not all, where instances place many.
+    /// Those of them inside of which rays started: not all, where there are many.
     pub closed_meshes_aimed_from: usize,
     pub properties: Vec<PropertyReport>,
 }
@@ -174,9 +174,10 @@ pub fn verify(scene: &Scene<'_>, rays: u64, progress: &(dyn Fn() + Sync)) -> Rep
 
     let (meshes, closed_meshes) = ClosedMesh::all(scene);
     let inside: Vec<_> = meshes
-        .iter()
+        .par_iter()
         .filter_map(|mesh| Some((mesh, work.inside(mesh)?)))
         .collect();
+    let aimed_from = (inside.len() as u64).min(rays) as usize;
     let leaks = (0..chunks).into_par_iter().map(|chunk| {
         let mut tally = Tally::default();
         let mut random = Random(0x1ea5 ^ !chunk);
@@ -190,7 +191,7 @@ pub fn verify(scene: &Scene<'_>, rays: u64, progress: &(dyn Fn() + Sync)) -> Rep
         tally
     });
     all = all.plus(leaks.reduce(Tally::default, Tally::plus));
-    all.report(scene, rays, [closed_meshes, inside.len()])
+    all.report(scene, rays, [closed_meshes, aimed_from])
 }
 
 /// A ray from the inside of a closed mesh, in units.
@@ -267,10 +268,8 @@ impl Work<'_> {
             tally.fault(fault, ray);
         }
         if let Some(hit) = hit.filter(|_| random.one_in(CONTROL as usize)) {
-            tally.checked(Property::SelfHits, 2);
-            for fault in leave(self.scene, self.judge, &hit, random) {
-                tally.fault(fault, ray);
-            }
+            let tested = leave(self.scene, self.judge, &hit, random);
+            tally.tested(Property::SelfHits, tested, ray);
         }
     }
 
@@ -279,10 +278,7 @@ impl Work<'_> {
         let Ok((ready, _)) = self.frame.ray::<N>(self.scene, ray) else {
             return;
         };
-        tally.checked(Property::Shadows, 1);
-        for fault in shadow::lost(self.scene, &ready) {
-            tally.fault(fault, ray);
-        }
+        tally.tested(Property::Shadows, shadow::lost(self.scene, &ready), ray);
     }
 
     /// Returns a point inside of a closed mesh, in units: halfway from a face to the opposite one.
@@ -376,6 +372,13 @@ impl Tally {
 
     fn checked(&mut self, property: Property, count: u64) {
         *self.checked.entry(property).or_default() += count;
+    }
+
+    fn tested(&mut self, property: Property, tested: Tested, ray: &SceneRay) {
+        self.checked(property, tested.tests);
+        for fault in tested.faults {
+            self.fault(fault, ray);
+        }
     }
 
     fn fault(&mut self, fault: Fault, ray: &SceneRay) {

@@ -55,10 +55,11 @@ pub struct PlacedPart {
 }
 
 impl PlacedPart {
-    /// Returns all instances of a scene, in the order of its blob.
-    pub fn all(scene: &Scene<'_>) -> Vec<Self> {
+    /// Returns all instances of a scene, in the order of its blob. A slot is `None` for one without a part or a box, so
+    /// that a number always leads to its instance.
+    pub fn all(scene: &Scene<'_>) -> Vec<Option<Self>> {
         let instances = scene.instances().iter();
-        let placed = instances.filter_map(|instance| {
+        let placed = instances.map(|instance| {
             let part = usize::from(instance.part);
             Some(Self {
                 map: ExactMap::of(instance),

@@ -86,6 +86,7 @@ impl Targets {
         let placed = PlacedPart::all(scene);
         let placed: Vec<_> = placed
             .iter()
+            .flatten()
             .step_by(placed.len().div_ceil(MOST).max(1))
             .collect();
         // Others of each instance.

@@ -1,6 +1,6 @@
 //! Contact shadows: what lies in the dark by `f64`, and what another format says of it.
 
-use super::check::{Fault, Property, ask, depart};
+use super::check::{Fault, Property, Tested, ask, depart};
 use super::placed::PLACED;
 use super::rounded::{HitId, RoundedRay, step};
 use crate::random::Random;
@@ -42,7 +42,7 @@ pub fn at_a_shadow(scene: &Scene<'_>, random: &mut Random) -> Option<UnitRay> {
         }
     };
     let light = &scene.lights()[random.below(scene.lights().len())];
-    let travel = -to_light(light, from)?;
+    let travel = -to_light(scene, light, from)?;
     // A point behind the object as the light sees it.
     let mut ray = UnitRay::new(from.to_array(), travel.to_array());
     let hit = (0..8).find_map(|_| {
@@ -81,21 +81,28 @@ fn anywhere<'s>(
     Some((part, Some((chosen as u32, instance))))
 }
 
-/// The way from a point to a light.
-fn to_light(light: &Light, from: DVec3) -> Option<DVec3> {
+/// Returns whether a light is infinitely far.
+fn is_far(light: &Light) -> bool {
+    matches!(light.directional, 1 | Light::SUN)
+}
+
+/// The way from a point to a light, or to the middle of the sun; `None` for the map of an environment, which is
+/// everywhere.
+fn to_light(scene: &Scene<'_>, light: &Light, from: DVec3) -> Option<DVec3> {
     let vector = DVec3::from_array(light.vector.map(|x| x as f64 / 8192.0));
-    let way = if light.directional == 1 {
-        vector
-    } else {
-        vector - from
+    let way = match light.directional {
+        1 => vector,
+        Light::SUN => DVec3::from_array(scene.environment()?.sun_direction.map(f64::from)),
+        Light::ENVIRONMENT => return None,
+        _ => vector - from,
     };
     (way != DVec3::ZERO).then_some(way)
 }
 
 /// Returns the nearest opaque primitive between a hit and a light, seen from where a ray leaves the hit.
 fn blocker<N: Number>(scene: &Scene<'_>, light: &Light, from: DVec3) -> Option<Hit<N>> {
-    let way = to_light(light, from)?;
-    let reach = if light.directional == 1 {
+    let way = to_light(scene, light, from)?;
+    let reach = if is_far(light) {
         f64::INFINITY
     } else {
         way.abs().max_element()
@@ -111,7 +118,9 @@ const ROUNDINGS: f64 = 4.0;
 /// in the format the place is lit. At the edge of a shadow formats may differ. So the surroundings reach as far as the
 /// format's shadow ray may start from the place. Above it they reach at most a quarter of the way to the object that
 /// casts the shadow.
-pub fn lost<N: Number>(scene: &Scene<'_>, ray: &Ray<N>) -> Vec<Fault> {
+///
+/// Each light that is compared counts as a test.
+pub fn lost<N: Number>(scene: &Scene<'_>, ray: &Ray<N>) -> Tested {
     let rounded = RoundedRay::of(ray);
     let (hit, right) = (
         ask::<N, List>(scene, ray).hit,
@@ -120,10 +129,10 @@ pub fn lost<N: Number>(scene: &Scene<'_>, ray: &Ray<N>) -> Vec<Fault> {
             .and_then(|ray| ask::<f64, List>(scene, &ray).hit),
     );
     let (Some(hit), Some(right)) = (hit, right) else {
-        return Vec::new();
+        return Tested::default();
     };
     if HitId::of(&hit) != HitId::of(&right) || hit.front != right.front {
-        return Vec::new();
+        return Tested::default();
     }
     let normal = DVec3::from_array(right.normal) * if right.front { 1.0 } else { -1.0 };
     let place = DVec3::from_array(depart(scene, &right, right.front));
@@ -131,12 +140,13 @@ pub fn lost<N: Number>(scene: &Scene<'_>, ray: &Ray<N>) -> Vec<Fault> {
     let lattice_step = f64::powi(2.0, 16 - i32::from(scene.header().lattice_bits));
     let normal = normal.normalize();
     let (u, v) = normal.any_orthonormal_pair();
+    let mut tests = 0;
     let found = scene
         .lights()
         .iter()
         .enumerate()
         .filter_map(|(number, light)| {
-            if normal.dot(to_light(light, place)?) <= 0.0 {
+            if normal.dot(to_light(scene, light, place)?) <= 0.0 {
                 return None;
             }
             let is_opaque = |other: &Hit<f64>| {
@@ -161,6 +171,7 @@ pub fn lost<N: Number>(scene: &Scene<'_>, ray: &Ray<N>) -> Vec<Fault> {
             let distance = place.distance(DVec3::from_array(nearest.point));
             let above = lattice_step.max((2.0 * height.abs() + rounded).min(distance / 4.0));
             blocker::<f64>(scene, light, place + above * normal).filter(is_opaque)?;
+            tests += 1;
             if blocker::<N>(scene, light, from).is_some() {
                 return None;
             }
@@ -176,5 +187,53 @@ pub fn lost<N: Number>(scene: &Scene<'_>, ray: &Ray<N>) -> Vec<Fault> {
                 ),
             })
         });
-    found.collect()
+    let faults = found.collect();
+    Tested { tests, faults }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::compile::{Options, compile};
+
+    const FILE: &str = "[environment]\nzenith = [0.2, 0.3, 0.8]\nhorizon = 0.5\nground = 0.1\n\
+        sun = { direction = [-3, -1, 0.5], color = 2, angle = 1 }\n\
+        [[object]]\nkind = 'sphere'\ncenter = [0, 1, 0]\nradius = 1\n\
+        [[object]]\nkind = 'box'\nmin = [-5, -1, -5]\nmax = [5, 0, 5]\n";
+
+    fn with_scene(test: impl FnOnce(&Scene<'_>)) {
+        let imported = crate::scene::read("sun.toml".as_ref(), FILE.into(), &Default::default());
+        let blob = compile(&imported.unwrap().scene, &Options::default());
+        test(&blob.unwrap().blob.scene().unwrap());
+    }
+
+    #[test]
+    fn sun_is_infinitely_far_and_its_sky_is_no_point() {
+        with_scene(|scene| {
+            let of = |kind: u32| {
+                let mut lights = scene.lights().iter();
+                lights.find(|it| it.directional == kind).unwrap()
+            };
+            let from = DVec3::new(3.0, 4.0, 5.0);
+            assert_eq!(to_light(scene, of(Light::ENVIRONMENT), from), None);
+            let way = to_light(scene, of(Light::SUN), from).unwrap().normalize();
+            let sun = DVec3::new(3.0, 1.0, -0.5).normalize();
+            assert!(way.distance(sun) < 1e-6 && is_far(of(Light::SUN)), "{way}");
+        });
+    }
+
+    #[test]
+    fn shadows_that_are_not_compared_do_not_count() {
+        with_scene(|scene| {
+            let away = UnitRay::new([0.0; 3], [0.0, 1e6, 0.0]);
+            let ray = away.ready::<f32>(scene).unwrap();
+            let to_surface = lost(scene, &ray);
+            let beside = UnitRay::new([1e7; 3], [0.0, 1.0, 0.0]);
+            let beside = beside
+                .ready::<f32>(scene)
+                .map(|ray| lost(scene, &ray).tests);
+            assert!(to_surface.tests <= scene.lights().len() as u64);
+            assert!(beside.is_none_or(|tests| tests == 0));
+        });
+    }
 }

@@ -1,7 +1,7 @@
 //! `gridel certify`.
 
 use crate::program::Folder;
-use gridel_core::format::checksum;
+use flate2::Crc;
 
 const BALL: &str = "object = [{ kind = \"sphere\", center = [0, 0, 0], radius = 1 }]\n";
 
@@ -54,7 +54,9 @@ fn forged(state: &[u8], change: impl FnOnce(&mut [u8])) -> Vec<u8> {
     let mut bytes = state[..state.len() - 4].to_vec();
     let line = bytes.iter().position(|&byte| byte == b'\n').unwrap() + 1;
     change(&mut bytes[line..]);
-    bytes.extend(checksum(&bytes).to_le_bytes());
+    let mut sum = Crc::new();
+    sum.update(&bytes);
+    bytes.extend(sum.sum().to_le_bytes());
     bytes
 }
 
@@ -79,7 +81,7 @@ fn an_interrupted_run_continues_where_it_stopped() {
     let again = folder.json(&SMALL);
     let count = |report: &serde_json::Value| report["proved"].as_u64().unwrap();
     assert_eq!(count(&again) + 1, count(&whole));
-    assert_eq!(again["reasons"][0]["examples"][0]["pixel"][0], 0);
+    assert_eq!(again["reasons"][0]["open_pixels"][0]["pixel"][0], 0);
 }
 
 #[test]
@@ -237,4 +239,28 @@ fn files_that_are_no_results_stay() {
     folder.write("out/exact.png", b"my own");
     let words = ["exact.png exists", "certify.state", "another folder"];
     folder.fails(2, &SMALL, &words);
+}
+
+#[test]
+fn scenes_that_move_are_certified_at_a_time() {
+    let folder = folder();
+    let moving = format!(
+        "{BALL}track = [{{ target = 'camera.orbit', times = [0, 2], values = [0, 90] }}]\n\
+         camera = {{ eye = [0, 1, 4], target = [0, 1, 0] }}\n\
+         light = [{{ kind = 'directional', direction = [-1, -1, -1] }}]\n"
+    );
+    folder.write("ball.toml", moving.as_bytes());
+    let at_rest = folder.json(&SMALL);
+    let picture = folder.read("out/exact.png");
+    let at_a_time = [&SMALL[..], &["--time", "1", "--json"]].concat();
+    let run = folder.run(&at_a_time);
+    assert!(run.said().contains("is of another picture"), "{run:?}");
+    let report: serde_json::Value = serde_json::from_str(&run.stdout).unwrap();
+    assert!(folder.read("out/exact.png") != picture);
+    let command = report["explain"].as_str().unwrap();
+    assert!(command.contains(" --time=1 "), "{command}");
+    assert_eq!(report["formats"][2]["different"], 0, "{report}");
+    assert_eq!(at_rest["pixels"], report["pixels"]);
+    folder.write("ball.toml", BALL.as_bytes());
+    folder.fails(2, &at_a_time, &["has no tracks"]);
 }

@@ -110,7 +110,11 @@ fn mistakes_are_explained() {
     folder.write("empty.toml", b"");
     folder.fails(1, &["check", "empty.toml"], &["`[[check]]`"]);
     folder.write("idle.toml", b"[[check]]\nscene = 'quick.toml'");
-    folder.fails(1, &["check", "idle.toml"], &["expects nothing"]);
+    folder.fails(
+        1,
+        &["check", "idle.toml"],
+        &["tests nothing", "`certified`", "`max_proved_error`"],
+    );
     let words = ["typo.toml:2", "no key `sceen`", "did you mean `scene`?"];
     folder.fails(1, &["check", "typo.toml", "--bless"], &words);
 }
@@ -416,6 +420,15 @@ fn reports_for_programs_do_not_share_standard_output() {
         run.said().contains("cannot both go to standard output"),
         "{run:?}"
     );
+}
+
+#[test]
+fn xml_on_standard_output_is_alone_there() {
+    let folder = folder();
+    let run = folder.run(&["check", "check.toml", "--junit", "-"]);
+    assert!(run.stdout.starts_with("<?xml"), "{run:?}");
+    assert!(run.stdout.trim_end().ends_with("</testsuites>"), "{run:?}");
+    assert!(run.stderr.contains("3 failed"), "{run:?}");
 }
 
 #[test]

@@ -318,3 +318,30 @@ fn verify_says_how_many_closed_meshes_rays_start_in() {
     let text = folder.done(&["verify", "ball.toml", "--accel", "bvh", "--rays", "500"]);
     assert!(!text.contains("from inside"), "{text}");
 }
+
+#[test]
+fn verify_limits_the_closed_meshes_of_the_scene_and_counts_those_with_a_ray() {
+    let folder = Folder::new();
+    let mesh = |x: u32| {
+        let [a, b] = [2 * x, 2 * x + 1];
+        format!(
+            "[[object]]\nkind = 'mesh'\nvertices = [[{a}, 0, 0], [{b}, 0, 0], [{a}, 1, 0], [{a}, 0, 1]]\n\
+             faces = [[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]]\n"
+        )
+    };
+    let scene: String = (0..70).map(mesh).collect();
+    folder.write("many.toml", scene.as_bytes());
+    for (rays, aimed_from) in [("500", 35), ("5", 5)] {
+        let report = folder.json(&["verify", "many.toml", "--accel", "bvh", "--rays", rays]);
+        assert_eq!(report["closed_meshes"], 70);
+        assert_eq!(report["closed_meshes_aimed_from"], aimed_from);
+    }
+}
+
+#[test]
+fn verify_lists_rays_only_where_a_t_is_off() {
+    let folder = Folder::new();
+    folder.write("empty.toml", b"background = [1, 1, 1]\n");
+    let text = folder.done(&["verify", "empty.toml", "--accel", "bvh", "--rays", "50"]);
+    assert!(!text.contains("largest errors"), "{text}");
+}

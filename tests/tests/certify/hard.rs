@@ -2,9 +2,10 @@
 
 use super::exact::Exact;
 use super::{holds, settings, small};
-use gridel_core::Scene;
+use gridel_core::{Format, Scene, Structure};
 use gridel_host::blob::Blob;
 use gridel_host::certify::{Enclosed, LEVELS, World, code, enclose, linear};
+use gridel_host::render::{Job, render};
 use gridel_host::shape::exact::Real;
 use gridel_tests::effort::full;
 use gridel_tests::scenes;
@@ -24,13 +25,21 @@ pub fn values(exact: &[Real; 3]) -> [u16; 3] {
 
 /// Compares each pixel with the evaluation in 320 bits, at every level. Returns the open ones.
 fn never_wrong(scene: &Scene<'_>, size: [u16; 2]) -> Vec<([u16; 2], Enclosed)> {
+    let [width, height] = size;
+    let all = (0..height).flat_map(|y| (0..width).map(move |x| [x, y]));
+    never_wrong_at(scene, size, all.collect())
+}
+
+/// The same for some of the pixels.
+fn never_wrong_at(
+    scene: &Scene<'_>,
+    size: [u16; 2],
+    pixels: Vec<[u16; 2]>,
+) -> Vec<([u16; 2], Enclosed)> {
     let settings = settings(scene, size, 1);
     let world = World::of(scene).expect("a scene that is known");
     let exact = Exact::of(scene, settings);
-    let [width, height] = size.map(usize::from);
-    let pixels = (0..width * height).into_par_iter();
-    let pixels = pixels.filter_map(|index| {
-        let pixel = [(index % width) as u16, (index / width) as u16];
+    let pixels = pixels.into_par_iter().filter_map(|pixel| {
         let value = exact.pixel(pixel);
         for levels in 1..=LEVELS.len() {
             let enclosed = enclose(&world, &settings, pixel, levels);
@@ -151,4 +160,72 @@ fn grazing_edges_are_proved_or_named() {
         );
         check(&text, most, 31);
     }
+}
+
+/// Rays among many mirrored balls: each reflection widens them, until nothing is known of a direction.
+#[test]
+fn rays_of_unknown_direction_do_not_miss_balls() {
+    let mut text = String::from(
+        "background = [0.9, 0.9, 0.9]\nambient = 1\n\
+         [camera]\neye = [0, 0, 8]\ntarget = [0, 0, 0]\n[render]\ndepth = 32\ncutoff = 0.001\n\
+         [material.mirror]\ndiffuse = 0\nmirror = 1\n[material.dark]\ndiffuse = [0.05, 0.05, 0.3]\n",
+    );
+    for number in 0..100 {
+        // Spread by the golden ratio and its like, on the lattice.
+        let place = |by: f64| {
+            let part = (f64::from(number + 500) * by).fract();
+            ((8.0 * part - 4.0) * 64.0).round() / 64.0
+        };
+        let center = [0.8191725133961645, 0.6710436067037893, 0.5497004779019703].map(place);
+        let material = if number % 4 == 0 { "dark" } else { "mirror" };
+        text += &format!(
+            "[[object]]\nkind = 'sphere'\ncenter = {center:?}\nradius = 0.75\nmaterial = '{material}'\n"
+        );
+    }
+    let blob = blob(&text);
+    let rows = [20, 26].into_iter();
+    let pixels = rows.flat_map(|y| (36..48).map(move |x| [x, y])).collect();
+    let open = never_wrong_at(&blob.scene().expect("a scene"), [48, 36], pixels);
+    assert!(open.is_empty(), "{open:?}");
+}
+
+/// A light within absorbing glass: the cutoff of its light is compared at the surface, before the rest of the way.
+#[test]
+fn light_that_the_last_stretch_weakens_is_not_cut_off() {
+    let text = "[camera]\neye = [0, 3, 8]\ntarget = [0, 0, 0]\n\
+        [material.glass]\ndiffuse = 0\ntransmit = 1\nior = 1.5\nabsorption = 7\n\
+        [[light]]\nkind = 'point'\nposition = [0, 4, 0]\ncolor = 400\n\
+        [[object]]\nkind = 'sphere'\ncenter = [0, 4, 0]\nradius = 1\nmaterial = 'glass'\n\
+        [[object]]\nkind = 'plane'\npoint = [0, -1, 0]\nnormal = [0, 1, 0]\n";
+    check(text, [17, 13], 0);
+}
+
+/// Instances in one place: the first of them in the scene file counts, whichever part it places.
+#[test]
+fn instances_at_one_place_are_ordered_as_in_the_scene_file() {
+    let part = |name: &str, color: &str| {
+        format!(
+            "[material.{name}]\ndiffuse = {color}\n[[part]]\nname = '{name}'\n\
+             [[part.object]]\nkind = 'box'\nmin = [-1, -1, -1]\nmax = [1, 1, 1]\nmaterial = '{name}'\n"
+        )
+    };
+    let text = format!(
+        "[camera]\neye = [0, 0, 8]\ntarget = [0, 0, 0]\n[render]\nshadows = false\n\
+         [[light]]\nkind = 'directional'\ndirection = [0, 0, -1]\n{}{}\
+         [[instance]]\npart = 'red'\ntranslate = [8, 0, 0]\n[[instance]]\npart = 'blue'\n[[instance]]\npart = 'red'\n",
+        part("red", "[0.9, 0.1, 0.1]"),
+        part("blue", "[0.1, 0.1, 0.9]"),
+    );
+    check(&text, [17, 13], 0);
+    // The kernels agree, which the exact picture does not use.
+    let blob = blob(&text);
+    let scene = blob.scene().expect("a scene");
+    let settings = settings(&scene, [17, 13], 1);
+    let job = Job::whole(Format::F64, Structure::DualSplit, settings);
+    let picture = render(&scene, &job, &|| ()).expect("a picture");
+    let world = World::of(&scene).expect("a scene that is known");
+    let middle = enclose(&world, &settings, [8, 6], LEVELS.len());
+    let shown = picture.pixels[6 * 17 + 8];
+    assert!(shown[2] > shown[0], "{shown:?}");
+    assert_eq!(middle.error_of(code(shown)), Some(0));
 }

@@ -40,7 +40,8 @@ impl Exact<'_> {
         all
     }
 
-    /// The first crossing, or the one of the lower primitive at the same t.
+    /// The first crossing. At the same t the scene's own primitives come before those of instances, and the lower number
+    /// first.
     pub fn nearest(&self, line: &Line, end: Option<&Real>) -> Option<Met<'_>> {
         let mut best: Option<(Real, &Placed, bool)> = None;
         for next in self.crossings(line, end) {
@@ -48,7 +49,8 @@ impl Exact<'_> {
                 None => true,
                 Some(best) => {
                     let apart = &next.0 - &best.0;
-                    apart < -nothing() || apart < nothing() && next.1.primitive < best.1.primitive
+                    let rank = |placed: &Placed| (placed.instance, placed.primitive);
+                    apart < -nothing() || apart < nothing() && rank(next.1) < rank(best.1)
                 }
             };
             if is_better {

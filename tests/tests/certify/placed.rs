@@ -13,6 +13,8 @@ use gridel_host::shape::exact::{
 pub struct Placed {
     pub solid: Solid,
     pub primitive: u32,
+    /// The number of its instance, which decides before the primitive; `None` comes before all.
+    pub instance: Option<u32>,
     pub object: u32,
     /// The normals of a triangle's corners, as they are stored.
     pub normals: Option<[[i16; 2]; 3]>,
@@ -33,6 +35,8 @@ pub struct Map {
     pub center: Vector,
     /// The binary logarithm of its scale.
     pub stretch: i32,
+    /// The instance's number in scene-file order.
+    pub number: u32,
 }
 
 impl Map {
@@ -42,6 +46,7 @@ impl Map {
             rows: instance.matrix.map(|row| row.map(|x| fraction(x, down))),
             center: instance.center.map(|x| fraction(x, 8)),
             stretch: stretch(instance),
+            number: instance.number,
         }
     }
 
@@ -80,6 +85,7 @@ impl Placed {
                 all.push(Self {
                     solid: Solid::of(geometry),
                     primitive,
+                    instance: map.map(|map| map.number),
                     object: whole.object(primitive),
                     normals: corners.and_then(|it| scene.corner_normals(it)),
                     colors: corners.and_then(|it| scene.corner_colors(it)),

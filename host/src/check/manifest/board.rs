@@ -102,7 +102,7 @@ impl Board {
         })?;
         if budget.is_empty() && picture.is_none() {
             return Err(table.error(
-                "this board expects nothing, so nothing could break it",
+                "this board tests nothing: it states no expected result",
                 "add a `budget` of figures that the program prints, or the `picture` that it writes",
             ));
         }

@@ -83,6 +83,10 @@ fn failures_are_broken_and_what_is_missing_is_not_run() {
     let toy = emulator(&folder, "echo no luck >&2; exit 3");
     let failed = first(&board(&toy, budget));
     assert!(matches!(&failed.outcome, Outcome::Failed(why) if why.contains("no luck")));
+    let toy = emulator(&folder, "exec yes");
+    let loud = first(&board(&toy, "budget = { loops = 1 }\nseconds = 60"));
+    let too_much = "prints more than 4,194,304 bytes";
+    assert!(matches!(&loud.outcome, Outcome::Failed(why) if why.contains(too_much)));
     let toy = emulator(&folder, "exec sleep 60");
     let endless = first(&board(&toy, budget));
     assert!(matches!(&endless.outcome, Outcome::Failed(why) if why.contains("after 1 s")));

@@ -46,13 +46,13 @@ fn mistakes_name_line_cause_and_remedy() {
         (
             "[[check]]\nscene = \"a\"\nbudget = {}\nformats = [\"f64\"]",
             1,
-            "expects nothing",
+            "this check tests nothing",
             "add `hash = {}`",
         ),
         (
             "[[check]]\nscene = \"a\"\n[[check.board]]\nmachine = \"m\"\nelf = \"e\"",
             3,
-            "this board expects nothing",
+            "this board tests nothing",
             "add a `budget`",
         ),
         (
@@ -160,7 +160,7 @@ fn mistakes_name_line_cause_and_remedy() {
         (
             "[[check]]\nscene = \"a\"\nhash = {}\n[[check.board]]\nmachine = \"m\"\nelf = \"e\"",
             4,
-            "this board expects nothing",
+            "this board tests nothing",
             "add a `budget`",
         ),
         (
