@@ -263,7 +263,7 @@ pub enum Event {
         /// of the caller's own.
         at: Option<[i32; 2]>,
         /// Its radiance, each channel limited to 0 to 1. The limit is 16 where effects act on the mean of samples, or
-        /// need it to be right.
+        /// need it to be right, and 4 with lights that have an area.
         radiance: [f64; 3],
     },
 }

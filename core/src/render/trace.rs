@@ -17,6 +17,7 @@ use crate::observe::count::Observer;
 use crate::observe::event::{Event, RayKind, Source};
 use crate::query::{Hit, any_hit, closest_hit};
 use crate::ray::Ray;
+use crate::render::headroom::Headroom;
 use crate::render::spread::Spread;
 use crate::render::start::Start;
 use crate::render::workspace::{Pending, State, WorkspaceView};
@@ -109,11 +110,28 @@ impl Loop<'_, '_> {
 }
 
 impl Loop<'_, '_> {
+    /// Returns true if the scene has effects of a set whose code is there.
+    #[inline(always)]
+    fn has_any_of(&self, with_code: u32) -> bool {
+        with_code != 0 && self.scene.effects().0 & with_code != 0
+    }
+
     /// Returns true if effects of the scene act on the mean of a pixel's samples.
     #[inline(always)]
-    pub(super) fn develops<const EFFECTS: u32>(&self) -> bool {
-        let with_code = const { EFFECTS & All::DEVELOPING };
-        with_code != 0 && self.scene.effects().0 & with_code != 0
+    fn develops<const EFFECTS: u32>(&self) -> bool {
+        self.has_any_of(const { EFFECTS & All::DEVELOPING })
+    }
+
+    /// Returns the most of a sample's radiance that counts, 1 being display white.
+    #[inline(always)]
+    pub(super) fn headroom<const EFFECTS: u32>(&self) -> Headroom {
+        if self.develops::<EFFECTS>() {
+            Headroom::WIDE
+        } else if self.has_any_of(const { EFFECTS & All::VARYING }) {
+            Headroom::NARROW
+        } else {
+            Headroom::NONE
+        }
     }
 
     /// The displayed value of the mean of a pixel's samples.

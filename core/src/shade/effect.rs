@@ -92,6 +92,9 @@ macro_rules! places {
 
             /// Returns true if a material requires it.
             fn is_required_by_material(material: &Material) -> bool {
+            /// True if because of it single samples are up to a few times brighter than their mean.
+            const VARIES: bool = false;
+
                 false
             }
 
@@ -133,6 +136,8 @@ macro_rules! places {
             const DEVELOPING: u32;
 
             /// Bytes of the states of some effects in a ray that waits.
+            /// The effects because of which single samples are up to a few times brighter than their mean.
+            const VARYING: u32;
             fn state_bytes<N: Number>(effects: Effects) -> usize;
 
             /// The effects that a material requires.
@@ -163,6 +168,7 @@ macro_rules! places {
             const DEVELOPING: u32 = 0;
 
             fn state_bytes<N: Number>(_: Effects) -> usize {
+            const VARYING: u32 = 0;
                 0
             }
 
@@ -200,6 +206,7 @@ macro_rules! places {
             const DEVELOPING: u32 = First::EFFECT.only_if(First::DEVELOPS).0 | Rest::DEVELOPING;
 
             fn state_bytes<N: Number>(effects: Effects) -> usize {
+            const VARYING: u32 = First::EFFECT.only_if(First::VARIES).0 | Rest::VARYING;
                 let is_there = effects.contains(First::EFFECT);
                 let first = if is_there { size_of::<First::State<N>>() } else { 0 };
                 first.wrapping_add(Rest::state_bytes::<N>(effects))
