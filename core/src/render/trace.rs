@@ -220,28 +220,13 @@ impl<N: Number, A: Accel, C: Observer, const EFFECTS: u32> Tracing<'_, '_, '_, N
         All::surface::<EFFECTS, N, _>(self, &mut state, ray, &mut surface);
         self.state = state;
 
-        let mut local = Color::radiance(scene.view.ambient).times(surface.diffuse);
-        if C::ENABLED && local != Color::BLACK {
-            self.count.event(Event::Ambient {
-                radiance: local.to_f64(),
-            });
-        }
-        All::emit::<EFFECTS, N, _>(self, &mut state, &surface, &mut local);
-        let mut number = 0_u32;
-        for light in scene.lights {
-            let lit = self.lit(number, light, &surface);
-            // Light can change it on its way.
-            self.state = state;
-            local = local.plus(lit);
-            if C::ENABLED {
-                self.count.event(Event::Lit {
-                    number,
-                    radiance: lit.to_f64(),
-                });
-            }
-            number = number.wrapping_add(1);
-        }
-        self.bring(Source::Surface, local.times(surface.weight), radiance);
+        // Nothing is seen of a surface that alpha hides: what it would reflect costs nothing.
+        let is_seen = const { EFFECTS & All::PASSING == 0 } || surface.weight != Color::BLACK;
+        let brought = match is_seen {
+            true => self.local(&mut state, &surface).times(surface.weight),
+            false => Color::BLACK,
+        };
+        self.bring(Source::Surface, brought, radiance);
 
         if self.depth >= self.most {
             if C::ENABLED && required.0 & EFFECTS & All::CASTING != 0 {
@@ -279,6 +264,34 @@ impl<N: Number, A: Accel, C: Observer, const EFFECTS: u32> Tracing<'_, '_, '_, N
         }
     }
 
+    /// The radiance that a surface reflects of ambient light and of the lights, and its own.
+    #[inline(always)]
+    fn local(&mut self, state: &mut State<N>, surface: &Surface<'_, N>) -> Color<N> {
+        let scene = self.scene;
+        let mut local = Color::radiance(scene.view.ambient).times(surface.diffuse);
+        if C::ENABLED && local != Color::BLACK {
+            self.count.event(Event::Ambient {
+                radiance: local.to_f64(),
+            });
+        }
+        All::emit::<EFFECTS, N, _>(self, state, surface, &mut local);
+        let mut number = 0_u32;
+        for light in scene.lights {
+            let lit = self.lit(number, light, surface);
+            // Light can change it on its way.
+            self.state = *state;
+            local = local.plus(lit);
+            if C::ENABLED {
+                self.count.event(Event::Lit {
+                    number,
+                    radiance: lit.to_f64(),
+                });
+            }
+            number = number.wrapping_add(1);
+        }
+        local
+    }
+
     /// Adds radiance to the sample.
     #[inline(always)]
     fn bring(&mut self, source: Source, brought: Color<N>, radiance: &mut Color<N>) {
@@ -300,6 +313,10 @@ impl<N: Number, A: Accel, C: Observer, const EFFECTS: u32> Tracing<'_, '_, '_, N
     /// The radiance that a light adds to a surface that it reaches.
     #[inline(always)]
     fn lit(&mut self, number: u32, light: &Light, surface: &Surface<'_, N>) -> Color<N> {
+        // A light that is turned off.
+        if { light.color } == [0; 3] {
+            return Color::BLACK;
+        }
         let mut state = self.state;
         let origin = depart(self.scene, surface.hit, surface.hit.front, true);
         let (way, distance) = light.seen_from(origin);

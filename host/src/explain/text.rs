@@ -382,6 +382,7 @@ impl Shown<'_> {
             ),
             LightOutcome::Faded => format!("{light} is absorbed{glass}"),
             LightOutcome::Here => format!("{light} is at this point, so it has no direction"),
+            LightOutcome::Off => format!("{light} is turned off: its color is black"),
             LightOutcome::Unreflected => {
                 format!("{light} reaches it, but the material reflects none of it")
             }
