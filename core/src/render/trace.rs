@@ -361,24 +361,25 @@ impl<N: Number, A: Accel, C: Observer, const EFFECTS: u32> Tracing<'_, '_, '_, N
         if !is_reached {
             return Color::BLACK;
         }
-        let mut gain = 0;
+        let mut gleam = None;
         All::reflect::<EFFECTS, N, _>(
             self,
             &mut state,
             surface,
             &lighting,
             &mut reflected,
-            &mut gain,
+            &mut gleam,
         );
-        if reflected == Color::BLACK {
+        if reflected == Color::BLACK && gleam.is_none() {
             return Color::BLACK;
         }
         let mut arriving = Color::radiance(lighting.light.color);
         All::light::<EFFECTS, N, _>(self, &mut state, surface, &lighting, &mut arriving);
-        for _ in 0..gain {
-            arriving = arriving.plus(arriving);
+        let diffuse = arriving.times(reflected);
+        match gleam {
+            None => diffuse,
+            Some(gleam) => diffuse.plus(gleam.of(arriving)),
         }
-        arriving.times(reflected)
     }
 }
 

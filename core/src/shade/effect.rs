@@ -13,7 +13,9 @@ use crate::query::Hit;
 use crate::ray::Ray;
 use crate::scene::Scene;
 use crate::shade::Color;
-use crate::shade::surface::{Aim, Arrival, Bounce, Filter, Lighting, Reach, Secondary, Surface};
+use crate::shade::surface::{
+    Aim, Arrival, Bounce, Filter, Gleam, Lighting, Reach, Secondary, Surface,
+};
 use core::fmt::Debug;
 
 /// The ray loop, as effects use it.
@@ -90,11 +92,11 @@ macro_rules! places {
             /// right.
             const DEVELOPS: bool = false;
 
-            /// Returns true if a material requires it.
-            fn is_required_by_material(material: &Material) -> bool {
             /// True if because of it single samples are up to a few times brighter than their mean.
             const VARIES: bool = false;
 
+            /// Returns true if a material requires it.
+            fn is_required_by_material(material: &Material) -> bool {
                 false
             }
 
@@ -134,10 +136,10 @@ macro_rules! places {
             const PASSING: u32;
             /// The effects that act on the mean of samples that are brighter than display white.
             const DEVELOPING: u32;
-
-            /// Bytes of the states of some effects in a ray that waits.
             /// The effects because of which single samples are up to a few times brighter than their mean.
             const VARYING: u32;
+
+            /// Bytes of the states of some effects in a ray that waits.
             fn state_bytes<N: Number>(effects: Effects) -> usize;
 
             /// The effects that a material requires.
@@ -166,9 +168,9 @@ macro_rules! places {
             const FILTERING: u32 = 0;
             const PASSING: u32 = 0;
             const DEVELOPING: u32 = 0;
+            const VARYING: u32 = 0;
 
             fn state_bytes<N: Number>(_: Effects) -> usize {
-            const VARYING: u32 = 0;
                 0
             }
 
@@ -204,9 +206,9 @@ macro_rules! places {
             const FILTERING: u32 = First::EFFECT.only_if(First::FILTERS).0 | Rest::FILTERING;
             const PASSING: u32 = First::EFFECT.only_if(First::PASSES).0 | Rest::PASSING;
             const DEVELOPING: u32 = First::EFFECT.only_if(First::DEVELOPS).0 | Rest::DEVELOPING;
+            const VARYING: u32 = First::EFFECT.only_if(First::VARIES).0 | Rest::VARYING;
 
             fn state_bytes<N: Number>(effects: Effects) -> usize {
-            const VARYING: u32 = First::EFFECT.only_if(First::VARIES).0 | Rest::VARYING;
                 let is_there = effects.contains(First::EFFECT);
                 let first = if is_there { size_of::<First::State<N>>() } else { 0 };
                 first.wrapping_add(Rest::state_bytes::<N>(effects))
@@ -264,13 +266,12 @@ places! {
     /// A surface faces a light: the start of the way there may change, and whether the light reaches it.
     fn face(surface: &Surface<'_, N>, lighting: &mut Lighting<'_, N>, is_reached: &mut bool);
 
-    /// A surface reflects a light that it faces: the reflected ratio may change. Times 2 to the power of `gain` it may
-    /// be above 1.
+    /// A surface reflects a light that it faces: the reflected ratio may change, and facets may mirror the light.
     fn reflect(
         surface: &Surface<'_, N>,
         lighting: &Lighting<'_, N>,
         reflected: &mut Color<N>,
-        gain: &mut u32
+        gleam: &mut Option<Gleam<N>>
     );
 
     /// Light arrives from a light at a surface that reflects it: its radiance may change.

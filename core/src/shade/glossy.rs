@@ -19,8 +19,8 @@ use crate::query::Hit;
 use crate::shade::Color;
 use crate::shade::effect::{Effect, Tracer};
 use crate::shade::facets::Facets;
-use crate::shade::glass::split;
-use crate::shade::surface::{Bounce, Lighting, Secondary, Surface};
+use crate::shade::glass::{self, split};
+use crate::shade::surface::{Bounce, Gleam, Lighting, Secondary, Surface};
 
 pub(crate) struct Glossy;
 
@@ -45,8 +45,8 @@ impl Effect for Glossy {
 
         surface: &Surface<'_, N>,
         lighting: &Lighting<'_, N>,
-        reflected: &mut Color<N>,
-        gain: &mut u32,
+        _: &mut Color<N>,
+        gleam: &mut Option<Gleam<N>>,
     ) {
         // No material states it, unlike for other effects: a section of the blob does.
         let scene = tracer.scene();
@@ -61,7 +61,7 @@ impl Effect for Glossy {
             _ => alpha < WIDE && scene.is_shown(light),
         };
         if !is_met {
-            (*reflected, *gain) = mirrored(alpha, surface, lighting.to_light, *reflected);
+            *gleam = mirrored(alpha, surface, lighting.to_light);
         }
     }
 
@@ -112,12 +112,7 @@ impl Effect for Glossy {
 
 /// Adds the part of a light that facets mirror to its reflected part, times 2 to the power of the second number.
 #[inline(never)]
-fn mirrored<N: Number>(
-    alpha: i32,
-    surface: &Surface<'_, N>,
-    to_light: [N; 3],
-    reflected: Color<N>,
-) -> (Color<N>, u32) {
+fn mirrored<N: Number>(alpha: i32, surface: &Surface<'_, N>, to_light: [N; 3]) -> Option<Gleam<N>> {
     let Surface { material, .. } = *surface;
     let (normal, direction) = (surface.shading_normal, surface.direction);
     // Halfway between the light and the ray's origin.
@@ -132,14 +127,8 @@ fn mirrored<N: Number>(
         let cos = -N::from_wide(N::dot(direction, halfway));
         let cos = cos.max(N::ZERO).min(N::ONE);
         let split = split(surface.interface(), direction, halfway, cos);
-        let transmit = Color::ratios(material.transmit);
-        color = color.plus_up_to_one(transmit.scaled(split.reflected));
+        color = color.plus_up_to_one(glass::mirrored(material, split.reflected));
     }
-    // Halves of both, so that the sum is at most 1.
-    let mut shrunk = reflected.scaled(N::ONE.half());
-    for _ in 0..power {
-        shrunk = shrunk.scaled(N::ONE.half());
-    }
-    let sum = shrunk.plus_up_to_one(color.scaled(ratio.half()));
-    (sum, power.wrapping_add(1))
+    let ratio = color.scaled(ratio);
+    (ratio != Color::BLACK).then_some(Gleam { ratio, power })
 }

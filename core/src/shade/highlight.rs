@@ -5,7 +5,7 @@ use crate::format::Effects;
 use crate::format::record::Material;
 use crate::shade::Color;
 use crate::shade::effect::{Effect, Tracer};
-use crate::shade::surface::{Lighting, Surface};
+use crate::shade::surface::{Gleam, Lighting, Surface};
 
 pub(crate) struct Highlight;
 
@@ -27,7 +27,7 @@ impl Effect for Highlight {
         surface: &Surface<'_, N>,
         lighting: &Lighting<'_, N>,
         reflected: &mut Color<N>,
-        _: &mut u32,
+        _: &mut Option<Gleam<N>>,
     ) {
         let material = surface.material;
         if !surface.required.contains(Self::EFFECT) {

@@ -157,8 +157,8 @@ pub fn mirrored<N: Enclosure>(
     if material.transmit != [0; 3] {
         let cos = limited(-dot(seen.direction, halfway));
         let split = shade::split(&seen.interface, seen.direction, halfway, cos)?;
-        let transmit = material.transmit.map(ratio_of);
-        color = plus(color, scale(transmit, split.reflected)).map(|x| x.at_most(N::one()));
+        let part = shade::mirrored(material, split.reflected);
+        color = color.map(|x: N| (x + part).at_most(N::one()));
     }
     Some(scale(color, ratio))
 }

@@ -141,6 +141,12 @@ pub fn split<N: Enclosure>(
 }
 
 /// Returns the part of light that passes a surface straight on, for shadows.
+/// Returns the weight of what glass reflects of a ray, in all channels.
+pub fn mirrored<N: Enclosure>(material: &Material, reflected: N) -> N {
+    let [red, green, blue] = material.transmit;
+    ratio_of::<N>(red.max(green).max(blue)) * reflected
+}
+
 pub fn filtered<N: Enclosure>(
     hit: &Hit<N>,
     material: &Material,

@@ -182,8 +182,8 @@ impl Tracer<'_, '_> {
             if split.is_open {
                 self.note(Reason::CriticalAngle, path.depth, hit.primitive, hit.point);
             }
-            mirrored = plus(mirrored, scale(transmit, split.reflected));
-            mirrored = mirrored.map(|x| x.at_most(N::one()));
+            let part = shade::mirrored(material, split.reflected);
+            mirrored = mirrored.map(|x: N| (x + part).at_most(N::one()));
             let rest = N::one() - split.reflected;
             if let Some(refracted) = split.refracted {
                 let through = Leaving {

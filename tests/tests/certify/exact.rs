@@ -161,8 +161,8 @@ impl<'s> Exact<'s> {
         if let Some(interface) = &surface.interface {
             let transmit = color(material.transmit, 30);
             let (reflected, refracted) = interface.split(direction, &normal, &cos);
-            let more = scaled(&transmit, &reflected);
-            mirrored = sum(&mirrored, &more).map(|x| x.min(one()));
+            let more = peak(&transmit) * &reflected;
+            mirrored = mirrored.map(|x| (x + &more).min(one()));
             if let Some(slope) = refracted {
                 let part = scaled(&transmit, &(one() - &reflected));
                 let straight = Leaving {
