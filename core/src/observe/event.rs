@@ -24,6 +24,9 @@ pub enum RayKind {
     /// Off a rough mirror or rough glass, and from there through glass. The lights that it can hit were already
     /// reflected at the rough surface.
     Glossy,
+    /// Off a rough mirror or rough glass with a roughness below 0.3, and from there through glass, where the sun of the
+    /// environment is brighter than a blob holds. The sun was already reflected at the rough surface.
+    Polished,
 }
 
 /// An event.

@@ -8,14 +8,18 @@
 //! - From a roughness of 0.3 on the formula reflects them, and lights that no ray hits. A ray that leaves by a facet
 //!   then does not bring their light.
 //!
-//! The same rules apply to the sun of an environment. Rays always bring its map.
+//! The same rules apply to the sun of an environment. But most suns are brighter than a record holds, and rays bring no
+//! more. The formula then reflects the sun at every roughness, and reflected rays do not bring it. Rays always bring the
+//! map.
 
 use crate::accel::Number;
 use crate::format::Effects;
+use crate::format::environment::Environment;
 use crate::format::record::Light;
 use crate::observe::count::Observer;
 use crate::observe::event::{Event, RayKind};
 use crate::query::Hit;
+use crate::scene::Scene;
 use crate::shade::Color;
 use crate::shade::effect::{Effect, Tracer};
 use crate::shade::facets::Facets;
@@ -36,13 +40,13 @@ impl Effect for Glossy {
     const EFFECT: Effects = Effects::GLOSSY;
     const NEEDS_DIRECTION: bool = true;
 
+    /// Few facets mirror a small light, and these samples bring more than a display shows: the mean counts.
+    const DEVELOPS: bool = true;
+
     #[inline(always)]
     fn reflect<'s, N: Number, X: Tracer<'s, N>>(
         tracer: &mut X,
         (): &mut (),
-    /// Few facets mirror a small light, and these samples bring more than a display shows: the mean counts.
-    const DEVELOPS: bool = true;
-
         surface: &Surface<'_, N>,
         lighting: &Lighting<'_, N>,
         _: &mut Color<N>,
@@ -57,7 +61,7 @@ impl Effect for Glossy {
         let is_met = match light.directional {
             // Facets that are seen at grazing angles mirror a small part of the map much brighter than the rest.
             Light::ENVIRONMENT => true,
-            Light::SUN => alpha < WIDE,
+            Light::SUN => alpha < WIDE && !is_sun_limited(scene),
             _ => alpha < WIDE && scene.is_shown(light),
         };
         if !is_met {
@@ -95,22 +99,30 @@ impl Effect for Glossy {
         hit: &Hit<N>,
         secondary: &mut Secondary<N>,
     ) {
-        let is_glossy = match secondary.kind {
-            RayKind::Reflected => tracer
-                .scene()
-                .roughness(hit.object)
-                .is_some_and(|alpha| alpha >= WIDE),
+        match secondary.kind {
+            RayKind::Reflected => {
+                let scene = tracer.scene();
+                match scene.roughness(hit.object) {
+                    Some(alpha) if alpha >= WIDE => secondary.kind = RayKind::Glossy,
+                    Some(_) if is_sun_limited(scene) => secondary.kind = RayKind::Polished,
+                    _ => {}
+                }
+            }
             // Lights shine through glass and through transparent parts.
-            RayKind::Refracted => tracer.kind() == RayKind::Glossy,
-            _ => false,
-        };
-        if is_glossy {
-            secondary.kind = RayKind::Glossy;
+            RayKind::Refracted if matches!(tracer.kind(), RayKind::Glossy | RayKind::Polished) => {
+                secondary.kind = tracer.kind();
+            }
+            _ => {}
         }
     }
 }
 
-/// Adds the part of a light that facets mirror to its reflected part, times 2 to the power of the second number.
+/// Returns true if rays to the scene's sun would bring only a part of its light.
+fn is_sun_limited(scene: &Scene<'_>) -> bool {
+    scene.environment().is_some_and(Environment::is_sun_limited)
+}
+
+/// Returns the part of a light that facets mirror, if any.
 #[inline(never)]
 fn mirrored<N: Number>(alpha: i32, surface: &Surface<'_, N>, to_light: [N; 3]) -> Option<Gleam<N>> {
     let Surface { material, .. } = *surface;

@@ -298,13 +298,16 @@ impl Tracer<'_, '_> {
             }
         }
         let reflections = seen.path.reflections + u8::from(kind == RayKind::Diffuse);
-        let alpha = self.world.scene.roughness(hit.object);
+        let scene = self.world.scene;
         match (kind, seen.path.kind) {
-            (RayKind::Reflected, _) if alpha.is_some_and(facets::is_wide) => {
-                kind = RayKind::Glossy;
+            (RayKind::Reflected, _) => {
+                let alpha = scene.roughness(hit.object);
+                kind = alpha.map_or(kind, |alpha| facets::reflected_kind(scene, alpha));
             }
             // Lights shine through glass and ignored surfaces, too.
-            (RayKind::Refracted, RayKind::Glossy | RayKind::Diffuse) => kind = seen.path.kind,
+            (RayKind::Refracted, RayKind::Glossy | RayKind::Polished | RayKind::Diffuse) => {
+                kind = seen.path.kind;
+            }
             _ => {}
         }
         let mut result: Option<Three<N>> = is_open.then_some(black);

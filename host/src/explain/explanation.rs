@@ -235,6 +235,7 @@ pub(super) fn kind_name(kind: RayKind) -> &'static str {
         RayKind::Refracted => "refracted",
         RayKind::Diffuse => "diffuse",
         RayKind::Glossy => "glossy",
+        RayKind::Polished => "polished",
     }
 }
 

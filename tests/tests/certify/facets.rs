@@ -111,7 +111,7 @@ impl Exact<'_> {
         let alpha = self.scene.roughness(surface.met.object)?;
         let is_met = match light.directional {
             Light::ENVIRONMENT => true,
-            Light::SUN => alpha < WIDE,
+            Light::SUN => alpha < WIDE && !self.is_sun_limited(),
             _ => alpha < WIDE && self.scene.is_shown(light),
         };
         if is_met {
