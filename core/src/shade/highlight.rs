@@ -39,7 +39,7 @@ impl Effect for Highlight {
         let cos = N::from_wide(N::dot(surface.shading_normal, halfway))
             .max(N::ZERO)
             .min(N::ONE);
-        let strength = power(cos, material.shininess);
+        let strength = power(cos, material.exponent());
         *reflected = reflected.plus_up_to_one(Color::ratios(material.highlight).scaled(strength));
     }
 }

@@ -147,7 +147,7 @@ fn material_record(material: &Material, lattice: &Lattice) -> record::Material {
             (even, odd, q13(size.min(LARGEST_CELL)), origin.map(q13))
         }
     };
-    let glass = material.transmit != [0.0; 3];
+    let (absorption, shift) = absorption(material, lattice);
     record::Material {
         diffuse: ratio(even),
         odd: ratio(odd),
@@ -157,15 +157,8 @@ fn material_record(material: &Material, lattice: &Lattice) -> record::Material {
         mirror: ratio(material.mirror),
         transmit: ratio(material.transmit),
         inverse_ior: ratio([1.0 / material.ior.clamp(1.0, 4.0); 3])[0],
-        // The cast saturates: one unit of such glass lets nothing through anyway.
-        absorption: material.absorption.map(|coefficient| {
-            if glass {
-                (coefficient * lattice.unit() * f64::powi(2.0, 32)).round() as u32
-            } else {
-                0
-            }
-        }),
-        shininess: material.shininess.clamp(1, 1024),
+        absorption,
+        shininess: material.shininess.clamp(1, 1024) | shift << 12,
         maps: 0,
     }
 }
@@ -174,3 +167,19 @@ fn material_record(material: &Material, lattice: &Lattice) -> record::Material {
 fn ratio(color: Color) -> [i32; 3] {
     color.map(|channel| (channel.clamp(0.0, 1.0) * f64::from(1 << 30)).round() as i32)
 }
+/// Returns the coefficients of glass as a record has them, and the power of two that multiplies them.
+fn absorption(material: &Material, lattice: &Lattice) -> ([u32; 3], u16) {
+    if material.transmit == [0.0; 3] {
+        return ([0; 3], 0);
+    }
+    let scaled = |shift: i32| {
+        let scale = lattice.unit() * f64::powi(2.0, 32 - shift);
+        material.absorption.map(|it| (it * scale).round())
+    };
+    let most = f64::from(u32::MAX);
+    let fits = |shift: &i32| scaled(*shift).iter().all(|&it| it <= most);
+    // Beyond that the casts saturate: one step of such glass lets nothing through.
+    let shift = (0..15).find(fits).unwrap_or(15);
+    (scaled(shift).map(|it| it as u32), shift as u16)
+}
+
