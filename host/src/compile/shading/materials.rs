@@ -47,6 +47,7 @@ impl MaterialData {
             ..Self::default()
         };
         let mut textures = Textures::default();
+        let has_coordinates = with_coordinates(scene);
         for object in scene.all_objects() {
             let material = &scene.materials[object.material];
             if !object.shape.is_bounded() && has_large_cells(material, lattice) {
@@ -56,8 +57,13 @@ impl MaterialData {
                 });
             }
             let number = *data.numbers[object.material].get_or_insert_with(|| {
+                // Maps that no object shows cost nothing.
+                let maps = match has_coordinates[object.material] {
+                    true => textures.maps(material),
+                    false => 0,
+                };
                 let record = record::Material {
-                    maps: textures.maps(material),
+                    maps,
                     ..material_record(material, lattice)
                 };
                 requirements.add(record.effects(), label(material), &material.place);
@@ -114,6 +120,15 @@ impl MaterialData {
     }
 }
 
+/// Returns for each material of a scene whether an object of it has texture coordinates.
+pub fn with_coordinates(scene: &Scene) -> Vec<bool> {
+    let mut found = vec![false; scene.materials.len()];
+    for object in scene.all_objects() {
+        found[object.material] |= object.attributes.has_coordinates();
+    }
+    found
+}
+
 /// Puts a material's value into a list that ends where all others have none.
 fn put<T: Clone + Default>(values: &mut Vec<T>, number: u32, value: T) {
     let number = number as usize;
@@ -163,10 +178,6 @@ fn material_record(material: &Material, lattice: &Lattice) -> record::Material {
     }
 }
 
-/// Ratios with 30 fraction bits, 0 to 1.
-fn ratio(color: Color) -> [i32; 3] {
-    color.map(|channel| (channel.clamp(0.0, 1.0) * f64::from(1 << 30)).round() as i32)
-}
 /// Returns the coefficients of glass as a record has them, and the power of two that multiplies them.
 fn absorption(material: &Material, lattice: &Lattice) -> ([u32; 3], u16) {
     if material.transmit == [0.0; 3] {
@@ -183,3 +194,7 @@ fn absorption(material: &Material, lattice: &Lattice) -> ([u32; 3], u16) {
     (scaled(shift).map(|it| it as u32), shift as u16)
 }
 
+/// Ratios with 30 fraction bits, 0 to 1.
+fn ratio(color: Color) -> [i32; 3] {
+    color.map(|channel| (channel.clamp(0.0, 1.0) * f64::from(1 << 30)).round() as i32)
+}
