@@ -48,16 +48,16 @@ fn unused_maps(scene: &Scene) -> Vec<String> {
     let all = scene.materials.iter().zip(is_shown.iter().zip(is_used));
     let unused = all.filter(|(_, (is_shown, is_used))| *is_used && !**is_shown);
     let warning = |(material, _): (&Material, _)| {
-        let map = match (&material.texture, &material.normal_map) {
-            (Some(_), Some(_)) => "texture and the normal map",
-            (Some(_), None) => "texture",
-            (None, Some(_)) => "normal map",
+        let (map, verb) = match (&material.texture, &material.normal_map) {
+            (Some(_), Some(_)) => ("texture and the normal map", "are"),
+            (Some(_), None) => ("texture", "is"),
+            (None, Some(_)) => ("normal map", "is"),
             (None, None) => return None,
         };
         let part = format!("material {}", printable(&material.name));
         let part = RequiringPart::new(part, &material.place);
         Some(format!(
-            "the {map} of {part} is not drawn, because no object of it has texture coordinates; give its meshes \
+            "the {map} of {part} {verb} not drawn, because no object of it has texture coordinates; give its meshes \
              `coordinates`"
         ))
     };
