@@ -42,9 +42,11 @@ impl<N: Number> PictureRays<N> {
         match kind {
             RayKind::Primary => self.primary.push(ray),
             RayKind::Shadow => self.shadow.push(ray),
-            RayKind::Reflected | RayKind::Refracted | RayKind::Diffuse | RayKind::Glossy => {
-                self.bounced.push(ray);
-            }
+            RayKind::Reflected
+            | RayKind::Refracted
+            | RayKind::Diffuse
+            | RayKind::Glossy
+            | RayKind::Polished => self.bounced.push(ray),
         }
     }
 

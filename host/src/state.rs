@@ -198,6 +198,7 @@ impl State {
 /// ```
 pub fn raised_materials(scene: &Scene<'_>, blob: &[u8]) -> Vec<Material> {
     let mut materials = scene.materials().to_vec();
+    // They were checked with the scene.
     let tracks = Tracks::from_bytes(blob).map_or(&[][..], |tracks| tracks.tracks());
     for track in tracks {
         let Some(material) = materials.get_mut(track.index as usize) else {

@@ -113,3 +113,29 @@ fn a_mirror_in_glass_keeps_rays_in_it() {
         check("mirror", &text, (-0.5_f64 * 2.5).exp());
     }
 }
+
+/// Glass that absorbs more than all light per unit of the lattice, in a scene whose units are long.
+#[test]
+fn thin_panes_of_dense_glass_are_as_dark_as_they_are_thick() {
+    for (coefficient, thickness) in [(80.0, 0.0625), (32.0, 0.0625), (1.0, 0.5)] {
+        let text = format!(
+            "background = 1\nambient = 1\n\
+             [camera]\neye = [0, 0, 5]\ntarget = [0, 0, 0]\nfov = 0.2\n\
+             [render]\nwidth = 4\nheight = 4\ncutoff = 0\n\
+             [material.glass]\ndiffuse = 0\ntransmit = 1\nior = 1\nabsorption = {coefficient}\n\
+             [[object]]\nkind = 'box'\nmin = [-1, -1, -{thickness}]\nmax = [1, 1, 0]\nmaterial = 'glass'\n\
+             [[object]]\nkind = 'box'\nmin = [-5000, -101, -5000]\nmax = [5000, -100, 5000]\n"
+        );
+        let scene = read(&text);
+        let blob = compile(&scene, &Options::default()).expect("compiles").blob;
+        let exact = f64::exp(-coefficient * thickness);
+        for format in Format::ALL {
+            let (mean, _) = measured(&blob, format, 1);
+            assert!(
+                (mean / exact - 1.0).abs() < 0.01,
+                "{coefficient} {format:?}: {mean} for {exact}"
+            );
+            assert_eq!(wrong_pixels(&blob, format), 0, "{coefficient} {format:?}");
+        }
+    }
+}

@@ -1,5 +1,7 @@
 //! Rough mirrors and rough glass: pictures have the values that formulas in double precision give.
 
+mod bright;
+
 use glam::DVec3;
 use gridel_core::{Effects, Format};
 use gridel_host::blob::Blob;
@@ -100,10 +102,15 @@ fn transmitted(alpha: f64, ior: f64, cos: f64) -> f64 {
 
 /// A place of a floor that is seen under a cosine.
 fn floor(cos: f64, material: &str, rest: &str, depth: u8) -> Blob {
+    floor_with(cos, material, rest, &format!("depth = {depth}"))
+}
+
+/// A floor with keys of `[render]`.
+fn floor_with(cos: f64, material: &str, rest: &str, render: &str) -> Blob {
     let eye = over(cos, 0.0).map(|x| 40.0 * x);
     let text = format!(
         "{rest}\n[camera]\neye = {eye:?}\ntarget = [0, 0, 0]\nup = [0.1, 0.2, 1]\nfov = 0.02\n\
-         [render]\nwidth = 4\nheight = 4\ndepth = {depth}\n[material.rough]\n{material}\n\
+         [render]\nwidth = 4\nheight = 4\n{render}\n[material.rough]\n{material}\n\
          [[object]]\nkind = 'box'\nmin = [-100, -40, -100]\nmax = [100, 0, 100]\nmaterial = 'rough'"
     );
     read(text)

@@ -4,6 +4,7 @@
 
 use glam::DVec3;
 use gridel_core::{Flagged, Format, Hit, List, NoCount, Number, Scene, Settings, Structure};
+use gridel_host::compile::{Options, compile};
 use gridel_host::render::{Job, render};
 use gridel_host::scene::{Camera, Diffuse, Light, Material, Shape};
 use gridel_host::shape::Solid;
@@ -11,6 +12,7 @@ use gridel_host::shape::{Cone, Cuboid, Disc, Sphere, Torus};
 use gridel_tests::cases::{SHAPES, cases};
 use gridel_tests::effort::part_of;
 use gridel_tests::judge::blob_of;
+use gridel_tests::measured::{measured_color, read};
 use gridel_tests::query::{UnitRay, closest, depart, point_of};
 use gridel_tests::random::Random;
 use gridel_tests::{every_format, scenes};
@@ -266,6 +268,29 @@ fn lights_near_a_surface_shine_on_it() {
                 .filter(|pixel| **pixel == [0; 3])
                 .count();
             assert_eq!(dark, 0, "{} at {height}", format.name());
+        }
+    }
+}
+
+/// What glass reflects has no color, and the weight of the most that it lets through.
+#[test]
+fn tinted_glass_reflects_without_a_tint() {
+    // Refracted rays end in the glass.
+    let text = "background = 1\nambient = 1\n\
+        [camera]\neye = [0, 0, 40]\ntarget = [0, 0, 0]\nfov = 0.02\n\
+        [render]\nwidth = 4\nheight = 4\ndepth = 1\n\
+        [material.glass]\ndiffuse = 0\ntransmit = [0.75, 0.5, 0]\nior = 1.5\n\
+        [[object]]\nkind = 'sphere'\ncenter = [0, 0, 0]\nradius = 1\nmaterial = 'glass'\n";
+    let blob = compile(&read(text), &Options::default())
+        .expect("compiles")
+        .blob;
+    for format in Format::ALL {
+        let (color, _) = measured_color(&blob, format, 1);
+        for channel in color {
+            assert!(
+                (channel - 0.75 * 0.04).abs() < 1e-4,
+                "{format:?}: {color:?}"
+            );
         }
     }
 }

@@ -26,7 +26,7 @@ records! {
         #[valid(SunSize: 0..=ONE)]
         pub sun_radius: i32,
         /// The radiance of the sun where it is seen, which adds to that of the map, 20 fraction bits. As a light it has
-        /// the color of its light.
+        /// the color of its light. A brighter channel is 2^31 - 1; rough surfaces then reflect the sun as a light alone.
         #[valid(SunRadiance: 0..=RADIANCE)]
         pub sun_radiance: [i32; 3],
     }
@@ -38,6 +38,21 @@ impl Environment {
 
     /// The largest radiance of a texel, with 20 fraction bits.
     pub const BRIGHTEST: u32 = 511 << Self::MOST_EXPONENT;
+
+    /// Returns true if the sun may be brighter than [`sun_radiance`](Self::sun_radiance) holds.
+    ///
+    /// ```
+    /// use gridel_core::format::environment::Environment;
+    ///
+    /// let mut record: Environment = bytemuck::Zeroable::zeroed();
+    /// assert!(!record.is_sun_limited());
+    /// record.sun_radiance[1] = i32::MAX;
+    /// assert!(record.is_sun_limited());
+    /// ```
+    pub const fn is_sun_limited(&self) -> bool {
+        let [red, green, blue] = self.sun_radiance;
+        red == i32::MAX || green == i32::MAX || blue == i32::MAX
+    }
 }
 
 impl Light {

@@ -126,8 +126,9 @@ macro_rules! float_number {
                 quotient
             }
 
-            fn exp_neg(self, coefficient_q32: u32) -> Self {
-                $exp(-(self * (coefficient_q32 as $float * (1.0 / 4_294_967_296.0))))
+            fn exp_neg(self, coefficient_q32: u32, shift: u32) -> Self {
+                let scale = (1_u32 << (shift & 15)) as $float * (1.0 / 4_294_967_296.0);
+                $exp(-(self * (coefficient_q32 as $float * scale)))
             }
 
             fn cell(self, size: Self) -> i32 {

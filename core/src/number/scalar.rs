@@ -76,8 +76,8 @@ pub trait Scalar:
     /// Rounds a quotient to the result of [`div`](Self::div).
     fn rounded(quotient: Self::Quotient) -> Self;
     /// Returns e to the power of minus a product, as a ratio in \[0, 1\]. The factors are a non-negative length and a
-    /// coefficient in 1/unit, given with 32 fraction bits.
-    fn exp_neg(self, coefficient_q32: u32) -> Self;
+    /// coefficient in 1/unit. It is given with 32 fraction bits and times 2 to the power of `shift`, at most 15.
+    fn exp_neg(self, coefficient_q32: u32, shift: u32) -> Self;
     /// The greatest integer at or below `self / size`, for lengths and `size` above 0.
     fn cell(self, size: Self) -> i32;
 }

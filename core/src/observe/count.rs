@@ -173,7 +173,7 @@ impl Observer for Counters {
         let counter = match kind {
             RayKind::Primary => &mut self.primary,
             RayKind::Shadow => &mut self.shadow,
-            RayKind::Reflected | RayKind::Glossy => &mut self.reflected,
+            RayKind::Reflected | RayKind::Glossy | RayKind::Polished => &mut self.reflected,
             RayKind::Refracted => &mut self.refracted,
             RayKind::Diffuse => &mut self.diffuse,
         };

@@ -24,6 +24,9 @@ pub enum RayKind {
     /// Off a rough mirror or rough glass, and from there through glass. The lights that it can hit were already
     /// reflected at the rough surface.
     Glossy,
+    /// Off a rough mirror or rough glass with a roughness below 0.3, and from there through glass, where the sun of the
+    /// environment is brighter than a blob holds. The sun was already reflected at the rough surface.
+    Polished,
 }
 
 /// An event.
@@ -263,7 +266,7 @@ pub enum Event {
         /// of the caller's own.
         at: Option<[i32; 2]>,
         /// Its radiance, each channel limited to 0 to 1. The limit is 16 where effects act on the mean of samples, or
-        /// need it to be right.
+        /// need it to be right, and 4 with lights that have an area.
         radiance: [f64; 3],
     },
 }

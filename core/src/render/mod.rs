@@ -11,6 +11,7 @@
 //! | how far samples are apart | `spread.rs` |
 //! | renderers without a choice of format, structure and effects | `defaults.rs` |
 //! | the samples of a pixel, the pixels of a rectangle | `samples.rs`, `rows.rs` |
+//! | how bright a sample can be | `headroom.rs` |
 //! | the moments while a shutter is open | `shutter.rs` |
 //! | the state of rendering between two calls | `cursor.rs` |
 //! | pixels row by row, or from coarse to fine | `order.rs` |
@@ -23,6 +24,7 @@ mod cursor;
 mod defaults;
 #[cfg(feature = "embedded-graphics-core")]
 mod display;
+mod headroom;
 mod order;
 mod pixel;
 mod pixel_rays;

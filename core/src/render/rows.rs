@@ -4,7 +4,7 @@ use crate::accel::{Accel, Number};
 use crate::observe::count::Observer;
 use crate::observe::event::Event;
 use crate::ray::Ray;
-use crate::render::samples::{Samples, limited};
+use crate::render::samples::Samples;
 use crate::render::spread::no_spread;
 use crate::render::start::Start;
 use crate::render::trace::Loop;
@@ -83,7 +83,7 @@ impl<N: Number, A: Accel, const EFFECTS: u32> Renderer<'_, '_, N, A, EFFECTS> {
             space,
             count,
         ) {}
-        let seen = limited(radiance, tracing.develops::<EFFECTS>());
+        let seen = tracing.headroom::<EFFECTS>().limit(radiance);
         if C::ENABLED {
             count.event(Event::SampleFinished {
                 at: None,

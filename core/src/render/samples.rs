@@ -52,10 +52,10 @@ impl<N: Number> Samples<N> {
         if !tracing.step::<N, A, C, EFFECTS>(sampler, start, radiance, space, count) {
             return None;
         }
-        let develops = tracing.develops::<EFFECTS>();
-        // Clamped before they are averaged, so that the edge of a highlight is smooth.
-        let seen = limited(self.radiance, develops);
-        let (full, shift) = room_for_samples(develops);
+        let headroom = tracing.headroom::<EFFECTS>();
+        // Limited before they are averaged, so that the edge of a highlight is smooth.
+        let seen = headroom.limit(self.radiance);
+        let (full, shift) = headroom.room_for_samples();
         let part = if samples > full {
             seen.scaled(N::ratio(1 << (30 - shift)))
         } else {
@@ -84,24 +84,4 @@ impl<N: Number> Samples<N> {
         let shown = tracing.developed::<N, A, C, EFFECTS>(mean, space, count);
         Some(renderer.to_linear(shown))
     }
-}
-
-/// Returns a sample's radiance, limited before it is added up: to display white, unless effects act on brighter values.
-#[inline(always)]
-pub(super) fn limited<N: Number>(radiance: Color<N>, develops: bool) -> Color<N> {
-    if develops {
-        radiance.limited(BRIGHTEST << 20)
-    } else {
-        radiance.displayable()
-    }
-}
-
-/// The limit of a sample's radiance where effects act on the mean, 1 being display white.
-const BRIGHTEST: i32 = 16;
-
-/// The most samples whose sum is in the range of `fixed`, and the number of bits by which those of more samples are
-/// shifted.
-#[inline(always)]
-pub(super) const fn room_for_samples(develops: bool) -> (u16, u32) {
-    if develops { (64, 6) } else { (1024, 2) }
 }

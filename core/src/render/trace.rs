@@ -17,6 +17,7 @@ use crate::observe::count::Observer;
 use crate::observe::event::{Event, RayKind, Source};
 use crate::query::{Hit, any_hit, closest_hit};
 use crate::ray::Ray;
+use crate::render::headroom::Headroom;
 use crate::render::spread::Spread;
 use crate::render::start::Start;
 use crate::render::workspace::{Pending, State, WorkspaceView};
@@ -109,11 +110,28 @@ impl Loop<'_, '_> {
 }
 
 impl Loop<'_, '_> {
+    /// Returns true if the scene has effects of a set whose code is there.
+    #[inline(always)]
+    fn has_any_of(&self, with_code: u32) -> bool {
+        with_code != 0 && self.scene.effects().0 & with_code != 0
+    }
+
     /// Returns true if effects of the scene act on the mean of a pixel's samples.
     #[inline(always)]
-    pub(super) fn develops<const EFFECTS: u32>(&self) -> bool {
-        let with_code = const { EFFECTS & All::DEVELOPING };
-        with_code != 0 && self.scene.effects().0 & with_code != 0
+    fn develops<const EFFECTS: u32>(&self) -> bool {
+        self.has_any_of(const { EFFECTS & All::DEVELOPING })
+    }
+
+    /// Returns the most of a sample's radiance that counts, 1 being display white.
+    #[inline(always)]
+    pub(super) fn headroom<const EFFECTS: u32>(&self) -> Headroom {
+        if self.develops::<EFFECTS>() {
+            Headroom::WIDE
+        } else if self.has_any_of(const { EFFECTS & All::VARYING }) {
+            Headroom::NARROW
+        } else {
+            Headroom::NONE
+        }
     }
 
     /// The displayed value of the mean of a pixel's samples.
@@ -202,28 +220,13 @@ impl<N: Number, A: Accel, C: Observer, const EFFECTS: u32> Tracing<'_, '_, '_, N
         All::surface::<EFFECTS, N, _>(self, &mut state, ray, &mut surface);
         self.state = state;
 
-        let mut local = Color::radiance(scene.view.ambient).times(surface.diffuse);
-        if C::ENABLED && local != Color::BLACK {
-            self.count.event(Event::Ambient {
-                radiance: local.to_f64(),
-            });
-        }
-        All::emit::<EFFECTS, N, _>(self, &mut state, &surface, &mut local);
-        let mut number = 0_u32;
-        for light in scene.lights {
-            let lit = self.lit(number, light, &surface);
-            // Light can change it on its way.
-            self.state = state;
-            local = local.plus(lit);
-            if C::ENABLED {
-                self.count.event(Event::Lit {
-                    number,
-                    radiance: lit.to_f64(),
-                });
-            }
-            number = number.wrapping_add(1);
-        }
-        self.bring(Source::Surface, local.times(surface.weight), radiance);
+        // Nothing is seen of a surface that alpha hides: what it would reflect costs nothing.
+        let is_seen = const { EFFECTS & All::PASSING == 0 } || surface.weight != Color::BLACK;
+        let brought = match is_seen {
+            true => self.local(&mut state, &surface).times(surface.weight),
+            false => Color::BLACK,
+        };
+        self.bring(Source::Surface, brought, radiance);
 
         if self.depth >= self.most {
             if C::ENABLED && required.0 & EFFECTS & All::CASTING != 0 {
@@ -261,6 +264,34 @@ impl<N: Number, A: Accel, C: Observer, const EFFECTS: u32> Tracing<'_, '_, '_, N
         }
     }
 
+    /// The radiance that a surface reflects of ambient light and of the lights, and its own.
+    #[inline(always)]
+    fn local(&mut self, state: &mut State<N>, surface: &Surface<'_, N>) -> Color<N> {
+        let scene = self.scene;
+        let mut local = Color::radiance(scene.view.ambient).times(surface.diffuse);
+        if C::ENABLED && local != Color::BLACK {
+            self.count.event(Event::Ambient {
+                radiance: local.to_f64(),
+            });
+        }
+        All::emit::<EFFECTS, N, _>(self, state, surface, &mut local);
+        let mut number = 0_u32;
+        for light in scene.lights {
+            let lit = self.lit(number, light, surface);
+            // Light can change it on its way.
+            self.state = *state;
+            local = local.plus(lit);
+            if C::ENABLED {
+                self.count.event(Event::Lit {
+                    number,
+                    radiance: lit.to_f64(),
+                });
+            }
+            number = number.wrapping_add(1);
+        }
+        local
+    }
+
     /// Adds radiance to the sample.
     #[inline(always)]
     fn bring(&mut self, source: Source, brought: Color<N>, radiance: &mut Color<N>) {
@@ -282,6 +313,10 @@ impl<N: Number, A: Accel, C: Observer, const EFFECTS: u32> Tracing<'_, '_, '_, N
     /// The radiance that a light adds to a surface that it reaches.
     #[inline(always)]
     fn lit(&mut self, number: u32, light: &Light, surface: &Surface<'_, N>) -> Color<N> {
+        // A light that is turned off.
+        if { light.color } == [0; 3] {
+            return Color::BLACK;
+        }
         let mut state = self.state;
         let origin = depart(self.scene, surface.hit, surface.hit.front, true);
         let (way, distance) = light.seen_from(origin);
@@ -326,24 +361,25 @@ impl<N: Number, A: Accel, C: Observer, const EFFECTS: u32> Tracing<'_, '_, '_, N
         if !is_reached {
             return Color::BLACK;
         }
-        let mut gain = 0;
+        let mut gleam = None;
         All::reflect::<EFFECTS, N, _>(
             self,
             &mut state,
             surface,
             &lighting,
             &mut reflected,
-            &mut gain,
+            &mut gleam,
         );
-        if reflected == Color::BLACK {
+        if reflected == Color::BLACK && gleam.is_none() {
             return Color::BLACK;
         }
         let mut arriving = Color::radiance(lighting.light.color);
         All::light::<EFFECTS, N, _>(self, &mut state, surface, &lighting, &mut arriving);
-        for _ in 0..gain {
-            arriving = arriving.plus(arriving);
+        let diffuse = arriving.times(reflected);
+        match gleam {
+            None => diffuse,
+            Some(gleam) => diffuse.plus(gleam.of(arriving)),
         }
-        arriving.times(reflected)
     }
 }
 

@@ -228,6 +228,7 @@ pub(super) fn check_material(
     let section = SectionKind::Materials;
     let at = At { section, index };
     material.check_ranges(at.location())?;
+    at.within(Field::Shininess, material.exponent().into(), 1, 1024)?;
     let number = material.maps & Material::MAPS_NUMBER;
     at.within(Field::Maps, number.into(), 0, maps as i64)?;
     let flags = material.maps & !Material::MAPS_NUMBER;

@@ -263,7 +263,7 @@ fn chain<N: Number>() -> u32 {
         let sum = (a * b - c.half()).abs().sqrt() + unit[0] * unit[1] + norm.half();
         let faded = length
             .abs()
-            .exp_neg(random.integer(20).unsigned_abs() as u32);
+            .exp_neg(random.integer(20).unsigned_abs() as u32, 0);
         let quotient = N::divide(length.wide(a), N::dot(unit, unit));
         let cell = length.cell(N::from_unit(3));
         [

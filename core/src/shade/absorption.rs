@@ -172,6 +172,7 @@ pub(super) fn absorb<N: Number>(material: &Material, length: N) -> Color<N> {
     let [red, green, blue] = material.absorption;
     // A ray of the caller's own can hit glass before its origin.
     let length = length.max(N::ZERO);
-    let left = |coefficient: u32| length.exp_neg(coefficient);
+    let shift = material.absorption_shift();
+    let left = |coefficient: u32| length.exp_neg(coefficient, shift);
     Color([left(red), left(green), left(blue)])
 }

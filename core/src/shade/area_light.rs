@@ -24,6 +24,10 @@ impl Effect for AreaLight {
 
     const EFFECT: Effects = Effects::AREA_LIGHT;
 
+    /// Single points of a light bring up to 2.5 times their mean, and more than white where a bright light is half
+    /// hidden.
+    const VARIES: bool = true;
+
     fn is_required_by_light(light: &Light) -> bool {
         light.is_area()
     }

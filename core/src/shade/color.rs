@@ -61,12 +61,6 @@ impl<N: Number> Color<N> {
         self.zip(other, |a, b| if a > N::ONE - b { N::ONE } else { a + b })
     }
 
-    /// Radiance within a display's range: each channel limited to 0 to 1.
-    #[inline(always)]
-    pub(crate) fn displayable(self) -> Self {
-        self.limited(1 << 20)
-    }
-
     /// Radiance of which no channel is below 0 or above a limit, given with 20 fraction bits.
     #[inline(always)]
     pub(crate) fn limited(self, most: i32) -> Self {

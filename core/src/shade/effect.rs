@@ -13,7 +13,9 @@ use crate::query::Hit;
 use crate::ray::Ray;
 use crate::scene::Scene;
 use crate::shade::Color;
-use crate::shade::surface::{Aim, Arrival, Bounce, Filter, Lighting, Reach, Secondary, Surface};
+use crate::shade::surface::{
+    Aim, Arrival, Bounce, Filter, Gleam, Lighting, Reach, Secondary, Surface,
+};
 use core::fmt::Debug;
 
 /// The ray loop, as effects use it.
@@ -90,6 +92,9 @@ macro_rules! places {
             /// right.
             const DEVELOPS: bool = false;
 
+            /// True if because of it single samples are up to a few times brighter than their mean.
+            const VARIES: bool = false;
+
             /// Returns true if a material requires it.
             fn is_required_by_material(material: &Material) -> bool {
                 false
@@ -131,6 +136,8 @@ macro_rules! places {
             const PASSING: u32;
             /// The effects that act on the mean of samples that are brighter than display white.
             const DEVELOPING: u32;
+            /// The effects because of which single samples are up to a few times brighter than their mean.
+            const VARYING: u32;
 
             /// Bytes of the states of some effects in a ray that waits.
             fn state_bytes<N: Number>(effects: Effects) -> usize;
@@ -161,6 +168,7 @@ macro_rules! places {
             const FILTERING: u32 = 0;
             const PASSING: u32 = 0;
             const DEVELOPING: u32 = 0;
+            const VARYING: u32 = 0;
 
             fn state_bytes<N: Number>(_: Effects) -> usize {
                 0
@@ -198,6 +206,7 @@ macro_rules! places {
             const FILTERING: u32 = First::EFFECT.only_if(First::FILTERS).0 | Rest::FILTERING;
             const PASSING: u32 = First::EFFECT.only_if(First::PASSES).0 | Rest::PASSING;
             const DEVELOPING: u32 = First::EFFECT.only_if(First::DEVELOPS).0 | Rest::DEVELOPING;
+            const VARYING: u32 = First::EFFECT.only_if(First::VARIES).0 | Rest::VARYING;
 
             fn state_bytes<N: Number>(effects: Effects) -> usize {
                 let is_there = effects.contains(First::EFFECT);
@@ -257,13 +266,12 @@ places! {
     /// A surface faces a light: the start of the way there may change, and whether the light reaches it.
     fn face(surface: &Surface<'_, N>, lighting: &mut Lighting<'_, N>, is_reached: &mut bool);
 
-    /// A surface reflects a light that it faces: the reflected ratio may change. Times 2 to the power of `gain` it may
-    /// be above 1.
+    /// A surface reflects a light that it faces: the reflected ratio may change, and facets may mirror the light.
     fn reflect(
         surface: &Surface<'_, N>,
         lighting: &Lighting<'_, N>,
         reflected: &mut Color<N>,
-        gain: &mut u32
+        gleam: &mut Option<Gleam<N>>
     );
 
     /// Light arrives from a light at a surface that reflects it: its radiance may change.

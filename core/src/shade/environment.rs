@@ -30,7 +30,7 @@ const DIMENSION: u16 = 0x1020;
 const fn is_seen_by(kind: RayKind) -> [bool; 2] {
     match kind {
         RayKind::Primary | RayKind::Reflected | RayKind::Refracted => [true; 2],
-        RayKind::Glossy => [true, false],
+        RayKind::Glossy | RayKind::Polished => [true, false],
         RayKind::Shadow | RayKind::Diffuse => [false; 2],
     }
 }

@@ -70,8 +70,8 @@ impl Effect for Glass {
                 reflected: reflected.ratio_to_f64(),
             });
         }
+        bounce.mirror(mirrored(material, reflected));
         let transmit = Color::ratios(material.transmit);
-        bounce.mirror(transmit.scaled(reflected));
         let secondary = Secondary {
             kind: RayKind::Refracted,
             direction: refracted,
@@ -87,6 +87,14 @@ impl Effect for Glass {
         };
         tracer.send(hit, secondary);
     }
+}
+
+/// Returns the weight of what glass reflects of a ray. The surface has no color: its largest channel weights all.
+#[inline(always)]
+pub(super) fn mirrored<N: Number>(material: &Material, reflected: N) -> Color<N> {
+    let [red, green, blue] = material.transmit;
+    let part = N::ratio(red.max(green).max(blue)) * reflected;
+    Color([part; 3])
 }
 
 /// The split of a ray at a glass surface.

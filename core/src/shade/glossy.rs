@@ -8,19 +8,23 @@
 //! - From a roughness of 0.3 on the formula reflects them, and lights that no ray hits. A ray that leaves by a facet
 //!   then does not bring their light.
 //!
-//! The same rules apply to the sun of an environment. Rays always bring its map.
+//! The same rules apply to the sun of an environment. But most suns are brighter than a record holds, and rays bring no
+//! more. The formula then reflects the sun at every roughness, and reflected rays do not bring it. Rays always bring the
+//! map.
 
 use crate::accel::Number;
 use crate::format::Effects;
+use crate::format::environment::Environment;
 use crate::format::record::Light;
 use crate::observe::count::Observer;
 use crate::observe::event::{Event, RayKind};
 use crate::query::Hit;
+use crate::scene::Scene;
 use crate::shade::Color;
 use crate::shade::effect::{Effect, Tracer};
 use crate::shade::facets::Facets;
-use crate::shade::glass::split;
-use crate::shade::surface::{Bounce, Lighting, Secondary, Surface};
+use crate::shade::glass::{self, split};
+use crate::shade::surface::{Bounce, Gleam, Lighting, Secondary, Surface};
 
 pub(crate) struct Glossy;
 
@@ -36,14 +40,17 @@ impl Effect for Glossy {
     const EFFECT: Effects = Effects::GLOSSY;
     const NEEDS_DIRECTION: bool = true;
 
+    /// Few facets mirror a small light, and these samples bring more than a display shows: the mean counts.
+    const DEVELOPS: bool = true;
+
     #[inline(always)]
     fn reflect<'s, N: Number, X: Tracer<'s, N>>(
         tracer: &mut X,
         (): &mut (),
         surface: &Surface<'_, N>,
         lighting: &Lighting<'_, N>,
-        reflected: &mut Color<N>,
-        gain: &mut u32,
+        _: &mut Color<N>,
+        gleam: &mut Option<Gleam<N>>,
     ) {
         // No material states it, unlike for other effects: a section of the blob does.
         let scene = tracer.scene();
@@ -54,11 +61,11 @@ impl Effect for Glossy {
         let is_met = match light.directional {
             // Facets that are seen at grazing angles mirror a small part of the map much brighter than the rest.
             Light::ENVIRONMENT => true,
-            Light::SUN => alpha < WIDE,
+            Light::SUN => alpha < WIDE && !is_sun_limited(scene),
             _ => alpha < WIDE && scene.is_shown(light),
         };
         if !is_met {
-            (*reflected, *gain) = mirrored(alpha, surface, lighting.to_light, *reflected);
+            *gleam = mirrored(alpha, surface, lighting.to_light);
         }
     }
 
@@ -92,29 +99,32 @@ impl Effect for Glossy {
         hit: &Hit<N>,
         secondary: &mut Secondary<N>,
     ) {
-        let is_glossy = match secondary.kind {
-            RayKind::Reflected => tracer
-                .scene()
-                .roughness(hit.object)
-                .is_some_and(|alpha| alpha >= WIDE),
+        match secondary.kind {
+            RayKind::Reflected => {
+                let scene = tracer.scene();
+                match scene.roughness(hit.object) {
+                    Some(alpha) if alpha >= WIDE => secondary.kind = RayKind::Glossy,
+                    Some(_) if is_sun_limited(scene) => secondary.kind = RayKind::Polished,
+                    _ => {}
+                }
+            }
             // Lights shine through glass and through transparent parts.
-            RayKind::Refracted => tracer.kind() == RayKind::Glossy,
-            _ => false,
-        };
-        if is_glossy {
-            secondary.kind = RayKind::Glossy;
+            RayKind::Refracted if matches!(tracer.kind(), RayKind::Glossy | RayKind::Polished) => {
+                secondary.kind = tracer.kind();
+            }
+            _ => {}
         }
     }
 }
 
-/// Adds the part of a light that facets mirror to its reflected part, times 2 to the power of the second number.
+/// Returns true if rays to the scene's sun would bring only a part of its light.
+fn is_sun_limited(scene: &Scene<'_>) -> bool {
+    scene.environment().is_some_and(Environment::is_sun_limited)
+}
+
+/// Returns the part of a light that facets mirror, if any.
 #[inline(never)]
-fn mirrored<N: Number>(
-    alpha: i32,
-    surface: &Surface<'_, N>,
-    to_light: [N; 3],
-    reflected: Color<N>,
-) -> (Color<N>, u32) {
+fn mirrored<N: Number>(alpha: i32, surface: &Surface<'_, N>, to_light: [N; 3]) -> Option<Gleam<N>> {
     let Surface { material, .. } = *surface;
     let (normal, direction) = (surface.shading_normal, surface.direction);
     // Halfway between the light and the ray's origin.
@@ -129,14 +139,8 @@ fn mirrored<N: Number>(
         let cos = -N::from_wide(N::dot(direction, halfway));
         let cos = cos.max(N::ZERO).min(N::ONE);
         let split = split(surface.interface(), direction, halfway, cos);
-        let transmit = Color::ratios(material.transmit);
-        color = color.plus_up_to_one(transmit.scaled(split.reflected));
+        color = color.plus_up_to_one(glass::mirrored(material, split.reflected));
     }
-    // Halves of both, so that the sum is at most 1.
-    let mut shrunk = reflected.scaled(N::ONE.half());
-    for _ in 0..power {
-        shrunk = shrunk.scaled(N::ONE.half());
-    }
-    let sum = shrunk.plus_up_to_one(color.scaled(ratio.half()));
-    (sum, power.wrapping_add(1))
+    let ratio = color.scaled(ratio);
+    (ratio != Color::BLACK).then_some(Gleam { ratio, power })
 }

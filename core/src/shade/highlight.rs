@@ -5,7 +5,7 @@ use crate::format::Effects;
 use crate::format::record::Material;
 use crate::shade::Color;
 use crate::shade::effect::{Effect, Tracer};
-use crate::shade::surface::{Lighting, Surface};
+use crate::shade::surface::{Gleam, Lighting, Surface};
 
 pub(crate) struct Highlight;
 
@@ -27,7 +27,7 @@ impl Effect for Highlight {
         surface: &Surface<'_, N>,
         lighting: &Lighting<'_, N>,
         reflected: &mut Color<N>,
-        _: &mut u32,
+        _: &mut Option<Gleam<N>>,
     ) {
         let material = surface.material;
         if !surface.required.contains(Self::EFFECT) {
@@ -39,7 +39,7 @@ impl Effect for Highlight {
         let cos = N::from_wide(N::dot(surface.shading_normal, halfway))
             .max(N::ZERO)
             .min(N::ONE);
-        let strength = power(cos, material.shininess);
+        let strength = power(cos, material.exponent());
         *reflected = reflected.plus_up_to_one(Color::ratios(material.highlight).scaled(strength));
     }
 }

@@ -10,6 +10,16 @@ impl Material {
     pub fn effects(&self) -> Effects {
         All::required_by_material(self)
     }
+
+    /// Returns the exponent of the highlight.
+    pub const fn exponent(&self) -> u16 {
+        self.shininess & 0xfff
+    }
+
+    /// Returns the power of two that multiplies the coefficients of [`absorption`](Self::absorption), at most 15.
+    pub const fn absorption_shift(&self) -> u32 {
+        (self.shininess >> 12) as u32
+    }
 }
 
 impl Light {

@@ -102,6 +102,32 @@ impl<N: Number> Lighting<'_, N> {
     }
 }
 
+/// The part of a light that facets mirror to the ray's origin. It can be far above 1.
+#[derive(Clone, Copy)]
+pub(crate) struct Gleam<N> {
+    /// The part over 2 to the power.
+    pub(crate) ratio: Color<N>,
+    pub(crate) power: u32,
+}
+
+impl<N: Number> Gleam<N> {
+    /// The mirrored light; in `fixed` the range of radiance limits it.
+    #[inline(always)]
+    pub(crate) fn of(self, mut arriving: Color<N>) -> Color<N> {
+        let mut power = self.power;
+        // Doubled first as often as the range allows, so that dim light keeps its digits.
+        while power > 0 && arriving.peak() < N::radiance(1 << 30) {
+            arriving = arriving.plus(arriving);
+            power = power.wrapping_sub(1);
+        }
+        let mut mirrored = arriving.times(self.ratio);
+        for _ in 0..power {
+            mirrored = mirrored.plus(mirrored);
+        }
+        mirrored
+    }
+}
+
 /// The way from a surface to a light.
 #[derive(Clone, Copy)]
 pub(crate) struct Aim<N: Number> {

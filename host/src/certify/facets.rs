@@ -4,8 +4,8 @@ use super::directions;
 use super::hit::{Hit, Seen};
 use super::number::*;
 use super::shade;
-use gridel_core::Scene;
 use gridel_core::format::record::Light;
+use gridel_core::{RayKind, Scene};
 
 /// The dimension of the point of a facet.
 pub const DIMENSION: u16 = 0x1010;
@@ -14,7 +14,7 @@ pub const DIMENSION: u16 = 0x1010;
 const WIDE: i32 = 96_636_764;
 
 /// Returns whether lights are reflected by the formula, and not by rays that hit them.
-pub fn is_wide(alpha: i32) -> bool {
+fn is_wide(alpha: i32) -> bool {
     alpha >= WIDE
 }
 
@@ -131,11 +131,28 @@ impl<N: Enclosure> Facets<N> {
     }
 }
 
+/// Returns the kind of a ray that is reflected off facets.
+pub fn reflected_kind(scene: &Scene<'_>, alpha: i32) -> RayKind {
+    if is_wide(alpha) {
+        RayKind::Glossy
+    } else if is_sun_limited(scene) {
+        RayKind::Polished
+    } else {
+        RayKind::Reflected
+    }
+}
+
+fn is_sun_limited(scene: &Scene<'_>) -> bool {
+    scene
+        .environment()
+        .is_some_and(|sky| sky.sun_radiance.contains(&i32::MAX))
+}
+
 /// Returns whether a light is reflected by the formula of a surface's facets.
 pub fn reflects(scene: &Scene<'_>, alpha: i32, light: &Light) -> bool {
     let is_met = match light.directional {
         Light::ENVIRONMENT => true,
-        Light::SUN => !is_wide(alpha),
+        Light::SUN => !is_wide(alpha) && !is_sun_limited(scene),
         _ => !is_wide(alpha) && scene.is_shown(light),
     };
     !is_met
@@ -157,8 +174,8 @@ pub fn mirrored<N: Enclosure>(
     if material.transmit != [0; 3] {
         let cos = limited(-dot(seen.direction, halfway));
         let split = shade::split(&seen.interface, seen.direction, halfway, cos)?;
-        let transmit = material.transmit.map(ratio_of);
-        color = plus(color, scale(transmit, split.reflected)).map(|x| x.at_most(N::one()));
+        let part = shade::mirrored(material, split.reflected);
+        color = color.map(|x: N| (x + part).at_most(N::one()));
     }
     Some(scale(color, ratio))
 }

@@ -11,10 +11,11 @@ use std::cmp::Ordering;
 
 /// Returns the part of light that is left after a length of glass, in lattice steps.
 pub fn absorbed<N: Enclosure>(material: &Material, length: N) -> Three<N> {
-    // Coefficients have 32 fraction bits and count units of 256 steps.
+    // Coefficients have 32 fraction bits, less the shift, and count units of 256 steps.
+    let bits = 40 - material.absorption_shift();
     material
         .absorption
-        .map(|coefficient| (length * N::scaled(coefficient.into(), 40)).exp_neg())
+        .map(|coefficient| (length * N::scaled(coefficient.into(), bits)).exp_neg())
 }
 
 /// Returns whether a point lies in an odd cell, looked up just beneath the surface; `None` if that is open.
@@ -140,6 +141,12 @@ pub fn split<N: Enclosure>(
     })
 }
 
+/// Returns the weight of what glass reflects of a ray, in all channels.
+pub fn mirrored<N: Enclosure>(material: &Material, reflected: N) -> N {
+    let [red, green, blue] = material.transmit;
+    ratio_of::<N>(red.max(green).max(blue)) * reflected
+}
+
 /// Returns the part of light that passes a surface straight on, for shadows.
 pub fn filtered<N: Enclosure>(
     hit: &Hit<N>,
@@ -166,7 +173,7 @@ pub fn highlight<N: Enclosure>(
     let halfway = unit([0, 1, 2].map(|k| to_light[k].half() - seen.direction[k].half()))?;
     let cos = dot(seen.normal, halfway).at_least(N::zero());
     let mut power = N::one();
-    let (mut square, mut rest) = (cos.at_most(N::one()), seen.material.shininess);
+    let (mut square, mut rest) = (cos.at_most(N::one()), seen.material.exponent());
     while rest > 0 {
         if rest & 1 == 1 {
             power = power * square;

@@ -27,7 +27,7 @@ pub fn seen<N: Enclosure>(
 ) -> Option<Sky<N>> {
     let [shows_map, shows_sun] = match kind {
         RayKind::Primary | RayKind::Reflected | RayKind::Refracted => [true; 2],
-        RayKind::Glossy => [true, false],
+        RayKind::Glossy | RayKind::Polished => [true, false],
         RayKind::Shadow | RayKind::Diffuse => [false; 2],
     };
     if !shows_map {

@@ -5,16 +5,19 @@ use gridel_core::Effects;
 use gridel_core::format::record::View;
 
 /// The effects that let samples brighter than display white count.
-const DEVELOPING: [Effects; 3] = [
+const DEVELOPING: [Effects; 4] = [
     Effects::TONE_MAPPING,
     Effects::INDIRECT,
     Effects::ENVIRONMENT,
+    Effects::GLOSSY,
 ];
 
 /// Returns the most of a sample's radiance that counts, 1 being display white.
 pub fn brightest(effects: Effects) -> i64 {
     if DEVELOPING.iter().any(|&it| effects.contains(it)) {
         16
+    } else if effects.contains(Effects::AREA_LIGHT) {
+        4
     } else {
         1
     }

@@ -179,8 +179,8 @@ impl Tracer<'_, '_> {
             if split.is_open {
                 self.note(Reason::CriticalAngle, path.depth, hit.primitive, hit.point);
             }
-            mirrored = plus(mirrored, scale(transmit, split.reflected));
-            mirrored = mirrored.map(|x| x.at_most(N::one()));
+            let part = shade::mirrored(material, split.reflected);
+            mirrored = mirrored.map(|x: N| (x + part).at_most(N::one()));
             let rest = N::one() - split.reflected;
             if let Some(refracted) = split.refracted {
                 let through = Leaving {
@@ -295,13 +295,16 @@ impl Tracer<'_, '_> {
             }
         }
         let reflections = seen.path.reflections + u8::from(kind == RayKind::Diffuse);
-        let alpha = self.world.scene.roughness(hit.object);
+        let scene = self.world.scene;
         match (kind, seen.path.kind) {
-            (RayKind::Reflected, _) if alpha.is_some_and(facets::is_wide) => {
-                kind = RayKind::Glossy;
+            (RayKind::Reflected, _) => {
+                let alpha = scene.roughness(hit.object);
+                kind = alpha.map_or(kind, |alpha| facets::reflected_kind(scene, alpha));
             }
             // Lights shine through glass and ignored surfaces, too.
-            (RayKind::Refracted, RayKind::Glossy | RayKind::Diffuse) => kind = seen.path.kind,
+            (RayKind::Refracted, RayKind::Glossy | RayKind::Polished | RayKind::Diffuse) => {
+                kind = seen.path.kind;
+            }
             _ => {}
         }
         let mut result: Option<Three<N>> = is_open.then_some(black);

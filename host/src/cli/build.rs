@@ -6,6 +6,7 @@ use super::arguments::{
     self, SceneOptions, StructureOptions, TargetOptions, check_hierarchy, check_room, scene_help,
     scene_long_help,
 };
+use super::effects::CalledFor;
 use super::failure::Failure;
 use super::input::is_standard;
 use super::output::{
@@ -110,13 +111,14 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     if let Some(report) = &memory {
         source.check_fits(&scene, report)?;
     }
+    // Firmware plays the blob's tracks as well.
+    let raised = raised_materials(&scene, source.blob.bytes());
+    let moving = scene.with_materials(&raised);
+    let moving = moving.as_ref().unwrap_or(&scene);
     match &arguments.emit_rust {
         Some(folder) => {
-            // Firmware plays the blob's tracks as well.
-            let raised = raised_materials(&scene, source.blob.bytes());
-            let moving = scene.with_materials(&raised);
             let emitted = Emitted {
-                scene: moving.as_ref().unwrap_or(&scene),
+                scene: moving,
                 structure: source.structure(&scene, None)?,
                 format,
                 blob: source.blob.bytes(),
@@ -127,7 +129,12 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         None => write_files(&[(&arguments.output, &|out| out.write_all(source.blob.bytes()))])?,
     }
     match &source.report {
-        Some(report) => print_report(arguments, (&source, report), &scene, memory.as_ref()),
+        Some(report) => print_report(
+            arguments,
+            (&source, report),
+            [&scene, moving],
+            memory.as_ref(),
+        ),
         None => Ok(()),
     }
 }
@@ -239,20 +246,22 @@ fn write_module(output: &Path, folder: &Path, emitted: &Emitted<'_>) -> Result<(
 fn print_report(
     arguments: &Arguments,
     (source, report): (&Source, &Report),
-    scene: &Scene<'_>,
+    [scene, moving]: [&Scene<'_>; 2],
     memory: Option<&MemoryReport>,
 ) -> Result<(), Failure> {
     let name = arguments.output.display().to_string();
     let unresolved = source.warn_of_unresolved(scene, None);
     let instances = InstanceCount::of(scene, source.copied);
     let mut built = Built::new(&name, scene, report, &source.warnings);
+    let bytes = source.blob.bytes();
+    built.effects = CalledFor::at_all_times(Some(report), scene, moving, bytes);
     built.memory = memory;
     built.unresolved = &unresolved;
     built.bytes_otherwise = instances.and_then(|it| source.bytes_otherwise(&it));
     built.instances = instances;
     if let Some(memory) = memory {
         for effect in &mut built.effects {
-            effect.add_costs(scene, memory);
+            effect.add_costs(moving, memory);
         }
     }
     let report = match arguments.json {

@@ -2,10 +2,10 @@
 
 use gridel_core::format::record::{Light, Material};
 use gridel_core::{Effects, Scene};
-use gridel_host::compile::{Report, RequiringPart};
+use gridel_host::compile::{Names, Report, RequiringPart};
 use gridel_host::measure::board::{MemoryReport, WORK_LIST};
 use gridel_host::scene::{SourceSpan, effect_named};
-use gridel_host::table::grouped;
+use gridel_host::table::{grouped, printable};
 use serde::Serialize;
 use std::fmt;
 
@@ -23,17 +23,54 @@ pub struct CalledFor {
 }
 
 impl CalledFor {
+    /// Returns the effects of a scene at all times, from the compiler's report if there is one. `moving` is the scene
+    /// with all [raised](gridel_host::state::raised_materials) materials.
+    pub fn at_all_times(
+        report: Option<&Report>,
+        scene: &Scene<'_>,
+        moving: &Scene<'_>,
+        blob: &[u8],
+    ) -> Vec<Self> {
+        let mut all = match report {
+            Some(report) => Self::in_report(report),
+            None => Self::in_blob(scene),
+        };
+        let names = Names::of_blob(scene, blob).unwrap_or_default().materials;
+        let materials = scene.materials().iter().zip(moving.materials());
+        for (number, (material, raised)) in materials.enumerate() {
+            let more = raised.effects().without(material.effects());
+            let name = names.get(number).filter(|name| !name.is_empty());
+            let name = name.map_or(number.to_string(), |name| printable(name));
+            let part = format!("a track of material {name}");
+            for (_, effect) in Effects::NAMED.iter().filter(|it| more.contains(it.0)) {
+                let part = RequiringPart::new(part.clone(), &SourceSpan::default());
+                match all.iter_mut().find(|it| it.effect == *effect) {
+                    Some(known) => known.by.push(part),
+                    None => all.push(Self::new(effect, vec![part])),
+                }
+            }
+        }
+        all.sort_by_key(|it| {
+            Effects::NAMED
+                .iter()
+                .position(|(_, name)| *name == it.effect)
+        });
+        all
+    }
+
+    fn new(effect: &str, by: Vec<RequiringPart>) -> Self {
+        Self {
+            effect: effect.to_owned(),
+            by,
+            code: None,
+            ram: None,
+        }
+    }
+
     /// Returns the effects of a scene file, whose lights and materials have names.
-    pub fn in_report(report: &Report) -> Vec<Self> {
+    fn in_report(report: &Report) -> Vec<Self> {
         let effects = report.effects.iter().cloned();
-        effects
-            .map(|(effect, by)| Self {
-                effect,
-                by,
-                code: None,
-                ram: None,
-            })
-            .collect()
+        effects.map(|(effect, by)| Self::new(&effect, by)).collect()
     }
 
     /// Adds its costs on a board.
@@ -50,7 +87,7 @@ impl CalledFor {
     }
 
     /// Returns the effects of a blob, whose lights and materials have numbers.
-    pub fn in_blob(scene: &Scene<'_>) -> Vec<Self> {
+    fn in_blob(scene: &Scene<'_>) -> Vec<Self> {
         let callers = |effect: Effects| -> Vec<RequiringPart> {
             let lights = scene.lights().iter().map(Light::effects);
             let lights = numbers_of("light", effect, lights);
@@ -68,12 +105,7 @@ impl CalledFor {
         Effects::NAMED
             .into_iter()
             .filter(|&(effect, _)| scene.effects().contains(effect))
-            .map(|(effect, name)| Self {
-                effect: name.to_owned(),
-                by: callers(effect),
-                code: None,
-                ram: None,
-            })
+            .map(|(effect, name)| Self::new(name, callers(effect)))
             .collect()
     }
 }

@@ -15,6 +15,7 @@ use gridel_core::{Format, Kind, Scene, Structure};
 use gridel_host::compile::{self, Names};
 use gridel_host::measure::board::{MemoryReport, WorkingRow, working_rows};
 use gridel_host::measure::{Deforming, MemoryMap, WorkingMemory, working_memory};
+use gridel_host::state::raised_materials;
 use gridel_host::table::{Align, Table, counted, grouped, power_of_two, printable};
 use joints::JointLine;
 use parts::PartLine;
@@ -169,9 +170,13 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let scene = source.scene()?;
     let target = arguments.target.target();
     let format = target.map_or(Format::Fixed, |target| target.board.format());
+    // Whoever plays the blob's tracks needs the effects of all times.
+    let raised = raised_materials(&scene, source.blob.bytes());
+    let moving = scene.with_materials(&raised);
+    let moving = moving.as_ref().unwrap_or(&scene);
     let inspection = Inspection {
         memory_map: MemoryMap::of(&scene, source.blob.bytes()),
-        limits: limits(&scene),
+        limits: limits(moving),
         contents: contents(&scene),
         parts: PartLine::all(&scene, source.blob.bytes()),
         tracks: TrackList::of(source.blob.bytes()),
@@ -183,12 +188,14 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
                 .unwrap_or_default()
                 .into()
         },
-        working_memory: working_memory(&scene),
-        working_rows: working_rows(&scene, source.blob.bytes()),
-        effects: match &source.report {
-            Some(report) => CalledFor::in_report(report),
-            None => CalledFor::in_blob(&scene),
-        },
+        working_memory: working_memory(moving),
+        working_rows: working_rows(moving, source.blob.bytes()),
+        effects: CalledFor::at_all_times(
+            source.report.as_ref(),
+            &scene,
+            moving,
+            source.blob.bytes(),
+        ),
         memory: arguments
             .target
             .memory_report(&scene, source.blob.bytes(), format)?,

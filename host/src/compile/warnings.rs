@@ -2,7 +2,9 @@
 
 use super::LATTICE_BITS;
 use super::report::Report;
-use crate::scene::{Scene, Shape};
+use super::requirements::RequiringPart;
+use super::shading::with_coordinates;
+use crate::scene::{Material, Scene, Shape};
 use crate::shape::unit;
 use crate::table::{counted, grouped, printable};
 
@@ -17,6 +19,7 @@ pub(super) fn scene_warnings(scene: &Scene) -> Vec<String> {
             "the scene has no object: pictures show the background",
         ));
     }
+    warnings.extend(unused_maps(scene));
     let Some(camera) = scene.camera else {
         return warnings;
     };
@@ -33,6 +36,32 @@ pub(super) fn scene_warnings(scene: &Scene) -> Vec<String> {
         )
     }));
     warnings
+}
+
+/// Returns a warning for each material in use whose maps no object shows.
+fn unused_maps(scene: &Scene) -> Vec<String> {
+    let is_shown = with_coordinates(scene);
+    let mut is_used = vec![false; scene.materials.len()];
+    for object in scene.all_objects() {
+        is_used[object.material] = true;
+    }
+    let all = scene.materials.iter().zip(is_shown.iter().zip(is_used));
+    let unused = all.filter(|(_, (is_shown, is_used))| *is_used && !**is_shown);
+    let warning = |(material, _): (&Material, _)| {
+        let (map, verb) = match (&material.texture, &material.normal_map) {
+            (Some(_), Some(_)) => ("texture and the normal map", "are"),
+            (Some(_), None) => ("texture", "is"),
+            (None, Some(_)) => ("normal map", "is"),
+            (None, None) => return None,
+        };
+        let part = format!("material {}", printable(&material.name));
+        let part = RequiringPart::new(part, &material.place);
+        Some(format!(
+            "the {map} of {part} {verb} not drawn, because no object of it has texture coordinates; give its meshes \
+             `coordinates`"
+        ))
+    };
+    unused.filter_map(warning).collect()
 }
 
 /// Primitives that a warning names; the rest are counted.
@@ -126,7 +155,8 @@ impl Report {
 mod tests {
     use super::scene_warnings;
     use crate::compile::{Options, compile};
-    use crate::scene::{self, Environment, Panorama, Sky};
+    use crate::scene::{self, Alpha, Environment, Image, NormalMap, Panorama, Sky, Texture};
+    use gridel_core::Effects;
 
     #[test]
     fn lost_light_of_an_environment_is_a_warning_of_the_compiler() {
@@ -167,6 +197,49 @@ mod tests {
                     .all(|it| it.contains("flag") && it.contains("glows"))
             );
         }
+    }
+
+    #[test]
+    fn maps_that_nothing_shows_are_left_out_with_a_warning() {
+        let image = Image::new("dots", 2, 2, vec![[9, 9, 9, 0]; 4]).unwrap();
+        let texture = Texture::of(image.into());
+        let compiled = |coordinates: &str| {
+            let file = format!(
+                "[camera]\neye = [0, 0, 9]\ntarget = [0, 0, 0]\n[material.dotted]\ndiffuse = 0.5\n\
+                 [[object]]\nkind = 'sphere'\ncenter = [0, 0, 0]\nradius = 1\nmaterial = 'dotted'\n\
+                 [[object]]\nkind = 'triangle'\nvertices = [[0, 0, 0], [1, 0, 0], [0, 1, 0]]\n\
+                 material = 'dotted'\n{coordinates}"
+            );
+            let imported = scene::read("s.toml".as_ref(), file.into(), &Default::default());
+            let mut scene = imported.unwrap().scene;
+            let material = scene.materials.iter_mut().find(|it| it.name == "dotted");
+            let material = material.unwrap();
+            material.texture = Some(texture.clone());
+            material.alpha = Some(Alpha::CutOut(0.5));
+            material.normal_map = Some(NormalMap {
+                texture: texture.clone(),
+                scale: 1.0,
+            });
+            compile(&scene, &Options::default()).unwrap()
+        };
+        let maps = Effects::TEXTURE
+            .with(Effects::ALPHA)
+            .with(Effects::NORMAL_MAP);
+        let left_out = compiled("");
+        let lines = left_out.report.warnings(24);
+        assert_eq!(lines.len(), 1, "{lines:?}");
+        assert!(
+            lines[0].starts_with("the texture and the normal map of material dotted (s.toml:4)"),
+            "{lines:?}"
+        );
+        assert_eq!(left_out.report.textures, []);
+        let effects = left_out.blob.scene().unwrap().effects();
+        assert_eq!(effects.without(maps), effects);
+        // One object is enough.
+        let kept = compiled("coordinates = [[0, 0], [1, 0], [0, 1]]\n");
+        assert_eq!(kept.report.warnings(24), Vec::<String>::new());
+        assert_eq!(kept.report.textures.len(), 2);
+        assert!(kept.blob.scene().unwrap().effects().contains(maps));
     }
 
     #[test]

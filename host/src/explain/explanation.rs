@@ -222,6 +222,8 @@ pub enum LightOutcome {
     Faint,
     /// It lies where the ray to it would start, so there is no direction to it.
     Here,
+    /// Its color is black.
+    Off,
 }
 
 /// The name of a kind of ray.
@@ -233,6 +235,7 @@ pub(super) fn kind_name(kind: RayKind) -> &'static str {
         RayKind::Refracted => "refracted",
         RayKind::Diffuse => "diffuse",
         RayKind::Glossy => "glossy",
+        RayKind::Polished => "polished",
     }
 }
 
@@ -277,9 +280,14 @@ impl Ray {
                         lighting.outcome = lighting.outcome();
                     }
                     // The light had no event before.
-                    None => self
-                        .lights
-                        .push(Lighting::new(number, 0.0, LightOutcome::Here)),
+                    None => {
+                        let light = scene.lights().get(number as usize);
+                        let outcome = match light.is_some_and(|it| { it.color } == [0; 3]) {
+                            true => LightOutcome::Off,
+                            false => LightOutcome::Here,
+                        };
+                        self.lights.push(Lighting::new(number, 0.0, outcome));
+                    }
                 }
             }
             Event::Absorbed { weight } => match self.lights.last_mut().filter(|_| *light) {

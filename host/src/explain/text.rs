@@ -174,7 +174,7 @@ impl Shown<'_> {
         let is_met = |ray: &&Ray| ray.hit.is_some();
         let of_ambient = |ray: &Ray| ray.ambient.is_some() && ray.lights.is_empty();
         let others = |ray: &Ray| {
-            let bounces = [RayKind::Diffuse, RayKind::Glossy].map(kind_name);
+            let bounces = [RayKind::Diffuse, RayKind::Glossy, RayKind::Polished].map(kind_name);
             ray.emitted.is_some() || ray.environment.is_some() || bounces.contains(&ray.kind)
         };
         let all_ambient = rays().filter(is_met).all(of_ambient);
@@ -382,6 +382,7 @@ impl Shown<'_> {
             ),
             LightOutcome::Faded => format!("{light} is absorbed{glass}"),
             LightOutcome::Here => format!("{light} is at this point, so it has no direction"),
+            LightOutcome::Off => format!("{light} is turned off: its color is black"),
             LightOutcome::Unreflected => {
                 format!("{light} reaches it, but the material reflects none of it")
             }

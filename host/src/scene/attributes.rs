@@ -34,6 +34,11 @@ impl Attributes {
         self.colors.is_empty() && self.triangles.is_empty() && self.displacements.is_empty()
     }
 
+    /// Returns whether a triangle has texture coordinates.
+    pub(crate) fn has_coordinates(&self) -> bool {
+        self.triangles.iter().any(|it| *it != Self::NONE)
+    }
+
     /// The attributes after a transform of the mesh: triangles that are mirrored are wound the other way round.
     #[must_use]
     pub(crate) fn transformed(&self, by: &DAffine3) -> Self {

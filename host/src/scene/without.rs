@@ -290,7 +290,8 @@ pub fn effect_named(name: &str) -> Option<Effects> {
 mod tests {
     use super::*;
     use crate::compile::{Options, compile};
-    use crate::scene::{Alpha, Image, NormalMap, Texture, read};
+    use crate::scene::{Alpha, Image, NormalMap, Shape, Texture, read};
+    use glam::DVec2;
 
     /// Calls for every effect.
     const ALL: &str = "
@@ -378,6 +379,12 @@ mod tests {
             texture: leveled(Image::blank()),
             scale: 1.0,
         });
+        // Maps are stored for objects that have texture coordinates.
+        let mut objects = scene.objects.iter_mut();
+        let mesh = objects.find(|it| matches!(it.shape, Shape::Mesh { .. }));
+        let attributes = &mut mesh.unwrap().attributes;
+        attributes.coordinates = vec![DVec2::ZERO, DVec2::X, DVec2::Y];
+        attributes.triangles = vec![[0, 1, 2], [0, 1, 2]];
         scene
     }
 

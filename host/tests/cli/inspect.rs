@@ -261,3 +261,41 @@ fn pieces_of_a_cut_triangle_count_once() {
         contents["primitives"].as_u64().unwrap()
     );
 }
+
+/// A track raises a mirror from 0: the effect, the work list and the RAM are those of all times, for a scene file and
+/// for its blob.
+#[test]
+fn effects_that_tracks_call_for_are_counted() {
+    let folder = Folder::new();
+    let ball = "[material.ball]\ndiffuse = 0.5\nMIRROR\n\
+        [[object]]\nkind = 'sphere'\ncenter = [0, 0, 0]\nradius = 1\nmaterial = 'ball'\n";
+    let track = "[[track]]\ntarget = 'material.ball.mirror'\ntimes = [0, 1]\nvalues = [0, 1]\n";
+    let still = ball.replace("MIRROR", "mirror = 1");
+    folder.write("still.toml", still.as_bytes());
+    let moving = ball.replace("MIRROR", "") + track;
+    folder.write("moving.toml", moving.as_bytes());
+    let built = folder.json(&["build", "moving.toml", "-o", "moving.gridel"]);
+    let expected = folder.json(&["inspect", "still.toml"]);
+    for found in [
+        built,
+        folder.json(&["inspect", "moving.toml"]),
+        folder.json(&["inspect", "moving.gridel"]),
+    ] {
+        let effects = found["effects"].as_array().unwrap();
+        let mirror = effects.iter().find(|it| it["effect"] == "mirror").unwrap();
+        assert_eq!(
+            mirror["by"],
+            json!([{ "part": "a track of material ball" }])
+        );
+        if found["limits"].is_null() {
+            continue;
+        }
+        for key in ["working_memory", "working_rows"] {
+            assert_eq!(found[key], expected[key], "{key}");
+        }
+        assert_eq!(
+            found["limits"]["work_depth"],
+            expected["limits"]["work_depth"]
+        );
+    }
+}

@@ -161,8 +161,8 @@ impl<'s> Exact<'s> {
         if let Some(interface) = &surface.interface {
             let transmit = color(material.transmit, 30);
             let (reflected, refracted) = interface.split(direction, &normal, &cos);
-            let more = scaled(&transmit, &reflected);
-            mirrored = sum(&mirrored, &more).map(|x| x.min(one()));
+            let more = peak(&transmit) * &reflected;
+            mirrored = mirrored.map(|x| (x + &more).min(one()));
             if let Some(slope) = refracted {
                 let part = scaled(&transmit, &(one() - &reflected));
                 let straight = Leaving {
@@ -212,15 +212,16 @@ impl<'s> Exact<'s> {
             return black();
         }
         let kind = match (leaving.kind, trail.kind) {
-            (RayKind::Reflected, _) => {
-                let alpha = self.scene.roughness(met.object);
-                match alpha.is_some_and(|alpha| alpha >= WIDE) {
-                    true => RayKind::Glossy,
-                    false => RayKind::Reflected,
-                }
-            }
+            (RayKind::Reflected, _) => match self.scene.roughness(met.object) {
+                Some(alpha) if alpha >= WIDE => RayKind::Glossy,
+                Some(_) if self.is_sun_limited() => RayKind::Polished,
+                _ => RayKind::Reflected,
+            },
             // Lights shine through glass and absent surfaces.
-            (RayKind::Refracted, before @ (RayKind::Glossy | RayKind::Diffuse)) => before,
+            (
+                RayKind::Refracted,
+                before @ (RayKind::Glossy | RayKind::Polished | RayKind::Diffuse),
+            ) => before,
             (kind, _) => kind,
         };
         let mut trail = Trail {

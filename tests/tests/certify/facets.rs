@@ -2,7 +2,7 @@
 
 use super::exact::Exact;
 use super::media::cos_back;
-use super::numbers::{black, color, fraction, limited, mixed, one, real, sum};
+use super::numbers::{black, color, fraction, limited, mixed, one, peak, real};
 use super::placed::Met;
 use super::random::{beside, part, turn};
 use super::surface::{Leaving, Surface};
@@ -111,7 +111,7 @@ impl Exact<'_> {
         let alpha = self.scene.roughness(surface.met.object)?;
         let is_met = match light.directional {
             Light::ENVIRONMENT => true,
-            Light::SUN => alpha < WIDE,
+            Light::SUN => alpha < WIDE && !self.is_sun_limited(),
             _ => alpha < WIDE && self.scene.is_shown(light),
         };
         if is_met {
@@ -129,8 +129,8 @@ impl Exact<'_> {
         if let Some(interface) = &surface.interface {
             let cos = limited(cos_back(direction, &halfway), 0.0, 1.0);
             let (reflected, _) = interface.split(direction, &halfway, &cos);
-            let transmit = color(material.transmit, 30);
-            mirror = sum(&mirror, &scaled(&transmit, &reflected)).map(|x| x.min(one()));
+            let more = peak(&color(material.transmit, 30)) * &reflected;
+            mirror = mirror.map(|x| (x + &more).min(one()));
         }
         let cos_out = dot(to_light, normal).min(one());
         Some(scaled(&mirror, &facets.reflect(&cos_out, &halfway)))

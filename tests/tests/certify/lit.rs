@@ -22,7 +22,7 @@ fn highlight(surface: &Surface<'_>, to_light: &Vector) -> Vector {
     let mut power = one();
     for bit in (0..16).rev() {
         power = &power * &power;
-        if material.shininess >> bit & 1 == 1 {
+        if (material.shininess & 0xfff) >> bit & 1 == 1 {
             power = power * &cos;
         }
     }
@@ -174,8 +174,9 @@ impl Exact<'_> {
     }
 
     pub fn absorbed(&self, material: &Material, length: &Real) -> Vector {
+        let bits = 32 - i32::from(material.shininess >> 12);
         material
             .absorption
-            .map(|coefficient| decay(&(length * fraction(coefficient, 32))))
+            .map(|coefficient| decay(&(length * fraction(coefficient, bits))))
     }
 }

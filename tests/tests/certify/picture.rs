@@ -12,8 +12,8 @@ use gridel_host::shape::exact::{Line, Real, Vector, dot, minus, scaled, unit};
 /// The dimension of random points of the lens.
 const LENS: u16 = 0x1000;
 
-/// The brightest that counts of a sample where effects act on the mean.
-const BRIGHTEST: f64 = 16.0;
+/// The brightest that counts of a sample where effects act on the mean, and with lights that have an area.
+const BRIGHTEST: [f64; 2] = [16.0, 4.0];
 
 impl Exact<'_> {
     /// The line from the eye through the middle of a pixel, or that from a point of the lens to where it is sharp.
@@ -39,12 +39,17 @@ impl Exact<'_> {
     pub fn shown(&self, radiance: Vector) -> Vector {
         let of_the_mean = [
             Effects::ENVIRONMENT,
+            Effects::GLOSSY,
             Effects::INDIRECT,
             Effects::TONE_MAPPING,
         ];
         let effects = self.scene.effects();
         let acts = of_the_mean.iter().any(|&it| effects.contains(it));
-        let most = if acts { BRIGHTEST } else { 1.0 };
+        let most = match effects.contains(Effects::AREA_LIGHT) {
+            _ if acts => BRIGHTEST[0],
+            true => BRIGHTEST[1],
+            false => 1.0,
+        };
         let encoding = self.scene.view().encoding;
         radiance.map(|x| limited(toned(limited(x, 0.0, most), encoding), 0.0, 1.0))
     }

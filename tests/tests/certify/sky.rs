@@ -68,6 +68,12 @@ pub fn in_sun(record: &Environment, [u, v]: [u32; 2]) -> Vector {
 }
 
 impl Exact<'_> {
+    /// Returns true if the sun is brighter than its record holds.
+    pub fn is_sun_limited(&self) -> bool {
+        let record = self.scene.environment();
+        record.is_some_and(|it| it.sun_radiance.contains(&i32::MAX))
+    }
+
     /// The map as a light.
     pub fn map_light(&self, point: impl Fn(u16) -> [u32; 2]) -> Option<Aim> {
         let place = self.scene.environment_place(point(MAP))?;
@@ -85,7 +91,7 @@ impl Exact<'_> {
         // Rays do not bring the light again that reaches a surface as a light of the scene.
         let (sees_map, sees_sun) = match kind {
             RayKind::Primary | RayKind::Reflected | RayKind::Refracted => (true, true),
-            RayKind::Glossy => (true, false),
+            RayKind::Glossy | RayKind::Polished => (true, false),
             RayKind::Shadow | RayKind::Diffuse => (false, false),
         };
         if !sees_map {

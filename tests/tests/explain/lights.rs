@@ -76,7 +76,7 @@ fn reasons_are_true() {
 
 /// A light that has no direction, because it lies where the ray to it would start, is reported, too.
 #[test]
-fn light_at_the_point_itself_is_reported() {
+fn lights_at_the_point_itself_or_turned_off_are_reported() {
     let mut scene = scenes::of([Shape::Box(Cuboid {
         min: glam::DVec3::splat(-1.0),
         max: glam::DVec3::ONE,
@@ -87,11 +87,11 @@ fn light_at_the_point_itself_is_reported() {
         tmin: 0.0,
         tmax: f64::INFINITY,
     };
-    let mut falls_at = |height: f64| {
+    let mut falls_at = |height: f64, color: f64| {
         scene.lights = vec![
             Light::Point {
                 position: glam::DVec3::Y * height,
-                color: [1.0; 3],
+                color: [color; 3],
             },
             Light::Directional {
                 direction: -glam::DVec3::Y,
@@ -111,10 +111,12 @@ fn light_at_the_point_itself_is_reported() {
         // Rays start on the face itself.
         (outcomes, hit.point[1])
     };
-    let (above, start) = falls_at(3.0);
+    let (above, start) = falls_at(3.0, 1.0);
     assert_eq!(above, [(0, LightOutcome::Lit), (1, LightOutcome::Lit)]);
-    let (here, _) = falls_at(start);
+    let (here, _) = falls_at(start, 1.0);
     assert_eq!(here, [(0, LightOutcome::Here), (1, LightOutcome::Lit)]);
+    let (off, _) = falls_at(3.0, 0.0);
+    assert_eq!(off, [(0, LightOutcome::Off), (1, LightOutcome::Lit)]);
 }
 
 /// The point of an area, where a spot ends, and how light falls off.

@@ -92,3 +92,60 @@ fn light_shines_through_what_is_cut_out() {
         }
     }
 }
+
+/// A color that is not visible does not show where visible and invisible texels are mixed.
+#[test]
+fn edges_of_alpha_have_the_color_of_what_is_visible() {
+    let mut scene = before_a_wall([255; 4], Alpha::Blend(1.0));
+    let pixels = (0..64).map(|it| match it % 8 < 4 {
+        true => [255, 255, 0, 255],
+        false => [0, 0, 0, 0],
+    });
+    let image = Image::new("half", 8, 8, pixels.collect()).expect("as many pixels");
+    scene.materials[0].texture = Some(Texture::of(image.into()));
+    // A wall of the same color: nothing else can be seen.
+    scene.materials[1].diffuse = Diffuse::Plain([1.0, 1.0, 0.0]);
+    let blob = blob_of(&scene);
+    let view = blob.scene().expect("valid");
+    for format in Format::ALL {
+        let job = Job::whole(format, Structure::DualSplit, settings(&view));
+        let picture = render_linear(&view, &job, &|| ()).expect("a picture");
+        for found in picture.pixels {
+            assert_near(found, [1.0, 1.0, 0.0], 0.001, format.name());
+        }
+    }
+}
+
+#[test]
+fn surfaces_that_alpha_hides_cast_no_shadow_rays() {
+    let mut scene = before_a_wall([255, 255, 0, 0], Alpha::CutOut(0.5));
+    scene.objects.truncate(1);
+    let light = Light::Directional {
+        direction: DVec3::NEG_Z,
+        color: [1.0; 3],
+    };
+    scene.lights = vec![light; 3];
+    let shadow_rays = |scene: &scene::Scene, format: Format| {
+        let blob = blob_of(scene);
+        let view = blob.scene().expect("valid");
+        let job = Job {
+            count: true,
+            ..Job::whole(format, Structure::DualSplit, settings(&view))
+        };
+        let picture = render(&view, &job, &|| ()).expect("a picture");
+        picture.counters.expect("counted").shadow
+    };
+    for format in Format::ALL {
+        assert_eq!(shadow_rays(&scene, format), 0);
+        let mut visible = scene.clone();
+        visible.materials[0].alpha = None;
+        let all = shadow_rays(&visible, format);
+        assert!(all > 0);
+        // One of three lights is turned off.
+        visible.lights[1] = Light::Directional {
+            direction: DVec3::NEG_Z,
+            color: [0.0; 3],
+        };
+        assert_eq!(shadow_rays(&visible, format), all / 3 * 2);
+    }
+}

@@ -125,10 +125,9 @@ records! {
         /// One over the index of refraction, 30 fraction bits: 0.25 to 1.
         #[valid(InverseIor: ONE / 4..=ONE)]
         pub inverse_ior: i32,
-        /// Absorption inside, in 1/unit with 32 fraction bits.
+        /// Absorption inside, in 1/unit with 32 fraction bits, over 2 to the power of the shift.
         pub absorption: [u32; 3],
-        /// Exponent of the highlight.
-        #[valid(Shininess: 1..=1024)]
+        /// The lower 12 bits are the exponent of the highlight, 1 to 1024, and the upper 4 the shift of the absorption.
         pub shininess: u16,
         /// Its maps: the lower 12 bits are the number of its [`SurfaceMaps`](crate::format::record::SurfaceMaps), and
         /// bit 12 is set where these have a texture, bit 13 where its alpha is used, bit 14 where there is a normal

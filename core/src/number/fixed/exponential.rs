@@ -3,10 +3,11 @@
 use crate::number::fixed::base::{Fixed, RATIO_BITS};
 
 /// [`Scalar::exp_neg`](crate::number::Scalar::exp_neg).
-pub(super) fn exp_neg(length: Fixed, coefficient_q32: u32) -> Fixed {
+pub(super) fn exp_neg(length: Fixed, coefficient_q32: u32, shift: u32) -> Fixed {
     // The exponent in powers of two, with 30 fraction bits.
     const LOG2_E: u64 = 1_549_082_005;
-    let exponent = (length.0.max(0) as u64 * coefficient_q32 as u64) >> 15;
+    let bits = 15_u32.saturating_sub(shift);
+    let exponent = (length.0.max(0) as u64 * coefficient_q32 as u64) >> bits;
     if exponent >= 22 << RATIO_BITS {
         return Fixed(0);
     }

@@ -77,8 +77,8 @@ impl Scalar for Fixed {
     }
 
     #[inline(always)]
-    fn exp_neg(self, coefficient_q32: u32) -> Self {
-        exp_neg(self, coefficient_q32)
+    fn exp_neg(self, coefficient_q32: u32, shift: u32) -> Self {
+        exp_neg(self, coefficient_q32, shift)
     }
 
     fn cell(self, size: Self) -> i32 {

@@ -6,7 +6,7 @@ use crate::observe::event::RayKind;
 use crate::ray::{Pencil, Ray};
 use crate::shade::Color;
 use crate::shade::effect::{Effect, Tracer};
-use crate::shade::surface::{Arrival, Bounce, Filter, Lighting, Secondary, Surface};
+use crate::shade::surface::{Arrival, Bounce, Filter, Gleam, Lighting, Secondary, Surface};
 
 /// Moves the eye past the scene.
 pub(crate) struct Shift;
@@ -83,7 +83,7 @@ impl Effect for Matt {
         _: &Surface<'_, N>,
         _: &Lighting<'_, N>,
         reflected: &mut Color<N>,
-        _: &mut u32,
+        _: &mut Option<Gleam<N>>,
     ) {
         *reflected = Color::BLACK;
     }

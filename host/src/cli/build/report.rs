@@ -90,7 +90,7 @@ impl<'r> Built<'r> {
             collapsed: &report.collapsed,
             without_area: &report.without_area,
             sah_cost: report.sah_cost,
-            effects: CalledFor::in_report(report),
+            effects: Vec::new(),
             textures: &report.textures,
             environment: report.environment,
             supplied: &report.supplied,

@@ -47,6 +47,7 @@ impl MaterialData {
             ..Self::default()
         };
         let mut textures = Textures::default();
+        let has_coordinates = with_coordinates(scene);
         for object in scene.all_objects() {
             let material = &scene.materials[object.material];
             if !object.shape.is_bounded() && has_large_cells(material, lattice) {
@@ -56,8 +57,13 @@ impl MaterialData {
                 });
             }
             let number = *data.numbers[object.material].get_or_insert_with(|| {
+                // Maps that no object shows cost nothing.
+                let maps = match has_coordinates[object.material] {
+                    true => textures.maps(material),
+                    false => 0,
+                };
                 let record = record::Material {
-                    maps: textures.maps(material),
+                    maps,
                     ..material_record(material, lattice)
                 };
                 requirements.add(record.effects(), label(material), &material.place);
@@ -114,6 +120,15 @@ impl MaterialData {
     }
 }
 
+/// Returns for each material of a scene whether an object of it has texture coordinates.
+pub fn with_coordinates(scene: &Scene) -> Vec<bool> {
+    let mut found = vec![false; scene.materials.len()];
+    for object in scene.all_objects() {
+        found[object.material] |= object.attributes.has_coordinates();
+    }
+    found
+}
+
 /// Puts a material's value into a list that ends where all others have none.
 fn put<T: Clone + Default>(values: &mut Vec<T>, number: u32, value: T) {
     let number = number as usize;
@@ -147,7 +162,7 @@ fn material_record(material: &Material, lattice: &Lattice) -> record::Material {
             (even, odd, q13(size.min(LARGEST_CELL)), origin.map(q13))
         }
     };
-    let glass = material.transmit != [0.0; 3];
+    let (absorption, shift) = absorption(material, lattice);
     record::Material {
         diffuse: ratio(even),
         odd: ratio(odd),
@@ -157,17 +172,26 @@ fn material_record(material: &Material, lattice: &Lattice) -> record::Material {
         mirror: ratio(material.mirror),
         transmit: ratio(material.transmit),
         inverse_ior: ratio([1.0 / material.ior.clamp(1.0, 4.0); 3])[0],
-        // The cast saturates: one unit of such glass lets nothing through anyway.
-        absorption: material.absorption.map(|coefficient| {
-            if glass {
-                (coefficient * lattice.unit() * f64::powi(2.0, 32)).round() as u32
-            } else {
-                0
-            }
-        }),
-        shininess: material.shininess.clamp(1, 1024),
+        absorption,
+        shininess: material.shininess.clamp(1, 1024) | shift << 12,
         maps: 0,
     }
+}
+
+/// Returns the coefficients of glass as a record has them, and the power of two that multiplies them.
+fn absorption(material: &Material, lattice: &Lattice) -> ([u32; 3], u16) {
+    if material.transmit == [0.0; 3] {
+        return ([0; 3], 0);
+    }
+    let scaled = |shift: i32| {
+        let scale = lattice.unit() * f64::powi(2.0, 32 - shift);
+        material.absorption.map(|it| (it * scale).round())
+    };
+    let most = f64::from(u32::MAX);
+    let fits = |shift: &i32| scaled(*shift).iter().all(|&it| it <= most);
+    // Beyond that the casts saturate: one step of such glass lets nothing through.
+    let shift = (0..15).find(fits).unwrap_or(15);
+    (scaled(shift).map(|it| it as u32), shift as u16)
 }
 
 /// Ratios with 30 fraction bits, 0 to 1.

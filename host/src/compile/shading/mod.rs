@@ -14,6 +14,7 @@ mod textures;
 
 pub use environment::EnvironmentFigures;
 pub use lights::light_record;
+pub use materials::with_coordinates;
 pub use radiance::radiance;
 pub use textures::{TextureFigures, root};
 

@@ -4,7 +4,9 @@
 //! takes the most bytes is made coarser until all fit. The steps are RGB565 (not where alpha is used), then a palette
 //! of 256 colors, then half the size, again and again. Images wider or higher than 4096 are halved in any case. Levels
 //! are smaller copies of the result, and count. Their colors come from the palette, which has more where there is room.
+//! Texels that are not visible get the colors of those beside them.
 
+mod hidden;
 mod stored;
 
 use crate::compile::CompileError;
@@ -147,11 +149,14 @@ impl Textures {
                 has_normals,
                 has_alpha: false,
                 has_levels: false,
+                mixed: None,
             });
             self.images.len() - 1
         });
         self.images[image].has_alpha |= has_alpha;
         self.images[image].has_levels |= texture.levels;
+        let mixed = &mut self.images[image].mixed;
+        *mixed = mixed.or(texture.bilinear.then_some(texture.wrap));
         let looked_up = |it: &Texture| (it.wrap, it.bilinear, it.levels);
         let same = |(number, other): &(usize, Texture)| {
             *number == image && looked_up(other) == looked_up(texture)

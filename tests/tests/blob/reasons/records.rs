@@ -50,7 +50,7 @@ pub(super) fn shading_data() -> Errors {
         it.change(SectionKind::Lights, 1, |it: &mut Light| it.vector = [0; 3])
     });
     let above = (1 << 30) + 1;
-    let materials: [Forgery<Material>; 9] = [
+    let materials: [Forgery<Material>; 10] = [
         (Field::Diffuse, &|it| it.diffuse[0] = above),
         (Field::Odd, &|it| it.odd[1] = -1),
         (Field::Highlight, &|it| it.highlight[2] = above),
@@ -58,6 +58,8 @@ pub(super) fn shading_data() -> Errors {
         (Field::Transmittance, &|it| it.transmit[0] = above),
         (Field::InverseIor, &|it| it.inverse_ior = above),
         (Field::Shininess, &|it| it.shininess = 0),
+        // The lower 12 bits alone are the exponent.
+        (Field::Shininess, &|it| it.shininess = 1025 | 3 << 12),
         (Field::CheckerSize, &|it| it.checker_size = -1),
         (Field::CheckerOrigin, &|it| it.checker_origin[0] = above),
     ];

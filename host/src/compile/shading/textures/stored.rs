@@ -1,7 +1,7 @@
 //! Images in fewer and fewer bytes, with their levels.
 
-use crate::scene::Image;
 use crate::scene::palette::{median_cut, nearest};
+use crate::scene::{Image, Wrap};
 use gridel_core::format::record;
 use std::borrow::Cow;
 use std::collections::HashSet;
@@ -10,10 +10,10 @@ use std::sync::Arc;
 /// Most texels of a side.
 const MOST_SIDE: u32 = 4096;
 /// Most colors of a palette.
-const COLORS: usize = 256;
+pub(super) const COLORS: usize = 256;
 
 /// A color as roots of linear light, or a normal, and alpha.
-type Roots = [u8; 4];
+pub(super) type Roots = [u8; 4];
 
 /// An image and its uses.
 #[derive(Debug)]
@@ -25,6 +25,8 @@ pub(super) struct UsedImage {
     pub(super) has_alpha: bool,
     /// True if smaller copies follow it.
     pub(super) has_levels: bool,
+    /// How it continues beyond its edges, in the first texture that mixes its texels.
+    pub(super) mixed: Option<[Wrap; 2]>,
 }
 
 /// The forms of texels, as [`record::Texture`] numbers them.
@@ -52,7 +54,7 @@ impl Form {
 pub(super) struct Raster {
     pub(super) width: u32,
     pub(super) height: u32,
-    pixels: Vec<Roots>,
+    pub(super) pixels: Vec<Roots>,
 }
 
 /// An image on its way into a blob.
@@ -62,6 +64,8 @@ pub(super) struct Stored {
     has_alpha: bool,
     has_normals: bool,
     pub(super) has_levels: bool,
+    /// How it continues, if its texels are mixed and some may not be visible.
+    hidden: Option<[Wrap; 2]>,
     pub(super) form: Form,
 }
 
@@ -146,17 +150,22 @@ impl Stored {
             let [r, g, b] = [r, g, b].map(|it| channels[usize::from(it)]);
             [r, g, b, if has_alpha { alpha } else { 255 }]
         });
-        let raster = Raster {
+        let mut raster = Raster {
             width,
             height,
             pixels: pixels.collect(),
         };
+        let hidden = used.mixed.filter(|_| has_alpha);
+        if let Some(wrap) = hidden {
+            raster.fill_hidden(wrap);
+        }
         let mut stored = Self {
             name: image.name.clone(),
             raster,
             has_alpha,
             has_normals: used.has_normals,
             has_levels: used.has_levels,
+            hidden,
             form: match has_alpha {
                 true => Form::Rgba8888,
                 false => Form::Rgb888,
@@ -219,7 +228,16 @@ impl Stored {
     }
 
     fn halve(&mut self) {
-        self.raster = self.raster.halved(self.has_normals);
+        self.raster = self.smaller(&self.raster);
+    }
+
+    /// A copy of half the width and height.
+    fn smaller(&self, raster: &Raster) -> Raster {
+        let mut copy = raster.halved(self.has_normals);
+        if let Some(wrap) = self.hidden {
+            copy.fill_hidden(wrap);
+        }
+        copy
     }
 
     /// The pixels of the image, and those of its levels.
@@ -230,7 +248,7 @@ impl Stored {
         let mut all = self.raster.pixels.clone();
         let mut level = self.raster.clone();
         while level.pixels.len() > 1 {
-            level = level.halved(self.has_normals);
+            level = self.smaller(&level);
             all.extend(&level.pixels);
         }
         Cow::Owned(all)
