@@ -70,132 +70,100 @@ impl Emitted<'_> {
     pub fn module(&self) -> String {
         let scene = self.scene;
         let view = scene.view();
-        let (number, structure) = (number(self.format), format!("{:?}", self.structure));
-        let mut budget = String::new();
-        if let Some((bytes, board)) = self.budget {
-            budget = format!(
-                "    assert!(\n        BLOB_BYTES <= {bytes},\n        \
-                 \"the blob outgrew the flash of {}, of which {bytes} bytes are left for it\"\n    );\n",
-                board.name
-            );
-        }
-        let others = Structure::ALL.into_iter().filter(|&it| scene.holds(it));
-        let is_prevalidated = others
+        let features: Vec<_> = self.features().iter().map(|it| format!("{it:?}")).collect();
+        let effects = scene.effects_with_parts();
+        let exponent = scene.coordinate_exponent();
+        let values = [
+            ("@FIRST", FIRST.to_owned()),
+            ("@BLOB", BLOB.to_owned()),
+            ("@FEATURES", features.join(", ")),
+            ("@STACK_DEPTH", scene.stack_depth().to_string()),
+            (
+                "@WORK_DEPTH",
+                scene.effects().work_depth(view.depth).to_string(),
+            ),
+            ("@PARTS", scene.parts().len().to_string()),
+            ("@EFFECT_NAMES", effects.to_string()),
+            ("@EFFECT_BITS", effects.0.to_string()),
+            ("@WIDTH", view.width.to_string()),
+            ("@HEIGHT", view.height.to_string()),
+            ("@EXPONENT", exponent.to_string()),
+            (
+                "@ORIGIN",
+                format!("{:?}", scene.header().coordinate_origin()),
+            ),
+            ("@UNIT", scene_unit(exponent)),
+            ("@NUMBER", number(self.format).to_owned()),
+            ("@ACCEL", format!("{:?}", self.structure)),
+            ("@MESH", self.mesh()),
+            ("@LOAD", self.load()),
+            ("@CHECKS", self.checks()),
+        ];
+        filled(TEXT, &values)
+    }
+
+    /// The function that loads the blob.
+    fn load(&self) -> String {
+        let mut held = Structure::ALL
             .into_iter()
-            .all(|it| Prevalidated::STRUCTURES.contains(&it));
-        let (parts, effects) = (scene.parts().len(), scene.effects_with_parts());
+            .filter(|&it| self.scene.holds(it));
+        if self.scene.parts().is_empty() {
+            return match held.all(|it| Prevalidated::STRUCTURES.contains(&it)) {
+                true => LOAD_PREVALIDATED.to_owned(),
+                false => LOAD_CHECKED.to_owned(),
+            };
+        }
         // They were checked with the scene.
         let tracks = Tracks::from_bytes(self.blob).ok();
         let joints = tracks.map_or(0, |tracks| tracks.joints().len());
-        let with_parts = LOAD_WITH_PARTS
-            .replace("INSTANCES_COUNT", &scene.instances().len().to_string())
-            .replace("JOINTS_COUNT", &joints.to_string());
-        let load = match parts {
-            0 if is_prevalidated => LOAD_PREVALIDATED,
-            0 => LOAD_CHECKED,
-            _ => &with_parts,
-        };
-        let features: Vec<_> = self.features().iter().map(|it| format!("{it:?}")).collect();
-        format!(
-            "{FIRST}; the scene is in `{BLOB}` beside this file.\n\
-             // In `src`, `mod scene;` takes both in; elsewhere, `#[path = \"...\"]` before it leads here.\n\
-             //\n\
-             // In Cargo.toml, exactly what the scene requires:\n\
-             //\n\
-             // gridel-core = {{ default-features = false, features = [{features}] }}\n\
-             //\n\
-             // The figures of `gridel inspect --target` for flash and RAM hold with lto = \"fat\" and\n\
-             // codegen-units = 1 in the profile. Where flash is short, the feature \"small\" beside those above\n\
-             // and opt-level = \"z\" halve the code. Rays take longer then, the call stack grows, and every\n\
-             // bit stays.\n\
-             \n\
-             /// The scene blob, aligned, in flash.\n\
-             pub static BLOB: &[u8] = gridel_core::include_blob!(\"{BLOB}\");\n\
-             /// Bytes of the blob.\n\
-             #[allow(dead_code)]\n\
-             pub const BLOB_BYTES: usize = BYTES.len();\n\
-             /// Entries of the traversal stack.\n\
-             pub const STACK_DEPTH: usize = {stack};\n\
-             /// Places for rays that wait.\n\
-             pub const WORK_DEPTH: usize = {waiting};\n\
-             /// Parts that instances place.\n\
-             pub const PARTS: usize = {parts};\n\
-             /// The effects that the scene requires: {effects}.\n\
-             pub const EFFECTS: u32 = {bits};\n\
-             /// Pixels of a row.\n\
-             pub const WIDTH: usize = {width};\n\
-             /// Rows.\n\
-             pub const HEIGHT: usize = {height};\n\
-             /// A coordinate step, that of `gridel_core::Position`, is 2 to this power scene units.\n\
-             #[allow(dead_code)]\n\
-             pub const COORDINATE_EXPONENT: i32 = {exponent};\n\
-             /// The place from which coordinates are counted, in scene units.\n\
-             #[allow(dead_code)]\n\
-             pub const COORDINATE_ORIGIN: [f64; 3] = {origin:?};\n\
-             {unit}\
-             /// A length of `numerator / denominator` scene units in coordinate steps, for constants. One beyond 32\n\
-             /// bits does not compile.\n\
-             #[allow(dead_code)]\n\
-             pub const fn steps(numerator: i64, denominator: i64) -> i32 {{\n    \
-             match gridel_core::scene::coordinate_steps(COORDINATE_EXPONENT, numerator, denominator) {{\n        \
-             Some(steps) => steps,\n        \
-             None => panic!(\"the length is beyond the scene's coordinates\"),\n    \
-             }}\n\
-             }}\n\
-             \n\
-             /// The number format.\n\
-             pub type Number = {number};\n\
-             /// The acceleration structure.\n\
-             pub type Accel = gridel_core::{structure};\n\
-             /// A traversal stack for other queries, exactly deep enough.\n\
-             #[allow(dead_code)]\n\
-             pub type Stack = gridel_core::Stack<STACK_DEPTH>;\n\
-             /// All memory that rendering writes to, except pixels, exactly large enough.\n\
-             #[allow(dead_code)]\n\
-             pub type Space = gridel_core::Workspace<Number, STACK_DEPTH, WORK_DEPTH>;\n\
-             /// The renderer, with the code of the scene's effects.\n\
-             #[allow(dead_code)]\n\
-             pub type Picture<'s> = gridel_core::Renderer<'s, 's, Number, Accel, EFFECTS>;\n\
-             \n\
-             {mesh}\
-             {load}\
-             \n\
-             const BYTES: &[u8] = include_bytes!(\"{BLOB}\");\n\
-             \n\
-             // A blob that requires more than this was written for does not compile.\n\
-             #[allow(long_running_const_eval)]\n\
-             const _: () = {{\n    \
-             let Ok(required) = gridel_core::Requirements::of(BYTES) else {{\n        \
-             panic!(\"the blob was cut off: write it and this module again\")\n    }};\n    \
-             assert!(\n        gridel_core::Effects(EFFECTS).contains(required.effects),\n        \
-             \"the blob requires effects beyond EFFECTS: write this module again\"\n    );\n    \
-             assert!(\n        required.stack_depth <= STACK_DEPTH,\n        \
-             \"the blob outgrew STACK_DEPTH: write this module again\"\n    );\n    \
-             assert!(\n        required.work_depth <= WORK_DEPTH,\n        \
-             \"the blob outgrew WORK_DEPTH: write this module again\"\n    );\n    \
-             assert!(\n        required.parts <= PARTS,\n        \
-             \"the blob outgrew PARTS: write this module again\"\n    );\n    \
-             assert!(\n        required.width == WIDTH && required.height == HEIGHT,\n        \
-             \"the blob's picture has another size: write this module again\"\n    );\n    \
-             assert!(\n        required.holds(gridel_core::Structure::{structure}),\n        \
-             \"the blob does not hold the structure of Accel: write this module again\"\n    );\n    \
-             if let Some(missing) = required.missing() {{\n        \
-             panic!(\"{{}}\", missing)\n    }}\n\
-             {budget}\
-             }};\n",
-            features = features.join(", "),
-            mesh = self.mesh(),
-            stack = scene.stack_depth(),
-            exponent = scene.coordinate_exponent(),
-            origin = scene.header().coordinate_origin(),
-            unit = scene_unit(scene.coordinate_exponent()),
-            waiting = scene.effects().work_depth(view.depth),
-            effects = effects,
-            bits = effects.0,
-            width = view.width,
-            height = view.height,
-        )
+        let instances = self.scene.instances().len();
+        let values = [
+            ("@INSTANCES", instances.to_string()),
+            ("@JOINTS", joints.to_string()),
+        ];
+        filled(LOAD_WITH_PARTS, &values)
     }
+
+    /// The checks that not every module has.
+    fn checks(&self) -> String {
+        let mut checks = String::new();
+        if !self.scene.parts().is_empty() {
+            checks += CHECK_PARTS;
+        }
+        if let Some(mesh) = Deforming::of_scene(self.scene, self.blob) {
+            let values = [
+                ("@VERTICES", mesh.vertices.to_string()),
+                ("@PAIRS", mesh.pairs.to_string()),
+                ("@NORMALS", mesh.normals.to_string()),
+                ("@BITS", self.scene.header().storage_bits.to_string()),
+            ];
+            checks += &filled(CHECK_MESH, &values);
+        }
+        let targets = [("@TARGETS", self.morph_targets().to_string())];
+        checks += &filled(CHECK_TARGETS, &targets);
+        if let Some((bytes, board)) = self.budget {
+            let values = [
+                ("@BUDGET", bytes.to_string()),
+                ("@BOARD", board.name.to_owned()),
+            ];
+            checks += &filled(CHECK_BUDGET, &values);
+        }
+        checks
+    }
+
+    fn morph_targets(&self) -> usize {
+        let tracks = Tracks::from_bytes(self.blob).ok();
+        tracks.map_or(0, |tracks| tracks.weights_at_rest().len())
+    }
+}
+
+/// A text with values in place of its markers.
+fn filled(text: &str, values: &[(&str, String)]) -> String {
+    let mut text = text.to_owned();
+    for (marker, value) in values {
+        text = text.replace(marker, value);
+    }
+    text
 }
 
 /// The constant that states a scene unit in coordinate steps; nothing where a step is longer than a unit, or the number
@@ -216,9 +184,7 @@ impl Emitted<'_> {
     /// Returns the number of morph targets and the type of the scene's own deforming mesh as Rust; nothing if no vertex
     /// moves.
     fn mesh(&self) -> String {
-        let tracks = Tracks::from_bytes(self.blob).ok();
-        let targets = tracks.map_or(0, |tracks| tracks.weights_at_rest().len());
-        let weights = match targets {
+        let weights = match self.morph_targets() {
             0 => String::new(),
             targets => format!(
                 "/// Morph targets, each with a weight.\n\
@@ -242,6 +208,152 @@ impl Emitted<'_> {
         )
     }
 }
+
+/// The module, whose markers begin with `@`.
+const TEXT: &str = "\
+@FIRST; the scene is in `@BLOB` beside this file.
+// In `src`, `mod scene;` takes both in; elsewhere, `#[path = \"...\"]` before it leads here.
+//
+// In Cargo.toml, exactly what the scene requires:
+//
+// gridel-core = { default-features = false, features = [@FEATURES] }
+//
+// The figures of `gridel inspect --target` for flash and RAM hold with lto = \"fat\" and
+// codegen-units = 1 in the profile. Where flash is short, the feature \"small\" beside those above
+// and opt-level = \"z\" halve the code. Rays take longer then, the call stack grows, and every
+// bit stays.
+
+/// The scene blob, aligned, in flash.
+pub static BLOB: &[u8] = gridel_core::include_blob!(\"@BLOB\");
+/// Bytes of the blob.
+#[allow(dead_code)]
+pub const BLOB_BYTES: usize = BYTES.len();
+/// Entries of the traversal stack.
+pub const STACK_DEPTH: usize = @STACK_DEPTH;
+/// Places for rays that wait.
+pub const WORK_DEPTH: usize = @WORK_DEPTH;
+/// Parts that instances place.
+pub const PARTS: usize = @PARTS;
+/// The effects that the scene requires: @EFFECT_NAMES.
+pub const EFFECTS: u32 = @EFFECT_BITS;
+/// Pixels of a row.
+pub const WIDTH: usize = @WIDTH;
+/// Rows.
+pub const HEIGHT: usize = @HEIGHT;
+/// A coordinate step, that of `gridel_core::Position`, is 2 to this power scene units.
+#[allow(dead_code)]
+pub const COORDINATE_EXPONENT: i32 = @EXPONENT;
+/// The place from which coordinates are counted, in scene units.
+#[allow(dead_code)]
+pub const COORDINATE_ORIGIN: [f64; 3] = @ORIGIN;
+@UNIT\
+/// A length of `numerator / denominator` scene units in coordinate steps, for constants. One beyond 32
+/// bits does not compile.
+#[allow(dead_code)]
+pub const fn steps(numerator: i64, denominator: i64) -> i32 {
+    match gridel_core::scene::coordinate_steps(COORDINATE_EXPONENT, numerator, denominator) {
+        Some(steps) => steps,
+        None => panic!(\"the length is beyond the scene's coordinates\"),
+    }
+}
+
+/// The number format.
+pub type Number = @NUMBER;
+/// The acceleration structure.
+pub type Accel = gridel_core::@ACCEL;
+/// A traversal stack for other queries, exactly deep enough.
+#[allow(dead_code)]
+pub type Stack = gridel_core::Stack<STACK_DEPTH>;
+/// All memory that rendering writes to, except pixels, exactly large enough.
+#[allow(dead_code)]
+pub type Space = gridel_core::Workspace<Number, STACK_DEPTH, WORK_DEPTH>;
+/// The renderer, with the code of the scene's effects.
+#[allow(dead_code)]
+pub type Picture<'s> = gridel_core::Renderer<'s, 's, Number, Accel, EFFECTS>;
+
+@MESH\
+@LOAD
+const BYTES: &[u8] = include_bytes!(\"@BLOB\");
+
+// A blob that requires more than this was written for does not compile. Limits of 0 are compared as others are.
+#[allow(long_running_const_eval, clippy::absurd_extreme_comparisons)]
+const _: () = {
+    let Ok(required) = gridel_core::Requirements::of(BYTES) else {
+        panic!(\"the blob was cut off: write it and this module again\")
+    };
+    assert!(
+        gridel_core::Effects(EFFECTS).contains(required.effects),
+        \"the blob requires effects beyond EFFECTS: write this module again\"
+    );
+    assert!(
+        required.stack_depth <= STACK_DEPTH,
+        \"the blob outgrew STACK_DEPTH: write this module again\"
+    );
+    assert!(
+        required.work_depth <= WORK_DEPTH,
+        \"the blob outgrew WORK_DEPTH: write this module again\"
+    );
+    assert!(
+        required.parts <= PARTS,
+        \"the blob outgrew PARTS: write this module again\"
+    );
+    assert!(
+        required.width == WIDTH && required.height == HEIGHT,
+        \"the blob's picture has another size: write this module again\"
+    );
+    assert!(
+        required.holds(gridel_core::Structure::@ACCEL),
+        \"the blob does not hold the structure of Accel: write this module again\"
+    );
+    if let Some(missing) = required.missing() {
+        panic!(\"{}\", missing)
+    }
+    assert!(
+        required.counts_as(COORDINATE_EXPONENT, COORDINATE_ORIGIN),
+        \"the blob has another COORDINATE_EXPONENT or COORDINATE_ORIGIN: write this module again\"
+    );
+@CHECKS\
+};
+";
+
+/// Checks of a scene that places parts.
+const CHECK_PARTS: &str = "    \
+    assert!(
+        required.instances <= INSTANCES,
+        \"the blob outgrew INSTANCES: write this module again\"
+    );
+    assert!(
+        required.joints <= JOINTS,
+        \"the blob outgrew JOINTS: write this module again\"
+    );
+";
+
+/// The check of a scene whose vertices move.
+const CHECK_MESH: &str = "    \
+    assert!(
+        required.vertices <= @VERTICES
+            && required.pairs <= @PAIRS
+            && required.moving_normals <= @NORMALS
+            && required.vertex_bits() == @BITS,
+        \"the blob outgrew Mesh: write this module again\"
+    );
+";
+
+/// The check of morph targets, of which a program sets the weights.
+const CHECK_TARGETS: &str = "    \
+    assert!(
+        required.morph_targets == @TARGETS,
+        \"the blob has other morph targets: write this module again\"
+    );
+";
+
+/// The check of what flash has left.
+const CHECK_BUDGET: &str = "    \
+    assert!(
+        BLOB_BYTES <= @BUDGET,
+        \"the blob outgrew the flash of @BOARD, of which @BUDGET bytes are left for it\"
+    );
+";
 
 /// Loading that was prepared while the module was compiled.
 const LOAD_PREVALIDATED: &str = "\
@@ -270,10 +382,10 @@ pub fn load() -> Result<gridel_core::Scene<'static>, gridel_core::BlobError> {
 const LOAD_WITH_PARTS: &str = "\
 /// Instances of the scene.
 #[allow(dead_code)]
-pub const INSTANCES: usize = INSTANCES_COUNT;
+pub const INSTANCES: usize = @INSTANCES;
 /// Joints on which they hang.
 #[allow(dead_code)]
-pub const JOINTS: usize = JOINTS_COUNT;
+pub const JOINTS: usize = @JOINTS;
 /// Room for the instances where they move.
 #[allow(dead_code)]
 pub type Poses = gridel_core::Poses<INSTANCES>;

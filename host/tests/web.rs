@@ -15,6 +15,9 @@ mod page;
 #[path = "web/opening.rs"]
 mod opening;
 
+#[path = "web/drawing.rs"]
+mod drawing;
+
 use flate2::Compression;
 use flate2::write::GzEncoder;
 use libtest_mimic::{Arguments, Failed, Trial};
@@ -42,7 +45,7 @@ fn main() {
         _ => "",
     };
     let is_required = page.is_some() && browser::is_required();
-    let tests: [Test; 10] = [
+    let tests: [Test; 13] = [
         ("web_page_is_small", page_is_small),
         ("web_page_draws_the_pixels_of_the_program", pixels_equal),
         ("web_page_follows_mouse_and_keys", camera_follows),
@@ -57,6 +60,15 @@ fn main() {
             opening::compiling_stops,
         ),
         ("web_page_answers_while_it_draws", answers_soon),
+        ("web_page_draws_after_an_error", drawing::errors_pass),
+        (
+            "web_page_switches_views_without_drawing_again",
+            drawing::views_switch,
+        ),
+        (
+            "web_page_shows_nothing_of_other_settings",
+            drawing::nothing_is_stale,
+        ),
         (
             "web_page_stops_measuring_and_restores_settings",
             sweep_stops,

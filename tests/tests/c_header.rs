@@ -141,6 +141,33 @@ fn header_has_the_fields_of_the_library() {
     assert_eq!(header.matches("typedef struct").count(), structs.len());
 }
 
+/// The stacks of a constant depth are those that the library uses.
+#[test]
+fn header_has_the_stacks_of_the_library() {
+    let memory = fs::read_to_string(library().join("src/memory.rs")).expect("a file");
+    let numbers = |text: &str| -> Vec<u32> {
+        let words = text.split(|letter: char| !letter.is_ascii_digit());
+        words.filter_map(|word| word.parse().ok()).collect()
+    };
+    let (_, own) = memory.split_once("with_least!($depth, ").expect("a list");
+    let own = numbers(own.split_once('\n').expect("an end").0);
+    let header = header();
+    let (_, declared) = header
+        .split_once("#define GRIDEL_STACK_ENTRIES(depth)")
+        .expect("a list");
+    let declared = numbers(declared.split_once("\n\n").expect("an end").0);
+    // The last one has no condition.
+    let (last, rest) = declared.split_last().expect("a stack");
+    let mut stacks = Vec::new();
+    for pair in rest.chunks(2) {
+        assert_eq!(pair[0], pair[1], "a depth, and the entries for it");
+        stacks.push(pair[0]);
+    }
+    stacks.push(*last);
+    assert_eq!(stacks, own);
+    assert!(own.len() > 5);
+}
+
 /// A field as C declares it.
 fn field(name: &str, kind: &str) -> String {
     let array = kind.strip_prefix('[').and_then(|it| it.strip_suffix(']'));

@@ -1,5 +1,8 @@
 /* Gridel: ray traces from a scene blob, without a heap. README.md beside the library's source explains it.
  *
+ * Each pointer is null, or points to what its type states, for as long as the call takes. Buffers can be written to.
+ * They overlap neither each other nor any other argument, and no other thread uses them during the call.
+ *
  * Written by cbindgen from the declarations in core/c/src: change those, and run `cargo run` in core/c/header. */
 
 #ifndef GRIDEL_H
@@ -51,7 +54,8 @@ enum gridel_status
   GRIDEL_STATUS_MISALIGNED = 2,
   // A buffer has fewer bytes than are needed.
   GRIDEL_STATUS_BUFFER_TOO_SMALL = 3,
-  // The scene was not loaded, or loading it failed.
+  // The scene was not loaded. If `gridel_load` fails, a scene that was loaded before stays loaded; if
+  // `gridel_load_with_parts` fails, it does not.
   GRIDEL_STATUS_NOT_LOADED = 4,
   // The blob does not start at a multiple of 4 bytes.
   GRIDEL_STATUS_BLOB_MISALIGNED = 10,
@@ -99,7 +103,7 @@ enum gridel_status
   GRIDEL_STATUS_CAMERA_FIELD_OF_VIEW = 50,
   // Eye and target of a camera are the same place.
   GRIDEL_STATUS_CAMERA_DIRECTION = 51,
-  // The camera looks along the direction that points up.
+  // The camera looks along the direction that points up, or that direction is 0.
   GRIDEL_STATUS_CAMERA_ALONG_UP = 52,
   // The camera's eye is beyond the range of coordinates.
   GRIDEL_STATUS_CAMERA_EYE = 53,
@@ -162,7 +166,7 @@ typedef struct gridel_look {
   int32_t eye[3];
   // The place in the middle of its picture.
   int32_t target[3];
-  // The direction that is upwards in the picture, of any length.
+  // The direction that is upwards in the picture, of any length but 0.
   int32_t up[3];
   // The angle of the picture's height, in 2^-32 turn: at least 2 and below half a turn.
   uint32_t field_of_view;
@@ -330,94 +334,61 @@ extern "C" {
 #endif // __cplusplus
 
 // Writes the camera of the scene file.
-//
-// # Safety
-// Each pointer is null, or points to what its type states.
 gridel_status gridel_camera_of(const struct gridel_scene *loaded, struct gridel_camera *camera);
 
 // Makes a camera at one place that looks at another.
-//
-// # Safety
-// Each pointer is null, or points to what its type states.
 gridel_status gridel_look_at(const struct gridel_scene *loaded,
                              const struct gridel_look *look,
                              struct gridel_camera *camera);
 
 // Makes a camera on a circle around a place.
-//
-// # Safety
-// Each pointer is null, or points to what its type states.
 gridel_status gridel_orbit(const struct gridel_scene *loaded,
                            const struct gridel_circle *circle,
                            struct gridel_camera *camera);
 
 // Finds the first hit of a ray, in integers. `stack` is memory of `gridel_stack_bytes` bytes.
-//
-// # Safety
-// Each pointer is null, or points to what its type states.
 gridel_status gridel_cast_fixed(const struct gridel_scene *loaded,
                                 const struct gridel_ray *ray,
                                 struct gridel_buffer stack,
                                 struct gridel_hit *hit);
 
 // Finds the first hit of a ray in steps, in single precision.
-//
-// # Safety
-// Each pointer is null, or points to what its type states.
 gridel_status gridel_cast_steps_f32(const struct gridel_scene *loaded,
                                     const struct gridel_ray *ray,
                                     struct gridel_buffer stack,
                                     struct gridel_hit *hit);
 
 // Finds the first hit of a ray in scene units, in single precision.
-//
-// # Safety
-// Each pointer is null, or points to what its type states.
 gridel_status gridel_cast_f32(const struct gridel_scene *loaded,
                               const struct gridel_ray_f32 *ray,
                               struct gridel_buffer stack,
                               struct gridel_hit_f32 *hit);
 
 // Finds the first hit of a ray in scene units, in double precision.
-//
-// # Safety
-// Each pointer is null, or points to what its type states.
 gridel_status gridel_cast_f64(const struct gridel_scene *loaded,
                               const struct gridel_ray_f64 *ray,
                               struct gridel_buffer stack,
                               struct gridel_hit_f64 *hit);
 
 // Writes 1 if a ray hits anything, else 0: in integers. Takes less time than `gridel_cast_fixed`.
-//
-// # Safety
-// Each pointer is null, or points to what its type states.
 gridel_status gridel_any_fixed(const struct gridel_scene *loaded,
                                const struct gridel_ray *ray,
                                struct gridel_buffer stack,
                                uint32_t *any);
 
 // Writes 1 if a ray in steps hits anything, else 0: in single precision.
-//
-// # Safety
-// Each pointer is null, or points to what its type states.
 gridel_status gridel_any_steps_f32(const struct gridel_scene *loaded,
                                    const struct gridel_ray *ray,
                                    struct gridel_buffer stack,
                                    uint32_t *any);
 
 // Writes 1 if a ray in scene units hits anything, else 0: in single precision.
-//
-// # Safety
-// Each pointer is null, or points to what its type states.
 gridel_status gridel_any_f32(const struct gridel_scene *loaded,
                              const struct gridel_ray_f32 *ray,
                              struct gridel_buffer stack,
                              uint32_t *any);
 
 // Writes 1 if a ray in scene units hits anything, else 0: in double precision.
-//
-// # Safety
-// Each pointer is null, or points to what its type states.
 gridel_status gridel_any_f64(const struct gridel_scene *loaded,
                              const struct gridel_ray_f64 *ray,
                              struct gridel_buffer stack,
@@ -426,90 +397,58 @@ gridel_status gridel_any_f64(const struct gridel_scene *loaded,
 // Checks a blob and fills in a scene. The blob starts at a multiple of 4 bytes and stays where it is, unchanged, for as
 // long as the scene is used. Takes time linear in its length, and about 2 KiB of stack. A scene with parts is loaded by
 // `gridel_load_with_parts`. If it fails, the scene stays as it was.
-//
-// # Safety
-// Each pointer is null, or points to what its type states.
 gridel_status gridel_load(struct gridel_scene *to,
                           const void *blob,
                           size_t blob_bytes);
 
 // Writes the bytes of memory that `gridel_load_with_parts` needs; 0 for a blob without parts.
-//
-// # Safety
-// Each pointer is null, or points to what its type states.
 gridel_status gridel_parts_bytes(const void *blob, size_t blob_bytes, size_t *needed);
 
 // Checks a blob that has parts and fills in a scene. The memory of the parts starts at a multiple of 8 bytes. It has
 // as many bytes as `gridel_parts_bytes` states, and belongs to the scene for as long as that is used. If it fails, the
 // scene is not loaded. Takes about 2.5 KiB of stack.
-//
-// # Safety
-// Each pointer is null, or points to what its type states.
 gridel_status gridel_load_with_parts(struct gridel_scene *to,
                                      const void *blob,
                                      size_t blob_bytes,
                                      struct gridel_buffer parts);
 
 // Writes the reason why a blob is rejected as a sentence, with the section, the record and the expected value. The
-// sentence ends with 0 and is cut off where the buffer ends. Returns the code. Of a blob with parts that is right as far
-// as is checked here, it is that of `gridel_load`, which does not load it. What places the parts is checked by
-// `gridel_load_with_parts` alone. Takes some KiB of code and of stack; a program that does not call it does not hold it.
-//
-// # Safety
-// Each pointer is null, or points to what its type states.
+// sentence ends with 0 and is cut off where the buffer ends. Returns the code. For a blob with valid parts the code is
+// `GRIDEL_STATUS_BLOB_PARTS`, as from `gridel_load`. What places the parts is checked by `gridel_load_with_parts`
+// alone. Takes some KiB of code and of stack; a program that does not call it does not hold it.
 gridel_status gridel_blob_error(const void *blob,
                                 size_t blob_bytes,
                                 char *text,
                                 size_t text_bytes);
 
 // Writes the properties and requirements of a scene.
-//
-// # Safety
-// Each pointer is null, or points to what its type states.
 gridel_status gridel_info_of(const struct gridel_scene *loaded, struct gridel_info *info);
 
 // Writes the bytes of the stack that rays need, which starts at a multiple of 8 bytes.
-//
-// # Safety
-// Each pointer is null, or points to what its type states.
 gridel_status gridel_stack_bytes(const struct gridel_scene *loaded, size_t *needed);
 
 // Writes the settings of the scene file, without dithering, in RGB888.
-//
-// # Safety
-// Each pointer is null, or points to what its type states.
 gridel_status gridel_picture_of(const struct gridel_scene *loaded, struct gridel_picture *picture);
 
 // Writes the bytes of the workspace that a picture needs in `fixed`, which starts at a multiple of 8 bytes.
-//
-// # Safety
-// Each pointer is null, or points to what its type states.
 gridel_status gridel_workspace_bytes_fixed(const struct gridel_scene *loaded,
                                            const struct gridel_picture *picture,
                                            size_t *needed);
 
 // Writes the bytes of the workspace that a picture needs in `f32`, which starts at a multiple of 8 bytes.
-//
-// # Safety
-// Each pointer is null, or points to what its type states.
 gridel_status gridel_workspace_bytes_f32(const struct gridel_scene *loaded,
                                          const struct gridel_picture *picture,
                                          size_t *needed);
 
 // Writes the bytes of the workspace that a picture needs in `f64`, which starts at a multiple of 8 bytes.
-//
-// # Safety
-// Each pointer is null, or points to what its type states.
 gridel_status gridel_workspace_bytes_f64(const struct gridel_scene *loaded,
                                          const struct gridel_picture *picture,
                                          size_t *needed);
 
 // Renders a rectangle of a picture, such as a row, in integers. `pixels` holds its rows one behind the other; `workspace`
 // is memory of `gridel_workspace_bytes_fixed` bytes. Pixels do not depend on each other: a picture is the same bytes
-// whatever its rectangles.
-//
-// # Safety
-// Each pointer is null, or points to what its type states.
+// whatever its rectangles. Each row is black from when it is begun until its pixels are written. Where that would be
+// seen, render into other memory than that which is shown.
 gridel_status gridel_render_fixed(const struct gridel_scene *loaded,
                                   const struct gridel_picture *picture,
                                   const struct gridel_rectangle *rectangle,
@@ -517,9 +456,6 @@ gridel_status gridel_render_fixed(const struct gridel_scene *loaded,
                                   struct gridel_buffer workspace);
 
 // Renders a rectangle of a picture, such as a row, in single precision: see `gridel_render_fixed`.
-//
-// # Safety
-// Each pointer is null, or points to what its type states.
 gridel_status gridel_render_f32(const struct gridel_scene *loaded,
                                 const struct gridel_picture *picture,
                                 const struct gridel_rectangle *rectangle,
@@ -527,9 +463,6 @@ gridel_status gridel_render_f32(const struct gridel_scene *loaded,
                                 struct gridel_buffer workspace);
 
 // Renders a rectangle of a picture, such as a row, in double precision: see `gridel_render_fixed`.
-//
-// # Safety
-// Each pointer is null, or points to what its type states.
 gridel_status gridel_render_f64(const struct gridel_scene *loaded,
                                 const struct gridel_picture *picture,
                                 const struct gridel_rectangle *rectangle,
@@ -538,9 +471,6 @@ gridel_status gridel_render_f64(const struct gridel_scene *loaded,
 
 // Renders a rectangle of a picture as seen by a camera that was made for this scene, in integers: see
 // `gridel_render_fixed`.
-//
-// # Safety
-// Each pointer is null, or points to what its type states.
 gridel_status gridel_render_from_fixed(const struct gridel_scene *loaded,
                                        const struct gridel_camera *camera,
                                        const struct gridel_picture *picture,
@@ -550,9 +480,6 @@ gridel_status gridel_render_from_fixed(const struct gridel_scene *loaded,
 
 // Renders a rectangle of a picture as seen by a camera that was made for this scene, in single precision: see
 // `gridel_render_fixed`.
-//
-// # Safety
-// Each pointer is null, or points to what its type states.
 gridel_status gridel_render_from_f32(const struct gridel_scene *loaded,
                                      const struct gridel_camera *camera,
                                      const struct gridel_picture *picture,
@@ -562,9 +489,6 @@ gridel_status gridel_render_from_f32(const struct gridel_scene *loaded,
 
 // Renders a rectangle of a picture as seen by a camera that was made for this scene, in double precision: see
 // `gridel_render_fixed`.
-//
-// # Safety
-// Each pointer is null, or points to what its type states.
 gridel_status gridel_render_from_f64(const struct gridel_scene *loaded,
                                      const struct gridel_camera *camera,
                                      const struct gridel_picture *picture,

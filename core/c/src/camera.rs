@@ -92,7 +92,7 @@ fn of_view(view: &View) -> gridel_camera {
 
 /// A scene's view with another camera; the sizes of numbers are checked where it is used.
 pub(crate) fn view_from(scene: &Scene<'_>, camera: &gridel_camera) -> Result<View, gridel_status> {
-    // A camera that was forgotten to be made is 0. One that sees very little, or half of everything, has some zeros.
+    // An uninitialized camera is all zeros; one that sees very little, or half of everything, has some zeros.
     let axes = [camera.forward, camera.right, camera.up];
     if camera.reserved != 0 || axes == [[0; 3]; 3] {
         return Err(gridel_status::CameraInvalid);

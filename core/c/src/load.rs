@@ -1,6 +1,8 @@
 //! Loading of blobs as scenes.
 
-use crate::memory::{PartViews, bytes, clear, input, output, scene, stack_bytes, store};
+use crate::memory::{
+    PartViews, bytes, clear, elements, input, output, scene, stack_bytes, store, zeroed,
+};
 use crate::{STRUCTURE, gridel_buffer, gridel_info, gridel_scene, gridel_status};
 use core::ffi::{c_char, c_void};
 use core::fmt::{self, Write};
@@ -102,9 +104,9 @@ fn held(scene: Scene<'static>) -> Result<Scene<'static>, gridel_status> {
 }
 
 /// Writes the reason why a blob is rejected as a sentence, with the section, the record and the expected value. The
-/// sentence ends with 0 and is cut off where the buffer ends. Returns the code. Of a blob with parts that is right as far
-/// as is checked here, it is that of `gridel_load`, which does not load it. What places the parts is checked by
-/// `gridel_load_with_parts` alone. Takes some KiB of code and of stack; a program that does not call it does not hold it.
+/// sentence ends with 0 and is cut off where the buffer ends. Returns the code. For a blob with valid parts the code is
+/// `GRIDEL_STATUS_BLOB_PARTS`, as from `gridel_load`. What places the parts is checked by `gridel_load_with_parts`
+/// alone. Takes some KiB of code and of stack; a program that does not call it does not hold it.
 ///
 /// # Safety
 /// Each pointer is null, or points to what its type states.
@@ -121,7 +123,9 @@ pub unsafe extern "C" fn gridel_blob_error(
             bytes: text_bytes,
         };
         // SAFETY: the caller's promise.
-        let text = unsafe { crate::memory::elements::<u8>(buffer, text_bytes) }?;
+        let text = unsafe { elements::<u8>(buffer, text_bytes) }?;
+        // SAFETY: a byte of 0 is a `u8`.
+        let text = unsafe { zeroed(text) };
         // SAFETY: the caller's promise.
         let blob = unsafe { bytes(blob.cast(), blob_bytes) }?;
         let mut sentence = Sentence { text, used: 0 };

@@ -55,32 +55,43 @@ fn check<T>(value: *const T) -> Result<(), gridel_status> {
 /// The pointer is null, or leads to this many bytes that stay as they are for as long as the slice lives.
 pub unsafe fn bytes<'m>(first: *const u8, length: usize) -> Result<&'m [u8], gridel_status> {
     check(first)?;
+    // No blob is as long as half of all memory.
     if length > isize::MAX as usize {
-        return Err(gridel_status::BufferTooSmall);
+        return Err(gridel_status::BlobTruncated);
     }
     // SAFETY: it is not null, and no longer than a slice can be; the caller promises the rest.
     Ok(unsafe { slice::from_raw_parts(first, length) })
 }
 
-/// Elements to write for which any bytes are valid, such as pixels.
+/// Elements to write, such as pixels; what they held is not read.
 ///
 /// # Safety
-/// As [`output`], for all bytes of the buffer. Any bytes are a `T`.
+/// As [`output`], for all bytes of the buffer.
 pub unsafe fn elements<'m, T>(
     buffer: gridel_buffer,
     count: usize,
-) -> Result<&'m mut [T], gridel_status> {
+) -> Result<&'m mut [MaybeUninit<T>], gridel_status> {
     let first = buffer.memory.cast::<T>();
     check(first)?;
     let needed = count.checked_mul(size_of::<T>());
     if needed.is_none_or(|needed| needed > buffer.bytes || needed > isize::MAX as usize) {
         return Err(gridel_status::BufferTooSmall);
     }
-    // Memory that was never written to becomes bytes here. SAFETY: the buffer has this many bytes, by its caller's
-    // promise.
+    // SAFETY: it is not null, aligned, and has this many elements; the caller promises the rest. Any bytes are valid
+    // for `MaybeUninit`.
+    Ok(unsafe { slice::from_raw_parts_mut(first.cast(), count) })
+}
+
+/// Sets elements to 0, because memory that was never written to has no value.
+///
+/// # Safety
+/// Bytes of 0 are a `T`.
+pub unsafe fn zeroed<T>(elements: &mut [MaybeUninit<T>]) -> &mut [T] {
+    let (first, count) = (elements.as_mut_ptr().cast::<T>(), elements.len());
+    // SAFETY: the slice has this many elements.
     unsafe { first.write_bytes(0, count) };
-    // SAFETY: it is not null, aligned, and has this many elements; the caller promises the rest.
-    Ok(unsafe { slice::from_raw_parts_mut(first, count) })
+    // SAFETY: they are bytes of 0, and those are a `T` by the caller's promise.
+    unsafe { slice::from_raw_parts_mut(first, count) }
 }
 
 /// Places a value at the start of a buffer, whose alignment is at least 8 bytes.
@@ -195,8 +206,9 @@ macro_rules! with_least {
     };
 }
 
-/// Runs code with the number of entries of the smallest stack that is deep enough. This is the only list of stacks, so
-/// that what is said to be needed is what is used.
+/// Runs code with the number of entries of the smallest stack that is deep enough. The library has no other list of
+/// stacks, so that what it says to be needed is what it uses. `GRIDEL_STACK_ENTRIES` of the header repeats it: the test
+/// `header_has_the_stacks_of_the_library` compares both.
 macro_rules! with_stack {
     ($depth:expr, $use:ident) => {
         with_least!($depth, [8 16 24 32 48 96], 160, $use)

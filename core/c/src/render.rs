@@ -2,11 +2,12 @@
 
 use crate::camera::view_from;
 use crate::load::{read, status};
-use crate::memory::{elements, output, scene, workspace, workspace_bytes};
+use crate::memory::{elements, output, scene, workspace, workspace_bytes, zeroed};
 use crate::{
     Accel, gridel_buffer, gridel_camera, gridel_picture, gridel_pixel_format, gridel_rectangle,
     gridel_scene, gridel_status,
 };
+use core::mem::MaybeUninit;
 use gridel_core::render::Pixel;
 use gridel_core::{
     BlobError, Effects, Fixed, NoCount, Number, Renderer, Rgb565, Rgb888, Scene, Settings,
@@ -85,7 +86,8 @@ pub unsafe extern "C" fn gridel_workspace_bytes_f64(
 
 /// Renders a rectangle of a picture, such as a row, in integers. `pixels` holds its rows one behind the other; `workspace`
 /// is memory of `gridel_workspace_bytes_fixed` bytes. Pixels do not depend on each other: a picture is the same bytes
-/// whatever its rectangles.
+/// whatever its rectangles. Each row is black from when it is begun until its pixels are written. Where that would be
+/// seen, render into other memory than that which is shown.
 ///
 /// # Safety
 /// Each pointer is null, or points to what its type states.
@@ -277,9 +279,9 @@ unsafe fn render_scene<N: Number>(
     let [width, height] = [rectangle.width, rectangle.height].map(usize::from);
     let count = width.saturating_mul(height);
     let target = match picture.pixel_format {
-        // SAFETY: the caller's promise; any bytes are pixels.
+        // SAFETY: the caller's promise.
         0 => Target::Rgb888(unsafe { elements(pixels, count) }?),
-        // SAFETY: the caller's promise; any bytes are pixels.
+        // SAFETY: the caller's promise.
         1 => Target::Rgb565(unsafe { elements(pixels, count) }?),
         _ => return Err(gridel_status::PictureFormat),
     };
@@ -288,16 +290,18 @@ unsafe fn render_scene<N: Number>(
         rectangle,
     };
     match target {
-        Target::Rgb888(pixels) => rows.fill::<Rgb888>(pixels, &mut space),
-        Target::Rgb565(pixels) => rows.fill::<Rgb565>(pixels, &mut space),
+        // SAFETY: bytes of 0 are pixels.
+        Target::Rgb888(pixels) => unsafe { rows.fill::<Rgb888>(pixels, &mut space) },
+        // SAFETY: bytes of 0 are pixels.
+        Target::Rgb565(pixels) => unsafe { rows.fill::<Rgb565>(pixels, &mut space) },
     }
     Ok(())
 }
 
 /// The caller's pixels.
 enum Target<'p> {
-    Rgb888(&'p mut [Rgb888]),
-    Rgb565(&'p mut [Rgb565]),
+    Rgb888(&'p mut [MaybeUninit<Rgb888>]),
+    Rgb565(&'p mut [MaybeUninit<Rgb565>]),
 }
 
 /// A rectangle of a picture.
@@ -307,15 +311,21 @@ struct Rows<'s, 'a, N: Number> {
 }
 
 impl<N: Number> Rows<'_, '_, N> {
-    fn fill<P: Pixel>(
+    /// Renders the rows. Each is set to 0 on its own: a whole picture would turn black while it may be shown.
+    ///
+    /// # Safety
+    /// Bytes of 0 are a pixel.
+    unsafe fn fill<P: Pixel>(
         &self,
-        pixels: &mut [P],
+        pixels: &mut [MaybeUninit<P>],
         space: &mut gridel_core::render::WorkspaceView<'_, N>,
     ) {
         let gridel_rectangle { x, y, width, .. } = self.rectangle;
         // `chunks_mut` of no columns would panic.
         let rows = pixels.chunks_mut(usize::from(width).max(1));
         for (row, y) in rows.zip(y..) {
+            // SAFETY: the caller's promise.
+            let row = unsafe { zeroed(row) };
             self.renderer.row(x, y, row, space, &mut NoCount);
         }
     }

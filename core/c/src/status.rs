@@ -18,7 +18,8 @@ pub enum gridel_status {
     Misaligned = 2,
     /// A buffer has fewer bytes than are needed.
     BufferTooSmall = 3,
-    /// The scene was not loaded, or loading it failed.
+    /// The scene was not loaded. If `gridel_load` fails, a scene that was loaded before stays loaded; if
+    /// `gridel_load_with_parts` fails, it does not.
     NotLoaded = 4,
     /// The blob does not start at a multiple of 4 bytes.
     BlobMisaligned = 10,
@@ -66,7 +67,7 @@ pub enum gridel_status {
     CameraFieldOfView = 50,
     /// Eye and target of a camera are the same place.
     CameraDirection = 51,
-    /// The camera looks along the direction that points up.
+    /// The camera looks along the direction that points up, or that direction is 0.
     CameraAlongUp = 52,
     /// The camera's eye is beyond the range of coordinates.
     CameraEye = 53,
@@ -173,7 +174,7 @@ fn text(status: u32) -> &'static CStr {
         45 => c"the rectangle leaves the picture",
         50 => c"the camera's field of view must be at least 2 and below half a turn",
         51 => c"the camera looks nowhere: move its eye or its target",
-        52 => c"the camera looks along the direction that points up: give one across the view",
+        52 => c"the camera looks along the direction that points up, or that is 0: give one across the view",
         53 => c"the camera's eye is beyond the range of scene coordinates",
         54 => c"the camera's numbers are out of range: make it by gridel_look_at or gridel_orbit",
         55 => c"the axis that points up must be 1 for y or 2 for z",

@@ -178,7 +178,7 @@ pub struct gridel_look {
     pub eye: [i32; 3],
     /// The place in the middle of its picture.
     pub target: [i32; 3],
-    /// The direction that is upwards in the picture, of any length.
+    /// The direction that is upwards in the picture, of any length but 0.
     pub up: [i32; 3],
     /// The angle of the picture's height, in 2^-32 turn: at least 2 and below half a turn.
     pub field_of_view: u32,

@@ -106,7 +106,7 @@ int main(int count_of_arguments, char **arguments) {
   EXPECT(NULL_POINTER, gridel_load(NULL, blob, blob_bytes));
   EXPECT(NULL_POINTER, gridel_load(&scene, NULL, blob_bytes));
   EXPECT(MISALIGNED, gridel_load((gridel_scene *)((unsigned char *)&scene + 1), blob, blob_bytes));
-  EXPECT(TOO_SMALL, gridel_load(&scene, blob, (size_t)-1));
+  EXPECT(GRIDEL_STATUS_BLOB_TRUNCATED, gridel_load(&scene, blob, (size_t)-1));
   EXPECT(GRIDEL_STATUS_BLOB_MAGIC, gridel_load(&scene, blob, 0));
   EXPECT(GRIDEL_STATUS_BLOB_TRUNCATED, gridel_load(&scene, blob, blob_bytes - 16));
   damaged = aligned(blob_bytes + 8);
@@ -336,6 +336,10 @@ int main(int count_of_arguments, char **arguments) {
   EXPECT(GRIDEL_STATUS_CAMERA_DIRECTION, gridel_look_at(&scene, &look, &camera));
   look.eye[1] = 1000;
   EXPECT(GRIDEL_STATUS_CAMERA_ALONG_UP, gridel_look_at(&scene, &look, &camera));
+  memset(look.up, 0, sizeof look.up);
+  EXPECT(GRIDEL_STATUS_CAMERA_ALONG_UP, gridel_look_at(&scene, &look, &camera));
+  CHECK(strstr(gridel_text(GRIDEL_STATUS_CAMERA_ALONG_UP), "or that is 0") != NULL);
+  look.up[1] = 1;
   look.eye[0] = 1000;
   look.field_of_view = 0;
   EXPECT(GRIDEL_STATUS_CAMERA_FIELD_OF_VIEW, gridel_look_at(&scene, &look, &camera));

@@ -4,8 +4,9 @@
 //! sends the other for `send`. `render` traces so many rays, then lets other tasks run. No task waits longer for it
 //! than those rays take, and no row waits for the bus unless the bus is slower than the rays.
 //!
-//! The board is a nRF52840-DK; a display of the ST7789 family has its clock on P0.19, its data on P0.20 and its
-//! data/command line on P0.21. See the display's data sheet for its initialization.
+//! The board is an nRF52840-DK. A display of the ST7789 family has its clock on P0.26, its data on P0.27 and its
+//! data/command line on P1.08: these pins lead to the kit's headers alone. See the display's data sheet for its
+//! initialization.
 #![no_std]
 #![no_main]
 
@@ -50,8 +51,8 @@ async fn main(spawner: Spawner) {
     let chip = embassy_nrf::init(Default::default());
     let mut config = spim::Config::default();
     config.frequency = spim::Frequency::M32;
-    let bus = Spim::new_txonly(chip.SPI3, Interrupts, chip.P0_19, chip.P0_20, config);
-    let is_data = Output::new(chip.P0_21, Level::Low, OutputDrive::Standard);
+    let bus = Spim::new_txonly(chip.SPI3, Interrupts, chip.P0_26, chip.P0_27, config);
+    let is_data = Output::new(chip.P1_08, Level::Low, OutputDrive::Standard);
     let channel = CHANNEL.init(Channel::new(BUFFERS.init([[0; 2 * WIDTH as usize]; 2])));
     let (rows, filled) = channel.split();
     if let (Ok(render), Ok(send)) = (render(rows), send(filled, bus, is_data)) {

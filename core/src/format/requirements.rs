@@ -3,7 +3,7 @@
 use crate::format::effects::enable;
 use crate::format::instance::Part;
 use crate::format::kind::shapes;
-use crate::format::record::{Header, SECTION_ALIGNMENT, SectionEntry, View};
+use crate::format::record::{Header, SECTION_ALIGNMENT, SectionEntry, View, exponent_of_step};
 use crate::format::word::{complete, half, proved, word};
 use crate::format::{BlobError, Effects, SectionKind, Structure};
 use core::mem::offset_of;
@@ -36,6 +36,10 @@ pub struct Requirements {
     pub effects: Effects,
     /// Parts that instances place; [`Parts`](crate::Parts) has room for them.
     pub parts: usize,
+    /// Instances, for [`Poses`](crate::Poses).
+    pub instances: usize,
+    /// Joints on which instances hang.
+    pub joints: usize,
     /// Pixels of a row of the scene's own picture.
     pub width: usize,
     /// Its rows.
@@ -48,6 +52,10 @@ pub struct Requirements {
     pub moving_normals: usize,
     /// Morph targets, for [`Tracks::weights_at`](crate::Tracks::weights_at).
     pub morph_targets: usize,
+    /// A coordinate step is 2 to this power scene units: [`Scene::coordinate_exponent`](crate::Scene::coordinate_exponent).
+    pub coordinate_exponent: i32,
+    /// Bits of the numbers of [`Requirements::coordinate_origin`].
+    origin: [u64; 3],
     structures: u32,
     /// A bit for each [`SectionKind`] of which there are records.
     sections: u128,
@@ -112,12 +120,16 @@ impl Requirements {
             work_depth: 0,
             effects: Effects(proved!(word(blob, offset_of!(Header, effects)))),
             parts: 0,
+            instances: 0,
+            joints: 0,
             width: 0,
             height: 0,
             vertices: 0,
             pairs: 0,
             moving_normals: 0,
             morph_targets: 0,
+            coordinate_exponent: proved!(exponent(blob)),
+            origin: proved!(origin(blob)),
             structures: proved!(word(blob, offset_of!(Header, structures))),
             sections: 0,
             clusters_alone: false,
@@ -160,6 +172,10 @@ impl Requirements {
                 required.wide_indices = stride > size_of::<[u16; 3]>();
             } else if kind == SectionKind::Parts as u16 {
                 (required.parts, places[0]) = (count as usize, start);
+            } else if kind == SectionKind::Instances as u16 {
+                required.instances = count as usize;
+            } else if kind == SectionKind::Joints as u16 {
+                required.joints = count as usize;
             } else if kind == SectionKind::PartBlobs as u16 {
                 places[1] = start;
             }
@@ -178,6 +194,28 @@ impl Requirements {
     /// Returns true if the blob holds a structure.
     pub const fn holds(&self, structure: Structure) -> bool {
         self.structures & structure.bit() != 0
+    }
+
+    /// Returns the place from which scene coordinates are counted, in scene units:
+    /// [`Header::coordinate_origin`](crate::format::record::Header::coordinate_origin).
+    pub const fn coordinate_origin(&self) -> [f64; 3] {
+        let [x, y, z] = self.origin;
+        [f64::from_bits(x), f64::from_bits(y), f64::from_bits(z)]
+    }
+
+    /// Returns true if a scene unit and the place 0 are the same steps in another scene, whose exponent and origin of
+    /// coordinates these are.
+    pub const fn counts_as(&self, exponent: i32, [x, y, z]: [f64; 3]) -> bool {
+        let [own_x, own_y, own_z] = self.origin;
+        self.coordinate_exponent == exponent
+            && own_x == x.to_bits()
+            && own_y == y.to_bits()
+            && own_z == z.to_bits()
+    }
+
+    /// Returns the bits of a vertex's coordinates in a [`Deformation`](crate::deform::Deformation), 16 or 24.
+    pub const fn vertex_bits(&self) -> u32 {
+        if self.wide_lattice { 24 } else { 16 }
     }
 
     /// Returns a sentence about a Cargo feature that the scene requires and that this build lacks. Loading rejects a
@@ -220,4 +258,25 @@ impl Requirements {
         }
         self.effects.missing()
     }
+}
+
+/// The exponent of a coordinate step.
+const fn exponent(blob: &[u8]) -> Result<i32, BlobError> {
+    let unit = proved!(half(blob, offset_of!(Header, unit_exponent)));
+    let shift = proved!(half(blob, offset_of!(Header, coordinate_shift)));
+    Ok(exponent_of_step(unit as i16, shift as u8))
+}
+
+/// The bits of the place from which coordinates are counted.
+const fn origin(blob: &[u8]) -> Result<[u64; 3], BlobError> {
+    let counted_from = proved!(half(blob, offset_of!(Header, coordinate_shift))) >> 8;
+    let mut origin = [0; 3];
+    let mut axis = 0;
+    while counted_from == 0 && axis < origin.len() {
+        let place = offset_of!(Header, origin) + axis * size_of::<f64>();
+        let low = proved!(word(blob, place)) as u64;
+        origin[axis] = (proved!(word(blob, place + 4)) as u64) << 32 | low;
+        axis += 1;
+    }
+    Ok(origin)
 }

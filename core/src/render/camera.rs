@@ -62,7 +62,8 @@ pub enum CameraError {
     FieldOfView(Angle),
     /// Eye and target are the same place, or the direction or rotation has no length.
     NoDirection,
-    /// The camera looks along the direction that points up, so the rotation of the picture is undefined.
+    /// The camera looks along the direction that points up, or that has no length, so the rotation of the picture is
+    /// undefined.
     AlongUp,
     /// The eye lies beyond the range of scene coordinates.
     EyeOutOfRange,
@@ -74,7 +75,7 @@ impl fmt::Display for CameraError {
             Self::FieldOfView(_) => "the field of view must be at least 2 and below half a turn",
             Self::NoDirection => "the camera looks nowhere: move its eye or its target",
             Self::AlongUp => {
-                "the camera looks along the direction that points up: give one across the view"
+                "the camera looks along the direction that points up, or that is 0: give one across the view"
             }
             Self::EyeOutOfRange => "the eye is beyond the range of scene coordinates",
         })
@@ -88,8 +89,8 @@ impl Camera {
     /// `field_of_view` is the angle of the picture's height.
     ///
     /// # Errors
-    /// If eye and target are the same place, or the camera looks along `up`. Also if the field of view is below 2, in
-    /// 2^-32 turn, or half a turn or more.
+    /// If eye and target are the same place, or the camera looks along `up`, or `up` is 0. Also if the field of view
+    /// is below 2, in 2^-32 turn, or half a turn or more.
     pub fn look_at(
         eye: Position,
         target: Position,
@@ -135,7 +136,8 @@ impl Camera {
     /// upwards.
     ///
     /// # Errors
-    /// If all components of the rotation are 0, or the field of view is 0 or half a turn or more.
+    /// If all components of the rotation are 0. Also if the field of view is below 2, in 2^-32 turn, or half a turn or
+    /// more.
     pub fn rotated(
         eye: Position,
         rotation: [i32; 4],
@@ -151,7 +153,8 @@ impl Camera {
     /// is in coordinate steps.
     ///
     /// # Errors
-    /// If the distance is 0, the eye leaves the range of coordinates, or the field of view is 0 or half a turn or more.
+    /// If the distance is 0, or the eye leaves the range of coordinates. Also if the field of view is below 2, in
+    /// 2^-32 turn, or half a turn or more.
     pub fn orbit(
         up: Up,
         target: Position,

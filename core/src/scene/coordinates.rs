@@ -2,7 +2,7 @@
 
 use crate::accel::Number;
 use crate::format::limits::{FARTHEST, MAX_COORDINATE_SHIFT};
-use crate::format::record::Header;
+use crate::format::record::{Header, LENGTH_BITS, exponent_of_step};
 use crate::ray::{Ray, RayError};
 use crate::scene::Scene;
 
@@ -15,9 +15,6 @@ use crate::scene::Scene;
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Position(pub [i32; 3]);
-
-/// Fraction bits of lengths.
-const LENGTH_BITS: i32 = 13;
 
 /// Returns a length of `numerator / denominator` scene units in coordinate steps of 2 to the power of `exponent` scene
 /// units, rounded towards 0. `None` if it is beyond 32 bits, or the denominator is 0.
@@ -144,8 +141,7 @@ impl Scene<'_> {
 impl Header {
     /// Returns the exponent of a coordinate step: a step is 2 to this power scene units.
     pub fn coordinate_exponent(&self) -> i32 {
-        let shift = i32::from(self.coordinate_shift);
-        i32::from(self.unit_exponent) - LENGTH_BITS + shift
+        exponent_of_step(self.unit_exponent, self.coordinate_shift)
     }
 
     /// Returns the place in scene units from which scene coordinates are counted: the scene file's origin, or the

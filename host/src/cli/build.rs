@@ -21,6 +21,7 @@ use gridel_host::compile::{self, Builder, Report};
 use gridel_host::emit::{self, Emitted};
 use gridel_host::measure::InstanceCount;
 use gridel_host::measure::board::{Board, MemoryReport};
+use gridel_host::output::place;
 use gridel_host::state::raised_materials;
 use report::Built;
 use std::fs;
@@ -143,7 +144,9 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
 fn check_outputs(arguments: &Arguments) -> Result<(), Failure> {
     reject_same(&arguments.scene, &arguments.output)?;
     check_extension(&arguments.output, &["gridel", "bin"], "blob")?;
-    check_writable(&arguments.output)?;
+    if !is_in_new_folder(arguments) {
+        check_writable(&arguments.output)?;
+    }
     if !is_standard(&arguments.output) {
         reject_foreign(&arguments.output, "blob", is_blob)?;
     }
@@ -166,6 +169,13 @@ fn check_outputs(arguments: &Arguments) -> Result<(), Failure> {
         "module of Gridel",
         emit::is_module,
     )
+}
+
+/// Returns true if the blob is to lie in the module's folder, which does not exist yet.
+fn is_in_new_folder(arguments: &Arguments) -> bool {
+    let folder = arguments.emit_rust.as_deref().filter(|it| !it.exists());
+    let parent = arguments.output.parent();
+    folder.is_some_and(|folder| parent.is_some_and(|it| place(it) == place(folder)))
 }
 
 /// Returns the options for the compiler.

@@ -46,6 +46,7 @@ mod view;
 mod web;
 
 use clap::{CommandFactory, Parser, Subcommand};
+use gridel_host::output::unfinished;
 use peak_alloc::PeakAlloc;
 use std::io::{self, IsTerminal, Write};
 use std::process::ExitCode;
@@ -100,9 +101,9 @@ pub fn run(memory: &PeakAlloc) -> ExitCode {
     let _ = ctrlc::set_handler(|| {
         if io::stderr().is_terminal() {
             // What is shown of progress ends in the middle of a line.
-            let _ = io::stderr().write_all(b"\r\x1b[2K");
+            unfinished::within_limits(|| drop(io::stderr().write_all(b"\r\x1b[2K")));
         }
-        gridel_host::output::unfinished::exit_removing_unfinished(130)
+        unfinished::exit_removing_unfinished(130)
     });
     if let Err(cause) = gridel_host::simd::from_environment() {
         return failure::Failure::usage(cause, "unset the variable for the fastest").report();

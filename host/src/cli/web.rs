@@ -1,6 +1,7 @@
 //! `gridel web`: serves the web page to this machine.
 
 mod server;
+mod timed;
 
 use super::failure::Failure;
 use super::output::print;

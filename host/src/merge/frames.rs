@@ -156,7 +156,7 @@ mod tests {
     fn notes_are_read_as_they_are_written() {
         for text in [
             "0 at 1 per second; blob 12",
-            "4294967295 at 65535 per second; a b, c d",
+            "4294967294 at 65535 per second; a b, c d",
         ] {
             let note: FrameNote = text.parse().unwrap();
             assert_eq!(note.to_string(), text);
@@ -166,6 +166,7 @@ mod tests {
             "1 at 24 per second",
             "1 at 0 per second; a b",
             "-1 at 2 per second; a b",
+            "4294967295 at 2 per second; a b",
         ] {
             assert!(wrong.parse::<FrameNote>().is_err(), "{wrong}");
         }

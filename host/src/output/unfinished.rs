@@ -5,6 +5,7 @@ use std::fs;
 use std::io;
 use std::path::{Path, PathBuf};
 use std::process::{Child, Command, ExitStatus};
+use std::sync::mpsc::channel;
 use std::sync::{Mutex, MutexGuard, PoisonError};
 use std::thread;
 use std::time::Duration;
@@ -33,6 +34,23 @@ pub(super) fn unfinished() -> MutexGuard<'static, Unfinished> {
 /// Says how the terminal is given back if the program is interrupted; `None` when that is done.
 pub(crate) fn gives_back(screen: Option<Box<dyn FnOnce() + Send>>) {
     unfinished().screen = screen;
+}
+
+/// Longest time that the end of the program waits for a terminal.
+const PATIENCE: Duration = Duration::from_millis(500);
+
+/// Writes to a terminal, but waits no longer than half a second: a terminal may take nothing.
+pub fn within_limits(write: fn()) {
+    let (done, ended) = channel();
+    let writer = move || {
+        write();
+        let _ = done.send(());
+    };
+    match thread::Builder::new().spawn(writer) {
+        Ok(_) => drop(ended.recv_timeout(PATIENCE)),
+        // There is no memory for a thread.
+        Err(_) => write(),
+    }
 }
 
 /// Ends what runs, removes what writing has left so far, gives the terminal back, and ends the program: for whoever

@@ -45,7 +45,7 @@ pub enum Moment {
 /// A picture of an animation.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Frame {
-    /// Counted from 0, which is at time 0.
+    /// Counted from 0, which is at time 0; below 2^32 - 1.
     pub number: u32,
     /// Pictures per second.
     pub per_second: u16,
@@ -90,7 +90,8 @@ impl FromStr for FrameNote {
         let (number, rate) = frame.split_once(" at ").ok_or(())?;
         let rate = rate.strip_suffix(" per second").ok_or(())?;
         let frame = Frame {
-            number: number.parse().map_err(|_| ())?,
+            // A range of frames ends behind its last one.
+            number: number.parse().ok().filter(|it| *it < u32::MAX).ok_or(())?,
             per_second: rate.parse().map_err(|_| ())?,
         };
         let made = pairs(made).filter(|_| frame.per_second > 0).ok_or(())?;

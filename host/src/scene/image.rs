@@ -6,6 +6,13 @@ use std::io::Cursor;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
+/// Extensions of the files of textures and environments. Their content decides how they are read.
+pub const IMAGE_EXTENSIONS: &[&str] = if cfg!(feature = "exr") {
+    &["png", "jpg", "jpeg", "hdr", "exr"]
+} else {
+    &["png", "jpg", "jpeg", "hdr"]
+};
+
 /// Most texels of an image that is read: 8192 by 8192.
 const MOST_TEXELS: usize = 1 << 26;
 /// Most texels of all images of a scene: two gigabytes.

@@ -48,7 +48,7 @@ pub use emitters::MOST_FACES;
 pub use environment::{Environment, Panorama, Sky, Sun};
 pub use error::SceneError;
 pub use files::Files;
-pub use image::Image;
+pub use image::{IMAGE_EXTENSIONS, Image};
 pub use importer::Importer;
 pub(crate) use joint::JointTracks;
 pub use joint::{LARGEST_SCALE, LEAST_SCALE};

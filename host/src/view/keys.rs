@@ -104,12 +104,7 @@ pub const KEYS: [Line; 15] = [
         Action::Save,
         "save the camera as TOML, in a new file",
     ),
-    (
-        &[Key::Character('h')],
-        "h",
-        Action::Help,
-        "print these keys",
-    ),
+    (&[Key::Character('h')], "h", Action::Help, "show these keys"),
     (
         &[Key::Character('q'), Key::Escape],
         "q",

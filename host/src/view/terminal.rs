@@ -6,10 +6,11 @@ use super::refine::Refiner;
 use super::save::save;
 use super::shot::ViewError;
 use super::state::{Effect, State};
-use crate::output::unfinished::gives_back;
+use crate::output::unfinished::{gives_back, within_limits};
 use console::Term;
 use std::fmt::Write as _;
 use std::io::{self, Write};
+use std::mem::ManuallyDrop;
 use std::path::Path;
 use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender, channel};
 use std::thread;
@@ -30,10 +31,15 @@ const LINES_BELOW: u16 = 1;
 /// Returns the size of a picture with a given shape, in pixels of the terminal. Uses 80 columns where standard output
 /// is not a terminal.
 pub fn fitting_size(shape: [u16; 2]) -> [u16; 2] {
-    let size = Term::stdout().size_checked();
-    let (rows, columns) = size.unwrap_or((u16::MAX, COLUMNS));
+    let (rows, columns) = terminal_size();
     let height = rows.saturating_sub(LINES_BELOW).saturating_mul(2);
     fitted(shape, [columns, height])
+}
+
+/// Rows and columns of the terminal.
+fn terminal_size() -> (u16, u16) {
+    let size = Term::stdout().size_checked();
+    size.unwrap_or((u16::MAX, COLUMNS))
 }
 
 /// Returns the largest size of a shape within limits, at least one pixel.
@@ -47,12 +53,18 @@ pub fn fitted([width, height]: [u16; 2], limits: [u16; 2]) -> [u16; 2] {
 
 /// Returns a frame as lines of half blocks: the upper pixel is the character's color, the lower one its background.
 pub fn half_blocks(frame: &Frame) -> String {
+    half_blocks_within(frame, [u16::MAX; 2])
+}
+
+/// Returns the upper left part of a frame that has so many columns and lines.
+fn half_blocks_within(frame: &Frame, [columns, lines]: [u16; 2]) -> String {
+    let columns = usize::from(frame.width.min(columns));
     let colors: Vec<u32> = frame.colors().collect();
     let rows: Vec<&[u32]> = colors.chunks(usize::from(frame.width.max(1))).collect();
     let mut text = String::new();
-    for pair in rows.chunks(2) {
+    for pair in rows.chunks(2).take(lines.into()) {
         let mut before = None;
-        for x in 0..usize::from(frame.width) {
+        for x in 0..columns {
             let cell = (pair[0][x], pair.get(1).map(|row| row[x]));
             if before != Some(cell) {
                 let [_, red, green, blue] = cell.0.to_be_bytes();
@@ -105,6 +117,7 @@ pub fn live(refiner: &Refiner<'_>, state: State<'_>, is_fixed: bool) -> io::Resu
                 shape: [state.settings().width, state.settings().height],
                 state,
                 is_fixed,
+                terminal: (0, 0),
                 message: None,
                 shows_keys: false,
             }
@@ -116,6 +129,8 @@ pub fn live(refiner: &Refiner<'_>, state: State<'_>, is_fixed: bool) -> io::Resu
 /// The events while a scene is shown.
 enum Event {
     Key(Key),
+    /// A key that does nothing but close the help.
+    OtherKey,
     /// There is more of the picture.
     Drawn,
     /// No more keys can be read.
@@ -134,11 +149,12 @@ fn read_keys(sender: &Sender<Event>) {
             Ok(console::Key::ArrowDown) => Event::Key(Key::Down),
             Ok(console::Key::Escape) => Event::Key(Key::Escape),
             Ok(console::Key::CtrlC) | Err(_) => Event::End,
-            Ok(_) => continue,
+            Ok(_) => Event::OtherKey,
         };
         let is_last = match event {
             Event::Key(key) => action(key) == Some(Action::Quit),
-            _ => true,
+            Event::OtherKey | Event::Drawn => false,
+            Event::End => true,
         };
         if sender.send(event).is_err() || is_last {
             return;
@@ -156,10 +172,12 @@ impl Screen {
     fn open() -> io::Result<Self> {
         let restore = settings();
         gives_back(Some(Box::new(move || {
-            // Nothing is drawn any more.
-            let mut out = std::mem::ManuallyDrop::new(io::stdout().lock());
-            let _ = out.write_all(CLOSED.as_bytes()).and_then(|()| out.flush());
             restore();
+            within_limits(|| {
+                // Nothing is drawn any more. Where the terminal takes nothing, what draws holds the lock.
+                let mut out = ManuallyDrop::new(io::stdout().lock());
+                let _ = out.write_all(CLOSED.as_bytes()).and_then(|()| out.flush());
+            });
         })));
         write("\x1b[?1049h\x1b[?25l\x1b[2J")?;
         Ok(Self)
@@ -197,6 +215,13 @@ fn write(text: &str) -> io::Result<()> {
     out.flush()
 }
 
+fn write_help() -> io::Result<()> {
+    write(&format!(
+        "\x1b[H\x1b[2J{}  Any key returns to the picture.",
+        key_help()
+    ))
+}
+
 /// A scene that is shown.
 struct Live<'r, 's> {
     refiner: &'r Refiner<'s>,
@@ -204,6 +229,8 @@ struct Live<'r, 's> {
     /// The width and height whose ratio the picture has.
     shape: [u16; 2],
     is_fixed: bool,
+    /// Rows and columns of the terminal; none before it is looked at.
+    terminal: (u16, u16),
     /// Shown in place of the settings until the next key.
     message: Option<String>,
     /// True if the keys are shown in place of the picture.
@@ -216,7 +243,7 @@ impl Live<'_, '_> {
         let mut is_drawn = false;
         let mut last = Instant::now();
         loop {
-            self.fit()?;
+            is_drawn |= self.fit()?;
             // No event reports another size of the terminal, so it is checked now and then.
             let timeout = match is_drawn && !self.shows_keys {
                 true => FRAME_TIME.saturating_sub(last.elapsed()),
@@ -224,22 +251,12 @@ impl Live<'_, '_> {
             };
             match events.recv_timeout(timeout) {
                 Ok(Event::Drawn) => is_drawn = true,
-                Ok(Event::Key(key)) => {
-                    let Some(action) = action(key) else { continue };
-                    self.message = None;
-                    if std::mem::take(&mut self.shows_keys) {
-                        write("\x1b[2J")?;
-                    }
-                    match self.state.apply(action) {
-                        Effect::Nothing => {}
-                        Effect::Redraw => self.refiner.show(self.state.shot()),
-                        Effect::Save => self.message = Some(self.save()),
-                        Effect::Help => {
-                            write(&format!("\x1b[H\x1b[2J{}", key_help()))?;
-                            self.shows_keys = true;
-                        }
-                        Effect::Quit => return Ok(()),
-                    }
+                Ok(Event::Key(key)) => match self.press(action(key))? {
+                    Effect::Quit => return Ok(()),
+                    _ => is_drawn = true,
+                },
+                Ok(Event::OtherKey) => {
+                    self.press(None)?;
                     is_drawn = true;
                 }
                 Ok(Event::End) | Err(RecvTimeoutError::Disconnected) => return Ok(()),
@@ -252,16 +269,50 @@ impl Live<'_, '_> {
         }
     }
 
-    /// Draws the picture in the terminal's size.
-    fn fit(&mut self) -> io::Result<()> {
-        if !self.is_fixed && self.state.resize(fitting_size(self.shape)) == Effect::Redraw {
+    /// Does what a key says. Every key closes the help.
+    fn press(&mut self, action: Option<Action>) -> io::Result<Effect> {
+        let closes_help = std::mem::take(&mut self.shows_keys);
+        if closes_help {
             write("\x1b[2J")?;
+        }
+        let Some(action) = action else {
+            return Ok(Effect::Nothing);
+        };
+        self.message = None;
+        let effect = self.state.apply(action);
+        match effect {
+            Effect::Nothing | Effect::Quit => {}
+            Effect::Redraw => self.refiner.show(self.state.shot()),
+            Effect::Save => self.message = Some(self.save()),
+            Effect::Help if closes_help => {}
+            Effect::Help => {
+                self.shows_keys = true;
+                write_help()?;
+            }
+        }
+        Ok(effect)
+    }
+
+    /// Fits the picture into the terminal. Returns true if it is to be drawn again.
+    fn fit(&mut self) -> io::Result<bool> {
+        let size = terminal_size();
+        if std::mem::replace(&mut self.terminal, size) == size {
+            return Ok(false);
+        }
+        if !self.is_fixed && self.state.resize(fitting_size(self.shape)) == Effect::Redraw {
             self.refiner.show(self.state.shot());
         }
-        Ok(())
+        // What a terminal shows of the frame before is undefined.
+        write("\x1b[2J")?;
+        if self.shows_keys {
+            write_help()?;
+        }
+        Ok(true)
     }
 
     fn draw(&self) -> io::Result<()> {
+        let (rows, columns) = self.terminal;
+        let limits = [columns, rows.saturating_sub(LINES_BELOW)];
         let (picture, below) = self.refiner.look(|frame, status| {
             let settings = self.state.description();
             let below = match (&status.error, &self.message) {
@@ -272,9 +323,8 @@ impl Live<'_, '_> {
                 }
                 (None, None) => format!("{settings}; h shows the keys"),
             };
-            (half_blocks(frame), below)
+            (half_blocks_within(frame, limits), below)
         });
-        let columns = Term::stdout().size().1;
         let below: String = below.chars().take(columns.into()).collect();
         write(&format!("\x1b[H{picture}{below}\x1b[K"))
     }

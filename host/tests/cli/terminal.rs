@@ -199,6 +199,16 @@ mod live {
             }
         }
 
+        /// Waits for a text, and forgets all that was shown.
+        fn wait(&mut self, text: &str) {
+            let limit = Instant::now() + Duration::from_secs(60);
+            while !String::from_utf8_lossy(&self.shown).contains(text) {
+                let left = limit.saturating_duration_since(Instant::now());
+                self.shown.extend(self.output.recv_timeout(left).unwrap());
+            }
+            self.shown.clear();
+        }
+
         /// Waits for the end of the program, and returns what it wrote last.
         fn end(mut self) -> String {
             assert!(self.child.wait().unwrap().success());
@@ -242,6 +252,36 @@ mod live {
         let end = terminal.end();
         assert!(end.contains("orbit to the left"), "{end:?}");
         assert!(end.ends_with("\x1b[?25h\x1b[?1049l"), "{end:?}");
+    }
+
+    #[test]
+    fn help_is_left_by_every_key() {
+        let folder = Folder::with_quick();
+        let mut terminal = Terminal::open(&folder, "quick.gridel");
+        let first = terminal.frame("; h shows the keys");
+        // Its own key, one without an action, and one without a character.
+        for key in ["h", "z", "\t"] {
+            terminal.press("h");
+            terminal.wait("Any key returns to the picture.");
+            terminal.press(key);
+            assert!(terminal.frame("; h shows the keys") == first, "{key:?}");
+        }
+        terminal.press("q");
+        terminal.end();
+    }
+
+    #[test]
+    fn picture_beyond_the_terminal_is_cut_off() {
+        let folder = Folder::with_quick();
+        let mut terminal = Terminal::open(&folder, "quick.gridel --size 100x90");
+        let shown = terminal.frame("; h shows the keys");
+        let mut expected = rendered(&folder, &["quick.gridel"], [100, 90]);
+        // A line below the picture is left.
+        expected.truncate(2 * 29);
+        expected.iter_mut().for_each(|row| row.truncate(40));
+        assert!(shown == expected);
+        terminal.press("q");
+        terminal.end();
     }
 
     #[test]
@@ -299,4 +339,46 @@ fn an_interrupted_view_gives_the_terminal_back() {
         assert_eq!(view.wait().unwrap().code(), Some(130), "{signal}");
         assert_eq!(tcgetattr(&terminal.slave).unwrap(), before, "{signal}");
     }
+}
+
+/// A terminal that takes nothing, such as one that is stopped, does not keep the program from its end.
+#[cfg(unix)]
+#[test]
+fn an_interrupt_ends_a_view_whose_terminal_takes_nothing() {
+    use nix::pty::openpty;
+    use nix::sys::termios::tcgetattr;
+    use std::process::{Command, Stdio};
+    use std::time::{Duration, Instant};
+
+    let folder = Folder::with_quick();
+    let terminal = openpty(None, None).unwrap();
+    let before = tcgetattr(&terminal.slave).unwrap();
+    let side = || Stdio::from(terminal.slave.try_clone().unwrap());
+    // A frame is larger than what the terminal keeps, and nobody reads it.
+    let mut view = Command::new(env!("CARGO_BIN_EXE_gridel"))
+        .args(["view", "--terminal", "--size", "400x400"])
+        .arg(folder.path("quick.gridel"))
+        .stdin(side())
+        .stdout(side())
+        .stderr(side())
+        .spawn()
+        .unwrap();
+    while tcgetattr(&terminal.slave).unwrap() == before {
+        std::thread::yield_now();
+    }
+    std::thread::sleep(Duration::from_secs(2));
+    let kill = ["-TERM", &view.id().to_string()];
+    assert!(Command::new("kill").args(kill).status().unwrap().success());
+    let begun = Instant::now();
+    let code = loop {
+        if let Some(status) = view.try_wait().unwrap() {
+            break status.code();
+        }
+        if begun.elapsed() > Duration::from_secs(20) {
+            view.kill().unwrap();
+        }
+        std::thread::sleep(Duration::from_millis(20));
+    };
+    assert_eq!(code, Some(130));
+    assert_eq!(tcgetattr(&terminal.slave).unwrap(), before);
 }

@@ -7,12 +7,16 @@ import { update } from "./picture.js";
 
 let isMoving = false;
 let waiting = null;
+/** The page's state before a move, and the change that it belongs to: a move without effect returns to it. */
+let before = null;
 /** Counts returns to a first camera: moves from before them do not count. */
 let returns = 0;
 
 /** Moves the camera; what comes while it moves is added up. */
 export async function move({ orbit = [0, 0], pan = [0, 0], zoom = 0 }) {
   if (!state.scene || state.opening) return;
+  const { state: now } = document.documentElement.dataset;
+  if (now !== "drawing") before = { state: now, change: state.change };
   setState("drawing");
   waiting ??= { orbit: [0, 0], pan: [0, 0], zoom: 0 };
   for (const axis of [0, 1]) {
@@ -28,11 +32,13 @@ export async function move({ orbit = [0, 0], pan = [0, 0], zoom = 0 }) {
       waiting = null;
       await turn(by);
     }
+    if (before?.change === state.change) setState(before.state);
   } catch (error) {
     waiting = null;
     showError(error);
   } finally {
     isMoving = false;
+    before = null;
   }
 }
 
@@ -56,8 +62,9 @@ async function turn(by, { isHome = false } = {}) {
   const made = await (isHome ? moved : saying("The camera moves when the scene is compiled", moved));
   if (!made || mine !== returns) return;
   const { answer } = made;
+  if (isHome) at("camera").textContent = answer.toml;
+  if (isHome || !answer.moved) return;
   at("camera").textContent = answer.toml;
-  if (isHome) return;
   state.camera = answer.camera;
   update({ moved: true });
 }

@@ -56,7 +56,7 @@ export function offerAll(about) {
   at("board").replaceChildren(...about.boards.map(({ name, core }) => new Option(`${name} (${core})`, name)));
   offerFormats(about);
   at("depth").max = about.maxDepth;
-  at("files").accept = [...about.extensions, "gridel", "gz", "mtl", "bin"].map((it) => `.${it}`).join(",");
+  at("files").accept = [...about.extensions, ...about.images, "gridel", "gz", "mtl", "bin"].map((it) => `.${it}`).join(",");
 }
 
 /** Offers what the scene can be shown with. */

@@ -6,6 +6,7 @@ import { Abandoned, Problem } from "./workers.js";
 import { checkSize, inTurn, setState, settlePicture, showError, sizeOf, state, statusDuring, workers } from "./state.js";
 import { compile, forget, giveUp, showCompiled } from "./loading.js";
 import { bytesText } from "./table.js";
+import { clearStale } from "./reports.js";
 import { home } from "./camera.js";
 import { update } from "./picture.js";
 
@@ -46,8 +47,7 @@ export async function open(read, { main, sample, keepsError = false } = {}) {
     offer(opened, state.about);
     showCompiled(opened);
     showChosen();
-    at("summary").textContent = "Click into the picture, or give a column and a row.";
-    at("explanation").hidden = true;
+    clearStale();
     document.title = `${opened.name}: what accuracy costs`;
     home({ keepsError });
   } catch (error) {

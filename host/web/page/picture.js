@@ -7,7 +7,7 @@ import { compile, giveUpFor, referenceSlot } from "./loading.js";
 import {
   describe, frameOf, inTurn, mark, setDone, setState, settlePicture, shareOf, shot, showError, state, statusDuring, workers,
 } from "./state.js";
-import { memory } from "./reports.js";
+import { clearStale, memory } from "./reports.js";
 
 const context = at("canvas").getContext("2d", { alpha: false, willReadFrequently: true });
 const table = new Table(at("rows"), (chosen) => {
@@ -31,12 +31,14 @@ export async function update({ moved = false, keepsError = false } = {}) {
   if (!keepsError) at("error").hidden = true;
   setState("drawing");
   clearFigures();
+  clearStale();
+  state.wanted = null;
   try {
     const chosen = settings();
     giveUpFor(scene, chosen, isStale);
     await inTurn(() => isStale() || compile(scene, chosen));
     if (isStale()) return;
-    const wanted = { ...shot(chosen), heatMap: view() === "work" };
+    const wanted = state.wanted = { ...shot(chosen), heatMap: view() === "work" };
     if (state.frame.width !== wanted.width || state.frame.height !== wanted.height) resize(wanted);
     [at("pixel-x").max, at("pixel-y").max] = [wanted.width - 1, wanted.height - 1];
     if (moved || table.key !== tableKey()) table.clear(tableKey());
@@ -153,32 +155,44 @@ async function paintWork() {
   }
 }
 
-/** Paints a finished picture as it is looked at. */
+/** Paints a finished picture as it is looked at, and returns true; false if what that needs is not there. */
 async function paintLast() {
   const { finished: mine, frame, reference } = state;
-  if (!mine) return;
+  if (!mine) return false;
   const isWork = mine.wanted.heatMap;
   if (!isWork && view() === "picture") {
     show(frame.colors);
-    return;
+    return true;
   }
-  if (!isWork && (!mine.errors || !reference)) return;
+  if (!isWork && (!mine.errors || !reference)) return false;
   const made = isWork
     ? await workers.ask({ do: "heat-map" }, bytesOf(frame.work))
     : await workers.ask({ do: "difference" }, bytesOf(reference.linear, mine.linear));
-  if (state.finished !== mine) return;
+  if (state.finished !== mine) return false;
   mine.maximum = made.answer.maximum;
   show(packed(made.bytes));
   describe(mine.chosen, "done");
+  return true;
+}
+
+/** Returns true while a picture is drawn, or a scene compiled for it, that shows the view as well. */
+function isDrawn() {
+  const isWork = view() === "work";
+  return !state.finished && document.documentElement.dataset.state === "drawing"
+    && (state.wanted?.heatMap ?? isWork) === isWork;
 }
 
 /** Shows the picture in another view. */
 export async function look() {
+  // Picture and error have the same pixels.
+  if (isDrawn()) return;
   const { finished } = state;
   if (!finished || finished.wanted.heatMap !== (view() === "work")) {
     await update();
     return;
   }
-  await paintLast();
-  if (state.finished === finished) describe(finished.chosen, "done");
+  const isPainted = await paintLast();
+  // While the reference is drawn there are no errors yet, and the status line says so.
+  const isWhole = finished.errors || finished.wanted.heatMap;
+  if (isPainted && isWhole && state.finished === finished) describe(finished.chosen, "done");
 }

@@ -6,12 +6,40 @@ import { askCompiled, askLoaded, compileOf, saying } from "./loading.js";
 import { shot, showError, state, status, statusWaiting } from "./state.js";
 import { save } from "./files.js";
 
+/** The settings that the explanation and the memory report on the page are for. */
+const shown = { explanation: null, memory: null };
+
+/** The settings that an explanation depends on. */
+function explanationKey() {
+  const { scene } = state;
+  return scene && JSON.stringify([scene.number, shot(), compileOf(scene, settings())]);
+}
+
+/** The settings that a memory report depends on. */
+function memoryKey() {
+  const { scene } = state;
+  const { structure, bits, without } = settings();
+  return scene && JSON.stringify([scene.number, structure, bits, without, at("board").value, at("board-format").value]);
+}
+
+/** Clears the explanation and the memory report if they are for other settings. */
+export function clearStale() {
+  if (shown.explanation !== explanationKey()) noExplanation("Click into the picture, or give a column and a row.");
+  if (shown.memory !== memoryKey()) noMemory("");
+}
+
 export async function explain(x, y) {
   if (!state.scene && !state.opening) return;
   try {
-    const asked = askCompiled(() => ({ do: "explain", shot: shot(), pixel: [x, y], compile: compileOf(state.scene, settings()) }));
+    let key;
+    const asked = askCompiled(() => {
+      key = explanationKey();
+      return { do: "explain", shot: shot(), pixel: [x, y], compile: compileOf(state.scene, settings()) };
+    });
     const made = await saying("The pixel will be explained when the scene is compiled", asked);
-    if (!made) return;
+    // The picture is another one by now.
+    if (!made || key !== explanationKey()) return;
+    shown.explanation = key;
     [at("pixel-x").value, at("pixel-y").value] = [x, y];
     at("summary").textContent = made.answer.summary;
     at("explanation").textContent = made.answer.text;
@@ -23,6 +51,7 @@ export async function explain(x, y) {
 }
 
 function noExplanation(why) {
+  shown.explanation = explanationKey();
   at("summary").textContent = why;
   at("explanation").hidden = true;
 }
@@ -46,8 +75,9 @@ async function reported() {
   const board = at("board").value;
   const format = at("board-format").value || null;
   if (!board) return null;
-  let structure, isOther;
+  let structure, isOther, key;
   const made = await askCompiled(() => {
+    key = memoryKey();
     const chosen = settings();
     ({ structure } = chosen);
     // The report is of the blob that is saved, if boards can use that.
@@ -61,19 +91,28 @@ async function reported() {
     : `${answer.why[0].toUpperCase()}${answer.why.slice(1)}.`];
   if (isOther) sentences.push(`This is for a blob with ${USUAL}: ${structure} was not measured on boards.`);
   if (!answer.fits && !state.scene.blob) sentences.push(`\`gridel build --target ${board}\` leaves out names.`);
-  at("fits").textContent = sentences.join(" ");
-  at("memory").textContent = answer.text;
-  at("memory").hidden = false;
+  if (key === memoryKey()) {
+    shown.memory = key;
+    at("fits").textContent = sentences.join(" ");
+    at("memory").textContent = answer.text;
+    at("memory").hidden = false;
+  }
   return { board, text: answer.text };
+}
+
+function noMemory(why) {
+  shown.memory = memoryKey();
+  at("fits").textContent = why;
+  at("memory").hidden = true;
 }
 
 /** Shows what the scene takes on a board. */
 export async function memory() {
+  clearStale();
   try {
     await reported();
   } catch (error) {
-    at("fits").textContent = error.help ? `${error.message}: ${error.help}.` : error.message;
-    at("memory").hidden = true;
+    noMemory(error.help ? `${error.message}: ${error.help}.` : error.message);
   }
 }
 

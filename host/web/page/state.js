@@ -14,6 +14,8 @@ export const state = {
   frame: new Frame(400, 300),
   /** The reference that was drawn last, and what it was drawn with. */
   reference: null,
+  /** The picture that is drawn; null while the scene is compiled for it. */
+  wanted: null,
   /** The picture that was finished last, with what was measured. */
   finished: null,
   /** Counts changes: work for an earlier one is given up. */

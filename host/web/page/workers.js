@@ -79,7 +79,10 @@ export class Workers {
   started(index) {
     const worker = new Worker("worker.js");
     worker.onmessage = ({ data }) => this.receive(index, data);
-    worker.onerror = (event) => this.onfault?.(new Problem({ message: event.message, help: "reload the page", report: event.message }));
+    // A script that cannot be loaded has no message.
+    worker.onerror = ({ message }) => this.onfault?.(message
+      ? new Problem({ message, help: "reload the page", report: message })
+      : Problem.of("worker.js cannot be loaded", "start the server of the page again, and reload the page"));
     return worker;
   }
 
@@ -131,9 +134,7 @@ export class Workers {
     const { current } = this;
     if (!current || data.generation !== current.generation) return;
     if (data.error) {
-      this.current = null;
-      current.reject(new Problem(data.error));
-      this.stop();
+      this.fail(new Problem(data.error), data.error.isLost);
       return;
     }
     current.frame.put(new Uint32Array(data.words));
@@ -147,6 +148,19 @@ export class Workers {
     } else if (this.next && this.isSeen()) {
       this.begin();
     }
+  }
+
+  /** Gives up the picture that is drawn, for an error, and goes on to the one that waits. */
+  fail(problem, isLost) {
+    this.current.reject(problem);
+    this.current = null;
+    this.all.forEach((worker) => worker.postMessage({ stop: true }));
+    // A worker that holds nothing any more cannot draw that one either.
+    if (isLost) {
+      this.next?.reject(problem);
+      this.next = null;
+    }
+    this.begin();
   }
 
   isSeen() {

@@ -144,6 +144,7 @@ impl Session {
         if let Some(camera) = how.camera {
             state = state.seen_from(camera.into());
         }
+        let before = state.shot().view;
         if how.orbit != [0.0; 2] {
             state.orbit(how.orbit);
         }
@@ -153,6 +154,8 @@ impl Session {
         if how.zoom != 0.0 {
             state.zoom(how.zoom);
         }
+        // At a limit the camera stays where it is.
+        let moved = state.shot().view != before;
         let Camera {
             eye,
             target,
@@ -162,7 +165,7 @@ impl Session {
         let [e, t, u] = [eye, target, up].map(|it| it.to_array());
         let camera = [&e[..], &t, &u, &[*fov_degrees]].concat();
         Ok((
-            json!({"camera": camera, "toml": saved(state.camera())}),
+            json!({"camera": camera, "toml": saved(state.camera()), "moved": moved}),
             Vec::new(),
         ))
     }
@@ -184,6 +187,10 @@ impl Session {
     fn explain(&mut self, of: &ShotOf, pixel: [u16; 2], file: Option<&Compile>) -> Answer {
         // A blob has no names of instances.
         let own = match file {
+            Some(how) if how.without.is_empty() => {
+                Some(Names::of_scene(&self.imported(&how.name)?.scene))
+            }
+            // Objects can go with an effect.
             Some(how) => Some(Names::of_scene(&self.scene(how)?)),
             None => None,
         };
@@ -292,6 +299,7 @@ fn about() -> Value {
         "boards": boards,
         "boardStructures": MemoryReport::STRUCTURES.map(Structure::name),
         "extensions": extensions,
+        "images": scene::IMAGE_EXTENSIONS,
         "maxDepth": MAX_RAY_DEPTH,
         "latticeBits": [LATTICE_BITS.start(), LATTICE_BITS.end()],
     })

@@ -283,6 +283,15 @@ fn demands_are_those_of_the_scene() {
             for structure in Structure::ALL {
                 assert_eq!(required.holds(structure), scene.holds(structure), "{name}");
             }
+            let [exponent, own] = [required.coordinate_exponent, scene.coordinate_exponent()];
+            assert_eq!(exponent, own, "{name}");
+            let origin = scene.header().coordinate_origin();
+            assert_eq!(required.coordinate_origin(), origin, "{name}");
+            assert!(required.counts_as(exponent, origin), "{name}");
+            assert!(!required.counts_as(exponent + 1, origin), "{name}");
+            assert_eq!(required.instances, scene.instances().len(), "{name}");
+            let bits = u32::from(scene.header().storage_bits);
+            assert_eq!(required.vertex_bits(), bits, "{name}");
             // This build has every feature.
             assert_eq!(required.missing(), None, "{name}");
         }

@@ -350,7 +350,7 @@ pub fn sphere_and_triangle() -> Compiled {
 }
 
 /// Returns scenes that each require one thing that [`sphere_and_triangle`] does not, with the error message for it.
-pub fn outgrown() -> [(&'static str, Compiled); 6] {
+pub fn outgrown() -> [(&'static str, Compiled); 7] {
     let [mirrors, _] = deeper();
     let mut cuboid = base();
     let (min, max) = (DVec3::splat(-0.7), DVec3::splat(0.7));
@@ -362,6 +362,11 @@ pub fn outgrown() -> [(&'static str, Compiled); 6] {
         };
         compile_with(structure.name(), base(), [32, 32], options)
     };
+    let mut larger = base();
+    larger.objects.push(object(Shape::Sphere(Sphere {
+        center: DVec3::new(0.0, 0.0, 1.0),
+        radius: 80.0,
+    })));
     let wider = compile_with("wider", base(), [33, 32], small());
     [
         ("the blob requires effects beyond EFFECTS", mirrors),
@@ -373,6 +378,10 @@ pub fn outgrown() -> [(&'static str, Compiled); 6] {
         ),
         ("or has other structures", through(Structure::Grid)),
         ("the blob outgrew STACK_DEPTH", super::scenes::torus_mesh()),
+        (
+            "the blob has another COORDINATE_EXPONENT",
+            compile("larger", larger),
+        ),
     ]
 }
 

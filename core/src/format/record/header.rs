@@ -85,3 +85,11 @@ records! {
         pub spare: u32,
     }
 }
+
+/// Fraction bits of lengths in units.
+pub(crate) const LENGTH_BITS: i32 = 13;
+
+/// Returns the exponent of a coordinate step, from two fields of the header.
+pub(crate) const fn exponent_of_step(unit_exponent: i16, coordinate_shift: u8) -> i32 {
+    unit_exponent as i32 - LENGTH_BITS + coordinate_shift as i32
+}

@@ -13,6 +13,7 @@ mod texture;
 
 pub use candidates::{ApexDirection, ApexPoint, ApexWindow, Gridels};
 pub use header::{Header, SectionEntry};
+pub(crate) use header::{LENGTH_BITS, exponent_of_step};
 pub use nodes::{
     BoundingSphere, DualNode, FlaggedPair, GridShape, Pair, SpherePair, WideNode, plane_word,
 };

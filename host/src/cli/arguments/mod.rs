@@ -41,7 +41,7 @@ pub struct TraceOptions {
     pub format: Format,
 
     /// Acceleration structure [default: the best that the blob holds; for a scene file, render and
-    /// trace build wide, and explain builds dual-split]
+    /// trace build wide, view builds wide, flagged and bvh, and explain builds dual-split]
     #[arg(long, value_name = "NAME", value_parser = structure())]
     pub accel: Option<Structure>,
 

@@ -60,6 +60,9 @@ pub(super) struct Built<'r> {
 /// Left-out primitives that are named in the text; JSON names more.
 const NAMED: usize = 5;
 
+/// A line of the text: a word, and its value.
+type Line<'l> = (&'l str, String);
+
 impl<'r> Built<'r> {
     pub(super) fn new(
         blob: &'r str,
@@ -104,8 +107,22 @@ impl<'r> Built<'r> {
 
     pub(super) fn text(&self) -> String {
         let mut table = Table::untitled([Align::Left, Align::Left]);
-        let mut line = |what: &str, value: String| table.row([what.to_owned(), value]);
-        line("blob", self.blob.to_owned());
+        let groups = [
+            self.size_lines(),
+            self.structure_lines(),
+            self.table_lines(),
+            self.scene_lines(),
+            self.effect_lines(),
+            self.memory_line().into_iter().collect(),
+        ];
+        for (what, value) in groups.into_iter().flatten() {
+            table.row([what.to_owned(), value]);
+        }
+        table.to_string()
+    }
+
+    /// Its file, and the number of bytes and primitives.
+    fn size_lines(&self) -> Vec<Line<'_>> {
         let each = match (&self.instances, self.bytes_per_primitive) {
             (Some(instances), _) if instances.are_kept() => {
                 let each = self.bytes as f64 / instances.placed_primitives.max(1) as f64;
@@ -114,48 +131,54 @@ impl<'r> Built<'r> {
             (_, Some(each)) => format!(", {each:.1} per primitive"),
             (_, None) => String::new(),
         };
-        line("bytes", grouped(self.bytes) + &each);
-        line(
-            "holds",
-            format!(
-                "{} of {}",
-                counted(self.primitives as usize, "primitive"),
-                counted(self.objects as usize, "object")
-            ),
-        );
+        let primitives = counted(self.primitives as usize, "primitive");
+        let objects = counted(self.objects as usize, "object");
+        let mut lines = vec![
+            ("blob", self.blob.to_owned()),
+            ("bytes", grouped(self.bytes) + &each),
+            ("holds", format!("{primitives} of {objects}")),
+        ];
         if let Some(instances) = &self.instances {
             let otherwise = self
                 .bytes_otherwise
                 .map(|bytes| format!(", in {} bytes", grouped(bytes)));
-            line(
+            lines.push((
                 "instances",
                 instances.text() + &otherwise.unwrap_or_default(),
-            );
+            ));
         }
-        line("structures", self.structures.join(", "));
-        line(
-            "limits",
-            format!(
-                "stack depth {}, longest leaf {}",
-                self.stack_depth, self.longest_leaf
-            ),
+        lines
+    }
+
+    /// The structures, their limits and the lattice.
+    fn structure_lines(&self) -> Vec<Line<'_>> {
+        let limits = format!(
+            "stack depth {}, longest leaf {}",
+            self.stack_depth, self.longest_leaf
         );
+        let mut lines = vec![
+            ("structures", self.structures.join(", ")),
+            ("limits", limits),
+        ];
         if let Some(cost) = self.sah_cost {
-            line("SAH cost", format!("{cost:.2}"));
+            lines.push(("SAH cost", format!("{cost:.2}")));
         }
-        line(
-            "lattice",
-            format!(
-                "{} bits, step {}, largest displacement {}",
-                self.lattice_bits,
-                power_of_two(self.step),
-                match self.largest_displacement {
-                    0.0 => String::from("0"),
-                    moved => format!("{moved:.3e} scene units"),
-                }
-            ),
+        let moved = match self.largest_displacement {
+            0.0 => String::from("0"),
+            moved => format!("{moved:.3e} scene units"),
+        };
+        let lattice = format!(
+            "{} bits, step {}, largest displacement {moved}",
+            self.lattice_bits,
+            power_of_two(self.step)
         );
-        for lists in self.tables {
+        lines.push(("lattice", lattice));
+        lines
+    }
+
+    /// The tables of candidates.
+    fn table_lines(&self) -> Vec<Line<'_>> {
+        let line = |lists: &TableStats| {
             let Figures {
                 cells,
                 lists: different,
@@ -164,66 +187,66 @@ impl<'r> Built<'r> {
                 bytes,
                 ..
             } = lists.figures;
-            line(
-                "table",
-                format!(
-                    "{}: {}, {}, {}, {} in the longest, {}",
-                    lists.structure,
-                    counted(cells as usize, "cell"),
-                    counted(different as usize, "list"),
-                    counted(entries as usize, "entry"),
-                    grouped(longest),
-                    counted(bytes as usize, "byte")
-                ),
+            let text = format!(
+                "{}: {}, {}, {}, {} in the longest, {}",
+                lists.structure,
+                counted(cells as usize, "cell"),
+                counted(different as usize, "list"),
+                counted(entries as usize, "entry"),
+                grouped(longest),
+                counted(bytes as usize, "byte")
             );
-        }
+            ("table", text)
+        };
+        self.tables.iter().map(line).collect()
+    }
+
+    /// Names, and what was supplied or left out.
+    fn scene_lines(&self) -> Vec<Line<'_>> {
+        let mut lines = Vec::new();
         if let Some(KeptNames { names, bytes, .. }) = self.names.filter(|kept| kept.names > 0) {
-            line(
-                "names",
-                format!(
-                    "{}, {}; --strip-names leaves them out",
-                    counted(names, "name"),
-                    counted(bytes, "byte")
-                ),
+            let text = format!(
+                "{}, {}; --strip-names leaves them out",
+                counted(names, "name"),
+                counted(bytes, "byte")
             );
+            lines.push(("names", text));
         }
-        for what in self.supplied {
-            line("supplied", what.to_string());
-        }
-        for name in self.collapsed.names(NAMED) {
-            line("collapsed", name);
-        }
-        for name in self.without_area.names(NAMED) {
-            line("no area", name);
-        }
+        lines.extend(self.supplied.iter().map(|it| ("supplied", it.to_string())));
+        let collapsed = self.collapsed.names(NAMED).into_iter();
+        lines.extend(collapsed.map(|name| ("collapsed", name)));
+        let without_area = self.without_area.names(NAMED).into_iter();
+        lines.extend(without_area.map(|name| ("no area", name)));
+        lines
+    }
+
+    /// Effects, and the storage of images.
+    fn effect_lines(&self) -> Vec<Line<'_>> {
+        let mut lines = Vec::new();
         if self.effects.is_empty() {
-            line("effects", String::from("none"));
+            lines.push(("effects", String::from("none")));
         }
-        for effect in &self.effects {
-            line("effect", effect.to_string());
-        }
-        for texture in self.textures {
-            line("texture", texture.to_string());
-        }
-        if let Some(environment) = self.environment {
-            line("environment", environment.to_string());
-        }
-        if let Some(report) = self.memory {
-            let remains = |account: &Account| {
-                let rest = account.remains();
-                let rest = rest.map_or(String::from("an unknown part"), grouped);
-                format!("{rest} of {}", grouped(account.available))
-            };
-            line(
-                report.board,
-                format!(
-                    "{} bytes of flash remain, and {} of RAM; `gridel inspect` shows what takes the \
-                     others, and for which builds of the program that holds",
-                    remains(&report.flash),
-                    remains(&report.ram)
-                ),
-            );
-        }
-        table.to_string()
+        lines.extend(self.effects.iter().map(|it| ("effect", it.to_string())));
+        lines.extend(self.textures.iter().map(|it| ("texture", it.to_string())));
+        let environment = self.environment.iter();
+        lines.extend(environment.map(|it| ("environment", it.to_string())));
+        lines
+    }
+
+    /// What a board has left.
+    fn memory_line(&self) -> Option<Line<'_>> {
+        let report = self.memory?;
+        let remains = |account: &Account| {
+            let rest = account.remains();
+            let rest = rest.map_or(String::from("an unknown part"), grouped);
+            format!("{rest} of {}", grouped(account.available))
+        };
+        let text = format!(
+            "{} bytes of flash remain, and {} of RAM; `gridel inspect` shows what takes the others, and for which \
+             builds of the program that holds",
+            remains(&report.flash),
+            remains(&report.ram)
+        );
+        Some((report.board, text))
     }
 }

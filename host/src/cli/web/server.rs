@@ -1,11 +1,12 @@
 //! A server of the files in a folder, for browsers on this machine.
 
+use super::timed::Timed;
 use std::io::{self, BufRead, BufReader, Read, Write};
 use std::net::{Ipv4Addr, Shutdown, SocketAddr, TcpListener, TcpStream};
 use std::path::{Component, Path, PathBuf};
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::thread;
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
 /// Bytes of a request's lines at the most. Browsers send the cookies of all servers on this machine.
 const MOST_REQUEST: usize = 64 << 10;
@@ -13,13 +14,13 @@ const MOST_REQUEST: usize = 64 << 10;
 /// Bytes that are read at the most, so that an answer to too many of them arrives.
 const MOST_READ: u64 = 1 << 20;
 
-/// Longest time for the rest of a rejected request.
+/// Longest time for the whole rest of a rejected request.
 const REST_PATIENCE: Duration = Duration::from_secs(1);
 
 /// Time to wait after a connection could not be accepted: there may be too many of them.
 const PAUSE: Duration = Duration::from_millis(50);
 
-/// Longest time for a browser to send a request, or to read the answer.
+/// Longest time for a browser to send a whole request, and to read the whole answer.
 const PATIENCE: Duration = Duration::from_secs(20);
 
 const TEXT: &str = "text/plain; charset=utf-8";
@@ -116,17 +117,16 @@ impl Server {
     }
 
     fn answer(&self, stream: &TcpStream) -> io::Result<()> {
-        stream.set_write_timeout(Some(PATIENCE))?;
-        let request = read_request(Timed::new(stream))?;
+        let request = read_request(Timed::new(stream, PATIENCE))?;
         let is_head = request.as_ref().is_ok_and(|it| it.starts_with("HEAD "));
         let answer = request.and_then(|it| self.find(&it));
         let is_rejected = answer.is_err();
-        respond(stream, answer, is_head)?;
+        respond(Timed::new(stream, PATIENCE), answer, is_head)?;
         if is_rejected {
             // A connection that is closed with something unread loses the answer.
             stream.shutdown(Shutdown::Write)?;
-            stream.set_read_timeout(Some(REST_PATIENCE))?;
-            io::copy(&mut stream.take(MOST_READ), &mut io::sink())?;
+            let rest = Timed::new(stream, REST_PATIENCE);
+            io::copy(&mut rest.take(MOST_READ), &mut io::sink())?;
         }
         Ok(())
     }
@@ -167,30 +167,6 @@ fn path_of(target: &str) -> &str {
             rest.find('/').map_or("/", |start| &rest[start..])
         }
         _ => target,
-    }
-}
-
-/// A connection that is read until a time, however slowly its bytes come.
-struct Timed<'s> {
-    stream: &'s TcpStream,
-    end: Instant,
-}
-
-impl<'s> Timed<'s> {
-    fn new(stream: &'s TcpStream) -> Self {
-        let end = Instant::now() + PATIENCE;
-        Self { stream, end }
-    }
-}
-
-impl Read for Timed<'_> {
-    fn read(&mut self, bytes: &mut [u8]) -> io::Result<usize> {
-        let left = self.end.saturating_duration_since(Instant::now());
-        if left.is_zero() {
-            return Err(io::ErrorKind::TimedOut.into());
-        }
-        self.stream.set_read_timeout(Some(left))?;
-        self.stream.read(bytes)
     }
 }
 
@@ -237,7 +213,7 @@ fn is_loopback(host: &[u8]) -> bool {
 }
 
 fn respond(
-    mut stream: &TcpStream,
+    mut stream: impl Write,
     answer: Result<PathBuf, Refusal>,
     is_head: bool,
 ) -> io::Result<()> {
@@ -353,12 +329,8 @@ mod tests {
         let mut slow = TcpStream::connect(listener.local_addr().unwrap()).unwrap();
         let (stream, _) = listener.accept().unwrap();
         slow.write_all(b"GET").unwrap();
-        let end = Instant::now();
-        let error = read_request(Timed {
-            stream: &stream,
-            end,
-        })
-        .unwrap_err();
+        let timed = Timed::new(&stream, Duration::ZERO);
+        let error = read_request(timed).unwrap_err();
         assert_eq!(error.kind(), io::ErrorKind::TimedOut);
     }
 

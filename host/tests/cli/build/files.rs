@@ -1,6 +1,7 @@
 //! Input and output files: invalid ones, and those that are never overwritten.
 
 use crate::program::Folder;
+use std::path::Path;
 
 #[test]
 fn the_input_is_never_overwritten() {
@@ -133,6 +134,33 @@ fn nothing_of_the_users_own_is_written_over() {
     ];
     folder.fails(1, &build, &["none/b.gridel cannot be written"]);
     assert!(!folder.path("new").exists());
+}
+
+/// The blob can lie in the module's folder, which need not exist.
+#[test]
+fn a_new_folder_takes_the_module_and_the_blob() {
+    let folder = Folder::with_quick();
+    for (output, module) in [
+        ("new/scene.gridel", "new"),
+        ("new/scene.gridel", "new"),
+        ("./other/b.gridel", "other/"),
+    ] {
+        folder.done(&["build", "quick.toml", "-o", output, "--emit-rust", module]);
+        let copy = Path::new(module).join("scene.gridel");
+        assert!(folder.read(output) == folder.read(copy.to_str().unwrap()));
+        assert!(folder.path(module).join("scene.rs").exists());
+    }
+    // Nothing else comes into another new folder.
+    let build = [
+        "build",
+        "quick.toml",
+        "-o",
+        "a/b/s.gridel",
+        "--emit-rust",
+        "a",
+    ];
+    folder.fails(1, &build, &["cannot be written"]);
+    assert!(!folder.path("a").exists());
 }
 
 /// The blob and the module's two files come together or not at all.

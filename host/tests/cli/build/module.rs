@@ -66,6 +66,8 @@ fn a_module_is_emitted_for_the_board() {
         "pub const WORK_DEPTH: usize = 7;",
         "gridel_core::Scene::prevalidated(PREVALIDATED)",
         "the blob outgrew the flash of mps2-an386",
+        "required.counts_as(COORDINATE_EXPONENT, COORDINATE_ORIGIN)",
+        "required.morph_targets == 0",
     ] {
         assert!(module.contains(line), "{line}: {module}");
     }
@@ -111,6 +113,8 @@ fn a_module_asserts_the_number_of_parts() {
     for line in [
         "pub const PARTS: usize = 1;",
         "required.parts <= PARTS",
+        "required.instances <= INSTANCES",
+        "required.joints <= JOINTS",
         "gridel_core::Parts<'static, PARTS>",
         "\"torus\"",
         "\"instances\"",
