@@ -217,8 +217,16 @@ impl NumberedName {
                 digits,
                 behind: behind.to_owned(),
             })),
-            Some(_) => Err(String::from("it has several `%`, and there is one number")),
-            None => Err(String::from("its `%` stands for no number")),
+            Some(_) => Err(String::from("the name has more than one `%`")),
+            None => {
+                let is_digit = |it: &char| it.is_ascii_digit();
+                let digits: String = rest.chars().take_while(is_digit).collect();
+                let letter = rest
+                    .chars()
+                    .nth(digits.len())
+                    .map_or(String::new(), String::from);
+                Err(format!("unsupported `%{digits}{letter}`"))
+            }
         }
     }
 
@@ -384,6 +392,9 @@ mod tests {
         assert_eq!(name("%d.ppm").of(3), "3.ppm");
         assert_eq!(name("a/b-%05d").of(31), "a/b-00031");
         assert_eq!(NumberedName::read("plain.png"), Ok(None));
+        let refused = |name| NumberedName::read(name).unwrap_err();
+        assert_eq!(refused("out-%5d.png"), "unsupported `%5d`");
+        assert_eq!(refused("%d-%d.png"), "the name has more than one `%`");
         for wrong in [
             "%",
             "%x.png",

@@ -35,7 +35,7 @@ pub enum PartError {
         "it does not state which rows it has and how they were rendered, so it is not a part of a picture"
     )]
     Whole,
-    #[error("it does not state which picture of an animation it is")]
+    #[error("it does not state which frame of an animation it is")]
     NoFrame,
     #[error("it says that it has the rows {}..{}, but it has {found}", .rows.start, .rows.end)]
     Rows { rows: Range<u16>, found: u32 },
@@ -83,9 +83,9 @@ impl Part {
 }
 
 /// Width, height, the note about the rows, and the pixels of a picture.
-type Read4 = (u32, u32, Option<String>, Vec<u8>);
+type ReadPicture = (u32, u32, Option<String>, Vec<u8>);
 
-fn read_png(input: impl BufRead + io::Seek) -> Result<Read4, PartError> {
+fn read_png(input: impl BufRead + io::Seek) -> Result<ReadPicture, PartError> {
     let mut reader = open_png(input)?;
     let pixels = pixels(&mut reader)?;
     let info = reader.info();
@@ -129,7 +129,7 @@ fn text(info: &png::Info<'_>, keyword: &str) -> Option<String> {
     Some(chunk.text.clone())
 }
 
-fn read_ppm(mut input: impl BufRead) -> Result<Read4, PartError> {
+fn read_ppm(mut input: impl BufRead) -> Result<ReadPicture, PartError> {
     let mut note = None;
     let mut words = Vec::new();
     while words.len() < 4 {

@@ -27,7 +27,7 @@ pub fn write_whole(
 /// As [`Files::add`]. The file stays as it is, and one that is not there is not made.
 pub fn check_writable(path: &Path) -> io::Result<()> {
     match fs::metadata(path) {
-        // Who reads a pipe would take this for the end.
+        // A pipe cannot be opened for a test: its reader would take the end of the test for the end of the data.
         Ok(old) if !old.is_file() && !old.is_dir() => Ok(()),
         _ => Files::default().add(path, |_| Ok(())),
     }

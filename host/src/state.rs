@@ -159,6 +159,17 @@ impl State {
         })
     }
 
+    /// Returns how many bytes this takes, without the blob of meshes that have moved.
+    pub fn bytes_without_meshes(&self) -> usize {
+        let poses = self.poses.as_ref();
+        size_of::<Self>()
+            + size_of_val(&self.lights[..])
+            + size_of_val(&self.materials[..])
+            + poses.map_or(0, |it| {
+                size_of_val(&it.instances[..]) + size_of_val(&it.pairs[..])
+            })
+    }
+
     /// Returns the scene in this state. Where meshes have moved, it is that of another blob.
     ///
     /// # Errors

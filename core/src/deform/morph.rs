@@ -254,15 +254,15 @@ impl<V: Vertex, A: Memory<V>, B: Memory<Pair>, C: Memory<[i16; 2]>> DeformationI
     ///
     /// # Errors
     /// If the scene or the morph targets are of another blob, or there are more or fewer weights than morph targets.
-    /// Also if a weight is beyond ±64, there is no room for the normals, or the pose is one that [`refit`](Self::refit)
-    /// rejects.
+    /// Also if a weight is beyond ±64, or there is no room for the normals. Then the mesh keeps its pose. Also if the
+    /// new pose is one that [`refit`](Self::refit) rejects. Then [`Scene::with_deformation`] rejects the mesh. If a
+    /// vertex would lie outside the scene's box, all vertices are at rest afterwards.
     pub fn morph(
         &mut self,
         scene: &Scene<'_>,
         morph: &MorphTargets<'_>,
         weights: &[i32],
     ) -> Result<(), DeformError> {
-        self.refitted = false;
         self.check_scene(scene)?;
         if morph.blob != self.blob {
             return Err(DeformError::OtherScene);
@@ -276,21 +276,26 @@ impl<V: Vertex, A: Memory<V>, B: Memory<Pair>, C: Memory<[i16; 2]>> DeformationI
             return Err(DeformError::Weight { number });
         }
         let rest: &[V] = scene.stored_vertices().ok_or(DeformError::Storage)?;
-        if !self.vertices.copy_from(rest) {
-            return Err(DeformError::OtherScene);
-        }
         let normals = match morph.normals {
             [] => &[],
             _ => scene.space.shapes.normals(),
         };
-        if !self.normals.copy_from(normals) {
-            return Err(DeformError::Normals {
-                found: normals.len(),
-                most: self.normals.room(),
-            });
+        let (found, most) = (normals.len(), self.normals.room());
+        if found > most {
+            return Err(DeformError::Normals { found, most });
+        }
+        (self.refitted, self.keeps_normals) = (false, false);
+        // There is room: the vertices are as many, and the normals were counted.
+        if !self.vertices.copy_from(rest) || !self.normals.copy_from(normals) {
+            return Err(DeformError::OtherScene);
         }
         let room = fit::Room::of(scene.bounds());
-        morph.place(&room, (&mut self.vertices, &mut self.normals), weights)?;
+        let placed = morph.place(&room, (&mut self.vertices, &mut self.normals), weights);
+        if placed.is_err() {
+            // Some vertices have moved and others have not. A later `refit` would accept such a pose.
+            self.vertices.copy_from(rest);
+        }
+        placed?;
         self.refit(scene)?;
         self.keeps_normals = true;
         Ok(())

@@ -83,6 +83,9 @@ impl Tracks<'_> {
                 _ => each([value, next], |[from, to]| linear(from, to, part)),
             }
         };
+        // A spline can pass a quaternion without a length: the earlier key's rotation stays.
+        let is_lost = kind == ValueKind::Rotation && between.iter().all(|&it| it == 0);
+        let between = if is_lost { value } else { between };
         // A spline can leave the range; a direction that is scaled to length 1 keeps its course.
         let [low, high] = match kind.has_length() {
             true => [i32::MIN, i32::MAX],

@@ -117,7 +117,7 @@ impl<'a> Tracks<'a> {
         [self.0.timeline.first, self.0.timeline.last]
     }
 
-    /// Returns the time of a picture, given the number of pictures per second: the nearest tick to
+    /// Returns the time of a frame, given the number of frames per second: the nearest tick to
     /// `number / per_second` seconds, at most the last possible one. A rate of 0 counts as 1.
     ///
     /// ```

@@ -200,7 +200,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     };
     let blurred = blurred(arguments, (&source, &scene), &job)?;
     let warnings = match &blurred {
-        Some(_) => source.warn_of_unblurred(),
+        Some(blurred) => [source.warn_of_unblurred(), blurred.warnings.clone()].concat(),
         None => source.warnings.clone(),
     };
     let moments = match &blurred {
@@ -258,6 +258,8 @@ struct Blurred {
     exposure: Exposure,
     /// The changes at each moment.
     changes: Vec<Changes>,
+    /// What the shutter is warned of.
+    warnings: Vec<String>,
 }
 
 /// The moments of a picture, if motion is to be blurred.
@@ -271,7 +273,9 @@ fn blurred(
         return Ok(None);
     };
     let tracks = source.tracks()?;
-    let Some(exposure) = shutter.exposure(&tracks, job.settings.samples)? else {
+    let mut warnings = Vec::new();
+    let exposure = shutter.exposure(&tracks, job.settings.samples, &mut warnings)?;
+    let Some(exposure) = exposure else {
         return Ok(None);
     };
     let time = ticks(&tracks, *seconds);
@@ -280,6 +284,7 @@ fn blurred(
         time,
         exposure,
         changes,
+        warnings,
     }))
 }
 

@@ -65,6 +65,11 @@ impl Coordinates {
             },
         }
     }
+
+    /// Returns the length of a coordinate step in scene units.
+    pub fn step(&self) -> f64 {
+        exp2(self.header.coordinate_exponent())
+    }
 }
 
 /// Returns the nearest place in a scene's integer coordinates; `None` where they do not reach it.

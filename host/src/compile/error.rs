@@ -112,7 +112,7 @@ pub enum CompileError {
         place: SourceSpan,
         target: &'static str,
         cause: String,
-        remedy: &'static str,
+        remedy: String,
     },
     #[error("{bits} lattice bits are not possible")]
     #[diagnostic(help("use 10 to 24"))]

@@ -61,7 +61,7 @@ pub fn check(scene: &Scene) -> Result<(), CompileError> {
             place: track.place.clone(),
             target: track.target.name(),
             cause: format!("there is no joint {}", track.index),
-            remedy: "use the number of a joint of the scene",
+            remedy: String::from("use the number of a joint of the scene"),
         }),
     }
 }

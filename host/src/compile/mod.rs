@@ -83,7 +83,7 @@ use hierarchy::{Primitive, Splits};
 use instances::{Parts, Placed, Role};
 use layout::Layout;
 use primitives::Primitives;
-use shading::ShadingData;
+use shading::{ShadingData, coordinate_step};
 use sizes::Sizes;
 use std::time::{Duration, Instant};
 
@@ -198,7 +198,8 @@ fn compile_as(
     let swept = morph::swept(scene);
     extent = swept.extent(extent, options.lattice_bits);
     if let Role::Whole(parts) = role {
-        extent = parts.reach.swept.extent(extent, options.lattice_bits);
+        let step = |lattice: &_, corners| coordinate_step(&shapes, lattice, corners);
+        extent = parts.reach.extent(extent, options.lattice_bits, step);
     }
     let (lattice, snapped, placed) = snap(role, scene, extent, options)?;
     let structures = held(&options.structures);
@@ -221,8 +222,11 @@ fn compile_as(
     let own = own.into_iter().chain(swept.on_lattice(&lattice));
     let own = own.reduce(|a, b| a.union(&b));
     let mut bounds = placed.around(own).unwrap_or(UnitBox([[0; 2]; 3]));
+    let mut motion_off = 0.0;
     if let Role::Whole(parts) = role {
-        bounds = parts.reach.around(bounds, &lattice);
+        let step = shading.coordinates.step();
+        motion_off = parts.reach.off(step);
+        bounds = parts.reach.around(bounds, &lattice, step);
         // Where rays start in a part depends on its box, so that is the same through all structures.
         if structures.contains(&Structure::Octree) {
             let boxes: Vec<_> = order.iter().map(|primitive| primitive.bounds).collect();
@@ -273,8 +277,7 @@ fn compile_as(
     let most_steps = displacements.iter().copied().fold(0.0, f32::max);
     let report = Report {
         step: lattice.step(),
-        largest_displacement: placed
-            .displacement
+        largest_displacement: (placed.displacement + motion_off)
             .max(f64::from(most_steps) * lattice.step()),
         displacements,
         far_moved: snapped.far_moved.clone(),

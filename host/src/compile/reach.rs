@@ -19,11 +19,20 @@ const SAME_AXIS: f64 = 1e-6;
 /// Bound of how far rounding takes the matrix and the scale of a joint off, in radians.
 const ROUNDING: f64 = 1.0 / (1 << 23) as f64;
 
+/// How far a pivot is off in whole coordinate steps: half a step along each axis.
+const PIVOT_OFF: f64 = 0.867;
+
+/// How far a shift is off in whole coordinate steps, along each axis half a step at the keys, 1/8 by their tangents and
+/// half a step between them.
+const SHIFT_OFF: f64 = 2.0;
+
 /// The reach of a scene's instances.
 #[derive(Debug, Default)]
 pub struct Reach {
     /// The box that instances sweep, and the room that the scene states.
-    pub swept: Swept,
+    swept: Swept,
+    /// How far the integers of motions take an instance off at most, in coordinate steps.
+    steps: f64,
     /// For each instance, its least and its greatest scale relative to that at rest.
     pub scales: Vec<[f64; 2]>,
 }
@@ -35,8 +44,8 @@ impl Reach {
         let joints = scene.joints.iter().zip(&tracks);
         let ranges: Vec<Range> = joints.map(|(joint, it)| Range::of(joint, it)).collect();
         let mut reach = Self {
-            swept: Swept::default(),
             scales: Vec::with_capacity(scene.instances.len()),
+            ..Self::default()
         };
         scene
             .room
@@ -50,12 +59,15 @@ impl Reach {
                 // The rest of the margin is for the rounding of boxes.
                 let mut spare = size * MARGIN / 4.0;
                 let chain = std::iter::successors(Some(joint), |&it| scene.joints[it].parent);
+                let mut steps = 0.0;
                 for joint in chain {
                     region = region.moved(&ranges[joint], &mut spare);
+                    steps = ranges[joint].off(steps);
                     let [least, greatest] = ranges[joint].scale;
                     scales = [scales[0] * least, scales[1] * greatest];
                 }
                 reach.swept.add(region.corners);
+                reach.steps = reach.steps.max(steps);
             }
             let limit = |scale: f64| scale.clamp(LEAST_SCALE, LARGEST_SCALE);
             reach.scales.push(scales.map(limit));
@@ -63,10 +75,48 @@ impl Reach {
         reach
     }
 
-    /// Widens a box on the lattice to where instances reach.
-    pub fn around(&self, bounds: UnitBox, lattice: &Lattice) -> UnitBox {
-        let swept = self.swept.on_lattice(lattice);
+    /// Returns the box around an extent and all that instances sweep. `step` returns the length of a coordinate step on
+    /// a lattice around such a box.
+    pub fn extent(
+        &self,
+        extent: (DVec3, DVec3),
+        bits: u8,
+        step: impl Fn(&Lattice, [DVec3; 2]) -> f64,
+    ) -> (DVec3, DVec3) {
+        /// Rounds until a box holds the steps of its own lattice. A coarser lattice seldom has longer steps.
+        const ROUNDS: usize = 8;
+        let mut swept = self.swept;
+        let mut whole = swept.extent(extent, bits);
+        if self.steps == 0.0 {
+            return whole;
+        }
+        for _ in 0..ROUNDS {
+            let corners = [whole.0, whole.1];
+            // An extent without a lattice is reported later.
+            let lattice = Lattice::around(corners, bits, 0).ok();
+            let off = lattice.map_or(0.0, |it| self.off(step(&it, corners)));
+            if off <= swept.off {
+                break;
+            }
+            swept.off = off;
+            whole = swept.extent(extent, bits);
+        }
+        whole
+    }
+
+    /// Widens a box on the lattice to where instances reach with coordinate steps of this length.
+    pub fn around(&self, bounds: UnitBox, lattice: &Lattice, step: f64) -> UnitBox {
+        let swept = Swept {
+            off: self.off(step),
+            ..self.swept
+        };
+        let swept = swept.on_lattice(lattice);
         swept.map_or(bounds, |swept| bounds.union(&swept))
+    }
+
+    /// Returns how far motion in coordinate steps of this length takes an instance off, in scene units.
+    pub fn off(&self, step: f64) -> f64 {
+        self.steps * step
     }
 }
 
@@ -128,6 +178,22 @@ impl Range {
             scale: scale.ends(),
             shift,
         }
+    }
+
+    /// Returns how far a place is off after a joint's motion, in coordinate steps, given how far it was off before.
+    /// Pivot and shift are whole steps. A pivot that is off moves a place by the difference of the motion from none.
+    fn off(&self, before: f64) -> f64 {
+        let [least, greatest] = self.scale;
+        let turned = match self.turns.turn {
+            Turn::None => self.turns.off,
+            _ => 2.0,
+        };
+        let change = (1.0 - least).max(greatest - 1.0) + greatest * turned;
+        let shift = match self.shift == [DVec3::ZERO; 2] {
+            true => 0.0,
+            false => SHIFT_OFF,
+        };
+        before * greatest + change.min(1.0 + greatest) * PIVOT_OFF + shift
     }
 }
 

@@ -56,7 +56,7 @@ pub fn check(scene: &Scene) -> Result<(), CompileError> {
             place: track.place.clone(),
             target: target.name(),
             cause,
-            remedy: "give at least one key, and the number of an item of the scene",
+            remedy: String::from("give at least one key, and the number of an item of the scene"),
         });
     }
     Ok(())

@@ -14,7 +14,8 @@ pub struct Report {
     pub step: f64,
     /// The largest displacement of a surface by snapping, in scene units. No point of a given surface is farther from
     /// its snapped one, and the other way round. For instances it is counted from their rotations: a matrix of a scene
-    /// file becomes the nearest one when it is read.
+    /// file becomes the nearest one when it is read. For those that move it takes in the rounding of their motion to
+    /// coordinate steps.
     pub largest_displacement: f64,
     /// The displacement of each primitive in scene-file order, in steps of the lattice, and of a part's before an
     /// instance scales it; 0 for those that are left out.

@@ -39,12 +39,14 @@ pub const MARGIN: f64 = 1.0 / 4096.0;
 const MARGIN_UNITS: f64 = 8.0;
 
 /// The box that something sweeps while it moves.
-#[derive(Debug, Default)]
+#[derive(Clone, Copy, Debug, Default)]
 pub struct Swept {
     /// Without a margin; `None` if nothing moves.
     pub corners: Option<[DVec3; 2]>,
     /// Number of units by which it is widened further, for the rounding of motion.
     pub rounding: f64,
+    /// How far the coordinates of programs take it off, in scene units.
+    pub off: f64,
 }
 
 impl Swept {
@@ -70,7 +72,9 @@ impl Swept {
     pub fn with_margin(&self, unit: f64) -> Option<[DVec3; 2]> {
         self.corners.map(|[low, high]| {
             let part = (high - low).max_element() * MARGIN;
-            let margin = DVec3::splat(part.max((MARGIN_UNITS + self.rounding) * unit));
+            // Less than a unit fits in the margin.
+            let off = if self.off > unit { self.off } else { 0.0 };
+            let margin = DVec3::splat(part.max((MARGIN_UNITS + self.rounding) * unit) + off);
             [low - margin, high + margin]
         })
     }

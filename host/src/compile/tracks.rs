@@ -7,6 +7,7 @@ use super::camera::angle;
 use super::section::{Section, section};
 use crate::scene::{Camera, Key, TICKS_PER_SECOND, Track};
 use crate::shape::{exp2, unit};
+use crate::table::significant;
 use glam::{DQuat, DVec3};
 use gridel_core::format::SectionKind;
 use gridel_core::format::record::Header;
@@ -24,7 +25,7 @@ pub fn sections(
 ) -> Result<Vec<Section>, CompileError> {
     let mut all = tracks;
     check_camera(&all)?;
-    // What is supplied has the times of others, and is not to blame for them.
+    // Tracks that are supplied have the times of these.
     for track in &all {
         times(track)?;
         if let Some(cause) = splines::beyond(track) {
@@ -52,7 +53,7 @@ pub fn sections(
                 place: pair[1].2.place.clone(),
                 target: pair[1].0.name(),
                 cause: String::from("the property has two tracks"),
-                remedy: "put the keys of both into one track",
+                remedy: String::from("put the keys of both into one track"),
             });
         }
     }
@@ -112,7 +113,7 @@ fn check_camera(tracks: &[Track]) -> Result<(), CompileError> {
             place: track.place.clone(),
             target: track.target.name(),
             cause: String::from("the camera has a rotation that moves, too"),
-            remedy: "remove one of the two",
+            remedy: String::from("remove one of the two"),
         }),
     }
 }
@@ -169,7 +170,7 @@ pub fn places(tracks: &[Track], camera: &Camera) -> Vec<DVec3> {
 }
 
 /// An error of a track.
-fn fault(track: &Track, cause: String, remedy: &'static str) -> CompileError {
+fn fault(track: &Track, cause: String, remedy: &str) -> CompileError {
     // A file without lines has many.
     let number = match track.target.is_of_camera() {
         true => String::new(),
@@ -179,7 +180,13 @@ fn fault(track: &Track, cause: String, remedy: &'static str) -> CompileError {
         place: track.place.clone(),
         target: track.target.name(),
         cause: number + &cause,
-        remedy,
+        // A file without lines is one with an animation to choose.
+        remedy: match track.place.line {
+            0 if track.place.is_known() => {
+                format!("{remedy}, or leave the animation out with `--animation none`")
+            }
+            _ => remedy.to_owned(),
+        },
     }
 }
 
@@ -222,25 +229,30 @@ fn keys(track: &Track, header: &Header) -> Result<Vec<(i32, Vec<i32>)>, CompileE
         // Changes per segment: those of its first and last key have no segment outside.
         let before = number.checked_sub(1).map(|it| seconds(times[it], time));
         let behind = times.get(number + 1).map(|&it| seconds(time, it));
+        let factors = scale.factors(key);
         let change = |per_second: [f64; 4], duration: Option<f64>| {
-            let factors = scale.factors(key);
             std::array::from_fn(|k| per_second[k] * factors[k] * duration.unwrap_or(0.0))
         };
         let spline = track.interpolation == Interpolation::Cubic;
-        let groups: [Option<[f64; 4]>; 3] = [
-            spline.then(|| change(key.entering, before)),
-            Some(values[number]),
-            spline.then(|| change(key.leaving, behind)),
+        let groups: [(Number, Option<[f64; 4]>); 3] = [
+            (
+                Number::Entering,
+                spline.then(|| change(key.entering, before)),
+            ),
+            (Number::Value, Some(values[number])),
+            (Number::Leaving, spline.then(|| change(key.leaving, behind))),
         ];
-        for (group, is_value) in groups.into_iter().zip([false, true, false]) {
-            for word in &group.unwrap_or_default()[..group.map_or(0, |_| components)] {
+        for (which, group) in groups {
+            let numbers = group.into_iter().flatten().zip(factors);
+            for (word, factor) in numbers.take(components) {
                 let rounded = word.round();
-                let most = match kind {
-                    ValueKind::Weight if is_value => kind.range()[1],
+                let most = match (kind, which) {
+                    (ValueKind::Weight, Number::Value) => kind.range()[1],
                     _ => i32::MAX,
                 };
                 if rounded.is_nan() || rounded.abs() > f64::from(most) {
-                    let (cause, remedy) = too_large(kind, is_value);
+                    let limit = f64::from(i32::MAX) / factor.abs();
+                    let (cause, remedy) = which.too_large(kind, limit);
                     let cause = format!("at {} s {cause}", key.seconds);
                     return Err(fault(track, cause, remedy));
                 }
@@ -256,19 +268,49 @@ fn keys(track: &Track, header: &Header) -> Result<Vec<(i32, Vec<i32>)>, CompileE
     Ok(all)
 }
 
-/// Names the number that is too large at a key: a value, or the change of a tangent. Also names the remedy.
-fn too_large(kind: ValueKind, is_value: bool) -> (&'static str, &'static str) {
-    match (kind, is_value) {
-        (_, false) => (
-            "the tangent is too large for the time to the next key",
-            "use a smaller tangent, or more keys",
-        ),
-        (ValueKind::Weight, _) => ("a weight is beyond ±64", "use smaller weights"),
-        (ValueKind::Position, _) => (
-            "it leads beyond the range of scene coordinates",
-            "use smaller values, or move them nearer to the scene",
-        ),
-        _ => ("a value is too large", "use smaller values"),
+/// A number of a key.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Number {
+    /// The change with which the value is reached.
+    Entering,
+    Value,
+    /// The change with which it is left.
+    Leaving,
+}
+
+impl Number {
+    /// Returns what to say of a number that is too large, and the remedy. `limit` is the largest change.
+    fn too_large(self, kind: ValueKind, limit: f64) -> (String, &'static str) {
+        let smaller = "use smaller values";
+        let side = match (self, kind) {
+            (Self::Entering, _) => "since the key before",
+            (Self::Leaving, _) => "to the next key",
+            (Self::Value, ValueKind::Weight) => {
+                return (
+                    String::from("a weight is beyond ±64"),
+                    "use smaller weights",
+                );
+            }
+            (Self::Value, ValueKind::Position) => {
+                return (
+                    String::from("it leads beyond the range of scene coordinates"),
+                    "use smaller values, or move them nearer to the scene",
+                );
+            }
+            (Self::Value, ValueKind::Turns) => {
+                let cause = "the angle is not within 128 turns, which are 46080 degrees";
+                return (String::from(cause), smaller);
+            }
+            (Self::Value, _) => {
+                let cause = format!("a value is beyond {}", significant(limit));
+                return (cause, smaller);
+            }
+        };
+        let cause = format!(
+            "the tangent is too large: multiplied by the time {side}, it must be at most {}",
+            significant(limit)
+        );
+        (cause, "use a smaller tangent, or more keys")
     }
 }
 
@@ -382,5 +424,43 @@ impl Scale {
             }
         };
         track.keys.iter().map(value).collect()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::compile::{Options, compile};
+    use crate::scene::read;
+
+    fn fault(track: &str) -> String {
+        let file = format!(
+            "[[object]]\nkind = 'sphere'\ncenter = [0, 0, 0]\nradius = 1\n[[track]]\n{track}"
+        );
+        let imported = read("a.toml".as_ref(), file.into(), &Default::default()).unwrap();
+        let error = compile(&imported.scene, &Options::default()).unwrap_err();
+        error.to_string()
+    }
+
+    #[test]
+    fn numbers_that_are_too_large_are_named_with_their_limit() {
+        for (track, words) in [
+            (
+                "target = 'camera.orbit'\ntimes = [0, 1]\nvalues = [0, 46080]",
+                "at 1 s the angle is not within 128 turns, which are 46080 degrees",
+            ),
+            (
+                "target = 'camera.orbit'\ninterpolation = 'cubic'\ntimes = [0, 2]\nvalues = [0, 0]\n\
+                 tangents = [0, 30000]",
+                "at 2 s the tangent is too large: multiplied by the time since the key before, it must be at most 46080",
+            ),
+            (
+                "target = 'camera.orbit'\ninterpolation = 'cubic'\ntimes = [0, 2]\nvalues = [0, 0]\n\
+                 tangents = [-30000, 0]",
+                "at 0 s the tangent is too large: multiplied by the time to the next key, it must be at most 46080",
+            ),
+        ] {
+            let found = fault(track);
+            assert!(found.contains(words), "{found}");
+        }
     }
 }

@@ -1,14 +1,14 @@
-//! Puts the pictures of an animation in order.
+//! Puts the frames of an animation in order.
 //!
-//! The file of a picture states its number and how it was made ([`FrameNote`]). So pictures may come from several
-//! machines and in any order.
+//! The file of a frame states its number and how it was made ([`FrameNote`]). So frames may come from several machines
+//! and in any order.
 
 use super::{PartError, difference, open_png, pixels, text};
 use crate::picture::{Frame, FrameNote};
 use std::fmt;
 use std::io::{BufRead, Seek};
 
-/// The note of a file about its picture.
+/// The note of a file about its frame.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct NumberedPicture {
     pub size: [u32; 2],
@@ -19,7 +19,7 @@ impl NumberedPicture {
     /// Reads the notes of a PNG, and none of its pixels.
     ///
     /// # Errors
-    /// If the file is no PNG that says which picture of an animation it is.
+    /// If the file is no PNG that says which frame of an animation it is.
     pub fn read(input: impl BufRead + Seek) -> Result<Self, PartError> {
         let reader = open_png(input)?;
         let info = reader.info();
@@ -39,7 +39,7 @@ impl NumberedPicture {
     }
 }
 
-/// The reason why pictures do not make an animation. They are numbered in the order in which they were given.
+/// The reason why frames do not make an animation. They are numbered in the order in which they were given.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum FramesError {
     /// Two are of different sizes.
@@ -48,16 +48,16 @@ pub enum FramesError {
     Rates([usize; 2], [u16; 2]),
     /// Two were made differently: what differs, and how it is in each.
     Made([usize; 2], [String; 2]),
-    /// Two are the same picture of the animation.
+    /// Two are the same frame of the animation.
     Twice([usize; 2], u32),
-    /// A picture between two others is missing.
+    /// A frame between two others is missing.
     Missing(u32),
 }
 
-/// Returns the order of an animation's pictures, as numbers of those given.
+/// Returns the order of an animation's frames, as numbers of those given.
 ///
 /// # Errors
-/// If they are not all pictures from one to another of one animation.
+/// If they are not all frames from one to another of one animation.
 pub fn in_order(pictures: &[NumberedPicture]) -> Result<Vec<usize>, FramesError> {
     if let Some(first) = pictures.first() {
         for (index, other) in pictures.iter().enumerate() {
@@ -102,7 +102,7 @@ impl fmt::Display for FramesError {
             ),
             Self::Rates(_, [one, other]) => write!(
                 f,
-                "one is of an animation of {one} pictures per second, the other of {other}"
+                "one is of an animation of {one} frames per second, the other of {other}"
             ),
             Self::Made(_, [one, other]) => {
                 write!(f, "one was made with {one}, the other with {other}")

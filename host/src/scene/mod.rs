@@ -68,8 +68,8 @@ pub(crate) use scale_range::ScaleRange;
 pub use size::MOST_INPUT;
 pub use source_span::SourceSpan;
 pub use texture::{NormalMap, Texture, Wrap};
-pub(crate) use track::control_points;
 pub use track::{Interpolation, Key, TICKS_PER_SECOND, Track, TrackTarget};
+pub(crate) use track::{control_points, extremes, turning_points};
 pub use without::{effect_named, leave_out, shown_without};
 
 use access::Access;

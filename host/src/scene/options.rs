@@ -99,7 +99,8 @@ pub enum Posed {
 pub struct Choice {
     /// The name of a camera or of its node; without one the first that has a perspective.
     pub camera: Option<String>,
-    /// The name of an animation, or its number from 0; without one the first.
+    /// The name of an animation, or its number from 0; `none` for no animation, unless one has this name; without one
+    /// the first.
     pub animation: Option<String>,
 }
 

@@ -6,7 +6,7 @@
 //! joint's range has the 1 of its rest.
 
 use super::joint::{LARGEST_SCALE, LEAST_SCALE};
-use super::track::{Interpolation, Key, control_points};
+use super::track::{Interpolation, Key, extremes};
 use crate::table::significant;
 
 /// Rounding of products.
@@ -28,7 +28,7 @@ impl ScaleRange {
 
     /// The range of a track, with that at rest.
     pub(crate) fn of(interpolation: Interpolation, keys: &[Key]) -> Self {
-        let scales = control_points(interpolation, keys).map(|it| it.x);
+        let scales = extremes(interpolation, keys);
         let scales = scales.map(|it| it.clamp(LEAST_SCALE, LARGEST_SCALE));
         scales.fold(Self::REST, |range, it| Self {
             least: range.least.min(it),
@@ -57,5 +57,32 @@ impl ScaleRange {
                 significant(self.greatest)
             )
         })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The control points of a spline lead farther than the spline.
+    #[test]
+    fn ranges_of_splines_are_those_of_their_values() {
+        let key = |seconds: f64, scale: f64, change: f64| Key {
+            seconds,
+            value: [scale, 0.0, 0.0, 0.0],
+            entering: [change, 0.0, 0.0, 0.0],
+            leaving: [change, 0.0, 0.0, 0.0],
+        };
+        for (keys, least, greatest) in [
+            ([key(0.0, 1.0, -3.0), key(1.0, 0.1, 0.0)], 0.097_190, 1.0),
+            ([key(0.0, 1.0, 0.0), key(1.0, 60.0, 20.0)], 1.0, 60.0),
+            ([key(0.0, 1.0, 8.0), key(2.0, 1.0, -8.0)], 1.0, 5.0),
+        ] {
+            let [low, high] = ScaleRange::of(Interpolation::Cubic, &keys).ends();
+            assert!(
+                (low - least).abs() < 1e-5 && (high - greatest).abs() < 1e-5,
+                "{low} {high}"
+            );
+        }
     }
 }

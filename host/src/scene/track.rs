@@ -86,13 +86,59 @@ pub(crate) fn control_points(
     values.chain(between)
 }
 
+/// The values of the first component at keys, and where a spline turns back between them: all extremes.
+pub(crate) fn extremes(interpolation: Interpolation, keys: &[Key]) -> impl Iterator<Item = f64> {
+    let cubic = interpolation == Interpolation::Cubic;
+    let pairs = keys.windows(2).filter(move |_| cubic);
+    let between = pairs.flat_map(|pair| {
+        let [one, other] = [&pair[0], &pair[1]];
+        turning_points(one, other).map(|part| spline(one, other, part)[0])
+    });
+    keys.iter().map(|key| key.value[0]).chain(between)
+}
+
+/// The parts of the time between two keys at which the first component of their spline turns back: where its slope, a
+/// polynomial of degree 2, is 0.
+pub(crate) fn turning_points(one: &Key, other: &Key) -> impl Iterator<Item = f64> + use<> {
+    let duration = on_tick(other.seconds) - on_tick(one.seconds);
+    let change = other.value[0] - one.value[0];
+    let [leaving, entering] = [one.leaving, other.entering].map(|it| it[0] * duration);
+    let a = 3.0 * (leaving + entering) - 6.0 * change;
+    let b = 6.0 * change - 4.0 * leaving - 2.0 * entering;
+    let root = (b * b - 4.0 * a * leaving).sqrt();
+    // Without cancellation.
+    let sum = -0.5 * (b + root.copysign(b));
+    let parts = [sum / a, leaving / sum].into_iter();
+    parts.filter(|part| *part > 0.0 && *part < 1.0)
+}
+
+/// The spline between two keys, at a part of the time between them.
+fn spline(one: &Key, other: &Key, part: f64) -> [f64; 4] {
+    let duration = on_tick(other.seconds) - on_tick(one.seconds);
+    let (square, cube) = (part * part, part * part * part);
+    std::array::from_fn(|component| {
+        (2.0 * cube - 3.0 * square + 1.0) * one.value[component]
+            + (cube - 2.0 * square + part) * duration * one.leaving[component]
+            + (3.0 * square - 2.0 * cube) * other.value[component]
+            + (cube - square) * duration * other.entering[component]
+    })
+}
+
+/// Returns true if the integers of a program hold a quaternion between keys of this length as one without any.
+fn has_no_length(quaternion: &[f64; 4], of_keys: f64) -> bool {
+    // Half a step of 30 fraction bits.
+    const HALF: f64 = 0.5 / (1 << 30) as f64;
+    quaternion.iter().all(|it| it.abs() < HALF * of_keys)
+}
+
 /// The time of the nearest tick.
 fn on_tick(seconds: f64) -> f64 {
     let ticks = f64::from(TICKS_PER_SECOND);
     (seconds * ticks).round() / ticks
 }
 
-/// The value between keys at a time; `turns` says that they are rotations.
+/// The value between keys at a time; `turns` says that they are rotations. Where a spline passes a quaternion without a
+/// length, this is the earlier key's.
 pub(super) fn interpolate(
     interpolation: Interpolation,
     keys: &[Key],
@@ -113,17 +159,20 @@ pub(super) fn interpolate(
         let [one, other] = [one, other].map(|key| DQuat::from_array(key.value).normalize());
         return one.slerp(other, part).to_array();
     }
-    std::array::from_fn(|component| match interpolation {
-        Interpolation::Step => one.value[component],
-        Interpolation::Linear => {
-            one.value[component] + part * (other.value[component] - one.value[component])
-        }
+    let linear = |component: usize| {
+        one.value[component] + part * (other.value[component] - one.value[component])
+    };
+    match interpolation {
+        Interpolation::Step => one.value,
+        Interpolation::Linear => std::array::from_fn(linear),
         Interpolation::Cubic => {
-            let (square, cube) = (part * part, part * part * part);
-            (2.0 * cube - 3.0 * square + 1.0) * one.value[component]
-                + (cube - 2.0 * square + part) * duration * one.leaving[component]
-                + (3.0 * square - 2.0 * cube) * other.value[component]
-                + (cube - square) * duration * other.entering[component]
+            let between = spline(one, other, part);
+            let of_keys = DVec4::from_array(one.value).length();
+            match turns && has_no_length(&between, of_keys) {
+                // No rotation is meant there.
+                true => one.value,
+                false => between,
+            }
         }
-    })
+    }
 }

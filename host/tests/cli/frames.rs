@@ -122,7 +122,7 @@ fn frames_that_make_no_animation_are_rejected() {
     fails(
         1,
         &["p-0.png", "fast-1.png", "-o", "x.apng"],
-        &["24 pictures per second", "25"],
+        &["24 frames per second", "25"],
     );
     fails(
         1,
@@ -132,7 +132,7 @@ fn frames_that_make_no_animation_are_rejected() {
     fails(
         1,
         &["still.png", "-o", "x.apng"],
-        &["still.png", "which picture of an animation"],
+        &["still.png", "which frame of an animation"],
     );
     fails(1, &["nowhere.png", "-o", "x.gif"], &["nowhere.png"]);
     fails(2, &["sixty-0.png", "-o", "x.gif"], &["at most 50", ".apng"]);
@@ -210,9 +210,10 @@ fn outputs_and_scenes_that_frames_cannot_have_are_rejected() {
         ("x.png", "%03d"),
         ("x.jpg", ".apng"),
         ("x", ".apng"),
-        ("-", ".apng"),
+        ("-", "cannot go to standard output"),
         ("x-%s.png", "%d"),
-        ("x-%d-%d.png", "several"),
+        ("x-%d-%d.png", "more than one"),
+        ("x-%5d.png", "unsupported `%5d`"),
         ("x-%d.jpg", ".png"),
         ("x-%d.gif", "one file"),
     ] {
@@ -244,6 +245,10 @@ fn outputs_and_scenes_that_frames_cannot_have_are_rejected() {
         ],
         &["--rows"],
     );
+    let many = ["a.toml", "--frames", "7..40000000", "-o", "x-%d.png"];
+    fails(&many, &["100,000", "--frames 7..100007"]);
+    let late = ["a.toml", "--frames", "1073730..1073743", "-o", "x.apng"];
+    fails(&late, &["frame 1073742", "44739 s", "0..1073742"]);
     fails(&["a.toml", "--time", "nan", "-o", "x.png"], &["seconds"]);
     assert!(!folder.names().iter().any(|name| name.starts_with('x')));
 }

@@ -166,15 +166,25 @@ fn shutters_without_a_time_or_without_samples_are_rejected() {
         let command = ["render", "-o", "x.png"];
         folder.fails(2, &[&command[..], options].concat(), words);
     }
-    // Far beyond the last tick.
-    folder.done(&[
-        "render",
-        "a.toml",
-        "--time",
-        "1e300",
-        "--shutter",
-        "1e300",
-        "-o",
-        "x.png",
-    ]);
+    // A time far beyond the last tick shows that.
+    let late = ["render", "a.toml", "--time", "1e300", "-o", "x.png"];
+    folder.done(&[&late[..], &["--shutter", "0.1"]].concat());
+    for seconds in ["44740", "1e300"] {
+        let command = [&late[..], &["--shutter", seconds]].concat();
+        folder.fails(2, &command, &["longer than the 44739 s"]);
+    }
+}
+
+#[test]
+fn moments_that_count_unevenly_are_warned_of_in_json() {
+    let folder = folder();
+    let open = ["--shutter", "0.1", "--moments", "3"];
+    for output in [
+        &["--time", "0", "-o", "x.png"][..],
+        &["--frames", "0..2", "-o", "x.apng"],
+    ] {
+        let report = folder.json(&[&["render", "a.toml"], output, &open].concat());
+        let warnings = report["warnings"].to_string();
+        assert!(warnings.contains("some of the 3 moments"), "{warnings}");
+    }
 }

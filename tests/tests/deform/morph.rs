@@ -467,3 +467,30 @@ fn states_have_the_weights_of_tracks() {
     }
     assert!(tracks.weights_at(0, &mut [0; 2]).is_err());
 }
+
+/// A pose that leaves the room moves some vertices before it is found out.
+#[test]
+fn a_failed_morph_leaves_no_pose_in_between() {
+    let file = shaken(&mut Random(11));
+    let blob = built(&file, 24);
+    let scene = blob.scene().expect("a scene");
+    let morph = MorphTargets::from_bytes(blob.bytes()).expect("morph targets");
+    let rest: &[Vertex24] = scene.stored_vertices().expect("vertices");
+    let mut mesh: HeapDeformation<Vertex24> = deformation::of(&scene).expect("a deformation");
+    let places = |mesh: &HeapDeformation<Vertex24>| -> Vec<[i32; 3]> {
+        mesh.vertices().iter().map(|it| it.0).collect()
+    };
+    let some = [ONE as i32, 0, ONE as i32 / 2];
+    mesh.morph(&scene, &morph, &some).expect("a pose");
+    let before = places(&mesh);
+    // Wrong arguments change nothing.
+    assert!(mesh.morph(&scene, &morph, &[0; 2]).is_err());
+    assert!(mesh.morph(&scene, &morph, &[0, i32::MAX, 0]).is_err());
+    assert!(scene.with_deformation(&mesh).is_ok() && places(&mesh) == before);
+    let beyond = [0, 0, 64 << 24];
+    assert!(mesh.morph(&scene, &morph, &beyond).is_err());
+    assert!(scene.with_deformation(&mesh).is_err());
+    mesh.refit(&scene).expect("the pose at rest");
+    let at_rest: Vec<[i32; 3]> = rest.iter().map(|it| it.0).collect();
+    assert!(places(&mesh) == at_rest && scene.with_deformation(&mesh).is_ok());
+}

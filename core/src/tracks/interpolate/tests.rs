@@ -202,6 +202,19 @@ fn splines_of_colors_and_angles_stay_in_their_range() {
     assert_eq!(middle(rotation, [one, -one], [one, one]), one + one / 4);
 }
 
+/// Between opposite quaternions, whose changes are 0, a spline passes through 0.
+#[test]
+fn splines_through_a_quaternion_without_a_length_keep_the_earlier_key() {
+    let key = [0, 0, 759_250_125, 759_250_125];
+    let opposite = key.map(|it: i32| -it);
+    let words = [[0; 4], key, [0; 4], [0; 4], opposite, [0; 4]].concat();
+    for target in [TrackTarget::CameraRotation, TrackTarget::JointRotation] {
+        let at = |time| value::<4>(target, Interpolation::Cubic, &[0, 10], &words, time);
+        assert_eq!(at(5), key);
+        assert!(at(4) != key && at(6) != key);
+    }
+}
+
 /// Spherical interpolation in doubles, of quaternions of length 1.
 fn slerp(from: [f64; 4], to: [f64; 4], part: f64) -> [f64; 4] {
     let dot: f64 = (0..4).map(|k| from[k] * to[k]).sum();

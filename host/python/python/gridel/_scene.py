@@ -121,7 +121,8 @@ class Scene:
         :param texture_bytes: most bytes of all textures; they are stored with fewer colors or texels to fit. Default: no
             limit.
         :param camera: camera of a glTF file, by its name or that of its node. Default: the first with a perspective.
-        :param animation: animation of a glTF file, by its name or its number from 0. Default: the first.
+        :param animation: animation of a glTF file, by its name or its number from 0; ``"none"`` for no animation. Default:
+                the first.
         :param time: seconds at which copies of instances that move stand; needs ``instances="flatten"``. Camera, lights,
             materials and vertices stay as they are at rest. Default: the instances at rest.
         :param instances: ``"keep"`` keeps parts that are placed several times as instances; ``"flatten"`` copies their

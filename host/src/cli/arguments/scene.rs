@@ -118,8 +118,8 @@ pub struct ImportOptions {
     #[arg(long, value_name = "NAME")]
     camera: Option<String>,
 
-    /// Animation of a glTF file, by its name or its number from 0; moves objects, cameras and lights [default: the
-    /// first]
+    /// Animation of a glTF file, by its name or its number from 0; moves objects, cameras and lights; `none` leaves
+    /// all out [default: the first]
     #[arg(long, value_name = "ID")]
     animation: Option<String>,
 

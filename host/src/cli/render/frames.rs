@@ -3,6 +3,7 @@
 use super::shutter::{self, ShutterOptions, changes, scenes};
 use crate::cli::arguments;
 use crate::cli::failure::Failure;
+use crate::cli::input::is_standard;
 use crate::cli::output::{
     Content, Warned, check_writable, json, print, reject_inputs, unsupported, write_file,
     write_files,
@@ -16,7 +17,7 @@ use gridel_host::animation::{Animation, AnimationFormat, NumberedName};
 use gridel_host::picture::{Exposure, Frame, Moment, PictureFormat, RenderMetadata, srgb};
 use gridel_host::render::{Job, Picture, render_moments};
 use gridel_host::resolution::Unresolved;
-use gridel_host::table::counted;
+use gridel_host::table::{counted, grouped};
 use rayon::ThreadPool;
 use serde::Serialize;
 use std::io;
@@ -61,6 +62,28 @@ fn frames(text: &str) -> Result<Range<u32>, String> {
     }
 }
 
+/// The most numbered pictures of a run: more than an hour at 24 per second. All names are checked first.
+const MOST_FILES: u32 = 100_000;
+
+/// Rejects frames behind the last tick, which would all show the same.
+fn check_times(tracks: &Tracks<'_>, frames: &Range<u32>, per_second: u16) -> Result<(), Failure> {
+    let (last, rate) = (i32::MAX as u64, u64::from(per_second));
+    let ticks = u64::from(tracks.ticks_per_second());
+    // The first frame whose nearest tick is behind the last one.
+    let most = ((last + 1) * rate - rate / 2).div_ceil(ticks);
+    if u64::from(frames.end) <= most {
+        return Ok(());
+    }
+    Err(Failure::usage(
+        format!(
+            "frame {} is behind the end of time, which is at {} s",
+            frames.end - 1,
+            last / ticks
+        ),
+        format!("at {per_second} frames per second, ask for frames within 0..{most}"),
+    ))
+}
+
 /// Returns the error of settings that nothing is rendered with.
 pub fn rejected(error: &RenderError) -> Failure {
     Failure::usage(
@@ -99,6 +122,12 @@ impl Output {
     ) -> Result<Self, Failure> {
         const NAMES: &str = ".apng, .gif or numbered pictures such as out-%03d.png";
         let shown = path.display();
+        if is_standard(path) {
+            return Err(Failure::usage(
+                "several frames cannot go to standard output",
+                format!("give the output a name: {NAMES}"),
+            ));
+        }
         let numbered = NumberedName::read(path.to_str().unwrap_or_default());
         if let Some(format) = AnimationFormat::of(path) {
             if matches!(numbered, Ok(Some(_))) {
@@ -137,6 +166,21 @@ impl Output {
         };
         let format = PictureFormat::of(path)
             .ok_or_else(|| unsupported(path, "image", ".png, .ppm or .rgb565"))?;
+        let count = frames.end - frames.start;
+        if count > MOST_FILES {
+            let end = frames.start + MOST_FILES;
+            return Err(Failure::usage(
+                format!(
+                    "{} frames are more files than the {} of one run",
+                    grouped(count as usize),
+                    grouped(MOST_FILES as usize)
+                ),
+                format!(
+                    "render them in several runs, such as `--frames {}..{end}`",
+                    frames.start
+                ),
+            ));
+        }
         for number in frames.clone() {
             let path = PathBuf::from(name.of(number));
             // A new file is not the input, and is written as the first of them.
@@ -189,10 +233,10 @@ pub fn run(shot: Shot<'_>, frames: Range<u32>, output: &Output) -> Result<(), Fa
     let Shot { job, .. } = shot;
     let path = shot.output;
     let per_second = shot.options.per_second();
-    let exposure = shot
-        .options
-        .shutter
-        .exposure(&tracks, job.settings.samples)?;
+    check_times(&tracks, &frames, per_second)?;
+    let mut warnings = shot.source.warnings.clone();
+    let shutter = &shot.options.shutter;
+    let exposure = shutter.exposure(&tracks, job.settings.samples, &mut warnings)?;
     let progress = Progress::steps("rendering", frames.len() as u64);
     let begun = Instant::now();
     match output {
@@ -250,7 +294,7 @@ pub fn run(shot: Shot<'_>, frames: Range<u32>, output: &Output) -> Result<(), Fa
     match shot.as_json {
         true => print(json(&Warned {
             value: &rendered,
-            warnings: &shot.source.warnings,
+            warnings: &warnings,
         })?),
         false => print(rendered.text()),
     }

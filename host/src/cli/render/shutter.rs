@@ -33,14 +33,15 @@ const USUAL: u16 = 16;
 /// The fewest moments of a shutter by default, where there are as many samples.
 const FEWEST: u16 = 8;
 
-/// The most moments of a shutter.
-const MOST: u16 = 256;
+/// The most moments of a shutter by default: each takes memory and time of its own.
+const MOST_USUAL: u16 = 32;
 
-/// The usual number of moments of some samples: one that divides them, as every moment then has as many.
+/// The usual number of moments of some samples: one near 16 that divides them, as every moment then has as many; 16 if
+/// there is none.
 fn usual(samples: u16) -> u16 {
     let divides = |moments: &u16| samples.is_multiple_of(*moments);
     let fewer = (1..=USUAL.min(samples)).rev().find(divides);
-    let more = || (USUAL..=MOST.min(samples)).find(divides);
+    let more = || (USUAL..=MOST_USUAL.min(samples)).find(divides);
     let enough = fewer.filter(|&it| it >= FEWEST.min(samples));
     enough.or_else(more).unwrap_or(USUAL.min(samples))
 }
@@ -55,25 +56,31 @@ fn unevenness(samples: u16, moments: u16) -> Option<String> {
         .checked_mul(moments)
         .filter(|&it| it <= MAX_SAMPLES);
     let next = next.unwrap_or(few * moments);
+    let even = Some(usual(samples)).filter(|it| samples.is_multiple_of(*it));
+    let fewer = even.map_or(String::new(), |it| format!(" or `--moments {it}`"));
     Some(format!(
         "some of the {moments} moments have {} and some {}, and so count for more: let the moments divide the samples, \
-         such as `--samples {next}` or `--moments {}`",
+         such as `--samples {next}`{fewer}",
         counted(few.into(), "sample"),
         few + 1,
-        usual(samples)
     ))
 }
 
-/// The most bytes that instances and meshes of all moments take.
+/// The most bytes that instances, meshes, lights and materials of all moments take.
 const MOST_BYTES: usize = 1 << 30;
 
 impl ShutterOptions {
     /// Returns the ticks for which the shutter is open, and the number of moments; `None` without one, or if nothing
-    /// moves.
+    /// moves. Adds a warning if some moments count for more than others.
     ///
     /// # Errors
-    /// If it is open for less than a tick.
-    pub fn exposure(&self, tracks: &Tracks<'_>, samples: u16) -> Result<Option<Exposure>, Failure> {
+    /// If it is open for less than a tick, or for longer than there are ticks.
+    pub fn exposure(
+        &self,
+        tracks: &Tracks<'_>,
+        samples: u16,
+        warnings: &mut Vec<String>,
+    ) -> Result<Option<Exposure>, Failure> {
         // Where no track does anything, nothing is blurred.
         let Some(seconds) = self.shutter.filter(|_| !tracks.is_empty()) else {
             return Ok(None);
@@ -86,11 +93,21 @@ impl ShutterOptions {
                 "leave it out, or let it be open for longer",
             ));
         }
+        let most = f64::from(i32::MAX) / f64::from(tracks.ticks_per_second());
+        if seconds > most {
+            return Err(Failure::usage(
+                format!(
+                    "a shutter of {seconds} s is open for longer than the {} s that there are",
+                    most.floor()
+                ),
+                "let it be open for less time",
+            ));
+        }
         let moments = self.moments.unwrap_or_else(|| usual(samples));
         if moments > samples {
             return Err(Failure::usage(
                 format!(
-                    "{} cannot be shared out among {}",
+                    "{} cannot be divided among {}",
                     counted(samples.into(), "sample"),
                     counted(moments.into(), "moment")
                 ),
@@ -98,7 +115,8 @@ impl ShutterOptions {
             ));
         }
         if let Some(sentence) = unevenness(samples, moments) {
-            warn(sentence);
+            warn(&sentence);
+            warnings.push(sentence);
         }
         Ok(Some(Exposure { open, moments }))
     }
@@ -114,16 +132,23 @@ pub fn changes(
     let Some(Exposure { open, moments }) = exposure else {
         return Ok(vec![source.changes_at(scene, tracks, time)?]);
     };
-    // Where meshes morph, each moment has a blob of its own.
+    let mut times = exposed(time, open, moments);
+    let first = times.next();
+    let first = first.map(|time| source.changes_at(scene, tracks, time));
+    let mut all = Vec::from_iter(first.transpose()?);
+    // Where meshes morph, each moment has a blob of its own, but for those at rest.
     let meshes = match tracks.weights_at_rest() {
         [] => 0,
         _ => source.blob.bytes().len(),
     };
-    let bytes = (size_of_val(scene.instances()) + meshes) * usize::from(moments);
+    let each = all
+        .first()
+        .map_or(0, |it| it.state.bytes_without_meshes() + meshes);
+    let bytes = each.saturating_mul(moments.into());
     if bytes > MOST_BYTES {
         return Err(Failure::usage(
             format!(
-                "instances and meshes that move do not fit in memory at {} at once",
+                "instances, meshes, lights and materials do not fit in memory at {} at once",
                 counted(moments.into(), "moment")
             ),
             format!(
@@ -132,10 +157,10 @@ pub fn changes(
             ),
         ));
     }
-    let times = exposed(time, open, moments);
-    times
-        .map(|time| source.changes_at(scene, tracks, time))
-        .collect()
+    for time in times {
+        all.push(source.changes_at(scene, tracks, time)?);
+    }
+    Ok(all)
 }
 
 /// Returns the scene with each of some changes.
@@ -170,9 +195,13 @@ mod tests {
             assert_eq!(usual(samples), moments, "{samples} samples");
             assert_eq!(unevenness(samples, moments), None);
         }
-        // A large prime has no such number.
-        assert_eq!(usual(257), 16);
-        assert!(unevenness(257, 16).is_some());
+        // Large primes have no such number. More moments would take too long.
+        for samples in [37, 251, 257] {
+            assert_eq!(usual(samples), 16, "{samples} samples");
+            let sentence = unevenness(samples, 16).unwrap();
+            assert!(!sentence.contains("--moments"), "{sentence}");
+        }
+        assert_eq!(usual(31), 31);
     }
 
     #[test]

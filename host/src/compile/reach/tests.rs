@@ -145,8 +145,54 @@ fn room_widens_a_scene_without_joints() {
         room: Some([DVec3::ZERO, DVec3::splat(8.0)]),
         ..Scene::default()
     };
-    let (low, high) = Reach::of(&scene, &[])
-        .swept
-        .extent((DVec3::splat(-1.0), DVec3::ONE), 24);
+    let (low, high) =
+        Reach::of(&scene, &[]).extent((DVec3::splat(-1.0), DVec3::ONE), 24, |_, _| 0.0);
     assert!(low == DVec3::splat(-1.0) && high.min_element() >= 8.0 && high.max_element() < 8.01);
+}
+
+/// A scene with a box on a joint and a light so far away that coordinate steps are many units.
+fn with_far_light(track: &str) -> Scene {
+    let file = format!(
+        "[camera]\neye = [0, 0, 14]\ntarget = [0, 0, 0]\nfov = 10\n\
+         [[light]]\nkind = 'point'\nposition = [0, 0, 1e6]\n\
+         [[part]]\nname = 'p'\nobject = [{{ kind = 'box', min = [-0.5, -0.2, -0.1], max = [1, 0.3, 0.4] }}]\n\
+         [[joint]]\nname = 'a'\npivot = [0.3719, 0, 0]\n\
+         [[instance]]\npart = 'p'\njoint = 'a'\n\
+         [[track]]\ntimes = [0, 1]\n{track}\n"
+    );
+    let imported = crate::scene::read("far.toml".as_ref(), file.into(), &Default::default());
+    imported.unwrap().scene
+}
+
+/// The pivot is off by up to half a step, which the scale multiplies.
+#[test]
+fn instances_that_coordinate_steps_take_off_stay_in_the_box() {
+    for track in [
+        "target = 'joint.a.scale'\nvalues = [1, 3]",
+        "target = 'joint.a.scale'\nvalues = [1, 0.01]",
+        "target = 'joint.a.rotation'\naxis = [0, 1, 0]\nvalues = [0, 170]",
+        "target = 'joint.a.shift'\nvalues = [[0, 0, 0], [0, 0, 0.04]]",
+    ] {
+        let scene = with_far_light(track);
+        let compiled = crate::compile::compile(&scene, &Default::default()).unwrap();
+        let blob = compiled.blob;
+        let tracks = gridel_core::Tracks::from_bytes(blob.bytes()).unwrap();
+        for step in 0..=20 {
+            let time = crate::state::ticks(&tracks, f64::from(step) * 0.05);
+            crate::state::Poses::at(&blob.scene().unwrap(), &tracks, time)
+                .unwrap_or_else(|error| panic!("{track}: {error}"));
+        }
+    }
+}
+
+#[test]
+fn displacement_takes_in_the_steps_of_motion() {
+    let scene = with_far_light("target = 'joint.a.shift'\nvalues = [[0, 0, 0], [0, 0, 0.04]]");
+    let compiled = crate::compile::compile(&scene, &Default::default()).unwrap();
+    let step = crate::shape::exp2(compiled.blob.header().coordinate_exponent());
+    let displacement = compiled.report.largest_displacement;
+    assert!(
+        step >= 1.0 / 512.0 && displacement >= 0.5 * step,
+        "{displacement} {step}"
+    );
 }

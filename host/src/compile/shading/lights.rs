@@ -137,7 +137,7 @@ fn check_stays(scene: &Scene, number: usize) -> Result<(), CompileError> {
                 "{} is visible, and the object that shows it cannot change with time",
                 label(scene, number)
             ),
-            remedy: "set the light's `visible = false`, or leave the track out",
+            remedy: String::from("set the light's `visible = false`, or leave the track out"),
         }),
     }
 }

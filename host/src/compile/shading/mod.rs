@@ -26,7 +26,7 @@ use super::joints;
 use super::requirements::Requirements;
 use super::section::{Section, section};
 use super::tracks;
-use crate::scene::{Scene, ToneMapping};
+use crate::scene::{Camera, Scene, ToneMapping};
 use crate::shape::Lattice;
 use bytemuck::Zeroable;
 use environment::EnvironmentData;
@@ -124,10 +124,7 @@ impl ShadingData {
         }
 
         on_lattice(lattice, space.size(), String::from(CAMERA), camera.eye)?;
-        let mut places = tracks::places(&scene.tracks, &camera);
-        places.extend(joints::places(scene));
-        let corners = [extent.0, extent.1];
-        let coordinates = Coordinates::choose(lattice, corners, camera.eye, &scene.lights, &places);
+        let coordinates = coordinates(scene, &camera, lattice, [extent.0, extent.1]);
         let placed = place(&camera, &coordinates.header)?;
         let mut tracks = joints::kept_tracks(scene);
         exposure.change_tracks(&mut tracks)?;
@@ -176,6 +173,24 @@ impl ShadingData {
         sections.extend(self.motion.iter().cloned());
         sections
     }
+}
+
+/// Returns the length of a coordinate step of a scene with this lattice and extent.
+pub fn coordinate_step(shapes: &Shapes<'_>, lattice: &Lattice, corners: [DVec3; 2]) -> f64 {
+    let camera = Setting::of(shapes).camera;
+    coordinates(shapes.scene(), &camera, lattice, corners).step()
+}
+
+/// Chooses the integer coordinates of a scene with a camera.
+fn coordinates(
+    scene: &Scene,
+    camera: &Camera,
+    lattice: &Lattice,
+    corners: [DVec3; 2],
+) -> Coordinates {
+    let mut places = tracks::places(&scene.tracks, camera);
+    places.extend(joints::places(scene));
+    Coordinates::choose(lattice, corners, camera.eye, &scene.lights, &places)
 }
 
 /// Adds what lights require where there are objects. Those behind the `stated` ones are of the environment.

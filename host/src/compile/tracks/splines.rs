@@ -1,6 +1,6 @@
 //! Values of splines between keys.
 
-use crate::scene::{Interpolation, Key, LARGEST_WEIGHT, Track};
+use crate::scene::{Interpolation, LARGEST_WEIGHT, Track, turning_points};
 use gridel_core::format::track::ValueKind;
 
 /// Returns where a spline leads out of the range of fields of view or weights, for an error. A device would limit it:
@@ -12,7 +12,10 @@ pub(super) fn beyond(track: &Track) -> Option<String> {
         return None;
     }
     let pairs = track.keys.windows(2);
-    let mut times = pairs.flat_map(|pair| turns(&pair[0], &pair[1]));
+    let mut times = pairs.flat_map(|pair| {
+        let [begin, end] = [pair[0].seconds, pair[1].seconds];
+        turning_points(&pair[0], &pair[1]).map(move |part| begin + part * (end - begin))
+    });
     times.find_map(|seconds| {
         let [value, ..] = track.at(seconds);
         if kind == ValueKind::Weight {
@@ -27,22 +30,6 @@ pub(super) fn beyond(track: &Track) -> Option<String> {
             )
         })
     })
-}
-
-/// The times between two keys at which their spline turns back: where its slope, a polynomial of degree 2, is 0.
-fn turns(one: &Key, other: &Key) -> impl Iterator<Item = f64> + use<> {
-    let duration = other.seconds - one.seconds;
-    let change = other.value[0] - one.value[0];
-    let [leaving, entering] = [one.leaving, other.entering].map(|it| it[0] * duration);
-    let a = 3.0 * (leaving + entering) - 6.0 * change;
-    let b = 6.0 * change - 4.0 * leaving - 2.0 * entering;
-    let root = (b * b - 4.0 * a * leaving).sqrt();
-    // Without cancellation.
-    let sum = -0.5 * (b + root.copysign(b));
-    let parts = [sum / a, leaving / sum].into_iter();
-    let inside = parts.filter(|part| *part > 0.0 && *part < 1.0);
-    let begin = one.seconds;
-    inside.map(move |part| begin + part * duration)
 }
 
 #[cfg(test)]

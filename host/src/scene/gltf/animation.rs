@@ -91,7 +91,7 @@ impl Motion {
                 SceneError::new(
                     path,
                     format!("up to channel {number}, animation {animation} has {excess}"),
-                    "export a shorter animation, or with fewer keys per second",
+                    "export a shorter animation, or with fewer keys per second, or leave it out with `--animation none`",
                 )
             })?;
         }
@@ -232,7 +232,8 @@ impl Motion {
                  of each node above them"
             ),
             String::from(
-                "put them below fewer nodes, animate fewer lights, or shorten the animation",
+                "put them below fewer nodes, animate fewer lights, shorten the animation, or leave it out with \
+                 `--animation none`",
             ),
         ])
     }
@@ -276,7 +277,8 @@ impl Motion {
                     "cameras and lights below nodes that move take more than {MOST_SAMPLES_OF_ALL} samples"
                 ),
                 String::from(
-                    "animate fewer lights, shorten the animation, or move the lights themselves",
+                    "animate fewer lights, shorten the animation, move the lights themselves, or leave the animation \
+                     out with `--animation none`",
                 ),
             ]);
         }
@@ -364,7 +366,7 @@ impl Motion {
     }
 
     /// Returns whether a node that moves keeps its direction: it is neither turned nor scaled.
-    fn keeps_direction(&self, node: usize) -> bool {
+    pub(super) fn keeps_direction(&self, node: usize) -> bool {
         let is_kept = |moves: &NodeCurves| moves.rotation.is_none() && moves.scale.is_none();
         self.moves_alone(node) && self.nodes.get(&node).is_some_and(is_kept)
     }

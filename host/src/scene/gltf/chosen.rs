@@ -13,7 +13,10 @@ struct ChosenAnimation<'d> {
     by_name: bool,
 }
 
-/// Returns the requested animation, or the first.
+/// The name that stands for no animation, unless one is called so.
+const NONE: &str = "none";
+
+/// Returns the requested animation, or the first; `None` if none is requested or there is none.
 fn choose<'d>(
     path: &Path,
     document: &'d Document,
@@ -30,6 +33,9 @@ fn choose<'d>(
     let number = wanted.parse().ok();
     let numbered = || document.animations().nth(number?);
     let found = named.or_else(numbered);
+    if found.is_none() && wanted == NONE {
+        return Ok(None);
+    }
     let names = document.animations().map(|it| match it.name() {
         Some(name) => printable(name),
         None => it.index().to_string(),
@@ -37,7 +43,7 @@ fn choose<'d>(
     let names: Vec<_> = names.collect();
     let remedy = match names.is_empty() {
         true => String::from("leave `--animation` out"),
-        false => format!("choose one of {}", names.join(", ")),
+        false => format!("choose one of {}, or `{NONE}`", names.join(", ")),
     };
     let error = || {
         SceneError::new(
@@ -95,7 +101,7 @@ impl Importer<'_> {
                     "the animation bends node {}{name} by a skin, which is not supported",
                     node.index()
                 ),
-                "choose another `--animation`, or bake the mesh without it",
+                "choose another `--animation`, or `--animation none`, or bake the mesh without it",
             ));
         }
         self.warn_of(

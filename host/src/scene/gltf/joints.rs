@@ -11,7 +11,7 @@ use super::curve::Curve;
 use super::place::{parts, transform};
 use super::shared::Placed;
 use crate::scene::{
-    Interpolation, Joint, Key, LARGEST_SCALE, Placement, ScaleRange, Track, TrackTarget,
+    Interpolation, Joint, Key, LARGEST_SCALE, Placement, ScaleRange, Track, TrackTarget, extremes,
 };
 use crate::table::printable;
 use glam::{DMat3, DMat4, DQuat, DVec3, DVec4};
@@ -198,29 +198,42 @@ impl Own {
     }
 }
 
-/// The least of the first component between two keys of a cubic.
-fn least_between(first: &Key, second: &Key) -> f64 {
-    let duration = second.seconds - first.seconds;
-    let [from, to] = [first, second].map(|key| key.value[0]);
-    let [out, into] = [first.leaving[0], second.entering[0]].map(|change| change * duration);
-    // From + out s + b s^2 + c s^3 for s from 0 to 1.
-    let b = 3.0 * (to - from) - 2.0 * out - into;
-    let c = 2.0 * (from - to) + out + into;
-    let at = |s: f64| from + s * (out + s * (b + s * c));
-    // Where the slope is 0.
-    let half = -b;
-    let root = (half * half - 3.0 * c * out).sqrt();
-    let turns = [
-        (half + root) / (3.0 * c),
-        (half - root) / (3.0 * c),
-        out / (-2.0 * b),
-    ];
-    let inside = turns.into_iter().filter(|s| (0.0..=1.0).contains(s));
-    inside.map(at).fold(from.min(to), f64::min)
+/// The least of the first component from one key to the next.
+fn least_between(interpolation: Interpolation, keys: &[Key]) -> f64 {
+    extremes(interpolation, keys).fold(f64::INFINITY, f64::min)
 }
 
-/// Returns the uniform scale of a sequence of scales, relative to that at rest, and whether it is 0 at some key. `None`
-/// if it is not uniform.
+/// Flattens a spline of scales between two keys that falls below [`NOTHING`] between them, so that it stays above.
+fn lift(keys: &mut [Key]) {
+    /// Halvings of the range of factors, which make an error of 2^-40.
+    const HALVINGS: usize = 40;
+    /// Rounding of keys that end at `NOTHING` is left alone.
+    const LEAST: f64 = 0.99 * NOTHING;
+    let [one, other] = keys else { return };
+    let flattened = |factor: f64| {
+        let (mut one, mut other) = (*one, *other);
+        one.leaving[0] *= factor;
+        other.entering[0] *= factor;
+        [one, other]
+    };
+    let stays = |factor: f64| least_between(Interpolation::Cubic, &flattened(factor)) >= LEAST;
+    if stays(1.0) {
+        return;
+    }
+    // Without changes at the keys all values are between theirs.
+    let (mut low, mut high) = (0.0, 1.0);
+    for _ in 0..HALVINGS {
+        let middle = 0.5 * (low + high);
+        match stays(middle) {
+            true => low = middle,
+            false => high = middle,
+        }
+    }
+    [*one, *other] = flattened(low);
+}
+
+/// Returns the uniform scale of a sequence of scales, relative to that at rest, and whether it shrinks to nothing at
+/// some time. `None` if it is not uniform.
 fn even(curve: &Curve, rest: DVec3) -> Option<(Curve, bool)> {
     let inverse = rest.recip();
     if !inverse.is_finite() {
@@ -246,15 +259,17 @@ fn even(curve: &Curve, rest: DVec3) -> Option<(Curve, bool)> {
             return None;
         }
     }
-    let mut segments = ratios.keys.windows(2);
-    if curve.interpolation == Interpolation::Cubic
-        && segments.any(|keys| least_between(&keys[0], &keys[1]) < -TOLERANCE * largest)
-    {
+    let least = least_between(curve.interpolation, &ratios.keys);
+    if least < -TOLERANCE * largest {
         return None;
     }
+    vanishes |= least < NOTHING;
     let mut mapped = ratios.map(|[x, ..]| [x, 0.0, 0.0, 0.0]);
     for key in &mut mapped.keys {
         key.value[0] = key.value[0].max(NOTHING);
+    }
+    if vanishes && curve.interpolation == Interpolation::Cubic {
+        (1..mapped.keys.len()).for_each(|next| lift(&mut mapped.keys[next - 1..=next]));
     }
     Some((mapped, vanishes))
 }

@@ -216,7 +216,7 @@ impl View {
         for (index, (lamp, &node)) in lights.filter(|_| lit) {
             let directional = matches!(lamp.light, Light::Directional { .. });
             let is_spot = lamp.form.is_some_and(|form| form.spot.is_some());
-            self.has_moving_spots |= is_spot && motion.moves(node);
+            self.has_moving_spots |= is_spot && motion.moves(node) && !motion.keeps_direction(node);
             tracks.extend(motion.light(node, index, directional, place)?);
         }
         Ok(tracks)
@@ -239,7 +239,7 @@ impl View {
             ),
             (
                 self.has_moving_spots,
-                "spot lights that move keep the direction that they have at rest",
+                "spot lights that turn keep the direction that they have at rest",
             ),
             (
                 self.has_narrow_spots,

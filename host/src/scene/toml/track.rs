@@ -118,7 +118,10 @@ fn track(table: Value<'_>) -> Result<Unresolved, SceneError> {
     }
     if interpolation == Interpolation::Cubic {
         match tangents {
-            Some(tangents) => given_tangents(tangents, &mut keys)?,
+            Some(tangents) => {
+                let one = axis.is_some() || moved.kind().components() == 1;
+                given_tangents(tangents, one, &mut keys)?;
+            }
             None => smooth_tangents(&mut keys),
         }
     } else if let Some(tangents) = tangents {
@@ -310,12 +313,15 @@ fn check_count(values: Value<'_>, found: usize, times: usize) -> Result<(), Scen
     ))
 }
 
-/// Changes per second, one for each key.
-fn given_tangents(tangents: Value<'_>, keys: &mut [Key]) -> Result<(), SceneError> {
-    let all = tangents.items("`tangents = [[0, 0, 0], [1, 0, 0]]`, one for each time")?;
+/// Changes per second, one for each key; `one` says that values are one number each.
+fn given_tangents(tangents: Value<'_>, one: bool, keys: &mut [Key]) -> Result<(), SceneError> {
+    let all = tangents.items(match one {
+        true => "`tangents = [0, 1]`, one for each time",
+        false => "`tangents = [[0, 0, 0], [1, 0, 0]]`, one for each time",
+    })?;
     check_count(tangents, all.len(), keys.len())?;
     for (key, tangent) in keys.iter_mut().zip(all) {
-        let change = match tangent.is_array() {
+        let change = match tangent.is_array() && !one {
             true => tangent.vector()?,
             false => DVec3::splat(tangent.number()?),
         };
@@ -446,7 +452,7 @@ impl Targets<'_> {
         }
     }
 
-    /// A light by its number or its name.
+    /// A light by its name, or else by its number.
     fn light(&self, name: &str, span: &Span) -> Result<usize, SceneError> {
         let count = self.lights.len();
         let known = || {
@@ -456,31 +462,26 @@ impl Targets<'_> {
                 .filter(|it| !it.is_empty())
         };
         let error = |cause: String, remedy: String| self.source.error(span, cause, remedy);
-        if let Ok(number) = name.parse::<usize>() {
-            return if number < count {
-                Ok(number)
-            } else {
-                Err(error(
-                    format!(
-                        "there is no light {number}: the scene has {}",
-                        counted(count, "light")
-                    ),
-                    String::from("lights count from 0, in the order of the file"),
-                ))
-            };
-        }
         let mut named = self
             .light_names
             .iter()
             .enumerate()
             .filter(|(_, it)| *it == name);
-        match (named.next(), named.next()) {
-            (Some((index, _)), None) => Ok(index),
-            (Some(_), Some(_)) => Err(error(
+        match (named.next(), named.next(), name.parse::<usize>()) {
+            (Some((index, _)), None, _) => Ok(index),
+            (Some(_), Some(_), _) => Err(error(
                 format!("several lights are called {name:?}", name = shortened(name)),
                 String::from("give them different names, or write the light's number"),
             )),
-            (None, _) => Err(error(
+            (None, _, Ok(number)) if number < count => Ok(number),
+            (None, _, Ok(number)) => Err(error(
+                format!(
+                    "there is no light {number}: the scene has {}",
+                    counted(count, "light")
+                ),
+                String::from("lights count from 0, in the order of the file"),
+            )),
+            (None, _, Err(_)) => Err(error(
                 format!("there is no light {name:?}", name = shortened(name)),
                 match nearest(name, known()) {
                     Some(near) => format!("did you mean {near:?}?", near = shortened(near)),

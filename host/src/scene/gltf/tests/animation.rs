@@ -273,7 +273,13 @@ fn cameras_and_animations_are_chosen_by_name() {
         "{error}"
     );
     let error = chosen(&document, choice(None, Some("2"))).unwrap_err();
-    assert!(error.remedy.contains("still, dolly"), "{error}");
+    assert!(error.remedy.contains("still, dolly, or `none`"), "{error}");
+    // Unless an animation is called so.
+    let none = chosen(&document, choice(None, Some("none"))).unwrap();
+    assert_eq!((none.scene.tracks.len(), none.warnings.len()), (0, 0));
+    document["animations"][1]["name"] = json!("none");
+    let dolly = chosen(&document, choice(None, Some("none"))).unwrap();
+    assert_eq!(dolly.scene.tracks.len(), 3);
 }
 
 #[test]
@@ -321,6 +327,43 @@ fn broken_channels_are_rejected() {
     document["accessors"][2]["bufferView"] = document["accessors"][3]["bufferView"].clone();
     let error = read(document.to_string().as_bytes()).unwrap_err();
     assert!(error.cause.contains("do not ascend"), "{error}");
+}
+
+/// A file whose animation is beyond a limit can be drawn without it.
+#[test]
+fn an_animation_beyond_a_limit_can_be_left_out() {
+    let mut document = animated(
+        json!([{"channels": [channel(0, 1, "translation")], "samplers": [sampler(3, "LINEAR")]}]),
+    );
+    set_times(&mut document, [0.0, 1.0, 50_000.0]);
+    let compiled = |choice: Choice| {
+        let scene = chosen(&document, choice).unwrap().scene;
+        crate::compile::compile(&scene, &Default::default())
+    };
+    let error = compiled(Choice::default()).unwrap_err();
+    let remedy = miette::Diagnostic::help(&error).unwrap().to_string();
+    assert!(remedy.contains("`--animation none`"), "{remedy}");
+    let none = Some(String::from("none"));
+    compiled(Choice {
+        animation: none,
+        ..Choice::default()
+    })
+    .unwrap();
+}
+
+#[test]
+fn spots_are_warned_of_only_where_they_turn() {
+    for (path, output, warns) in [("translation", 3, false), ("rotation", 4, true)] {
+        let mut document = animated(
+            json!([{"channels": [channel(0, 1, path)], "samplers": [sampler(output, "LINEAR")]}]),
+        );
+        document["extensions"]["KHR_lights_punctual"]["lights"] = json!([{"type": "spot"}]);
+        let warnings = read(document.to_string().as_bytes()).unwrap().warnings;
+        let spots = warnings
+            .iter()
+            .any(|it| it.contains("spot lights that turn"));
+        assert_eq!(spots, warns, "{path}: {warnings:?}");
+    }
 }
 
 /// Replaces the times of keys, which are 0, 1 and 2 seconds.

@@ -439,3 +439,69 @@ fn a_mesh_of_several_moving_nodes_is_one_part() {
             .all(|track| track.target == TrackTarget::JointShift)
     );
 }
+
+#[test]
+fn splines_that_shrink_to_nothing_between_keys_keep_a_little() {
+    // The least scale is 0, at 0.5 s.
+    let keys = [[-4.0; 3], [1.0; 3], [-4.0; 3], [4.0; 3], [1.0; 3], [4.0; 3]];
+    let imported = below(
+        json!({}),
+        &[Channel {
+            node: 0,
+            path: "scale",
+            interpolation: "CUBICSPLINE",
+            times: vec![0.0, 1.0],
+            values: keys.map(Vec::from).to_vec(),
+        }],
+    );
+    let warnings = &imported.warnings;
+    assert!(warnings[0].contains("1/256"), "{warnings:?}");
+    let scale = |seconds: f64| imported.scene.tracks[0].at(seconds)[0];
+    let least = (0..=100).map(|it| scale(f64::from(it) * 0.01));
+    let least = least.fold(f64::INFINITY, f64::min);
+    assert!((0.0038..0.004).contains(&least), "{least}");
+    // It is hardly another one elsewhere.
+    assert!((scale(0.25) - 0.25).abs() < 0.005, "{}", scale(0.25));
+}
+
+/// A spline from a rotation to its opposite quaternion passes through 0.
+#[test]
+fn splines_through_a_quaternion_without_a_length_keep_the_earlier_rotation() {
+    let half = std::f64::consts::FRAC_1_SQRT_2;
+    let turned = [0.0, 0.0, half, half];
+    let keys = [
+        [0.0; 4],
+        turned,
+        [0.0; 4],
+        [0.0; 4],
+        turned.map(|it| -it),
+        [0.0; 4],
+    ];
+    let imported = below(
+        json!({}),
+        &[Channel {
+            node: 0,
+            path: "rotation",
+            interpolation: "CUBICSPLINE",
+            times: vec![0.0, 1.0],
+            values: keys.map(Vec::from).to_vec(),
+        }],
+    );
+    for seconds in [0.0, 0.5] {
+        let motion = imported.scene.motions(seconds)[0];
+        let moved = motion.rotation * DVec3::X;
+        assert!(moved.distance(DVec3::Y) < 1e-6, "{moved} at {seconds} s");
+    }
+    let options = crate::compile::Options::default();
+    let blob = crate::compile::compile(&imported.scene, &options)
+        .unwrap()
+        .blob;
+    let tracks = gridel_core::Tracks::from_bytes(blob.bytes()).unwrap();
+    let at = |seconds: f64| {
+        let mut motions = [gridel_core::Motion::REST];
+        let time = crate::state::ticks(&tracks, seconds);
+        tracks.motions_at(time, &mut motions).unwrap();
+        motions
+    };
+    assert_eq!(at(0.5), at(0.0));
+}

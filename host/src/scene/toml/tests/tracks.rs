@@ -130,3 +130,33 @@ fn tracks_of_the_directions_of_spots_are_rejected_as_such() {
         "{error}"
     );
 }
+
+#[test]
+fn names_of_lights_that_are_numbers_come_before_numbers() {
+    let light =
+        |name: &str| format!("[[light]]\nname = '{name}'\nkind = 'point'\nposition = [0, 5, 0]\n");
+    let lights = light("1") + &light("0") + &light("x");
+    for (name, index) in [("1", 0), ("0", 1), ("2", 2), ("x", 2)] {
+        let track =
+            format!("[[track]]\ntarget = 'light.{name}.color'\ntimes = [0]\nvalues = [0]\n");
+        let scene = scene(&format!("{lights}{track}"));
+        assert_eq!(scene.tracks[0].index, index, "{name}");
+    }
+    let track = "[[track]]\ntarget = 'light.3.color'\ntimes = [0]\nvalues = [0]\n";
+    let error = load(&format!("{lights}{track}")).unwrap_err();
+    assert!(error.cause.contains("the scene has 3 lights"), "{error}");
+}
+
+#[test]
+fn tangents_of_values_that_are_one_number_are_no_arrays() {
+    for (target, values) in [("camera.fov", "[40, 50]"), ("camera.orbit", "[0, 90]")] {
+        let text = |tangents: &str| {
+            format!(
+                "{SCENE}[[track]]\ntarget = '{target}'\ninterpolation = 'cubic'\ntimes = [0, 1]\n\
+                 values = {values}\ntangents = {tangents}\n"
+            )
+        };
+        load(&text("[1, 2]")).unwrap();
+        assert!(load(&text("[[1, 5, 7], [2, 5, 7]]")).is_err(), "{target}");
+    }
+}
