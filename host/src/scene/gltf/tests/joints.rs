@@ -440,20 +440,23 @@ fn a_mesh_of_several_moving_nodes_is_one_part() {
     );
 }
 
+/// A square in a node with two keys of a spline, each with the changes before and behind it.
+fn below_spline<const N: usize>(path: &'static str, keys: [[f64; N]; 6]) -> Imported {
+    let channel = Channel {
+        node: 0,
+        path,
+        interpolation: "CUBICSPLINE",
+        times: vec![0.0, 1.0],
+        values: keys.map(Vec::from).to_vec(),
+    };
+    below(json!({}), &[channel])
+}
+
 #[test]
 fn splines_that_shrink_to_nothing_between_keys_keep_a_little() {
     // The least scale is 0, at 0.5 s.
     let keys = [[-4.0; 3], [1.0; 3], [-4.0; 3], [4.0; 3], [1.0; 3], [4.0; 3]];
-    let imported = below(
-        json!({}),
-        &[Channel {
-            node: 0,
-            path: "scale",
-            interpolation: "CUBICSPLINE",
-            times: vec![0.0, 1.0],
-            values: keys.map(Vec::from).to_vec(),
-        }],
-    );
+    let imported = below_spline("scale", keys);
     let warnings = &imported.warnings;
     assert!(warnings[0].contains("1/256"), "{warnings:?}");
     let scale = |seconds: f64| imported.scene.tracks[0].at(seconds)[0];
@@ -469,24 +472,9 @@ fn splines_that_shrink_to_nothing_between_keys_keep_a_little() {
 fn splines_through_a_quaternion_without_a_length_keep_the_earlier_rotation() {
     let half = std::f64::consts::FRAC_1_SQRT_2;
     let turned = [0.0, 0.0, half, half];
-    let keys = [
-        [0.0; 4],
-        turned,
-        [0.0; 4],
-        [0.0; 4],
-        turned.map(|it| -it),
-        [0.0; 4],
-    ];
-    let imported = below(
-        json!({}),
-        &[Channel {
-            node: 0,
-            path: "rotation",
-            interpolation: "CUBICSPLINE",
-            times: vec![0.0, 1.0],
-            values: keys.map(Vec::from).to_vec(),
-        }],
-    );
+    let (still, back) = ([0.0; 4], turned.map(|it| -it));
+    let keys = [still, turned, still, still, back, still];
+    let imported = below_spline("rotation", keys);
     for seconds in [0.0, 0.5] {
         let motion = imported.scene.motions(seconds)[0];
         let moved = motion.rotation * DVec3::X;
