@@ -359,7 +359,8 @@ fn spots_are_warned_of_only_where_they_turn() {
         let mut document = animated(
             json!([{"channels": [channel(0, 1, path)], "samplers": [sampler(output, "LINEAR")]}]),
         );
-        document["extensions"]["KHR_lights_punctual"]["lights"] = json!([{"type": "spot", "spot": {}}]);
+        document["extensions"]["KHR_lights_punctual"]["lights"] =
+            json!([{"type": "spot", "spot": {}}]);
         let warnings = read(document.to_string().as_bytes()).unwrap().warnings;
         let spots = warnings
             .iter()
