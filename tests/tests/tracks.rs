@@ -367,7 +367,7 @@ fn tracks_that_no_blob_can_hold_are_rejected_with_the_reason() {
             &[(0.0, [degrees])],
         )]
     };
-    assert!(rejected(orbit(46_080.0)).contains("too large"));
+    assert!(rejected(orbit(46_080.0)).contains("within 128 turns"));
     let mut file = scene_file();
     file.tracks = orbit(-46_079.0);
     assert!(

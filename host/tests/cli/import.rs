@@ -207,3 +207,45 @@ ATOM      1  CA  CYS A   3      11.000   2.000   3.000  1.00  0.00           C\n
         &["--assembly is for scene files"],
     );
 }
+
+/// A key later than the last tick is an error that names the way to do without.
+#[test]
+fn animations_beyond_a_limit_can_be_left_out() {
+    let folder = Folder::new();
+    let corners = [0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0];
+    let times = [0.0, 1.0, 50_000.0];
+    let numbers: Vec<f32> = corners.into_iter().chain(times).chain(corners).collect();
+    let bytes: Vec<u8> = numbers.iter().flat_map(|it| it.to_le_bytes()).collect();
+    folder.write("late.bin", &bytes);
+    let accessor = |view: u32, kind: &str| {
+        serde_json::json!({"bufferView": view, "componentType": 5126, "count": 3, "type": kind,
+            "min": [0, 0, 0], "max": [1, 1, 0]})
+    };
+    let mut time = accessor(1, "SCALAR");
+    (time["min"], time["max"]) = (serde_json::json!([0]), serde_json::json!([50_000]));
+    let document = serde_json::json!({
+        "asset": {"version": "2.0"},
+        "scenes": [{"nodes": [0]}],
+        "nodes": [{"mesh": 0}],
+        "meshes": [{"primitives": [{"attributes": {"POSITION": 0}}]}],
+        "buffers": [{"uri": "late.bin", "byteLength": 84}],
+        "bufferViews": [
+            {"buffer": 0, "byteOffset": 0, "byteLength": 36},
+            {"buffer": 0, "byteOffset": 36, "byteLength": 12},
+            {"buffer": 0, "byteOffset": 48, "byteLength": 36},
+        ],
+        "accessors": [accessor(0, "VEC3"), time, accessor(2, "VEC3")],
+        "animations": [{
+            "channels": [{"sampler": 0, "target": {"node": 0, "path": "translation"}}],
+            "samplers": [{"input": 1, "output": 2}],
+        }],
+    });
+    folder.write("late.gltf", document.to_string().as_bytes());
+    let render = ["render", "late.gltf", "-o", "late.png", "--size", "8x6"];
+    folder.fails(
+        1,
+        &render,
+        &["50000", "beyond 44739 seconds", "`--animation none`"],
+    );
+    folder.done(&[&render[..], &["--animation", "none"]].concat());
+}

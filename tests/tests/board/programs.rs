@@ -289,8 +289,12 @@ fn reported_and_linked(
     )
     .expect("dual-split nodes");
     let sizes = [report.fast, report.small].map(|sizes| sizes.call_stack.expect("known"));
-    // The program leaves joints at rest.
-    let moves = |what: &str| what.starts_with("moved instances") || what.starts_with("motions of");
+    // The program leaves all at rest.
+    let moves = |what: &str| {
+        what.starts_with("moved instances")
+            || what.starts_with("motions of")
+            || what.ends_with("tracks change them")
+    };
     let of_moves = report.ram.items.iter().filter(|item| moves(&item.what));
     let of_moves: u64 = of_moves.filter_map(|item| item.bytes).sum();
     let reported = [

@@ -271,10 +271,8 @@ fn poses_that_do_not_fit_are_rejected() {
     let unmoved = loaded.with_poses(poses).expect("poses at rest");
     assert_eq!(unmoved.instances(), loaded.instances());
     let mut poses = memory.at_rest(&loaded).expect("room");
-    let index = loaded.instances().iter().position(|it| it.number == 1);
     let placed = poses.place(&loaded, 1, &beside);
     let error = placed.and_then(|()| loaded.with_poses(poses).map(|_| ()));
     let error = error.expect_err("outside").to_string();
-    let record = format!("instance {}", index.expect("the instance"));
-    assert!(error.contains(&record), "{error}");
+    assert!(error.contains("instance 1:"), "{error}");
 }

@@ -331,28 +331,6 @@ fn broken_channels_are_rejected() {
     assert!(error.cause.contains("do not ascend"), "{error}");
 }
 
-/// A file whose animation is beyond a limit can be drawn without it.
-#[test]
-fn an_animation_beyond_a_limit_can_be_left_out() {
-    let mut document = animated(
-        json!([{"channels": [channel(0, 1, "translation")], "samplers": [sampler(3, "LINEAR")]}]),
-    );
-    set_times(&mut document, [0.0, 1.0, 50_000.0]);
-    let compiled = |choice: Choice| {
-        let scene = chosen(&document, choice).unwrap().scene;
-        crate::compile::compile(&scene, &Default::default())
-    };
-    let error = compiled(Choice::default()).unwrap_err();
-    let remedy = miette::Diagnostic::help(&error).unwrap().to_string();
-    assert!(remedy.contains("`--animation none`"), "{remedy}");
-    let none = Some(String::from("none"));
-    compiled(Choice {
-        animation: none,
-        ..Choice::default()
-    })
-    .unwrap();
-}
-
 #[test]
 fn spots_are_warned_of_only_where_they_turn() {
     for (path, output, warns) in [("translation", 3, false), ("rotation", 4, true)] {

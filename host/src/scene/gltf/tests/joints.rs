@@ -480,16 +480,4 @@ fn splines_through_a_quaternion_without_a_length_keep_the_earlier_rotation() {
         let moved = motion.rotation * DVec3::X;
         assert!(moved.distance(DVec3::Y) < 1e-6, "{moved} at {seconds} s");
     }
-    let options = crate::compile::Options::default();
-    let blob = crate::compile::compile(&imported.scene, &options)
-        .unwrap()
-        .blob;
-    let tracks = gridel_core::Tracks::from_bytes(blob.bytes()).unwrap();
-    let at = |seconds: f64| {
-        let mut motions = [gridel_core::Motion::REST];
-        let time = crate::state::ticks(&tracks, seconds);
-        tracks.motions_at(time, &mut motions).unwrap();
-        motions
-    };
-    assert_eq!(at(0.5), at(0.0));
 }
