@@ -313,10 +313,6 @@ impl<N: Number, A: Accel, C: Observer, const EFFECTS: u32> Tracing<'_, '_, '_, N
     /// The radiance that a light adds to a surface that it reaches.
     #[inline(always)]
     fn lit(&mut self, number: u32, light: &Light, surface: &Surface<'_, N>) -> Color<N> {
-        // A light that is turned off.
-        if { light.color } == [0; 3] {
-            return Color::BLACK;
-        }
         let mut state = self.state;
         let origin = depart(self.scene, surface.hit, surface.hit.front, true);
         let (way, distance) = light.seen_from(origin);
@@ -336,13 +332,15 @@ impl<N: Number, A: Accel, C: Observer, const EFFECTS: u32> Tracing<'_, '_, '_, N
         };
         let (to_light, norm) = N::normalize(slopes);
         let cos = N::from_wide(N::dot(surface.shading_normal, to_light));
-        if C::ENABLED {
+        let [red, green, blue] = light.color;
+        let is_off = red | green | blue == 0;
+        if C::ENABLED && !is_off {
             self.count.event(Event::Light {
                 number,
                 cosine: cos.ratio_to_f64(),
             });
         }
-        if cos <= N::ZERO {
+        if cos <= N::ZERO || is_off {
             return Color::BLACK;
         }
         let mut lighting = Lighting {
