@@ -295,28 +295,43 @@ mod live {
     }
 }
 
+/// Views a blob at a size in a terminal of its own; returns the terminal, its settings before, and the program.
+#[cfg(unix)]
+fn viewed(
+    folder: &Folder,
+    size: &str,
+) -> (
+    nix::pty::OpenptyResult,
+    nix::sys::termios::Termios,
+    std::process::Child,
+) {
+    use std::process::{Command, Stdio};
+
+    let terminal = nix::pty::openpty(None, None).unwrap();
+    let before = nix::sys::termios::tcgetattr(&terminal.slave).unwrap();
+    let side = || Stdio::from(terminal.slave.try_clone().unwrap());
+    let view = Command::new(env!("CARGO_BIN_EXE_gridel"))
+        .args(["view", "--terminal", "--size", size])
+        .arg(folder.path("quick.gridel"))
+        .stdin(side())
+        .stdout(side())
+        .stderr(side())
+        .spawn()
+        .unwrap();
+    (terminal, before, view)
+}
+
 /// An interrupt gives the terminal back as it was: its first screen, its cursor, and its settings.
 #[cfg(unix)]
 #[test]
 fn an_interrupted_view_gives_the_terminal_back() {
-    use nix::pty::openpty;
     use nix::sys::termios::{LocalFlags, tcgetattr};
     use std::io::Read;
-    use std::process::{Command, Stdio};
+    use std::process::Command;
 
     let folder = Folder::with_quick();
     for signal in ["-TERM", "-INT", "-HUP"] {
-        let terminal = openpty(None, None).unwrap();
-        let before = tcgetattr(&terminal.slave).unwrap();
-        let side = || Stdio::from(terminal.slave.try_clone().unwrap());
-        let mut view = Command::new(env!("CARGO_BIN_EXE_gridel"))
-            .args(["view", "--terminal", "--size", "16x12"])
-            .arg(folder.path("quick.gridel"))
-            .stdin(side())
-            .stdout(side())
-            .stderr(side())
-            .spawn()
-            .unwrap();
+        let (terminal, before, mut view) = viewed(&folder, "16x12");
         let mut master = std::fs::File::from(terminal.master.try_clone().unwrap());
         let mut shown = Vec::new();
         let mut bytes = [0; 4096];
@@ -345,24 +360,13 @@ fn an_interrupted_view_gives_the_terminal_back() {
 #[cfg(unix)]
 #[test]
 fn an_interrupt_ends_a_view_whose_terminal_takes_nothing() {
-    use nix::pty::openpty;
     use nix::sys::termios::tcgetattr;
-    use std::process::{Command, Stdio};
+    use std::process::Command;
     use std::time::{Duration, Instant};
 
     let folder = Folder::with_quick();
-    let terminal = openpty(None, None).unwrap();
-    let before = tcgetattr(&terminal.slave).unwrap();
-    let side = || Stdio::from(terminal.slave.try_clone().unwrap());
     // A frame is larger than what the terminal keeps, and nobody reads it.
-    let mut view = Command::new(env!("CARGO_BIN_EXE_gridel"))
-        .args(["view", "--terminal", "--size", "400x400"])
-        .arg(folder.path("quick.gridel"))
-        .stdin(side())
-        .stdout(side())
-        .stderr(side())
-        .spawn()
-        .unwrap();
+    let (terminal, before, mut view) = viewed(&folder, "400x400");
     while tcgetattr(&terminal.slave).unwrap() == before {
         std::thread::yield_now();
     }
