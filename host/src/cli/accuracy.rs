@@ -15,6 +15,7 @@ use super::output::{check_folder, check_writable, print, print_json_warned, writ
 use super::source::{import, warn_of_file};
 use choice::{Choice, choice};
 use folder::{CSV, PAGE, PLOT, kept, pictures};
+use gridel_core::format::checksum;
 use gridel_host::accuracy::{
     Bench, EffectCost, MOST_MEASURED_SAMPLES, MeasureError, Point, Setting, Truth, answers,
     frontier, least_reference_samples, page, plot, reference_setting, sentences, sweep,
@@ -57,6 +58,12 @@ struct Printed<'t> {
     cheapest: Option<&'t Choice>,
 }
 
+/// Returns a number of this build of the program, whose times are not those of another; 0 if its file cannot be read.
+fn build() -> u32 {
+    let program = std::env::current_exe().and_then(std::fs::read);
+    program.map_or(0, |bytes| checksum(&bytes))
+}
+
 /// Sweeps, measures and reports.
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let path = &arguments.scene;
@@ -78,8 +85,9 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let reference = reference_setting(reference_samples(arguments, &settings)?, &settings);
     warn_of_file(path, bench.warnings().map_err(failed)?, &mut warnings);
     let key = format!(
-        "gridel {} scene {:08x} size {size:?} structure {} reference {}{} cutoff {}",
+        "gridel {} build {:08x} scene {:08x} size {size:?} structure {} reference {}{} cutoff {}",
         env!("CARGO_PKG_VERSION"),
+        build(),
         bench.checksum().map_err(failed)?,
         arguments.accel.name(),
         match arguments.reference {

@@ -131,6 +131,14 @@ fn only_the_same_run_goes_on_in_its_folder() {
     folder.done(&SMALL);
     let other = [&SMALL[..3], &["10x8"], &SMALL[4..]].concat();
     folder.fails(2, &other, &["results.json", "would be overwritten"]);
+    // Nor does another build go on, whose times are others.
+    let own = folder.read("out/results.json");
+    let text = String::from_utf8(own.clone()).unwrap();
+    let (before, number) = text.split_once(" build ").unwrap();
+    let of_another = format!("{before} build {:08x}{}", 1, &number[8..]);
+    folder.write("out/results.json", of_another.as_bytes());
+    folder.fails(2, &SMALL, &["another build", "would be overwritten"]);
+    folder.write("out/results.json", &own);
     let pictures = || {
         std::fs::read_dir(folder.path("out/pictures"))
             .unwrap()

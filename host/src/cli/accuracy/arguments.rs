@@ -61,7 +61,7 @@ pub struct Arguments {
     #[arg(help = scene_help(), long_help = scene_long_help())]
     pub scene: PathBuf,
 
-    /// Folder to write into; it is created if it is missing. A run with the same scene and options
+    /// Folder to write into; it is created if it is missing. A run of the same build with the same scene and options
     /// continues there, and no other run is overwritten [default: accuracy-SCENE, accuracy-stdin for standard
     /// input]
     #[arg(short, long, value_name = "DIR")]

@@ -29,7 +29,7 @@ pub fn kept(folder: &Path, key: &str) -> Result<Option<Results>, Failure> {
     let foreign = |path: &Path| {
         Err(Failure::usage(
             format!(
-                "{} is from a run with another scene or other options: it would be overwritten",
+                "{} is from a run with another scene, other options or another build of gridel: it would be overwritten",
                 path.display()
             ),
             "give another folder with `-o`, or remove that one",
