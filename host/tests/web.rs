@@ -290,7 +290,7 @@ fn answers(page: &Page) {
     let expected = page.files.path("expected.gridel").display().to_string();
     page.files.done(&["build", "quick.toml", "-o", &expected]);
     browser.click("//*[@id='save-blob']");
-    assert!(page.saved("quick.gridel") == page.files.read("expected.gridel"));
+    page.expect_saved("quick.gridel", &page.files.read("expected.gridel"));
     // The report is of the blob that was saved.
     let board = "stm32vldiscovery";
     let inspect = ["inspect", "quick.gridel", "--target", board];
@@ -306,12 +306,9 @@ fn answers(page: &Page) {
         "expected.png",
     ]);
     browser.click("//*[@id='save-picture']");
-    assert!(page.saved("quick.png") == page.files.read("expected.png"));
+    page.expect_saved("quick.png", &page.files.read("expected.png"));
     browser.click("//*[@id='save-memory']");
-    assert_eq!(
-        page.saved("quick-stm32vldiscovery.txt"),
-        report.into_bytes()
-    );
+    page.expect_saved("quick-stm32vldiscovery.txt", report.as_bytes());
 
     // A blob that is saved right after a change has it.
     std::fs::remove_file(page.files.path("quick.gridel")).unwrap();
@@ -323,7 +320,7 @@ fn answers(page: &Page) {
     );
     let build = ["build", "quick.toml", "--lattice-bits", "12", "-o"];
     page.files.done(&[&build[..], &[&expected]].concat());
-    assert!(page.saved("quick.gridel") == page.files.read("expected.gridel"));
+    page.expect_saved("quick.gridel", &page.files.read("expected.gridel"));
     settle(&browser);
 
     // Pixels outside of the picture are errors.
@@ -404,7 +401,7 @@ fn answers_soon(page: &Page) {
     let setting = ["--format", "f32", "--accel", "dual-split"];
     let render = ["render", "quick.toml", "-o", "expected.png"];
     page.files.done(&[&render[..], &setting].concat());
-    assert!(page.saved("quick.png") == page.files.read("expected.png"));
+    page.expect_saved("quick.png", &page.files.read("expected.png"));
     assert!(!content(&browser, "status").contains(waits));
     assert_no_message(&browser);
 }

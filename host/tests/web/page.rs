@@ -59,14 +59,24 @@ impl Page {
         file[length..].to_vec()
     }
 
-    /// Waits for a file that the browser saves.
-    pub fn saved(&self, name: &str) -> Vec<u8> {
+    /// Waits until the browser has saved a file with these bytes. It may be there, without all of them, before.
+    pub fn expect_saved(&self, name: &str, expected: &[u8]) {
+        let path = self.files.path(name);
         let begun = Instant::now();
-        while !self.files.path(name).exists() {
-            assert!(begun.elapsed() < Duration::from_secs(30), "no {name}");
+        loop {
+            let saved = std::fs::read(&path);
+            if matches!(&saved, Ok(bytes) if bytes == expected) {
+                return;
+            }
+            if begun.elapsed() > Duration::from_secs(30) {
+                let found = saved.map(|bytes| bytes.len());
+                panic!(
+                    "{name}: not the {} bytes expected: {found:?}",
+                    expected.len()
+                );
+            }
             std::thread::sleep(Duration::from_millis(50));
         }
-        self.files.read(name)
     }
 }
 
