@@ -1,6 +1,9 @@
 //! Writes a scene as a Rust module. It holds the aligned blob, its limits as constants, and types with exactly the
 //! memory that the scene needs.
 
+mod names;
+
+use crate::compile::Names;
 use crate::measure::Deforming;
 use crate::measure::board::Board;
 use gridel_core::{Format, Prevalidated, Scene, Structure, Tracks};
@@ -32,6 +35,8 @@ pub struct Emitted<'s> {
     pub scene: &'s Scene<'s>,
     /// The bytes of its blob.
     pub blob: &'s [u8],
+    /// Names for constants, which the blob itself need not have.
+    pub names: &'s Names,
     pub structure: Structure,
     pub format: Format,
     /// Bytes that the blob may take, and the board whose they are.
@@ -54,6 +59,7 @@ impl Emitted<'_> {
     /// # let blob = compile(&imported.scene, &Options::default())?.blob;
     /// # let scene = blob.scene()?;
     /// use gridel_core::{Format, Structure};
+    /// use gridel_host::compile::Names;
     /// use gridel_host::emit::Emitted;
     ///
     /// let emitted = Emitted {
@@ -61,10 +67,13 @@ impl Emitted<'_> {
     ///     structure: Structure::DualSplit,
     ///     format: Format::Fixed,
     ///     blob: blob.bytes(),
+    ///     names: &Names::of_scene(&imported.scene),
     ///     budget: None,
     /// };
     /// assert!(emitted.features().contains(&"sphere"));
-    /// assert!(emitted.module().contains("pub static BLOB"));
+    /// let module = emitted.module();
+    /// assert!(module.contains("pub static BLOB"));
+    /// assert!(module.contains("pub const BALL: u32 = 0;"));
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
     pub fn module(&self) -> String {
@@ -95,6 +104,10 @@ impl Emitted<'_> {
             ("@UNIT", scene_unit(exponent)),
             ("@NUMBER", number(self.format).to_owned()),
             ("@ACCEL", format!("{:?}", self.structure)),
+            ("@OBJECTS", scene.header().objects.to_string()),
+            ("@MATERIALS", scene.materials().len().to_string()),
+            ("@LIGHTS", scene.lights().len().to_string()),
+            ("@NAMES", names::constants(scene, self.names)),
             ("@MESH", self.mesh()),
             ("@LOAD", self.load()),
             ("@CHECKS", self.checks()),
@@ -240,6 +253,15 @@ pub const EFFECTS: u32 = @EFFECT_BITS;
 pub const WIDTH: usize = @WIDTH;
 /// Rows.
 pub const HEIGHT: usize = @HEIGHT;
+/// Objects of the scene.
+#[allow(dead_code)]
+pub const OBJECTS: usize = @OBJECTS;
+/// Materials of the scene.
+#[allow(dead_code)]
+pub const MATERIALS: usize = @MATERIALS;
+/// Lights of the scene.
+#[allow(dead_code)]
+pub const LIGHTS: usize = @LIGHTS;
 /// A coordinate step, that of `gridel_core::Position`, is 2 to this power scene units.
 #[allow(dead_code)]
 pub const COORDINATE_EXPONENT: i32 = @EXPONENT;
@@ -271,6 +293,7 @@ pub type Space = gridel_core::Workspace<Number, STACK_DEPTH, WORK_DEPTH>;
 #[allow(dead_code)]
 pub type Picture<'s> = gridel_core::Renderer<'s, 's, Number, Accel, EFFECTS>;
 
+@NAMES\
 @MESH\
 @LOAD
 const BYTES: &[u8] = include_bytes!(\"@BLOB\");

@@ -118,8 +118,10 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let moving = moving.as_ref().unwrap_or(&scene);
     match &arguments.emit_rust {
         Some(folder) => {
+            let names = source.names(moving);
             let emitted = Emitted {
                 scene: moving,
+                names: &names,
                 structure: source.structure(&scene, None)?,
                 format,
                 blob: source.blob.bytes(),

@@ -6,6 +6,7 @@ use crate::plan::Plan;
 use crate::scenes::{self, Compiled};
 use crate::{look_into, parts};
 use gridel_core::{Format, Structure};
+use gridel_host::compile::Names;
 use gridel_host::emit::{self, Emitted};
 use std::fs;
 use std::path::Path;
@@ -36,11 +37,16 @@ fn emitted_modules_run_or_do_not_compile() {
     let discovery = board("stm32vldiscovery");
     let scene = parts::sphere_and_triangle();
     let view = scene.blob.scene().expect("the compiler's own blob");
+    let names = Names {
+        objects: vec!["ball".to_owned(), "slope".to_owned()],
+        ..Names::default()
+    };
     let mut emitted = Emitted {
         scene: &view,
         structure: Structure::DualSplit,
         format: Format::Fixed,
         blob: scene.blob.bytes(),
+        names: &names,
         budget: Some((96 * 1024, discovery)),
     };
     let build = Build::new(discovery, Format::Fixed, Structure::DualSplit, &scene);
@@ -90,11 +96,13 @@ fn emitted_modules_run_or_do_not_compile() {
 fn prevalidated_blob_loads_in_constant_time(name: &str, scene: &Compiled) {
     let mut figures = Figures::new();
     let build = Build::new(board(name), Format::Fixed, Structure::DualSplit, scene);
+    let names = Names::default();
     let emitted = Emitted {
         scene: &scene.blob.scene().expect("the compiler's own blob"),
         structure: Structure::DualSplit,
         format: Format::Fixed,
         blob: scene.blob.bytes(),
+        names: &names,
         budget: None,
     };
     let folder = build.folder("emitted");
