@@ -19,10 +19,14 @@ pub(crate) struct Top<'a> {
     pub(crate) pairs: &'a [Pair],
 }
 
-/// An instance as observers know it.
+/// A node as observers know it.
 fn id(node: Node) -> NodeId {
+    let what = match node.is_leaf() {
+        true => NodeId::INSTANCE,
+        false => NodeId::INSTANCE_PAIR,
+    };
     NodeId {
-        what: NodeId::INSTANCE,
+        what,
         number: node.number(),
     }
 }
@@ -80,6 +84,21 @@ impl Top<'_> {
             let [left, right] = cull.children(pair, limit);
             count.planes(12);
             count.boxes(2);
+            if C::ENABLED {
+                if wanted == [true; 2] {
+                    count.event(Event::Opened(id(Node::pair(number))));
+                }
+                let of_child = |child: usize| child_box(pair, child).0.map(|axis| axis.map(Some));
+                for (child, interval) in [left, right].into_iter().enumerate() {
+                    if wanted[child & 1] {
+                        count.event(Event::Tested {
+                            node: id(Node(pair.children[child & 1])),
+                            sides: of_child(child),
+                            span: [interval.near, interval.far].map(<N::Cull as Culling<N>>::units),
+                        });
+                    }
+                }
+            }
             let meets_left = wanted[0] && left.near <= left.far;
             let meets_right = wanted[1] && right.near <= right.far;
             let right_first = meets_right && (!meets_left || right.near < left.near);

@@ -283,6 +283,8 @@ pub struct NodeId {
 impl NodeId {
     /// The name of the leaves of the hierarchy above instances.
     pub const INSTANCE: &'static str = "instance";
+    /// The name of its other nodes.
+    pub const INSTANCE_PAIR: &'static str = "pair of instances";
 }
 
 /// Planes of a box that were tested, in units: `[axis][lower, upper]`.

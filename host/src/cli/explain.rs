@@ -22,8 +22,8 @@ use std::path::PathBuf;
 ///
 /// Prints the rays of a pixel as a tree: what each ray hits and with what error bound, which lights
 /// reach the surface and what blocks the others, and what mirrors, glass and each ray contribute.
-/// The contributions add up to the samples, each limited to display white, and tone mapping changes
-/// their mean. Then it prints the nodes that the ray visits, the nodes that it skips with the planes
+/// The contributions add up to the samples, each limited to display white, or to 4 or 16 times that
+/// where effects need it; tone mapping changes their mean. Then it prints the nodes that the ray visits, the nodes that it skips with the planes
 /// that exclude them, and every primitive that is tested.
 ///
 /// The code that renders reports all of this. Points and distances are in scene units, distances

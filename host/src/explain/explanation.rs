@@ -54,7 +54,7 @@ pub struct Sample {
     pub place: Option<[f64; 2]>,
     /// In the order in which they were traced; the first is the one from the camera.
     pub rays: Vec<Ray>,
-    /// The sum of what the rays add, each channel limited to 0 to 1.
+    /// The sum of what the rays add, each channel limited to 0 to 1; to 4 or 16 where effects need it.
     pub radiance: [f64; 3],
 }
 

@@ -48,7 +48,7 @@ impl Display for Shown<'_> {
             let mean = color(mean);
             writeln!(
                 f,
-                "It is the mean of the samples, {mean}, as the scene's tone mapping or encoding shows it."
+                "The mean of the samples is {mean}: it was limited to display white, or tone mapped."
             )?;
         }
         for sentence in self.sentences() {
@@ -157,8 +157,13 @@ impl Shown<'_> {
             });
         }
         let is_dark = |ray: &&Ray| {
-            let lit = |light: &Lighting| light.outcome == LightOutcome::Lit;
-            ray.hit.is_some() && !ray.lights.is_empty() && !ray.lights.iter().any(lit)
+            // What a surface does not reflect need not reach it, and what glows is not dark.
+            let counts = |light: &Lighting| {
+                matches!(light.outcome, LightOutcome::Lit | LightOutcome::Unreflected)
+            };
+            let glows = ray.emitted.is_some() || ray.is_emitted_by_light;
+            let is_considered = ray.hit.is_some() && !ray.lights.is_empty();
+            is_considered && !glows && !ray.lights.iter().any(counts)
         };
         if let Some(unlit) = primary().find(is_dark) {
             let reasons: Vec<_> = unlit.lights.iter().map(|l| self.outcome(l)).collect();
@@ -381,10 +386,12 @@ impl Shown<'_> {
                 self.of_instance(instance)
             ),
             LightOutcome::Faded => format!("{light} is absorbed{glass}"),
-            LightOutcome::Here => format!("{light} is at this point, so it has no direction"),
+            LightOutcome::Here => {
+                format!("{light} adds nothing: it is at this point, or this is its own surface")
+            }
             LightOutcome::Off => format!("{light} is turned off: its color is black"),
             LightOutcome::Unreflected => {
-                format!("{light} reaches it, but the material reflects none of it")
+                format!("{light} adds nothing, because the material reflects none of its light")
             }
         }
     }

@@ -24,7 +24,8 @@ pub struct Walk {
     pub direction: [f64; 3],
     /// The interval of the ray that counts.
     pub interval: [f64; 2],
-    /// The start of the kernels: `origin`, or the point at which a ray from outside reaches the scene's box.
+    /// The start of the kernels: `origin`, or the first point that is within the scene's box along the ray's major
+    /// axis. Along the others it need not be.
     pub start: [f64; 3],
     /// Distance of `start`: 0 unless the ray starts before the scene's box.
     pub moved: f64,
@@ -243,12 +244,7 @@ impl Walk {
             }
             Event::Opened(place) => {
                 self.opened += 1;
-                let place = match scene.instances().get(place.number as usize) {
-                    Some(instance) if place.what == NodeId::INSTANCE => {
-                        instance_name(instance.number)
-                    }
-                    _ => name(place),
-                };
+                let place = name(scene, place);
                 let first = self.inside.map_or(0, |inside| inside.step);
                 let span = self.steps[first..]
                     .iter()
@@ -263,13 +259,13 @@ impl Walk {
                 Step::Opened { place }
             }
             Event::Tested { node, sides, span } => {
-                let tested = ray.tested(node, sides, span);
+                let tested = ray.tested(name(scene, node), sides, span);
                 self.culled += usize::from(tested.culled.is_some());
                 Step::Tested(tested)
             }
             Event::Empty(place) => {
                 if let Some(Step::Tested(last)) = self.steps.last_mut()
-                    && last.place == name(place)
+                    && last.place == name(scene, place)
                     && last.culled.is_none()
                 {
                     last.culled = Some(Culled::Empty);
@@ -278,7 +274,7 @@ impl Walk {
                 return;
             }
             Event::NodeSkipped { node, enters } => Step::GivenUp {
-                place: name(node),
+                place: name(scene, node),
                 enters: enters * ray.scale,
                 hit: ray.limit * ray.scale,
             },
@@ -339,6 +335,9 @@ fn instance_name(number: u32) -> String {
     format!("{} {number}", NodeId::INSTANCE)
 }
 
-fn name(place: NodeId) -> String {
-    format!("{} {}", place.what, place.number)
+fn name(scene: &Scene<'_>, place: NodeId) -> String {
+    match scene.instances().get(place.number as usize) {
+        Some(instance) if place.what == NodeId::INSTANCE => instance_name(instance.number),
+        _ => format!("{} {}", place.what, place.number),
+    }
 }

@@ -4,27 +4,36 @@ use super::Shown;
 use super::words::{counted_were, precise, vector};
 use crate::explain::walk::{Culled, Plane, Side, Step, Tested, Verdict, Walk};
 use crate::table::significant;
+use glam::DVec3;
 use std::fmt::{self, Formatter};
 
 impl Shown<'_> {
     pub(super) fn walk(&self, f: &mut Formatter<'_>, walk: &Walk) -> fmt::Result {
-        write!(
-            f,
-            "  The ray's interval is {} to {}{}.",
-            along(walk, walk.interval[0]),
-            along(walk, walk.interval[1]),
-            if walk.any {
-                "; any hit ends the query"
-            } else {
-                ""
-            }
-        )?;
-        if walk.moved != 0.0 {
+        let [begin, end] = walk.interval;
+        if begin > end {
+            write!(f, "  The ray passes the scene's box")?;
+        } else {
             write!(
                 f,
-                " It enters the scene's box at {}, at distance {}.",
+                "  The ray's interval is {} to {}",
+                along(walk, begin),
+                along(walk, end)
+            )?;
+        }
+        let any = if walk.any {
+            "; any hit ends the query"
+        } else {
+            ""
+        };
+        write!(f, "{any}.")?;
+        if walk.moved != 0.0 && begin <= end {
+            let major = DVec3::from_array(walk.direction).abs().max_position();
+            write!(
+                f,
+                " It begins at {}, at distance {}: along {}, the scene's box begins there.",
                 vector(walk.start, significant),
-                significant(walk.moved)
+                significant(walk.moved),
+                ['x', 'y', 'z'][major],
             )?;
         }
         writeln!(f)?;

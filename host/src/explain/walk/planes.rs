@@ -1,11 +1,12 @@
 //! The planes of a tested node, and why a ray does not go into it.
 
+use super::InUnits;
 use super::step::{Culled, Plane, Side, Tested};
-use super::{InUnits, name};
-use gridel_core::observe::event::{NodeId, Sides};
+use crate::verify::rounded;
+use gridel_core::observe::event::Sides;
 
 impl InUnits {
-    pub(super) fn tested(&self, node: NodeId, sides: Sides, span: [f64; 2]) -> Tested {
+    pub(super) fn tested(&self, place: String, sides: Sides, span: [f64; 2]) -> Tested {
         let mut planes = Vec::new();
         for (axis, sides) in sides.iter().enumerate() {
             for (side, plane) in sides.iter().enumerate() {
@@ -14,7 +15,7 @@ impl InUnits {
         }
         let culled = (span[0] > span[1]).then(|| self.reason(&planes, span));
         Tested {
-            place: name(node),
+            place,
             planes,
             span: span.map(|t| t * self.scale),
             units: span,
@@ -74,13 +75,28 @@ impl InUnits {
         if begins_late || ends_early {
             return Culled::NotInInterval;
         }
+        // Tests between the parent and this node have narrowed the interval as well.
         let [first, last] = self.around.map(|t| t * self.scale);
-        let late = enters.filter(|plane| plane.distance > last);
-        let early = leaves.filter(|plane| plane.distance < first);
-        late.or(early)
-            .map_or(Culled::Margin, |&plane| Culled::NotInParent {
+        let [begins, ends] = span.map(|t| t * self.scale);
+        let late = [first, last.min(ends)];
+        let early = [first.max(begins), last];
+        if let Some(&plane) = enters.filter(|plane| plane.distance > late[1]) {
+            return Culled::NotInParent {
                 plane,
-                around: [first, last],
-            })
+                around: late,
+            };
+        }
+        if let Some(&plane) = leaves.filter(|plane| plane.distance < early[0]) {
+            return Culled::NotInParent {
+                plane,
+                around: early,
+            };
+        }
+        // Volumes have boundaries that are no planes of axes.
+        let margin = 64.0 * rounded::step(self.format, span[0].abs().max(span[1].abs()));
+        match span[0] - span[1] > margin {
+            true => Culled::NotInVolume,
+            false => Culled::Margin,
+        }
     }
 }
