@@ -24,7 +24,7 @@ mod hit;
 mod placed;
 mod search;
 mod smooth;
-mod unbounded;
+pub(crate) mod unbounded;
 
 pub use all_hits::{HitList, all_hits, count_hits};
 pub(crate) use attributes::Tangent;

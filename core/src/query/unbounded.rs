@@ -12,18 +12,18 @@ use crate::scene::Scene;
 
 /// The hit of a ray with a shape without bounds.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct FarHit<N: Number> {
+pub(crate) struct FarHit<N: Number> {
     /// Distance from the ray's start, as kernels count.
     pub(super) after_start: N,
     /// Distance as the caller counts it. It distinguishes hits that lie farther away than kernels count.
-    pub(super) t: N::Wide,
+    pub(crate) t: N::Wide,
     pub(super) place: PrimitiveId,
 }
 
 /// Returns the nearest hit in the interval that the caller gave. Ties go to the hit that comes first in the scene file.
 #[cold]
 #[inline(never)]
-pub(super) fn nearest<N: Number, C: Observer>(
+pub(crate) fn nearest<N: Number, C: Observer>(
     scene: &Scene<'_>,
     ray: &Ray<N>,
     count: &mut C,

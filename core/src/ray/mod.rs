@@ -291,7 +291,7 @@ impl<N: Arithmetic> Ray<N> {
     }
 
     /// Returns true if the start is a point of the ray.
-    fn holds_start(&self) -> bool {
+    pub(crate) fn holds_start(&self) -> bool {
         self.given.get().is_none_or(|ray| ray.holds_start)
     }
 

@@ -12,6 +12,7 @@
 //! list of effects at the places that `shade` lists.
 
 use crate::accel::{Accel, Number};
+use crate::format::limits::UNBOUNDED;
 use crate::format::record::Light;
 use crate::observe::count::Observer;
 use crate::observe::event::{Event, RayKind, Source};
@@ -24,12 +25,13 @@ use crate::render::workspace::{Pending, State, WorkspaceView};
 use crate::scene::Scene;
 use crate::scene::textures::Footprint;
 use crate::shade::effect::{EffectList, Tracer};
+use crate::shade::far::{depart_far, far_place};
 use crate::shade::sampler::Sampler;
 use crate::shade::surface::{
     Aim, Arrival, Bounce, Filter, Lighting, Reach, Secondary, Surface, depart, secondary_ray,
 };
 use crate::shade::{All, Color};
-use crate::target::{WIDE, inline_on_boards};
+use crate::target::{InSomeBuilds, WIDE, inline_on_boards};
 use core::marker::PhantomData;
 
 /// The parts of the scene and the renderer that the ray loop uses.
@@ -64,6 +66,7 @@ impl Loop<'_, '_> {
                 sampler,
                 spread: self.spread,
                 state: State::<N>::default(),
+                far_place: InSomeBuilds::of(None),
                 space,
                 count,
                 structure: PhantomData,
@@ -151,6 +154,7 @@ impl Loop<'_, '_> {
                 sampler: Sampler::new([0; 2], 0),
                 spread: self.spread,
                 state: State::<N>::default(),
+                far_place: InSomeBuilds::of(None),
                 space,
                 count,
                 structure: PhantomData,
@@ -173,6 +177,8 @@ struct Tracing<'t, 'w, 's, N: Number, A, C, const EFFECTS: u32> {
     sampler: Sampler,
     spread: Spread,
     state: State<N>,
+    /// The place of the ray's hit, if it is beyond lengths.
+    far_place: InSomeBuilds<Option<[N::Wide; 3]>, { UNBOUNDED as usize }>,
     space: &'t mut WorkspaceView<'w, N>,
     count: &'t mut C,
     structure: PhantomData<A>,
@@ -191,6 +197,7 @@ impl<N: Number, A: Accel, C: Observer, const EFFECTS: u32> Tracing<'_, '_, '_, N
             self.bring(Source::Background, brought.times(weight), radiance);
             return;
         };
+        self.far_place = InSomeBuilds::new(|| far_place(ray, &hit));
         let required = All::required_by_material(material);
         let mut arrival = Arrival {
             hit: &hit,
@@ -310,6 +317,13 @@ impl<N: Number, A: Accel, C: Observer, const EFFECTS: u32> Tracing<'_, '_, '_, N
         }
     }
 
+    /// The start of a ray from the hit if that is beyond lengths: see [`depart_far`].
+    #[inline(always)]
+    fn depart_far(&self, way: [N::Wide; 3]) -> Option<[N; 3]> {
+        let place = self.far_place.get().copied().flatten()?;
+        depart_far(self.scene, place, way)
+    }
+
     /// The radiance that a light adds to a surface that it reaches.
     #[inline(always)]
     fn lit(&mut self, number: u32, light: &Light, surface: &Surface<'_, N>) -> Color<N> {
@@ -327,6 +341,10 @@ impl<N: Number, A: Accel, C: Observer, const EFFECTS: u32> Tracing<'_, '_, '_, N
             distance,
             apparent_distance,
         } = aim;
+        let origin = match distance {
+            None => self.depart_far(way).unwrap_or(origin),
+            Some(_) => origin,
+        };
         let Some((slopes, _)) = N::slopes(way) else {
             return Color::BLACK;
         };
@@ -457,7 +475,10 @@ impl<'s, N: Number, A: Accel, C: Observer, const EFFECTS: u32> Tracer<'s, N>
         } = secondary;
         let peak = weight.peak();
         if peak > N::ZERO && peak * N::radiance(1 << 20) > N::radiance(self.scene.view.cutoff) {
-            let origin = depart(self.scene, hit, outward, false);
+            let origin = match self.depart_far(direction.map(N::widen)) {
+                Some(origin) => origin,
+                None => depart(self.scene, hit, outward, false),
+            };
             // The list is as long as the depth requires, so there is a place.
             let _ = self.space.work.push(Pending {
                 origin,

@@ -25,6 +25,7 @@ mod basis;
 mod color;
 pub(crate) mod effect;
 pub(crate) mod facets;
+pub(crate) mod far;
 pub(crate) mod light;
 mod material;
 pub mod sampler;
