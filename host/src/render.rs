@@ -5,6 +5,7 @@
 
 mod aov;
 mod first_hits;
+mod first_surfaces;
 mod linear;
 
 pub use aov::{Aov, Values, render_aovs};

@@ -3,19 +3,18 @@
 
 use super::Job;
 use super::first_hits::{PixelHit, first_hits};
-use super::linear::render_linear;
-use gridel_core::format::record::View;
+use super::first_surfaces::first_surfaces;
 use gridel_core::render::RenderError;
-use gridel_core::{Scene, Settings};
+use gridel_core::{Effects, Scene, Settings};
 
 /// An arbitrary output variable: a property of the surface that the ray through the middle of a pixel hits first.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Aov {
     /// Distance from the eye in scene units, infinite where nothing is hit.
     Depth,
-    /// The shading normal of length 1, in the scene's axes, on the side of the eye; 0 where nothing is hit.
+    /// The shading normal of length 1, with normal maps, in the scene's axes, on the side of the eye; 0 where nothing is hit.
     Normal,
-    /// Diffuse reflectance, linear, of the cell where there is a checkerboard; 0 where nothing is hit.
+    /// Diffuse reflectance, linear, with textures and vertex colors; 0 where nothing is hit, and on mirrors and glass.
     Albedo,
     /// The object's number in scene-file order, `u32::MAX` where nothing is hit. Objects of parts follow the scene's
     /// own.
@@ -106,62 +105,42 @@ pub fn render_aovs(scene: &Scene<'_>, job: &Job, aovs: &[Aov]) -> Result<Vec<Val
         ..job.clone()
     };
     let hits = first_hits(scene, job)?;
+    let is_mapped = scene.effects_with_parts().contains(Effects::NORMAL_MAP);
+    let is_shaded = |aov: &Aov| *aov == Aov::Albedo || *aov == Aov::Normal && is_mapped;
+    let surfaces = match aovs.iter().any(is_shaded) {
+        true => first_surfaces(scene, job)?,
+        false => Vec::new(),
+    };
     let all = |of: fn(&PixelHit) -> u32| {
         let numbers = hits.iter().map(|hit| hit.as_ref().map_or(u32::MAX, of));
         Values::Numbers(numbers.collect())
     };
-    let values = aovs.iter().map(|aov| {
-        Ok(match aov {
-            Aov::Depth => {
-                let depth =
-                    |hit: &Option<PixelHit>| hit.map_or(f32::INFINITY, |it| it.distance as f32);
-                Values::Lengths(hits.iter().map(depth).collect())
+    let values = aovs.iter().map(|aov| match aov {
+        Aov::Depth => {
+            let depth = |hit: &Option<PixelHit>| hit.map_or(f32::INFINITY, |it| it.distance as f32);
+            Values::Lengths(hits.iter().map(depth).collect())
+        }
+        Aov::Normal => {
+            let mut normals: Vec<_> = hits
+                .iter()
+                .map(|hit| hit.map_or([0.0; 3], |it| it.normal))
+                .collect();
+            for (normal, surface) in normals.iter_mut().zip(&surfaces) {
+                *normal = surface.mapped_normal.unwrap_or(*normal);
             }
-            Aov::Normal => {
-                let normal = |hit: &Option<PixelHit>| hit.map_or([0.0; 3], |it| it.normal);
-                Values::Vectors(hits.iter().map(normal).collect())
-            }
-            Aov::Albedo => {
-                let mut albedo = albedo(scene, job)?;
-                // An environment is there, and is no surface.
-                let missed = albedo
-                    .iter_mut()
-                    .zip(&hits)
-                    .filter(|(_, hit)| hit.is_none());
-                missed.for_each(|(albedo, _)| *albedo = [0.0; 3]);
-                Values::Vectors(albedo)
-            }
-            Aov::Object => all(|hit| hit.object),
-            Aov::Primitive => all(|hit| hit.primitive),
-            Aov::Uv => {
-                let pair =
-                    |hit: &Option<PixelHit>| hit.and_then(|it| it.uv).unwrap_or([f32::INFINITY; 2]);
-                Values::Coordinates(hits.iter().map(pair).collect())
-            }
-            Aov::Instance => all(|hit| hit.instance.unwrap_or(u32::MAX)),
-        })
+            Values::Vectors(normals)
+        }
+        Aov::Albedo => Values::Vectors(surfaces.iter().map(|it| it.albedo).collect()),
+        Aov::Object => all(|hit| hit.object),
+        Aov::Primitive => all(|hit| hit.primitive),
+        Aov::Uv => {
+            let pair =
+                |hit: &Option<PixelHit>| hit.and_then(|it| it.uv).unwrap_or([f32::INFINITY; 2]);
+            Values::Coordinates(hits.iter().map(pair).collect())
+        }
+        Aov::Instance => all(|hit| hit.instance.unwrap_or(u32::MAX)),
     });
-    values.collect()
-}
-
-/// The picture through a pinhole under white ambient light alone, on black, as if glass absorbed nothing.
-fn albedo(scene: &Scene<'_>, job: &Job) -> Result<Vec<[f32; 3]>, RenderError> {
-    let view = View {
-        background: [0; 3],
-        ambient: [1 << 20; 3],
-        ..*scene.view()
-    };
-    let mut materials = scene.materials().to_vec();
-    for material in &mut materials {
-        material.absorption = [0; 3];
-    }
-    let lit = scene
-        .without_lens()
-        .with_lights(&[])
-        .and_then(|scene| scene.with_view(&view))
-        .and_then(|scene| scene.with_materials(&materials));
-    let lit = lit.expect("a scene with less requires no other effect");
-    Ok(render_linear(&lit, job, &|| ())?.pixels)
+    Ok(values.collect())
 }
 
 #[cfg(test)]

@@ -211,3 +211,32 @@ fn albedo_is_that_of_the_object_in_the_same_pixel() {
         assert!(seen.iter().all(|&pixels| pixels > 0), "{seen:?}");
     }
 }
+
+#[test]
+fn albedo_is_of_the_surface_alone() {
+    // Neither its own light, nor exposure, nor alpha changes the color.
+    let text = "
+        [camera]
+        eye = [0, 0, 5]
+        target = [0, 0, 0]
+        fov = 60
+        [render]
+        exposure = 2
+        [material.lamp]
+        diffuse = [0.3, 0.2, 0.1]
+        emission = 0.5
+        [[object]]
+        kind = 'sphere'
+        center = [0, 0, 0]
+        radius = 0.5
+        material = 'lamp'";
+    let blob = blob("test.toml", text);
+    let scene = blob.scene().expect("a scene");
+    for format in Format::ALL {
+        let [_, _, albedo, ..] = all(&scene, &job(&scene, format, 4));
+        let found = vectors(&albedo)[MIDDLE];
+        for (found, expected) in found.into_iter().zip([0.3, 0.2, 0.1]) {
+            assert!((found - expected).abs() < 1e-3, "{format:?}: {found}");
+        }
+    }
+}
