@@ -21,6 +21,7 @@ mod distances;
 mod documents;
 mod environment;
 mod explain;
+mod far_planes;
 mod fixed_point;
 mod glossy;
 mod grids;

@@ -170,7 +170,7 @@ impl Sample {
     fn check_extension(&self, path: &Path) -> Result<(), Failure> {
         let wrong = path
             .extension()
-            .is_some_and(|extension| extension != self.extension);
+            .is_some_and(|extension| !extension.eq_ignore_ascii_case(self.extension));
         if wrong {
             return Err(Failure::usage(
                 format!(

@@ -3,6 +3,7 @@
 
 mod files;
 mod size;
+mod time;
 
 use super::arguments::{LightChange, SceneOptions, TraceOptions, check_quality, check_room};
 use super::changes::{Changes, fault};
@@ -100,6 +101,7 @@ impl Source {
         if let Some(seconds) = options.time.filter(|_| source.moves_otherwise()) {
             let changes = {
                 let tracks = source.tracks()?;
+                time::check(&tracks, seconds)?;
                 let time = state::ticks(&tracks, seconds);
                 source.changes_at(&source.scene()?, &tracks, time)?
             };

@@ -91,7 +91,7 @@ const REMOVALS: [(Effects, &str, Removal); Effects::NAMED.len()] = [
     ),
     (
         Effects::TEXTURE,
-        "surfaces have their diffuse color weighted by the mean of the image",
+        "surfaces have their diffuse color weighted by the mean of the image, and are there where its alpha hid them",
         average_textures,
     ),
     (

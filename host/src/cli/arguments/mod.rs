@@ -65,7 +65,8 @@ pub struct PictureOptions {
     )]
     samples: Option<u16>,
 
-    /// Reflections and refractions of a ray, 0 to 32 [default: that of the scene]
+    /// Reflections and refractions of a ray, and its bounces of indirect light, 0 to 32 [default:
+    /// that of the scene]
     #[arg(
         long,
         value_name = "N",
