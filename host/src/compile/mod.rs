@@ -1,67 +1,57 @@
 //! Compiles a scene into a blob: lattice, primitives, hierarchy, effects, bytes.
+//!
+//! | folder | what it holds |
+//! |---|---|
+//! | `geometry/` | the extent, the lattice, and shapes as primitives on it |
+//! | `view/` | the camera, and integer coordinates |
+//! | `shading/` | lights, materials, textures and the environment as records |
+//! | `motion/` | tracks, joints and morph targets, and the room that they take |
+//! | `instances/` | parts as blobs of their own, and where they are placed |
+//! | `hierarchy/`, `wide/`, `cells/`, `candidates/` | the builders of a family of structures, as in `core/src/accel` |
+//! | `structures/` | the sections of each structure |
+//!
+//! Files beside them hold what all steps share: options, checks, the report with its warnings, and sections up to
+//! the bytes of the blob, which `writer.rs` writes.
 
 mod advice;
-mod builder;
-mod camera;
 mod candidates;
 mod cells;
-mod context;
-mod coordinates;
-mod cuts;
-mod dual_split;
 mod error;
-mod estimate;
-mod extent;
-mod flattened;
-mod framing;
-mod hierarchies;
+mod geometry;
 mod hierarchy;
-mod instance_tree;
 mod instances;
-mod joints;
-mod lattice;
-mod layout;
-mod morph;
+mod motion;
 mod names;
-mod octree;
 mod options;
-mod pairs;
-mod primitives;
-mod reach;
-mod records;
 mod references;
 mod report;
 mod requirements;
-mod room;
 mod section;
 mod shading;
 mod sizes;
 mod structures;
-mod support;
-mod tracks;
-mod vertices;
-mod volumes;
+mod view;
 mod warnings;
 mod wide;
 mod writer;
 
 pub use advice::MOST_COPIED;
-pub use builder::Builder;
-pub(crate) use camera::place;
 pub use candidates::census::{Census, CubeCensus};
 pub use candidates::lists::Figures;
 pub use error::CompileError;
-pub use framing::{BACKGROUND, framing};
-pub use lattice::BITS as LATTICE_BITS;
-pub use morph::at_rest;
+pub use geometry::lattice::BITS as LATTICE_BITS;
+pub use geometry::primitives::LeftOut;
+pub use hierarchy::builder::Builder;
+pub use motion::morph::at_rest;
 pub use names::{KeptNames, Names};
 pub use options::{LARGEST_LEAF, OnProgress, Options};
-pub use primitives::LeftOut;
 pub use report::{Report, TableStats};
 pub use requirements::RequiringPart;
 pub(crate) use shading::light_record;
 pub use shading::{EnvironmentFigures, Shoulder, Supplied, TextureFigures, radiance};
 pub use structures::{takes_hierarchy, usual_budget};
+pub(crate) use view::camera::place;
+pub use view::framing::{BACKGROUND, framing};
 pub use wide::Quality;
 
 pub use crate::scene::TICKS_PER_SECOND;
@@ -72,20 +62,24 @@ use crate::shape::Lattice;
 use crate::table::printable;
 use advice::{advice, may_copy};
 use candidates::target::Targets;
-use context::BuildContext;
-use extent::Shapes;
+use cells::octree;
+use geometry::extent::Shapes;
+use geometry::primitives::Primitives;
 use glam::DVec3;
 use gridel_core::Structure;
 use gridel_core::format::Leaf;
 use gridel_core::format::record::{Gridels, UnitBox};
-use hierarchies::Hierarchies;
-use hierarchy::{Primitive, Splits};
+use hierarchy::node::Primitive;
+use hierarchy::pairs;
+use hierarchy::sah::{self, Splits};
 use instances::{Parts, Placed, Role};
-use layout::Layout;
-use primitives::Primitives;
+use motion::{joints, morph, room};
 use shading::{ShadingData, coordinate_step};
 use sizes::Sizes;
 use std::time::{Duration, Instant};
+use structures::context::BuildContext;
+use structures::hierarchies::Hierarchies;
+use structures::layout::Layout;
 
 /// A blob, and a report about its compilation.
 #[derive(Clone, Debug)]
@@ -233,7 +227,7 @@ fn compile_as(
             bounds = octree::bounds(&bounds, &boxes);
         }
     }
-    let sah_cost = root.as_ref().map(hierarchy::sah_cost);
+    let sah_cost = root.as_ref().map(sah::sah_cost);
     let parts_with = |options: &Options| Ok(compile_parts(scene, options, &|_, _, _| ())?.0);
     let context = BuildContext {
         scene,
@@ -424,7 +418,7 @@ pub fn cube_census(scene: &Scene, gridels: u32) -> Result<CubeCensus, CompileErr
         &options,
     )?;
     let mut order: Vec<Primitive> = snapped.boxes();
-    let root = hierarchy::build(&mut order, Splits::Swept, options.leaf_size);
+    let root = sah::build(&mut order, Splits::Swept, options.leaf_size);
     let flat = root.as_ref().map(|root| pairs::flatten(root, &order));
     let bounds = root.map_or(UnitBox([[0; 2]; 3]), |root| *root.bounds());
     let flat = flat.unwrap_or_default();

@@ -1,8 +1,8 @@
 //! The compiler's report.
 
 use super::candidates::lists::Figures;
+use super::geometry::primitives::LeftOut;
 use super::names::KeptNames;
-use super::primitives::LeftOut;
 use super::requirements::RequiringPart;
 use super::shading::{EnvironmentFigures, Supplied, TextureFigures};
 use std::time::Duration;

@@ -1,16 +1,16 @@
 //! Writes the sections of a blob, each in the narrowest form that its values allow.
 
 use super::CompileError;
-use super::context::BuildContext;
+use super::geometry::primitives::Primitives;
+use super::geometry::records::in_order;
+use super::geometry::vertices::Corner;
+use super::hierarchy::pairs::Flat;
 use super::instances::Role;
-use super::layout::Layout;
-use super::morph;
+use super::motion::morph;
 use super::names::{KeptNames, Names};
-use super::pairs::Flat;
-use super::primitives::Primitives;
-use super::records::in_order;
 use super::section::{Section, indices, section};
-use super::vertices::Corner;
+use super::structures::context::BuildContext;
+use super::structures::layout::Layout;
 use crate::blob::{Blob, Buffer};
 use crate::shape::Lattice;
 use gridel_core::accel::Entry;

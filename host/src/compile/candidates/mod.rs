@@ -26,8 +26,8 @@ pub mod ray_classes;
 mod shaft;
 pub mod target;
 
-use super::layout::Layout;
 use super::section::{Section, section};
+use super::structures::layout::Layout;
 use apex::Apexes;
 use cylinder_cube::Cube;
 use gridel_core::Structure;
