@@ -3,7 +3,6 @@
 use crate::compile::candidates::lists::Figures;
 use crate::compile::cells::Cells;
 use crate::compile::hierarchy::pairs::Flat;
-use crate::compile::report::TableStats;
 use crate::compile::section::Section;
 use gridel_core::Structure;
 
@@ -21,6 +20,14 @@ pub struct Layout {
     pub longest_list: usize,
     /// Figures of its lists of candidates, if it has any.
     pub table: Option<Figures>,
+}
+
+/// A structure with tables of candidate lists, and what they came to.
+#[derive(Clone, Copy, Debug, serde::Serialize)]
+pub struct TableStats {
+    pub structure: &'static str,
+    #[serde(flatten)]
+    pub figures: Figures,
 }
 
 impl Layout {
