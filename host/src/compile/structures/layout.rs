@@ -3,8 +3,9 @@
 use crate::compile::candidates::lists::Figures;
 use crate::compile::cells::Cells;
 use crate::compile::hierarchy::pairs::Flat;
-use crate::compile::section::Section;
+use crate::compile::section::{Section, section};
 use gridel_core::Structure;
+use gridel_core::format::SectionKind;
 
 /// The sections that one structure adds to a blob.
 #[derive(Clone, Debug)]
@@ -43,6 +44,12 @@ impl Layout {
         }
     }
 
+    /// Returns the flagged hierarchy.
+    pub fn flagged(flat: &Flat) -> Self {
+        let pairs = section(SectionKind::FlaggedPairs, &flat.flagged);
+        Self::over_leaves(Structure::Flagged, vec![pairs], flat)
+    }
+
     /// Returns a structure with lists of primitives of its own.
     pub fn apart(structure: Structure, cells: Cells) -> Self {
         Self {
@@ -52,6 +59,24 @@ impl Layout {
             stack_depth: cells.stack_depth,
             longest_list: cells.longest_list,
             table: None,
+        }
+    }
+
+    /// Returns a table of lists of candidates with these figures.
+    pub fn of_table(structure: Structure, sections: Vec<Section>, figures: Figures) -> Self {
+        // Candidates that are nodes lead to the hierarchy's leaves.
+        let holds_nodes = structure == Structure::CylinderCubeEntry;
+        Self {
+            structure,
+            sections,
+            uses_leaves: holds_nodes,
+            stack_depth: 0,
+            longest_list: if holds_nodes {
+                0
+            } else {
+                figures.longest as usize
+            },
+            table: Some(figures),
         }
     }
 

@@ -11,20 +11,18 @@ pub mod hierarchies;
 pub mod layout;
 
 use super::candidates::budget::{self, Budget};
-use super::candidates::cylinder_cube::{self, Cylinders, Hulls};
+use super::candidates::cylinder_cube::{self, Cylinders, Form, Hulls};
 use super::candidates::entry::EntryNodes;
 use super::candidates::own_rays::own_rays;
+use super::candidates::target::Targets;
 use super::candidates::{apex, ray_classes};
 use super::cells::{Cells, grid, octree, slot_boxes};
 use super::error::CompileError;
-use super::instances::Role;
-use super::options::Options;
 use super::section::section;
-use super::writer;
 use context::BuildContext;
 use gridel_core::Structure;
 use gridel_core::format::SectionKind;
-use gridel_core::shared::{self, ClassPoint};
+use gridel_core::shared::{self, ListSections};
 use layout::Layout;
 
 /// Lays a structure out.
@@ -48,11 +46,7 @@ pub fn lay_out(structure: Structure, context: &BuildContext<'_>) -> Result<Layou
             vec![section(SectionKind::Pairs, &flat.pairs)],
             flat,
         ),
-        Structure::Flagged => Layout::over_leaves(
-            structure,
-            vec![section(SectionKind::FlaggedPairs, &flat.flagged)],
-            flat,
-        ),
+        Structure::Flagged => Layout::flagged(flat),
         Structure::DualSplit => Layout::over_leaves(
             structure,
             vec![section(SectionKind::DualNodes, &flat.dual)],
@@ -79,37 +73,31 @@ pub fn lay_out(structure: Structure, context: &BuildContext<'_>) -> Result<Layou
             Layout::apart(structure, octree::build(&context.bounds, &boxes)?)
         }
         Structure::CylinderCube => {
+            use shared::cylinder_cube::{GRIDELS, LISTS};
             let targets = context.targets();
-            let form = Cylinders::new(&targets);
-            let cube = cylinder_cube::build(&form, &targets, budget)?;
-            let sections = (shared::cylinder_cube::GRIDELS, shared::cylinder_cube::LISTS);
-            Layout::of_cube(structure, sections, cube)
+            cube(&Cylinders::new(&targets), &targets, budget, GRIDELS, LISTS)?
         }
         Structure::CylinderCubeTight => {
+            use shared::cylinder_cube_tight::{GRIDELS, LISTS};
             let targets = context.targets();
-            let cube = cylinder_cube::build(&Hulls(&targets), &targets, budget)?;
-            let sections = (
-                shared::cylinder_cube_tight::GRIDELS,
-                shared::cylinder_cube_tight::LISTS,
-            );
-            Layout::of_cube(structure, sections, cube)
+            cube(&Hulls(&targets), &targets, budget, GRIDELS, LISTS)?
         }
         Structure::CylinderCubeEntry => {
+            use shared::cylinder_cube_entry::{GRIDELS, LISTS};
             let targets = context.targets();
-            let cube = cylinder_cube::build(&EntryNodes(&targets), &targets, budget)?;
-            let sections = (
-                shared::cylinder_cube_entry::GRIDELS,
-                shared::cylinder_cube_entry::LISTS,
-            );
-            Layout::of_cube(structure, sections, cube)
+            cube(&EntryNodes(&targets), &targets, budget, GRIDELS, LISTS)?
         }
         Structure::RayClasses => {
-            let rays = picture_rays(context)?;
-            Layout::of_classes(ray_classes::build(&context.targets(), &rays, budget)?)
+            let rays = own_rays(context)?;
+            let classes = ray_classes::build(&context.targets(), &rays, budget)?;
+            let figures = classes.lists.figures;
+            Layout::of_table(structure, classes.sections(), figures)
         }
         Structure::Apex => {
             let (view, lights) = (&context.shading.view, context.shading.lights());
-            Layout::of_apexes(apex::build(&context.targets(), view, lights, budget))
+            let apexes = apex::build(&context.targets(), view, lights, budget);
+            let figures = apexes.lists.figures;
+            Layout::of_table(structure, apexes.sections(), figures)
         }
         Structure::Wide => {
             let wide = context.wide;
@@ -125,25 +113,19 @@ pub fn lay_out(structure: Structure, context: &BuildContext<'_>) -> Result<Layou
     })
 }
 
-/// Traces the rays of the scene's own picture, through a blob with the hierarchy only.
-fn picture_rays(context: &BuildContext<'_>) -> Result<Vec<ClassPoint>, CompileError> {
-    let hierarchy = lay_out(Structure::Flagged, context)?;
-    let options = Options {
-        structures: vec![Structure::Flagged],
-        ..context.options.clone()
-    };
-    // Parts have the structures of the scene that holds them.
-    let parts = match context.role {
-        Role::Whole(parts) if parts.primitives() > 0 => Some((context.parts_with)(&options)?),
-        _ => None,
-    };
-    let role = match &parts {
-        Some(parts) => Role::Whole(parts),
-        None => context.role,
-    };
-    let context = BuildContext { role, ..*context };
-    let blob = writer::write(writer::parts(&context, vec![hierarchy]))?;
-    Ok(own_rays(&blob.scene()?))
+/// Lays out a table over pairs of gridels, in the sections of gridels and lists.
+fn cube<F: Form>(
+    form: &F,
+    targets: &Targets<'_>,
+    budget: Budget<'_>,
+    gridels: SectionKind,
+    lists: ListSections,
+) -> Result<Layout, CompileError> {
+    let cube = cylinder_cube::build(form, targets, budget)?;
+    let figures = cube.lists.figures;
+    let mut sections = vec![section(gridels, &[cube.gridels])];
+    sections.extend(cube.lists.sections(lists));
+    Ok(Layout::of_table(F::STRUCTURE, sections, figures))
 }
 
 /// The budget of a structure's table.
