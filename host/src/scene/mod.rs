@@ -28,8 +28,6 @@ mod options;
 pub(crate) mod palette;
 mod placement;
 mod places;
-mod plain_lights;
-mod plain_materials;
 mod polygon;
 mod scale_range;
 mod size;

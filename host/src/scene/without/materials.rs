@@ -1,7 +1,6 @@
 //! Scenes whose materials lose what varies on a surface. What moves a color moves what is left of it.
 
-use super::model::{Color, Diffuse, Scene};
-use super::track::{Key, Track};
+use crate::scene::{Color, Diffuse, Scene, Track};
 use gridel_core::format::track::TrackTarget;
 
 /// Replaces checkerboards by the means of their two colors. Where both move, at other times or in another manner, the
@@ -53,7 +52,7 @@ pub(super) fn average_textures(scene: &mut Scene) {
         };
         for track in scene.tracks.iter_mut().filter(of_diffuse) {
             for key in &mut track.keys {
-                weight(key, [red, green, blue, 0.0]);
+                *key = key.weighted([red, green, blue, 0.0]);
             }
         }
     }
@@ -62,7 +61,7 @@ pub(super) fn average_textures(scene: &mut Scene) {
 /// Replaces a moving color by its mean with one that stands still.
 fn average(track: &mut Track, [red, green, blue]: Color) {
     for key in &mut track.keys {
-        weight(key, [0.5; 4]);
+        *key = key.weighted([0.5; 4]);
         let other = [red, green, blue, 0.0];
         key.value = [0, 1, 2, 3].map(|it| key.value[it] + 0.5 * other[it]);
     }
@@ -82,12 +81,6 @@ fn average_both(track: &mut Track, other: &Track) {
 fn is_in_step(one: &Track, other: &Track) -> bool {
     let times = |track: &Track| -> Vec<f64> { track.keys.iter().map(|it| it.seconds).collect() };
     one.interpolation == other.interpolation && times(one) == times(other)
-}
-
-fn weight(key: &mut Key, by: [f64; 4]) {
-    for values in [&mut key.value, &mut key.entering, &mut key.leaving] {
-        *values = [0, 1, 2, 3].map(|it| values[it] * by[it]);
-    }
 }
 
 #[cfg(test)]

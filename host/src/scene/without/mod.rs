@@ -2,13 +2,17 @@
 //!
 //! A scene calls for an effect by certain settings. Without these the effect adds no byte to the blob and no
 //! instruction to the program. Each effect has a row below, which removes the settings that call for it.
+//! What needs more than a setting is in `lights.rs` and `materials.rs`.
 
-use super::plain_lights::{remove_falloff, shrink_areas};
-use super::plain_materials::{average_checkers, average_textures};
+mod lights;
+mod materials;
+
 use super::{Material, Normals, Object, Scene, ToneMapping};
 use crate::table::printable;
 use gridel_core::Effects;
 use gridel_core::format::track::TrackTarget;
+use lights::{remove_falloff, shrink_areas};
+use materials::{average_checkers, average_textures};
 use std::borrow::Cow;
 
 /// Takes away what calls for an effect.

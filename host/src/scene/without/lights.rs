@@ -1,8 +1,6 @@
 //! Scenes whose lights lose their area, or their falloff.
 
-use super::light_form::{LightForm, LightShape};
-use super::model::{Light, Scene};
-use super::track::Track;
+use crate::scene::{Light, LightForm, LightShape, Scene, Track};
 use glam::DVec3;
 use gridel_core::format::track::TrackTarget;
 use std::borrow::Cow;
@@ -84,8 +82,7 @@ pub(super) fn shrink_areas(scene: &mut Scene) {
         let (factor, middle) = (brightness(&form.shape), to_middle(&form.shape));
         *position += middle;
         *color = color.map(|channel| channel * factor);
-        let mut tracks = scene.tracks.iter_mut();
-        change_tracks(&mut tracks, number, factor, middle);
+        change_tracks(&mut scene.tracks, number, factor, middle);
         *form = LightForm {
             shape: shrunk(&form.shape),
             is_surface: false,
@@ -124,7 +121,7 @@ pub(super) fn remove_falloff(scene: &mut Scene) {
         };
         let factor = shine(&form, looked_at - *position);
         *color = color.map(|channel| channel * factor);
-        change_tracks(&mut scene.tracks.iter_mut(), number, factor, DVec3::ZERO);
+        change_tracks(&mut scene.tracks, number, factor, DVec3::ZERO);
     }
     scene.light_forms.clear();
 }
@@ -146,18 +143,11 @@ fn middle(scene: &Scene) -> DVec3 {
 }
 
 /// Multiplies the colors of a light's tracks, and moves its positions.
-fn change_tracks<'t>(
-    tracks: &mut impl Iterator<Item = &'t mut Track>,
-    number: usize,
-    factor: f64,
-    by: DVec3,
-) {
-    for track in tracks.filter(|track| track.index == number) {
+fn change_tracks(tracks: &mut [Track], number: usize, factor: f64, by: DVec3) {
+    for track in tracks.iter_mut().filter(|track| track.index == number) {
         for key in &mut track.keys {
             if track.target == TrackTarget::LightColor {
-                for values in [&mut key.value, &mut key.entering, &mut key.leaving] {
-                    *values = values.map(|value| value * factor);
-                }
+                *key = key.weighted([factor; 4]);
             }
             if track.target == TrackTarget::LightPosition {
                 for (value, by) in key.value.iter_mut().zip(by.to_array()) {
