@@ -54,7 +54,7 @@ impl Key {
     }
 
     /// Returns the key with each component of its value and of its changes multiplied.
-    pub(super) fn weighted(self, by: [f64; 4]) -> Self {
+    pub(crate) fn weighted(self, by: [f64; 4]) -> Self {
         let weighted =
             |it: [f64; 4]| std::array::from_fn(|component| it[component] * by[component]);
         Self {
