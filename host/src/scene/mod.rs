@@ -25,7 +25,6 @@ pub(crate) mod molecule;
 mod morph;
 mod normals;
 mod options;
-pub(crate) mod palette;
 mod placement;
 mod places;
 mod polygon;
