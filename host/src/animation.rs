@@ -3,7 +3,7 @@
 //! Pictures are encoded one after the other, as they come, so that memory does not grow with their number. The same
 //! pictures give the same bytes, wherever they were rendered.
 
-use crate::scene::palette::{distance, median_cut, nearest};
+use crate::palette::{distance, median_cut, nearest};
 use gif::{Encoder, Frame, Repeat};
 use std::io::{self, Write};
 use std::path::Path;

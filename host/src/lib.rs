@@ -69,6 +69,7 @@ mod observed;
 pub mod openexr;
 #[doc(hidden)]
 pub mod output;
+mod palette;
 pub mod picture;
 pub mod picture_rays;
 #[doc(hidden)]

@@ -1,91 +1,88 @@
 //! Compiles a scene into a blob: lattice, primitives, hierarchy, effects, bytes.
+//!
+//! | folder | what it holds |
+//! |---|---|
+//! | `geometry/` | the extent, the lattice, and shapes as primitives on it |
+//! | `view/` | the camera, and integer coordinates |
+//! | `shading/` | lights, materials, textures and the environment as records |
+//! | `motion/` | tracks, joints and morph targets, and the room that they take |
+//! | `instances/` | parts as blobs of their own, and where they are placed |
+//! | `hierarchy/`, `wide/`, `cells/`, `candidates/` | the builders of a family of structures, as in `core/src/accel` |
+//! | `structures/` | the sections of each structure |
+//!
+//! Files beside them hold what all steps share: options, checks, the report with its warnings, and sections up to
+//! the bytes of the blob, which `writer.rs` writes.
 
 mod advice;
-mod builder;
-mod camera;
 mod candidates;
 mod cells;
-mod context;
-mod coordinates;
-mod cuts;
-mod dual_split;
 mod error;
-mod estimate;
-mod extent;
-mod flattened;
-mod framing;
-mod hierarchies;
+mod geometry;
 mod hierarchy;
-mod instance_tree;
 mod instances;
-mod joints;
-mod lattice;
-mod layout;
-mod morph;
+mod motion;
 mod names;
-mod octree;
 mod options;
-mod pairs;
-mod primitives;
-mod reach;
-mod records;
 mod references;
 mod report;
 mod requirements;
-mod room;
 mod section;
 mod shading;
 mod sizes;
 mod structures;
-mod support;
-mod tracks;
-mod vertices;
-mod volumes;
+mod view;
 mod warnings;
 mod wide;
 mod writer;
 
 pub use advice::MOST_COPIED;
-pub use builder::Builder;
-pub(crate) use camera::place;
 pub use candidates::census::{Census, CubeCensus};
 pub use candidates::lists::Figures;
 pub use error::CompileError;
-pub use framing::{BACKGROUND, framing};
-pub use lattice::BITS as LATTICE_BITS;
-pub use morph::at_rest;
+pub use geometry::lattice::BITS as LATTICE_BITS;
+pub use geometry::primitives::LeftOut;
+pub use hierarchy::builder::Builder;
+pub use motion::morph::at_rest;
 pub use names::{KeptNames, Names};
 pub use options::{LARGEST_LEAF, OnProgress, Options};
-pub use primitives::LeftOut;
-pub use report::{Report, TableStats};
+pub use report::Report;
 pub use requirements::RequiringPart;
 pub(crate) use shading::light_record;
 pub use shading::{EnvironmentFigures, Shoulder, Supplied, TextureFigures, radiance};
+pub use structures::layout::TableStats;
 pub use structures::{takes_hierarchy, usual_budget};
+pub(crate) use view::camera::place;
+pub use view::framing::{BACKGROUND, framing};
 pub use wide::Quality;
 
 pub use crate::scene::TICKS_PER_SECOND;
 
 use crate::blob::Blob;
-use crate::scene::{Object, Scene, Shape};
+use crate::scene::{Object, Scene};
 use crate::shape::Lattice;
 use crate::table::printable;
 use advice::{advice, may_copy};
 use candidates::target::Targets;
-use context::BuildContext;
-use extent::Shapes;
+use cells::octree;
+use geometry::extent::Shapes;
+use geometry::primitives::Primitives;
 use glam::DVec3;
 use gridel_core::Structure;
 use gridel_core::format::Leaf;
 use gridel_core::format::record::{Gridels, UnitBox};
-use hierarchies::Hierarchies;
-use hierarchy::{Primitive, Splits};
+use hierarchy::node::Primitive;
+use hierarchy::pairs;
+use hierarchy::sah::{self, Splits};
 use instances::{Parts, Placed, Role};
-use layout::Layout;
-use primitives::Primitives;
+use motion::room::Swept;
+use motion::{joints, morph, room};
+use requirements::Requirements;
 use shading::{ShadingData, coordinate_step};
 use sizes::Sizes;
 use std::time::{Duration, Instant};
+use structures::context::BuildContext;
+use structures::hierarchies::Hierarchies;
+use structures::lay_out;
 
 /// A blob, and a report about its compilation.
 #[derive(Clone, Debug)]
@@ -194,56 +191,29 @@ fn compile_as(
     on_progress: OnProgress<'_>,
 ) -> Result<(Compiled, Sizes), CompileError> {
     let shapes = Shapes::of(scene);
-    let mut extent = room::widened(shapes.extent(), options.room);
     let swept = morph::swept(scene);
-    extent = swept.extent(extent, options.lattice_bits);
-    if let Role::Whole(parts) = role {
-        let step = |lattice: &_, corners| coordinate_step(&shapes, lattice, corners);
-        extent = parts.reach.extent(extent, options.lattice_bits, step);
-    }
+    let extent = extent(role, &shapes, &swept, options);
     let (lattice, snapped, placed) = snap(role, scene, extent, options)?;
-    let structures = held(&options.structures);
-    let mut requirements = snapped.requirements.clone();
-    if let Role::Whole(parts) = role {
-        requirements.extend(&parts.requirements);
-    }
+    let requirements = requirements(role, &snapped);
     let budget = options.texture_bytes;
     let shading = ShadingData::of(&shapes, &lattice, extent, requirements, budget)?;
+    let structures = held(&options.structures);
     // WebAssembly without a system has no clock, and asking for the time would panic.
     let has_clock = !cfg!(all(target_family = "wasm", target_os = "unknown"));
     let started = has_clock.then(Instant::now);
-    let Hierarchies {
-        root,
-        order,
-        flat,
-        wide,
-    } = Hierarchies::build(scene, &snapped, &structures, options)?;
-    let own = room::around(&order, options.room / lattice.unit());
-    let own = own.into_iter().chain(swept.on_lattice(&lattice));
-    let own = own.reduce(|a, b| a.union(&b));
-    let mut bounds = placed.around(own).unwrap_or(UnitBox([[0; 2]; 3]));
-    let mut motion_off = 0.0;
-    if let Role::Whole(parts) = role {
-        let step = shading.coordinates.step();
-        motion_off = parts.reach.off(step);
-        bounds = parts.reach.around(bounds, &lattice, step);
-        // Where rays start in a part depends on its box, so that is the same through all structures.
-        if structures.contains(&Structure::Octree) {
-            let boxes: Vec<_> = order.iter().map(|primitive| primitive.bounds).collect();
-            bounds = octree::bounds(&bounds, &boxes);
-        }
-    }
-    let sah_cost = root.as_ref().map(hierarchy::sah_cost);
+    let hierarchies = Hierarchies::build(scene, &snapped, &structures, options)?;
+    let order = &hierarchies.order;
+    let space = (&lattice, shading.coordinates.step());
     let parts_with = |options: &Options| Ok(compile_parts(scene, options, &|_, _, _| ())?.0);
     let context = BuildContext {
         scene,
         lattice: &lattice,
-        root: root.as_ref(),
-        flat: &flat,
-        wide: &wide,
-        order: &order,
+        root: hierarchies.root.as_ref(),
+        flat: &hierarchies.flat,
+        wide: &hierarchies.wide,
+        order,
         primitives: &snapped,
-        bounds,
+        bounds: bounds(role, order, &placed, &swept, space, options),
         shading: &shading,
         role,
         placed: &placed,
@@ -251,63 +221,71 @@ fn compile_as(
         options,
         on_progress,
     };
-    let layouts = structures
-        .iter()
-        .map(|&structure| structures::lay_out(structure, &context))
-        .collect::<Result<Vec<_>, _>>()?;
+    let layouts = structures.iter().map(|&it| lay_out(it, &context));
+    let layouts = layouts.collect::<Result<Vec<_>, _>>()?;
     let setup = started.map_or(Duration::ZERO, |started| started.elapsed());
-    let tables = layouts.iter().filter_map(Layout::table_stats).collect();
-    let longest_lists = layouts.iter().map(|layout| layout.longest_list);
-    let longest_list = longest_lists.max().unwrap_or(0);
-    let mut sizes = Sizes::of(&layouts, flat.leaves.len() * size_of::<Leaf>());
+    let mut sizes = Sizes::of(&layouts, hierarchies.flat.leaves.len() * size_of::<Leaf>());
     if let Role::Whole(parts) = role {
         sizes.add(&parts.sizes);
     }
+    let mut report = Report::of(&context, &layouts, setup);
     let mut parts = writer::parts(&context, layouts);
-    let names = if options.names && !scene.unnamed {
-        parts.add_names(&names::Names::of_scene(scene), options.max_bytes)
-    } else {
-        None
-    };
+    if options.names && !scene.unnamed {
+        report.names = parts.add_names(&Names::of_scene(scene), options.max_bytes);
+    }
     // A table may fill what memory there is; all that it was built from makes room for the blob.
-    drop((root, order, wide));
+    drop(hierarchies);
     let blob = writer::write(parts)?;
     check_bytes(&blob, scene, options, &sizes)?;
-    let displacements = snapped.displacements_in_steps(&lattice);
-    let most_steps = displacements.iter().copied().fold(0.0, f32::max);
-    let report = Report {
-        step: lattice.step(),
-        largest_displacement: (placed.displacement + motion_off)
-            .max(f64::from(most_steps) * lattice.step()),
-        displacements,
-        far_moved: snapped.far_moved.clone(),
-        collapsed: snapped.collapsed.clone(),
-        without_area: snapped.without_area.clone(),
-        sah_cost,
-        bytes: blob.bytes().len(),
-        longest_list,
-        effects: shading.requirements.by_effect(),
-        textures: shading.texture_figures().to_vec(),
-        environment: shading.environment_figures(),
-        supplied: shading.supplied.clone(),
-        setup,
-        tables,
-        still_lights: still_lights(scene, options.room),
-        keeps_rest: false,
-        scene_warnings: Vec::new(),
-        names,
-    };
+    report.bytes = blob.bytes().len();
     Ok((Compiled { blob, report }, sizes))
 }
 
-/// The first mesh with room for its vertices whose surface is a light as well.
-fn still_lights(scene: &Scene, room: f64) -> Option<String> {
-    let mut objects = scene.objects.iter();
-    let found = objects.find(|it| {
-        let moves = room > 0.0 || !it.attributes.displacements.is_empty();
-        moves && matches!(it.shape, Shape::Mesh { .. }) && scene.materials[it.material].is_sampled
-    });
-    found.map(|it| it.name.clone())
+/// Returns the extent of a scene, with the room of what moves.
+fn extent(role: Role<'_>, shapes: &Shapes<'_>, swept: &Swept, options: &Options) -> (DVec3, DVec3) {
+    let bits = options.lattice_bits;
+    let extent = swept.extent(room::widened(shapes.extent(), options.room), bits);
+    let Role::Whole(parts) = role else {
+        return extent;
+    };
+    let step = |lattice: &_, corners| coordinate_step(shapes, lattice, corners);
+    parts.reach.extent(extent, bits, step)
+}
+
+/// Returns the objects whose vertices require effects, those of parts included.
+fn requirements(role: Role<'_>, snapped: &Primitives) -> Requirements {
+    let mut requirements = snapped.requirements.clone();
+    if let Role::Whole(parts) = role {
+        requirements.extend(&parts.requirements);
+    }
+    requirements
+}
+
+/// Returns the box around all primitives and instances, wherever they move. `space` is the lattice, and the length of a
+/// coordinate step.
+fn bounds(
+    role: Role<'_>,
+    order: &[Primitive],
+    placed: &Placed,
+    swept: &Swept,
+    space: (&Lattice, f64),
+    options: &Options,
+) -> UnitBox {
+    let (lattice, step) = space;
+    let own = room::around(order, options.room / lattice.unit());
+    let own = own.into_iter().chain(swept.on_lattice(lattice));
+    let own = own.reduce(|a, b| a.union(&b));
+    let bounds = placed.around(own).unwrap_or(UnitBox([[0; 2]; 3]));
+    let Role::Whole(parts) = role else {
+        return bounds;
+    };
+    let bounds = parts.reach.around(bounds, lattice, step);
+    // Where rays start in a part depends on its box, so that is the same through all structures.
+    if !options.structures.contains(&Structure::Octree) {
+        return bounds;
+    }
+    let boxes: Vec<_> = order.iter().map(|primitive| primitive.bounds).collect();
+    octree::bounds(&bounds, &boxes)
 }
 
 /// Returns an error with advice if a scene's blob is larger than the options allow.
@@ -424,7 +402,7 @@ pub fn cube_census(scene: &Scene, gridels: u32) -> Result<CubeCensus, CompileErr
         &options,
     )?;
     let mut order: Vec<Primitive> = snapped.boxes();
-    let root = hierarchy::build(&mut order, Splits::Swept, options.leaf_size);
+    let root = sah::build(&mut order, Splits::Swept, options.leaf_size);
     let flat = root.as_ref().map(|root| pairs::flatten(root, &order));
     let bounds = root.map_or(UnitBox([[0; 2]; 3]), |root| *root.bounds());
     let flat = flat.unwrap_or_default();

@@ -1,6 +1,6 @@
 //! Options of the compiler.
 
-use super::builder::Builder;
+use super::hierarchy::builder::Builder;
 use super::wide::Quality;
 use gridel_core::Structure;
 use gridel_core::format::Leaf;

@@ -1,10 +1,14 @@
 //! The compiler's report.
 
-use super::candidates::lists::Figures;
+use super::geometry::primitives::LeftOut;
+use super::hierarchy::sah::sah_cost;
+use super::instances::Role;
 use super::names::KeptNames;
-use super::primitives::LeftOut;
 use super::requirements::RequiringPart;
 use super::shading::{EnvironmentFigures, Supplied, TextureFigures};
+use super::structures::context::BuildContext;
+use super::structures::layout::{Layout, TableStats};
+use crate::scene::{Scene, Shape};
 use std::time::Duration;
 
 /// The compiler's report.
@@ -58,15 +62,48 @@ pub struct Report {
     pub names: Option<KeptNames>,
 }
 
-/// A structure with tables of candidate lists, and what they came to.
-#[derive(Clone, Copy, Debug, serde::Serialize)]
-pub struct TableStats {
-    pub structure: &'static str,
-    #[serde(flatten)]
-    pub figures: Figures,
-}
-
 impl Report {
+    /// Returns the report about structures that took a time to build. The blob is not written yet: its bytes and names
+    /// are missing.
+    pub(super) fn of(context: &BuildContext<'_>, layouts: &[Layout], setup: Duration) -> Self {
+        let BuildContext {
+            scene,
+            lattice,
+            primitives,
+            shading,
+            ..
+        } = *context;
+        let motion_off = match context.role {
+            Role::Whole(parts) => parts.reach.off(shading.coordinates.step()),
+            Role::Part { .. } => 0.0,
+        };
+        let displacements = primitives.displacements_in_steps(lattice);
+        let most_steps = displacements.iter().copied().fold(0.0, f32::max);
+        let longest_lists = layouts.iter().map(|layout| layout.longest_list);
+        Self {
+            step: lattice.step(),
+            largest_displacement: (context.placed.displacement + motion_off)
+                .max(f64::from(most_steps) * lattice.step()),
+            displacements,
+            far_moved: primitives.far_moved.clone(),
+            collapsed: primitives.collapsed.clone(),
+            without_area: primitives.without_area.clone(),
+            sah_cost: context.root.map(sah_cost),
+            bytes: 0,
+            longest_list: longest_lists.max().unwrap_or(0),
+            effects: shading.requirements.by_effect(),
+            textures: shading.texture_figures().to_vec(),
+            environment: shading.environment_figures(),
+            supplied: shading.supplied.clone(),
+            setup,
+            tables: layouts.iter().filter_map(Layout::table_stats).collect(),
+            still_lights: still_lights(scene, context.options.room),
+            keeps_rest: false,
+            scene_warnings: Vec::new(),
+            names: None,
+        }
+    }
+
     /// Adds a part's report. Its primitives come after those before it.
     pub(super) fn add_part(&mut self, part: &Report) {
         let steps = (part.step / self.step) as f32;
@@ -83,4 +120,14 @@ impl Report {
         self.setup += part.setup;
         self.tables.extend(part.tables.iter().copied());
     }
+}
+
+/// The first mesh with room for its vertices whose surface is a light as well.
+fn still_lights(scene: &Scene, room: f64) -> Option<String> {
+    let mut objects = scene.objects.iter();
+    let found = objects.find(|it| {
+        let moves = room > 0.0 || !it.attributes.displacements.is_empty();
+        moves && matches!(it.shape, Shape::Mesh { .. }) && scene.materials[it.material].is_sampled
+    });
+    found.map(|it| it.name.clone())
 }

@@ -1,7 +1,7 @@
 //! The bytes that each structure takes in a blob.
 
-use super::layout::Layout;
 use super::section::taken;
+use super::structures::layout::Layout;
 use gridel_core::Structure;
 
 /// The bytes of structures in a blob, and in its parts.

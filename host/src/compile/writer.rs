@@ -1,18 +1,19 @@
 //! Writes the sections of a blob, each in the narrowest form that its values allow.
 
 use super::CompileError;
-use super::context::BuildContext;
+use super::geometry::primitives::Primitives;
+use super::geometry::records::in_order;
+use super::geometry::vertices::Corner;
+use super::hierarchy::pairs::Flat;
 use super::instances::Role;
-use super::layout::Layout;
-use super::morph;
+use super::motion::morph;
 use super::names::{KeptNames, Names};
-use super::pairs::Flat;
-use super::primitives::Primitives;
-use super::records::in_order;
 use super::section::{Section, indices, section};
-use super::vertices::Corner;
+use super::structures::context::BuildContext;
+use super::structures::layout::Layout;
 use crate::blob::{Blob, Buffer};
 use crate::shape::Lattice;
+use bytemuck::Zeroable;
 use gridel_core::accel::Entry;
 use gridel_core::format::record::{
     ENDIANNESS, Header, MAGIC, SECTION_ALIGNMENT, SectionEntry, VERSION, Vertex16, Vertex24,
@@ -77,105 +78,123 @@ impl Parts {
 
 /// Makes what goes into a blob.
 pub fn parts(context: &BuildContext<'_>, layouts: Vec<Layout>) -> Parts {
-    let uses_leaves = layouts.iter().any(|layout| layout.uses_leaves);
     let BuildContext {
-        scene,
-        lattice,
-        primitives,
-        flat,
-        shading,
-        ..
+        primitives, flat, ..
     } = *context;
-    let own = primitives.total;
-    let mut object_first = primitives.object_first.clone();
-    let mut objects = scene.all_objects().count() as u32;
-    let mut total = own;
-    match context.role {
-        // The scene that places a part knows its objects.
-        Role::Part { .. } if objects != total => {
-            objects = objects.min(1);
-            object_first.clear();
-        }
-        Role::Part { .. } => (),
-        Role::Whole(parts) => {
-            total = own.saturating_add(parts.primitives());
-            object_first.extend(
-                parts
-                    .object_first
-                    .iter()
-                    .map(|first| own.saturating_add(*first)),
-            );
-        }
-    }
-
-    let mut sections = shading.sections(objects);
-    if objects != total && objects > 1 {
-        sections.push(indices(SectionKind::ObjectFirst, &object_first, 2));
-    }
-    let order: Vec<u32> = Kind::ALL
-        .iter()
-        .flat_map(|&kind| {
-            let numbers = &primitives.numbers[kind as usize];
-            flat.slots[kind as usize]
-                .iter()
-                .map(|&index| numbers[index as usize])
-        })
-        .collect();
-    if !counts_up(&order) || order.len() as u32 != own {
-        sections.push(indices(SectionKind::Order, &order, 2));
-    }
-    sections.extend(geometry(lattice, primitives, flat));
+    let uses_leaves = layouts.iter().any(|layout| layout.uses_leaves);
+    let numbering = Numbering::of(context);
+    let mut sections = context.shading.sections(numbering.objects);
+    sections.extend(numbering.sections(context));
+    sections.extend(geometry(context.lattice, primitives, flat));
     if uses_leaves {
         sections.push(section(SectionKind::Leaves, &flat.leaves));
     }
-    if let Role::Whole(_) = context.role {
-        sections.push(morph::weights(scene));
-    }
     let depths = layouts.iter().map(|layout| layout.stack_depth);
     let mut stack_depth = depths.max().unwrap_or(0) as u16;
-    if let Role::Whole(parts) = context.role
-        && parts.primitives() > 0
-    {
-        sections.extend(parts.sections(own));
-        sections.extend(context.placed.sections());
-        stack_depth = stack_depth.max(parts.stack_depth());
+    if let Role::Whole(parts) = context.role {
+        sections.push(morph::weights(context.scene));
+        if parts.primitives() > 0 {
+            sections.extend(parts.sections(primitives.total));
+            sections.extend(context.placed.sections());
+            stack_depth = stack_depth.max(parts.stack_depth());
+        }
     }
-    let structures = layouts
-        .iter()
-        .map(|layout| layout.structure)
-        .chain([Structure::List])
-        .fold(0, |bits, structure| bits | structure.bit());
+    let structures = layouts.iter().map(|layout| layout.structure);
+    let structures = structures.chain([Structure::List]);
+    let structures = structures.fold(0, |bits, structure| bits | structure.bit());
     sections.extend(layouts.into_iter().flat_map(|layout| layout.sections));
     sections.retain(|section| !section.bytes.is_empty());
     sections.sort_by_key(|section| section.kind);
     let header = Header {
-        magic: MAGIC,
-        endianness: ENDIANNESS,
-        version: VERSION,
         section_count: sections.len() as u16,
-        blob_bytes: 0,
-        checksum: 0,
         structures,
-        effects: shading.requirements.effects().0,
         stack_depth,
+        stack_bytes: u32::from(stack_depth) * size_of::<Entry>() as u32,
         longest_leaf: if uses_leaves {
             flat.longest_leaf as u16
         } else {
             0
         },
-        primitives: total,
-        objects,
+        ..header(context, &numbering)
+    };
+    Parts { header, sections }
+}
+
+/// Returns the fields of a header that do not depend on structures; the others are 0.
+fn header(context: &BuildContext<'_>, numbering: &Numbering) -> Header {
+    let BuildContext {
+        lattice, shading, ..
+    } = *context;
+    Header {
+        magic: MAGIC,
+        endianness: ENDIANNESS,
+        version: VERSION,
+        effects: shading.requirements.effects().0,
+        primitives: numbering.primitives,
+        objects: numbering.objects,
         lattice_bits: lattice.bits,
         storage_bits: if lattice.bits <= 16 { 16 } else { 24 },
         unit_exponent: lattice.unit_exponent,
         origin: lattice.origin.to_array(),
         bounds: context.bounds,
-        stack_bytes: u32::from(stack_depth) * size_of::<Entry>() as u32,
         coordinate_shift: shading.coordinates.header.coordinate_shift,
         counted_from: shading.coordinates.header.counted_from,
-        spare: [0; 3],
-    };
-    Parts { header, sections }
+        ..Header::zeroed()
+    }
+}
+
+/// The numbers of a blob's primitives and objects, with those of its parts.
+struct Numbering {
+    primitives: u32,
+    objects: u32,
+    /// For each object, its first primitive.
+    object_first: Vec<u32>,
+}
+
+impl Numbering {
+    fn of(context: &BuildContext<'_>) -> Self {
+        let own = context.primitives.total;
+        let mut numbering = Self {
+            primitives: own,
+            objects: context.scene.all_objects().count() as u32,
+            object_first: context.primitives.object_first.clone(),
+        };
+        match context.role {
+            // The scene that places a part knows its objects.
+            Role::Part { .. } if numbering.objects != own => {
+                numbering.objects = numbering.objects.min(1);
+                numbering.object_first.clear();
+            }
+            Role::Part { .. } => (),
+            Role::Whole(parts) => {
+                numbering.primitives = own.saturating_add(parts.primitives());
+                let of_parts = parts.object_first.iter();
+                let of_parts = of_parts.map(|first| own.saturating_add(*first));
+                numbering.object_first.extend(of_parts);
+            }
+        }
+        numbering
+    }
+
+    /// Returns the numbers that slots and objects do not have by their order.
+    fn sections(&self, context: &BuildContext<'_>) -> Vec<Section> {
+        let mut sections = Vec::new();
+        if self.objects != self.primitives && self.objects > 1 {
+            sections.push(indices(SectionKind::ObjectFirst, &self.object_first, 2));
+        }
+        let primitives = context.primitives;
+        let kinds = Kind::ALL.iter().map(|&kind| kind as usize);
+        let order: Vec<u32> = kinds
+            .flat_map(|kind| {
+                let (slots, numbers) = (&context.flat.slots[kind], &primitives.numbers[kind]);
+                slots.iter().map(|&index| numbers[index as usize])
+            })
+            .collect();
+        if !counts_up(&order) || order.len() as u32 != primitives.total {
+            sections.push(indices(SectionKind::Order, &order, 2));
+        }
+        sections
+    }
 }
 
 /// The geometry, every kind in the order of its slots.

@@ -52,6 +52,18 @@ impl Key {
         let [x, y, z, _] = self.value;
         DVec3::new(x, y, z)
     }
+
+    /// Returns the key with each component of its value and of its changes multiplied.
+    pub(crate) fn weighted(self, by: [f64; 4]) -> Self {
+        let weighted =
+            |it: [f64; 4]| std::array::from_fn(|component| it[component] * by[component]);
+        Self {
+            seconds: self.seconds,
+            value: weighted(self.value),
+            entering: weighted(self.entering),
+            leaving: weighted(self.leaving),
+        }
+    }
 }
 
 impl Track {

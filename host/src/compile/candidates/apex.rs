@@ -6,20 +6,36 @@ mod window;
 use super::budget::Budget;
 use super::lists::{Lists, Plan};
 use super::target::Targets;
+use crate::compile::section::{Section, section};
 use face::{Face, ONE};
 use gridel_core::accel::Apex;
+use gridel_core::format::SectionKind;
 use gridel_core::format::record::{
     ApexDirection, ApexPoint, ApexWindow, Gridels, Light, UnitBox, View,
 };
+use gridel_core::shared::apex;
 use window::{Window, cell_size};
 
 /// Everything that the structure keeps.
 #[derive(Debug)]
 pub struct Apexes {
-    pub points: Vec<ApexPoint>,
-    pub directions: Vec<ApexDirection>,
-    pub windows: Vec<ApexWindow>,
+    points: Vec<ApexPoint>,
+    directions: Vec<ApexDirection>,
+    windows: Vec<ApexWindow>,
     pub lists: Lists,
+}
+
+impl Apexes {
+    /// Returns the apexes and their lists.
+    pub fn sections(self) -> Vec<Section> {
+        let mut sections = vec![
+            section(SectionKind::ApexPoints, &self.points),
+            section(SectionKind::ApexWindows, &self.windows),
+        ];
+        sections.extend(self.lists.sections(apex::LISTS));
+        sections.push(section(SectionKind::ApexDirections, &self.directions));
+        sections
+    }
 }
 
 /// Apexes that a blob has room for: more lights than these are left to the hierarchy.

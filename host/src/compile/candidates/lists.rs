@@ -6,6 +6,8 @@
 //! cell, and nothing that grows with the lists' length.
 
 use super::budget::OnProgress;
+use crate::compile::section::Section;
+use gridel_core::shared::ListSections;
 use rayon::prelude::*;
 use std::hash::{DefaultHasher, Hash, Hasher};
 use std::sync::atomic::{AtomicU64, Ordering};
@@ -21,6 +23,28 @@ pub struct Lists {
     /// A key for each entry; none for lists whose order means nothing.
     pub keys: Vec<u8>,
     pub figures: Figures,
+}
+
+impl Lists {
+    /// Returns the sections, of these kinds.
+    pub fn sections(self, kinds: ListSections) -> Vec<Section> {
+        let array = |kind, Array { width, bytes }| Section {
+            kind,
+            stride: width,
+            bytes,
+        };
+        let mut sections = vec![
+            array(kinds.cells, self.cells),
+            array(kinds.starts, self.starts),
+            array(kinds.entries, self.entries),
+        ];
+        sections.extend(kinds.keys.map(|kind| Section {
+            kind,
+            stride: 1,
+            bytes: self.keys,
+        }));
+        sections
+    }
 }
 
 /// Figures of a finished table of lists.

@@ -4,18 +4,28 @@ use super::budget::{Budget, OnProgress, OverBudget};
 use super::lists::{List, Lists, Plan};
 use super::shaft::Shaft;
 use super::target::Targets;
+use crate::compile::section::{Section, section};
 use gridel_core::Structure;
-use gridel_core::format::ClassNode;
 use gridel_core::format::record::Gridels;
-use gridel_core::shared::{ClassPoint, ClassRange};
+use gridel_core::format::{ClassNode, SectionKind};
+use gridel_core::shared::{ClassPoint, ClassRange, ray_classes};
 use rayon::prelude::*;
 use std::collections::BinaryHeap;
 
 /// Everything that the structure keeps.
 #[derive(Debug)]
 pub struct Classes {
-    pub nodes: Vec<u32>,
+    nodes: Vec<u32>,
     pub lists: Lists,
+}
+
+impl Classes {
+    /// Returns the tree over rays and its lists.
+    pub fn sections(self) -> Vec<Section> {
+        let mut sections = vec![section(SectionKind::ClassNodes, &self.nodes)];
+        sections.extend(self.lists.sections(ray_classes::LISTS));
+        sections
+    }
 }
 
 /// Lists of at most this length are not halved.

@@ -2,8 +2,8 @@
 //! meets.
 
 use super::shaft::Shaft;
-use crate::compile::pairs::Flat;
-use crate::compile::primitives::Primitives;
+use crate::compile::geometry::primitives::Primitives;
+use crate::compile::hierarchy::pairs::Flat;
 use crate::shape;
 use glam::DVec3;
 use gridel_core::Kind;

@@ -51,9 +51,7 @@ impl Exposure {
                     let Track { index, place, .. } = track;
                     format!("light {index} at {} s ({place})", key.seconds)
                 })?;
-                for values in [&mut key.value, &mut key.entering, &mut key.leaving] {
-                    *values = values.map(|value| value * self.factor);
-                }
+                *key = key.weighted([self.factor; 4]);
             }
         }
         Ok(())

@@ -19,13 +19,13 @@ pub use radiance::radiance;
 pub use textures::{TextureFigures, root};
 
 use super::CompileError;
-use super::camera::place;
-use super::coordinates::Coordinates;
-use super::extent::Shapes;
-use super::joints;
+use super::geometry::extent::Shapes;
+use super::motion::joints;
+use super::motion::tracks;
 use super::requirements::Requirements;
 use super::section::{Section, section};
-use super::tracks;
+use super::view::camera::place;
+use super::view::coordinates::Coordinates;
 use crate::scene::{Camera, Scene, ToneMapping};
 use crate::shape::Lattice;
 use bytemuck::Zeroable;

@@ -1,7 +1,7 @@
 //! Camera, background and lights of a scene. The compiler supplies those that the scene does not state.
 
-use crate::compile::extent::Shapes;
-use crate::compile::framing::{BACKGROUND, framing_of};
+use crate::compile::geometry::extent::Shapes;
+use crate::compile::view::framing::{BACKGROUND, framing_of};
 use crate::scene::{Camera, Color, Light};
 use crate::shape::unit;
 use glam::DVec3;

@@ -13,9 +13,9 @@ mod strips;
 mod tree;
 
 use super::CompileError;
-use super::hierarchy::Primitive;
-use super::pairs::Flat;
-use super::primitives::Primitives;
+use super::geometry::primitives::Primitives;
+use super::hierarchy::node::Primitive;
+use super::hierarchy::pairs::Flat;
 use super::section::{Section, indices, section};
 use clap::ValueEnum;
 use collapse::Forests;

@@ -1,8 +1,8 @@
 //! Packs spheres by eights: split by the surface area heuristic, but only behind a multiple of 8,
 //! so that every pack but one is full.
 
-use super::super::hierarchy::Primitive;
 use super::hull::Hull;
+use crate::compile::hierarchy::node::Primitive;
 use gridel_core::format::cluster::LANES;
 
 /// A pack: the spheres' places among the compiler's.

@@ -1,7 +1,7 @@
 //! Counts the content of a scene before anything is placed. Groups in groups can exceed all memory in a few lines.
 
 use super::item::{Content, Group, Item, PartItem};
-use super::material::Palette;
+use super::material::Materials;
 use super::source::{Name, Source, Span, nearest};
 use crate::scene::size::{Keys, MOST_PRIMITIVES, Size, primitives};
 use crate::scene::{Object, Scene, SceneError};
@@ -46,7 +46,7 @@ pub(super) struct Usage {
 pub(super) struct Census<'c> {
     source: &'c Source,
     groups: &'c BTreeMap<String, Group>,
-    palette: &'c Palette,
+    materials: &'c Materials,
     /// Groups whose cost is known.
     known: HashMap<&'c str, Cost>,
     /// Groups being counted, the outermost first.
@@ -57,12 +57,12 @@ impl<'c> Census<'c> {
     pub(super) fn new(
         source: &'c Source,
         groups: &'c BTreeMap<String, Group>,
-        palette: &'c Palette,
+        materials: &'c Materials,
     ) -> Self {
         Self {
             source,
             groups,
-            palette,
+            materials,
             known: HashMap::new(),
             open: Vec::new(),
         }
@@ -102,7 +102,7 @@ impl<'c> Census<'c> {
         let mut total = Cost::default();
         for item in items {
             if let Some(material) = &item.material {
-                self.palette.find(self.source, material)?;
+                self.materials.find(self.source, material)?;
             }
             let cost = match &item.content {
                 Content::Shape(shape) => Cost {

@@ -5,7 +5,7 @@ use super::import::Imports;
 use super::imported_track::{ImportPlace, lost, with_imported};
 use super::item::{Content, Item};
 use super::joint::{self, Joints};
-use super::material::Palette;
+use super::material::Materials;
 use super::morph::{self, Morphs};
 use super::object::Reader;
 use super::part;
@@ -68,8 +68,8 @@ pub(super) fn read(input: Input<'_>, imports: &mut Imports) -> Result<Scene, Sce
         track::read(tables, &mut imports.keys)
     })?;
     let mut images = Images::new(input.access);
-    let mut palette = root.or("material", Palette::default(), |tables| {
-        Palette::read(tables, &mut images)
+    let mut materials = root.or("material", Materials::default(), |tables| {
+        Materials::read(tables, &mut images)
     })?;
 
     let mut morphs = root.or("morph", Morphs::default(), morph::read)?;
@@ -78,7 +78,7 @@ pub(super) fn read(input: Input<'_>, imports: &mut Imports) -> Result<Scene, Sce
         imports,
         molecule: choices.molecule,
         assembly: choices.assembly,
-        palette: &mut palette,
+        materials: &mut materials,
         morphs: &mut morphs,
     };
     let groups = root.or("group", BTreeMap::new(), |tables| reader.groups(tables))?;
@@ -90,7 +90,7 @@ pub(super) fn read(input: Input<'_>, imports: &mut Imports) -> Result<Scene, Sce
     })?;
     let room = root.or("room", None, |value| joint::room(value).map(Some))?;
 
-    let taken = Census::new(&source, &groups, &palette).take(&items, &parts)?;
+    let taken = Census::new(&source, &groups, &materials).take(&items, &parts)?;
     imports.warnings.extend(taken.warnings);
     imports
         .warnings
@@ -98,7 +98,7 @@ pub(super) fn read(input: Input<'_>, imports: &mut Imports) -> Result<Scene, Sce
     imports
         .warnings
         .extend(joint::unused(&source, &joints, &instances));
-    let placer = Placer::new(&source, &groups, &mut palette, taken.objects);
+    let placer = Placer::new(&source, &groups, &mut materials, taken.objects);
     let placed = placer.place(&items, &parts, &instances, &joints.items)?;
     imports.warnings.extend(placed.warnings);
 
@@ -143,14 +143,14 @@ pub(super) fn read(input: Input<'_>, imports: &mut Imports) -> Result<Scene, Sce
         lights: &scene.lights,
         light_forms: &scene.light_forms,
         light_names: &scene.light_names,
-        palette: &palette,
+        materials: &materials,
         joints: &joints,
         morphs: &morphs,
     };
     imported_tracks.extend(placed.tracks);
     imported_tracks.extend(morphs.tracks.iter().cloned());
     scene.tracks = with_imported(targets.resolve(tracks)?, imported_tracks);
-    scene.materials = palette.into_materials();
+    scene.materials = materials.into_vec();
     scene.morph_targets = morphs.targets;
     imports.warnings.extend(moving_nothing(&scene));
     imports.warnings.extend(morph::unused(&scene));

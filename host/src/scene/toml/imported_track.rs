@@ -57,9 +57,7 @@ impl ImportPlace<'_> {
 /// Multiplies the colors of a track.
 fn brighten(track: &mut Track, by: f64) {
     for key in &mut track.keys {
-        for value in [&mut key.value, &mut key.entering, &mut key.leaving] {
-            *value = value.map(|channel| channel * by);
-        }
+        *key = key.weighted([by; 4]);
     }
 }
 

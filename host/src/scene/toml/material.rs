@@ -32,24 +32,24 @@ const KEYS: &[&str] = &[
 
 /// The materials of a scene, each with a name of its own.
 #[derive(Default)]
-pub(super) struct Palette {
+pub(super) struct Materials {
     materials: Vec<Material>,
     indices: BTreeMap<String, usize>,
 }
 
-impl Palette {
+impl Materials {
     /// Reads the tables inside `[material]`.
     pub(super) fn read(tables: Value<'_>, images: &mut Images<'_>) -> Result<Self, SceneError> {
-        let mut palette = Self::default();
+        let mut materials = Self::default();
         for (name, table) in tables.entries()? {
             let material = Material {
                 place: table.source.place(&name.span),
                 name: name.text,
                 ..material(table, images)?
             };
-            palette.push(material);
+            materials.push(material);
         }
-        Ok(palette)
+        Ok(materials)
     }
 
     /// Adds a material of an import. One whose name is taken is renamed after the import, unless it is identical apart
@@ -113,7 +113,7 @@ impl Palette {
         }
     }
 
-    pub(super) fn into_materials(self) -> Vec<Material> {
+    pub(super) fn into_vec(self) -> Vec<Material> {
         self.materials
     }
 }

@@ -3,7 +3,7 @@
 use super::census::{MAX_NESTING, too_deep};
 use super::import::{Done, Imports, Molecules};
 use super::item::{Content, Group, Item};
-use super::material::Palette;
+use super::material::Materials;
 use super::morph::Morphs;
 use super::source::Source;
 use super::value::{Fields, Value};
@@ -30,7 +30,7 @@ pub(super) struct Reader<'r> {
     pub(super) molecule: &'r MoleculeOptions,
     pub(super) assembly: Option<&'r str>,
     /// Takes in the materials of imports.
-    pub(super) palette: &'r mut Palette,
+    pub(super) materials: &'r mut Materials,
     /// Takes in the morph targets of imports.
     pub(super) morphs: &'r mut Morphs,
 }
@@ -123,7 +123,7 @@ impl Reader<'_> {
                     ));
                 }
                 // Objects that all get another material do not need their own.
-                let adopt = |own| self.palette.adopt(own, &name);
+                let adopt = |own| self.materials.adopt(own, &name);
                 let materials = match material {
                     Some(_) => Vec::new(),
                     None => scene.materials.iter().map(adopt).collect(),

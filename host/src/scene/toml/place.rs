@@ -3,7 +3,7 @@
 use super::census;
 use super::imported_track::{lost, moved};
 use super::item::{Content, Group, InstanceItem, Item, JointItem, PartItem};
-use super::material::Palette;
+use super::material::Materials;
 use super::source::Source;
 use crate::scene::size::{MOST_PRIMITIVES, Size, primitives};
 use crate::scene::{
@@ -22,7 +22,7 @@ type ImportKey = (*const Scene, Vec<usize>, Option<u64>, usize);
 pub(super) struct Placer<'p> {
     source: &'p Source,
     groups: &'p BTreeMap<String, Group>,
-    palette: &'p mut Palette,
+    materials: &'p mut Materials,
     placed: Placed,
     /// True if the objects are those of a part, which holds no instances.
     in_part: bool,
@@ -66,7 +66,7 @@ impl<'p> Placer<'p> {
     pub(super) fn new(
         source: &'p Source,
         groups: &'p BTreeMap<String, Group>,
-        palette: &'p mut Palette,
+        materials: &'p mut Materials,
         objects: usize,
     ) -> Self {
         let placed = Placed {
@@ -76,7 +76,7 @@ impl<'p> Placer<'p> {
         Self {
             source,
             groups,
-            palette,
+            materials,
             placed,
             in_part: false,
             imported: HashMap::new(),
@@ -145,7 +145,7 @@ impl<'p> Placer<'p> {
     fn items(&mut self, items: &[Item], site: Site<'_>) -> Result<(), SceneError> {
         for item in items {
             let material = match &item.material {
-                Some(name) => Some(self.palette.find(self.source, name)?),
+                Some(name) => Some(self.materials.find(self.source, name)?),
                 None => site.material,
             };
             let transform = site.transform * item.transform;
@@ -159,7 +159,7 @@ impl<'p> Placer<'p> {
             match &item.content {
                 Content::Shape(shape) => {
                     let shape = self.shape(item, &transform, &name, (shape, &item.attributes))?;
-                    let material = material.unwrap_or_else(|| self.palette.fallback());
+                    let material = material.unwrap_or_else(|| self.materials.fallback());
                     let place = self.source.place(&item.span);
                     let mut object = Object {
                         name,

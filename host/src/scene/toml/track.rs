@@ -2,7 +2,7 @@
 
 use super::hinge;
 use super::joint::Joints;
-use super::material::Palette;
+use super::material::Materials;
 use super::morph::{self, Morphs};
 use super::source::{Name, Source, Span, nearest};
 use super::transform;
@@ -351,7 +351,7 @@ pub(super) struct Targets<'t> {
     pub(super) lights: &'t [Light],
     pub(super) light_names: &'t [String],
     pub(super) light_forms: &'t [Option<LightForm>],
-    pub(super) palette: &'t Palette,
+    pub(super) materials: &'t Materials,
     pub(super) joints: &'t Joints,
     pub(super) morphs: &'t Morphs,
 }
@@ -431,8 +431,8 @@ impl Targets<'_> {
                     text: name.clone(),
                     span: target.span.clone(),
                 };
-                let index = self.palette.find(self.source, &name)?;
-                let plain = matches!(self.palette.get(index).diffuse, Diffuse::Plain(_));
+                let index = self.materials.find(self.source, &name)?;
+                let plain = matches!(self.materials.get(index).diffuse, Diffuse::Plain(_));
                 let wrong = |cause: &str, remedy: &str| {
                     let cause = format!("material {:?} {cause}", shortened(&name.text));
                     Err(self.source.error(&target.span, cause, remedy))

@@ -4,8 +4,8 @@
 //! edges of what is visible, and many programs leave it black.
 
 use super::stored::{COLORS, Raster, Roots};
+use crate::palette::{median_cut, nearest};
 use crate::scene::Wrap;
-use crate::scene::palette::{median_cut, nearest};
 use std::collections::HashSet;
 
 impl Raster {

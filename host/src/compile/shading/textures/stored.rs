@@ -1,6 +1,6 @@
 //! Images in fewer and fewer bytes, with their levels.
 
-use crate::scene::palette::{median_cut, nearest};
+use crate::palette::{median_cut, nearest};
 use crate::scene::{Image, Wrap};
 use gridel_core::format::record;
 use std::borrow::Cow;
