@@ -67,6 +67,11 @@ impl Cost {
         median(&self.seconds).unwrap_or(0.0)
     }
 
+    /// Returns the rays and the tests in one count.
+    pub fn work(&self) -> f64 {
+        (self.rays + self.tests) as f64
+    }
+
     /// Returns the least and the largest of the repeats: see [`time::interval`].
     pub fn interval(&self) -> Option<[f64; 2]> {
         time::interval(&self.seconds)
@@ -97,6 +102,11 @@ impl Point {
         self.cost.rays as f64 / self.cost.pixels.max(1) as f64
     }
 
+    /// Rays and tests per pixel.
+    pub fn work_per_pixel(&self) -> f64 {
+        self.cost.work() / self.cost.pixels.max(1) as f64
+    }
+
     /// Instructions per pixel on a board: see [`instructions`].
     pub fn instructions(&self, board: &str) -> Option<[f64; 2]> {
         instructions(board, self.setting.format, self.rays_per_pixel())
@@ -119,7 +129,7 @@ pub struct Reference {
     /// Linear, 65535 being white.
     pub pixels: Vec<[u16; 3]>,
     /// One value per pixel; `None` on a miss.
-    hits: Vec<Option<FirstHit>>,
+    pub(super) hits: Vec<Option<FirstHit>>,
 }
 
 /// An error of a measurement.

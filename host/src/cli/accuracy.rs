@@ -133,7 +133,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
             frontier: frontier(&results.points),
             answers: answers(&results),
             effects: &results.effects,
-            sentences: sentences(&results.base, &results.points),
+            sentences: sentences(&results),
             cheapest: choice.as_ref(),
         };
         print_json_warned(&printed, &warnings)?;
