@@ -173,7 +173,10 @@ fn print_findings(
         let text = format!("{}{reasons}{summary}{diff}", report.table());
         // Standard output is the XML's alone, so that it can be read.
         match arguments.junit.as_deref().is_some_and(is_standard) {
-            true => print_aside(text),
+            true => {
+                print_aside(text);
+                Ok(())
+            }
             false => print(text),
         }
     };
