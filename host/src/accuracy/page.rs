@@ -8,9 +8,8 @@ use super::{
     instance_notes, sentences,
 };
 use crate::measure::board::core_names;
-use crate::picture::write_png;
+use crate::report::{escape, picture_url};
 use crate::table::{counted, grouped};
-use base64::Engine;
 use gridel_core::format::limits::MAX_RAY_DEPTH;
 use serde_json::json;
 use std::collections::HashMap;
@@ -106,11 +105,6 @@ const NOTES: &str = "<p>A bar spans the repeats of a time, or the least and the 
     beside them, MEMORY.md states. t counts units of the last place of single precision. SSIM is structural similarity, \
     1 for equal pictures; FLIP is the mean difference that an eye sees.</p>\n";
 
-pub(super) fn escape(text: &str) -> String {
-    let text = text.replace('&', "&amp;").replace('<', "&lt;");
-    text.replace('>', "&gt;").replace('"', "&quot;")
-}
-
 /// A number, as a power of two if it is one.
 fn power(number: f64) -> String {
     let exponent = number.log2();
@@ -128,13 +122,6 @@ fn code(text: &str) -> String {
         _ => format!("<code>{part}</code>"),
     });
     marked.collect()
-}
-
-fn image([width, height]: [u16; 2], pixels: &[u8]) -> io::Result<String> {
-    let mut file = Vec::new();
-    write_png(&mut file, [width.into(), height.into()], pixels, None)?;
-    let data = base64::engine::general_purpose::STANDARD.encode(file);
-    Ok(format!("data:image/png;base64,{data}"))
 }
 
 /// Returns the parameter that differs from the scene file's setting, as the page's colors name it.
@@ -219,7 +206,7 @@ impl Images {
         if let Some(&number) = self.numbers.get(pixels) {
             return Ok(Some(number));
         }
-        let image = image(size, pixels)?;
+        let image = picture_url(size, pixels)?;
         // The reference is always there, so that differences have something to differ from.
         if !self.images.is_empty() && self.bytes + image.len() > MOST_PICTURE_BYTES {
             return Ok(None);
