@@ -7,9 +7,9 @@ use crate::blob::Blob;
 use crate::compile::{self, CompileError, Compiled, Quality};
 use crate::measure::board::instructions;
 use crate::measure::{
-    Errors, FirstHit, InstanceCount, Rendered, board_memory, first_hits, median, rmse_and_largest,
-    time,
+    Errors, FirstHit, InstanceCount, Rendered, board_memory, median, rmse_and_largest, time,
 };
+use crate::render::{Job, first_hits};
 use crate::scene::Scene;
 use gridel_core::format::checksum;
 use gridel_core::render::RenderError;
@@ -430,9 +430,9 @@ impl<'s> Bench<'s> {
         if let Some(hits) = self.hits.get(&key) {
             return Ok(hits.clone());
         }
-        let with = (self.structure, setting.format);
-        let settings = settings(self.size, setting);
-        let hits = first_hits(&self.blob(setting)?.scene()?, with, settings)?;
+        let job = Job::whole(setting.format, self.structure, settings(self.size, setting));
+        let hits = first_hits(&self.blob(setting)?.scene()?, &job)?.into_iter();
+        let hits: Vec<_> = hits.map(|it| it.map(FirstHit::from)).collect();
         self.hits.insert(key, hits.clone());
         Ok(hits)
     }
