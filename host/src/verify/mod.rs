@@ -22,6 +22,7 @@ pub use check::{
 pub use closed::ClosedMesh;
 pub use rays::Targets;
 
+use crate::measure::structure_names;
 use crate::random::Random;
 use crate::trace::{Frame, SceneRay};
 use gridel_core::accel::DynAccel;
@@ -332,12 +333,6 @@ impl Work<'_> {
     }
 }
 
-/// The structures that a scene holds.
-fn held(scene: &Scene<'_>) -> impl Iterator<Item = Structure> {
-    let all = Structure::ALL.into_iter();
-    all.filter(|&structure| structure == Structure::List || scene.holds(structure))
-}
-
 /// The results so far.
 #[derive(Clone, Debug, Default)]
 struct Tally {
@@ -438,7 +433,7 @@ impl Tally {
         });
         Report {
             rays,
-            structures: held(scene).map(Structure::name).collect(),
+            structures: structure_names(scene),
             formats: formats.to_vec(),
             closed_meshes,
             closed_meshes_aimed_from,
