@@ -117,11 +117,12 @@ impl Emitted<'_> {
 
     /// The function that loads the blob.
     fn load(&self) -> String {
-        let mut held = Structure::ALL
-            .into_iter()
-            .filter(|&it| self.scene.holds(it));
         if self.scene.parts().is_empty() {
-            return match held.all(|it| Prevalidated::STRUCTURES.contains(&it)) {
+            return match self
+                .scene
+                .structures()
+                .all(|it| Prevalidated::STRUCTURES.contains(&it))
+            {
                 true => LOAD_PREVALIDATED.to_owned(),
                 false => LOAD_CHECKED.to_owned(),
             };

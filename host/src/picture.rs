@@ -105,6 +105,12 @@ pub fn srgb(picture: &Picture, dither: bool) -> Vec<u8> {
     bytemuck::cast_slice(&pixels).to_vec()
 }
 
+/// Converts linear pixels to sRGB, three bytes each, without dithering.
+pub fn srgb_of(pixels: &[[u16; 3]]) -> Vec<u8> {
+    let pixels = pixels.iter();
+    pixels.flat_map(|&it| Rgb888::encode(it, None).0).collect()
+}
+
 fn encoded<P: Pixel>(picture: &Picture, dither: bool) -> Vec<P> {
     let rows = picture.pixels.chunks(picture.width.into());
     let places = picture

@@ -13,6 +13,7 @@ pub(crate) use first_hits::{PixelHit, first_hits};
 pub use linear::{LinearPicture, render_linear, render_linear_moments};
 
 use crate::observed::Observed;
+use crate::table::grouped;
 use gridel_core::accel::DynAccel;
 use gridel_core::format::limits::MAX_STACK_DEPTH;
 use gridel_core::render::{RenderError, Shutter};
@@ -26,6 +27,16 @@ use std::slice::from_ref;
 
 /// Most pixels of a picture in memory at once.
 pub const MOST_PIXELS: usize = 1 << 26;
+
+/// Returns a clause about a picture of more than `most` pixels; `None` for others.
+#[doc(hidden)]
+pub fn too_many_pixels(size: [u16; 2], most: usize) -> Option<String> {
+    let [width, height] = size.map(usize::from);
+    (width * height > most).then(|| {
+        let [pixels, most] = [width * height, most].map(grouped);
+        format!("{pixels} pixels exceed the largest size of {most}")
+    })
+}
 
 /// Linear pixels of some rows of a picture, and what they cost.
 #[derive(Clone, Debug)]

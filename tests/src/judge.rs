@@ -9,9 +9,9 @@ use glam::DVec3;
 use gridel_core::{Hit, List, NoCount, Number, Scene};
 use gridel_host::blob::Blob;
 use gridel_host::scene::Shape;
+use gridel_host::shape::rounding::step;
 use gridel_host::shape::{Normal, Solid, Sphere};
 use gridel_host::verify::judge::Crossings;
-use gridel_host::verify::rounded::step;
 
 /// Returns a blob of shapes whose lattice is known: one unit is one scene unit, and its zero is the
 /// scene's. Two specks at the ends of the lattice ensure that; they come last.

@@ -2,8 +2,8 @@
 
 use gridel_core::{Format, Structure};
 use gridel_host::accuracy::{
-    Bench, Limits, Parameter, Point, Results, answers, cheapest, cheapest_within, effect_costs,
-    frontier, given_up, most_accurate, page, plot, reference_setting, sentences, sweep,
+    Bench, Limits, Parameter, Point, Results, answers, cheapest, effect_costs, frontier, given_up,
+    most_accurate, page, plot, reference_setting, sentences, sweep,
 };
 use gridel_host::measure::board::PICTURE_COSTS;
 use gridel_tests::scenes;
@@ -71,12 +71,16 @@ fn more_work_is_more_right() {
         assert!(!(beaten && *best), "{}", point.name);
     }
     let bound = rmse(Parameter::Samples, "4");
-    let cheap = cheapest(&results.points, bound, None).expect("a setting");
+    let within = |error| Limits {
+        error,
+        rays: f64::INFINITY,
+    };
+    let cheap = cheapest(&results.points, within(bound), None).expect("a setting");
     assert!(cheap.errors.rmse <= bound);
-    let board = cheapest(&results.points, bound, Some("cortex-m3")).expect("a setting");
+    let board = cheapest(&results.points, within(bound), Some("cortex-m3")).expect("a setting");
     assert_eq!(board.setting.format, Format::Fixed);
-    assert!(cheapest(&results.points, 0.0, None).is_none());
-    assert!(sentences(&base, &results.points).len() >= 5);
+    assert!(cheapest(&results.points, within(0.0), None).is_none());
+    assert!(sentences(&results).len() >= 5);
 
     let page = page("a <scene>", [32, 24], &results, &[]).expect("a page");
     assert!(
@@ -103,7 +107,7 @@ fn more_work_is_more_right() {
         error: few.errors.rmse,
         rays: 8.0,
     };
-    let both = cheapest_within(&results.points, limits, None).expect("a setting");
+    let both = cheapest(&results.points, limits, None).expect("a setting");
     assert!(limits.hold(both));
 }
 

@@ -1,7 +1,7 @@
 //! Hits as arrays of NumPy's.
 
 use crate::arguments::invalid;
-use crate::query::{self, Columns, Found, How, Placed, Rows};
+use crate::query::{self, Columns, Hit, How, Placed, Rows};
 use crate::rays::Rays;
 use gridel_core::Scene;
 use gridel_host::trace::SceneRay;
@@ -61,9 +61,9 @@ impl<'py, T: numpy::Element + Send + Copy> Cast<'py, T> {
         (scene, rays, how): (&Scene<'_>, Rays<'_>, How),
         has_instances: bool,
         form: &Rows<
-            impl Fn(&Found) + Sync + Send,
-            impl Fn(&SceneRay, &Found) -> Option<Placed> + Sync + Send,
-            impl Fn(&Found) -> (T, u32) + Sync + Send,
+            impl Fn(&Hit) + Sync + Send,
+            impl Fn(&SceneRay, &Hit) -> Option<Placed> + Sync + Send,
+            impl Fn(&Hit) -> (T, u32) + Sync + Send,
         >,
     ) -> PyResult<Self> {
         let length = rays.len();
@@ -101,10 +101,7 @@ impl<'py, T: numpy::Element + Send + Copy> Cast<'py, T> {
 }
 
 /// Collects what each hit has.
-pub fn collected<T>(
-    hits: &[(usize, Found)],
-    of: impl Fn(&(usize, Found)) -> T,
-) -> PyResult<Vec<T>> {
+pub fn collected<T>(hits: &[(usize, Hit)], of: impl Fn(&(usize, Hit)) -> T) -> PyResult<Vec<T>> {
     let mut all = Vec::new();
     all.try_reserve_exact(hits.len()).map_err(too_large)?;
     all.extend(hits.iter().map(of));
@@ -114,8 +111,8 @@ pub fn collected<T>(
 /// Collects one number of each hit.
 pub fn column<'py, T: numpy::Element>(
     py: Python<'py>,
-    hits: &[(usize, Found)],
-    number: impl Fn(&(usize, Found)) -> T,
+    hits: &[(usize, Hit)],
+    number: impl Fn(&(usize, Hit)) -> T,
 ) -> PyResult<Arrays<'py, T>> {
     Ok(collected(hits, number)?.into_pyarray(py))
 }

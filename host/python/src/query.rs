@@ -38,7 +38,7 @@ pub struct How {
 
 /// A hit.
 #[derive(Clone, Copy)]
-pub struct Found {
+pub struct Hit {
     /// In multiples of the direction; infinite on a miss, NaN for a ray that is rejected.
     pub t: f64,
     pub object: u32,
@@ -49,7 +49,7 @@ pub struct Found {
     pub normal: [f32; 3],
 }
 
-impl Found {
+impl Hit {
     const MISS: Self = Self {
         t: f64::INFINITY,
         object: NONE,
@@ -147,11 +147,11 @@ pub trait Question: Sync {
     /// The answer for an invalid ray.
     const REJECTED: Self::Answer;
     /// The answer of a hit; `None` for any hit.
-    fn hit<N: Number>(met: Met<'_, '_, N>) -> Self::Answer;
+    fn hit<N: Number>(first: FirstHit<'_, '_, N>) -> Self::Answer;
 }
 
 /// A first hit, where the query is for the first hit.
-pub struct Met<'m, 'a, N: Number> {
+pub struct FirstHit<'m, 'a, N: Number> {
     scene: &'m Scene<'a>,
     ray: &'m Ray<N>,
     scale: &'m DirectionScale,
@@ -167,8 +167,8 @@ impl Question for FirstPrimitive {
     const REJECTED: i32 = -1;
 
     #[inline(always)]
-    fn hit<N: Number>(met: Met<'_, '_, N>) -> i32 {
-        met.hit.map_or(-1, |hit| hit.primitive as i32)
+    fn hit<N: Number>(first: FirstHit<'_, '_, N>) -> i32 {
+        first.hit.map_or(-1, |hit| hit.primitive as i32)
     }
 }
 
@@ -182,7 +182,7 @@ impl Question for Any {
     const REJECTED: bool = false;
 
     #[inline(always)]
-    fn hit<N: Number>(_: Met<'_, '_, N>) -> bool {
+    fn hit<N: Number>(_: FirstHit<'_, '_, N>) -> bool {
         true
     }
 }
@@ -191,18 +191,18 @@ impl Question for Any {
 pub struct Closest;
 
 impl Question for Closest {
-    type Answer = Found;
-    const MISS: Found = Found::MISS;
-    const REJECTED: Found = Found {
+    type Answer = Hit;
+    const MISS: Hit = Hit::MISS;
+    const REJECTED: Hit = Hit {
         t: f64::NAN,
-        ..Found::MISS
+        ..Hit::MISS
     };
 
     #[inline(always)]
-    fn hit<N: Number>(met: Met<'_, '_, N>) -> Found {
-        match met.hit {
-            Some(hit) => found(met.scene, (met.ray, met.scale), hit),
-            None => Found::MISS,
+    fn hit<N: Number>(first: FirstHit<'_, '_, N>) -> Hit {
+        match first.hit {
+            Some(hit) => with_normal(first.scene, (first.ray, first.scale), hit),
+            None => Hit::MISS,
         }
     }
 }
@@ -211,15 +211,15 @@ impl Question for Closest {
 pub struct Nearest;
 
 impl Question for Nearest {
-    type Answer = Found;
-    const MISS: Found = Found::MISS;
-    const REJECTED: Found = Closest::REJECTED;
+    type Answer = Hit;
+    const MISS: Hit = Hit::MISS;
+    const REJECTED: Hit = Closest::REJECTED;
 
     #[inline(always)]
-    fn hit<N: Number>(met: Met<'_, '_, N>) -> Found {
-        match met.hit {
-            Some(hit) => bare(met.scene, (met.ray, met.scale), hit),
-            None => Found::MISS,
+    fn hit<N: Number>(first: FirstHit<'_, '_, N>) -> Hit {
+        match first.hit {
+            Some(hit) => bare(first.scene, (first.ray, first.scale), hit),
+            None => Hit::MISS,
         }
     }
 }
@@ -230,7 +230,7 @@ fn bare<N: Number>(
     scene: &Scene<'_>,
     (ray, scale): (&Ray<N>, &DirectionScale),
     hit: &PrimitiveHit<N>,
-) -> Found {
+) -> Hit {
     let error = || {
         let whole = hit.hit(scene, ray);
         let error = whole.map_or(0.0, |whole| whole.error.length_to_f64());
@@ -242,7 +242,7 @@ fn bare<N: Number>(
     };
     let instance = hit.instance();
     let instance = instance.and_then(|index| scene.instances().get(index as usize));
-    Found {
+    Hit {
         t,
         object: scene.object(hit.primitive),
         primitive: hit.primitive,
@@ -254,19 +254,19 @@ fn bare<N: Number>(
 
 /// A hit as arrays hold it.
 #[inline(always)]
-fn found<N: Number>(
+fn with_normal<N: Number>(
     scene: &Scene<'_>,
     (ray, scale): (&Ray<N>, &DirectionScale),
     hit: &PrimitiveHit<N>,
-) -> Found {
+) -> Hit {
     let Some(normal) = hit.normal(scene, ray) else {
-        return Found::MISS;
+        return Hit::MISS;
     };
-    let mut found = bare(scene, (ray, scale), hit);
-    if found.primitive != NONE {
-        found.normal = normal.map(|x| x.ratio_to_f64() as f32);
+    let mut answer = bare(scene, (ray, scale), hit);
+    if answer.primitive != NONE {
+        answer.normal = normal.map(|x| x.ratio_to_f64() as f32);
     }
-    found
+    answer
 }
 
 /// Answers a question about each ray.
@@ -334,7 +334,7 @@ fn ask_inline<N: Number, A: Accel, Q: Question>(
                 };
                 if any_hit::<N, A, _>(scene, ray, stack.as_view(), &mut NoCount) {
                     let hit = None;
-                    *answer = Q::hit(Met {
+                    *answer = Q::hit(FirstHit {
                         scene,
                         ray,
                         scale,
@@ -359,7 +359,7 @@ fn ask_inline<N: Number, A: Accel, Q: Question>(
                 Ok((ray, scale)) => {
                     if let Some(hit) = met {
                         let hit = Some(hit);
-                        *answer = Q::hit(Met {
+                        *answer = Q::hit(FirstHit {
                             scene,
                             ray,
                             scale,

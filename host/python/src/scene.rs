@@ -12,7 +12,7 @@ use crate::hit_arrays::{
 use crate::load_options::LoadOptions;
 use crate::meshes::{self, GivenMesh, Mesh};
 use crate::model::{Model, warn};
-use crate::query::{self, Any, FirstPrimitive, Found, Inside, NONE, Rows};
+use crate::query::{self, Any, FirstPrimitive, Hit, Inside, NONE, Rows};
 use crate::rays::{Array, Points, TwoArrays};
 use crate::threads::{in_pool, workers};
 use gridel_core::Settings;
@@ -122,11 +122,11 @@ impl NativeScene {
         let form = Rows::new(
             self.has_all_triangles(),
             #[inline(always)]
-            |hit: &Found| self.load_ahead(hit),
+            |hit: &Hit| self.load_ahead(hit),
             #[inline(always)]
-            |ray: &SceneRay, hit: &Found| Some(self.placed(ray, hit)),
+            |ray: &SceneRay, hit: &Hit| Some(self.placed(ray, hit)),
             #[inline(always)]
-            |hit: &Found| (hit.t, hit.primitive),
+            |hit: &Hit| (hit.t, hit.primitive),
         );
         let found = Cast::of(py, (&scene, rays, how), true, &form)?;
         Ok((
@@ -155,15 +155,15 @@ impl NativeScene {
         let form = Rows::new(
             self.has_all_triangles(),
             #[inline(always)]
-            |hit: &Found| self.load_ahead(hit),
+            |hit: &Hit| self.load_ahead(hit),
             // A ray whose t leaves single precision hits nothing there.
             #[inline(always)]
-            |ray: &SceneRay, hit: &Found| {
+            |ray: &SceneRay, hit: &Hit| {
                 Some(self.placed(ray, hit)).filter(|placed| (placed.t as f32).is_finite())
             },
             // Nor does one without a direction.
             #[inline(always)]
-            |hit: &Found| {
+            |hit: &Hit| {
                 let t = if hit.t.is_nan() {
                     f32::INFINITY
                 } else {

@@ -1,8 +1,10 @@
 //! The answers at the top of the page: the setting for a given error, the effect of the number format, and what to
 //! leave out.
 
-use super::{Cost, Parameter, Point, Results, Truth, cheapest};
-use crate::table::{counted, significant};
+use super::columns::figure;
+use super::ratio::{ONCE, Ratio};
+use super::{Cost, Limits, Parameter, Point, Results, Truth, cheapest};
+use crate::table::counted;
 use gridel_core::Format;
 
 /// Error bounds for the answers, the largest first.
@@ -10,8 +12,9 @@ const BOUNDS: [f64; 9] = [0.1, 0.05, 0.03, 0.02, 0.01, 0.005, 0.002, 0.001, 0.00
 
 /// Three sentences, or fewer where the results do not have the figures.
 pub fn answers(results: &Results) -> Vec<String> {
-    let all = results.points.iter().find(|it| it.setting == results.base);
-    let Some(all) = all else { return Vec::new() };
+    let Some(all) = results.start() else {
+        return Vec::new();
+    };
     let answers = [
         setting_answer(results),
         format_answer(results, all),
@@ -22,9 +25,14 @@ pub fn answers(results: &Results) -> Vec<String> {
 
 /// The cheapest settings within two bounds, which differ.
 fn setting_answer(results: &Results) -> Option<String> {
-    let found = BOUNDS
-        .iter()
-        .filter_map(|&bound| Some((bound, cheapest(&results.points, bound, None)?)));
+    let cheapest_within = |error| {
+        let limits = Limits {
+            error,
+            rays: f64::INFINITY,
+        };
+        Some((error, cheapest(&results.points, limits, None)?))
+    };
+    let found = BOUNDS.into_iter().filter_map(cheapest_within);
     let mut found: Vec<(f64, &Point)> = found.collect();
     found.dedup_by(|later, earlier| later.1.name == earlier.1.name);
     // The two smallest bounds that settings keep; coarser ones are rarely useful.
@@ -42,7 +50,7 @@ fn setting_answer(results: &Results) -> Option<String> {
                 "for an error (RMSE) of at most {bound} use {}: {}, error {}{rivals}",
                 setting_text(results, point),
                 time_text(&point.cost),
-                figure(point.errors.rmse),
+                error_text(point.errors.rmse),
             )
         })
         .collect();
@@ -86,7 +94,7 @@ fn format_answer(results: &Results, all: &Point) -> Option<String> {
             },
             largest => format!(
                 "differs from {from} by an RMSE of {} (largest difference {} of 255)",
-                figure(point.parts.arithmetic),
+                error_text(point.parts.arithmetic),
                 (255.0 * largest).ceil()
             ),
         };
@@ -111,15 +119,14 @@ fn format_answer(results: &Results, all: &Point) -> Option<String> {
     (!text.is_empty()).then(|| {
         format!(
             "The number format: {text}; samples and the other settings make an error of {}.",
-            figure(all.parts.sampling)
+            error_text(all.parts.sampling)
         )
     })
 }
 
 /// The change of one parameter that adds the least error for the rays and tests that it saves.
 fn saving_answer(results: &Results, all: &Point) -> Option<String> {
-    let work = |point: &Point| (point.cost.rays + point.cost.tests) as f64;
-    let saved = |point: &Point| 1.0 - work(point) / work(all).max(1.0);
+    let saved = |point: &Point| 1.0 - point.cost.work() / all.cost.work().max(1.0);
     let added = |point: &Point| {
         let lost = point.lost.map_or(0.0, |lost| lost.rmse);
         (point.errors.rmse - all.errors.rmse).max(lost).max(0.0)
@@ -138,7 +145,7 @@ fn saving_answer(results: &Results, all: &Point) -> Option<String> {
     };
     let error = match added(first) {
         added if added < 5e-6 => String::from("adds no error"),
-        added => format!("adds an error of {}", figure(added)),
+        added => format!("adds an error of {}", error_text(added)),
     };
     Some(format!(
         "Give up first: {}, which saves {:.0} % of the rays and tests, {}, and {error}.",
@@ -148,34 +155,31 @@ fn saving_answer(results: &Results, all: &Point) -> Option<String> {
     ))
 }
 
-fn figure(value: f64) -> String {
-    if 0.0 < value && value < 5e-6 {
-        return String::from("less than 0.00001");
+/// An error in words, which is 0 only where there is none.
+fn error_text(error: f64) -> String {
+    match 0.0 < error && error < 5e-6 {
+        true => String::from("less than 0.00001"),
+        false => figure(error),
     }
-    significant((value * 1e5).round() / 1e5)
 }
 
 fn time_text(cost: &Cost) -> String {
     let time = 1e3 * cost.time();
     match cost.interval() {
         Some([least, most]) => format!("{time:.1} ms ({:.1} to {:.1})", 1e3 * least, 1e3 * most),
-        None => format!("{time:.1} ms (timed once, so its noise is unknown)"),
+        None => format!("{time:.1} ms ({ONCE})"),
     }
 }
 
 /// Returns a sentence part that compares a time with another, with its range.
 fn ratio_text(cost: &Cost, to: &Cost) -> String {
-    let ratio = cost.time() / to.time().max(f64::MIN_POSITIVE);
-    let Some(([low, high], [least, most])) = cost.interval().zip(to.interval()) else {
-        return format!("takes {ratio:.2} times the time (timed once, so its noise is unknown)");
-    };
-    let [low, high] = [low / most, high / least];
-    if low <= 1.0 && 1.0 <= high {
-        return format!(
-            "shows no difference in time beyond the noise ({low:.2} to {high:.2} times)"
-        );
+    let ratio = Ratio::of(cost, to);
+    match ratio.ends {
+        Some([low, high]) if ratio.is_noise() => {
+            format!("shows no difference in time beyond the noise ({low:.2} to {high:.2} times)")
+        }
+        _ => format!("takes {}", ratio.factor_text()),
     }
-    format!("takes {ratio:.2} times the time ({low:.2} to {high:.2})")
 }
 
 fn capital(text: &str) -> String {

@@ -7,9 +7,9 @@ use crate::blob::Blob;
 use crate::compile::{self, CompileError, Compiled, Quality};
 use crate::measure::board::instructions;
 use crate::measure::{
-    Errors, FirstHit, InstanceCount, Rendered, board_memory, first_hits, median, rmse_and_largest,
-    time,
+    Errors, FirstHit, InstanceCount, Rendered, board_memory, median, rmse_and_largest, time,
 };
+use crate::render::{Job, first_hits};
 use crate::scene::Scene;
 use gridel_core::format::checksum;
 use gridel_core::render::RenderError;
@@ -67,6 +67,11 @@ impl Cost {
         median(&self.seconds).unwrap_or(0.0)
     }
 
+    /// Returns the rays and the tests in one count.
+    pub fn work(&self) -> f64 {
+        (self.rays + self.tests) as f64
+    }
+
     /// Returns the least and the largest of the repeats: see [`time::interval`].
     pub fn interval(&self) -> Option<[f64; 2]> {
         time::interval(&self.seconds)
@@ -97,6 +102,11 @@ impl Point {
         self.cost.rays as f64 / self.cost.pixels.max(1) as f64
     }
 
+    /// Rays and tests per pixel.
+    pub fn work_per_pixel(&self) -> f64 {
+        self.cost.work() / self.cost.pixels.max(1) as f64
+    }
+
     /// Instructions per pixel on a board: see [`instructions`].
     pub fn instructions(&self, board: &str) -> Option<[f64; 2]> {
         instructions(board, self.setting.format, self.rays_per_pixel())
@@ -119,7 +129,7 @@ pub struct Reference {
     /// Linear, 65535 being white.
     pub pixels: Vec<[u16; 3]>,
     /// One value per pixel; `None` on a miss.
-    hits: Vec<Option<FirstHit>>,
+    pub(super) hits: Vec<Option<FirstHit>>,
 }
 
 /// An error of a measurement.
@@ -420,9 +430,9 @@ impl<'s> Bench<'s> {
         if let Some(hits) = self.hits.get(&key) {
             return Ok(hits.clone());
         }
-        let with = (self.structure, setting.format);
-        let settings = settings(self.size, setting);
-        let hits = first_hits(&self.blob(setting)?.scene()?, with, settings)?;
+        let job = Job::whole(setting.format, self.structure, settings(self.size, setting));
+        let hits = first_hits(&self.blob(setting)?.scene()?, &job)?.into_iter();
+        let hits: Vec<_> = hits.map(|it| it.map(FirstHit::from)).collect();
         self.hits.insert(key, hits.clone());
         Ok(hits)
     }

@@ -23,6 +23,11 @@ pub const COLUMNS: [&str; 16] = [
     "RAM",
 ];
 
+/// A small figure, to five decimals.
+pub(super) fn figure(value: f64) -> String {
+    significant((value * 1e5).round() / 1e5)
+}
+
 impl Point {
     /// The setting's figures, column by column.
     pub fn cells(&self) -> [String; COLUMNS.len()] {

@@ -1,8 +1,9 @@
 //! The cost of each effect of a scene, the loss without it, and the order in which to leave effects out.
 
+use super::ratio::Ratio;
 use super::{Bench, MeasureError, Parameter, Point, Results, Setting};
+use crate::measure::Errors;
 use crate::measure::board::{Board, MemoryReport, Rendering, Target, instructions};
-use crate::measure::{Errors, time};
 use crate::scene::shown_without;
 use gridel_core::Effects;
 use serde::{Deserialize, Serialize};
@@ -50,9 +51,8 @@ impl EffectCost {
     /// The error that leaving the effect out adds, per part of the rays and tests that it saves. The effect with the
     /// smallest price is left out first.
     fn price(&self, all: &Point) -> f64 {
-        let pixels = all.cost.pixels.max(1) as f64;
-        let work = (all.cost.rays + all.cost.tests) as f64 / pixels;
-        let saved = (self.rays + self.tests) / work.max(f64::MIN_POSITIVE);
+        let work = all.work_per_pixel().max(f64::MIN_POSITIVE);
+        let saved = (self.rays + self.tests) / work;
         self.lost.rmse / saved.max(LEAST_SAVING)
     }
 }
@@ -66,7 +66,7 @@ pub fn effect_costs(
     bench: &mut Bench<'_>,
     results: &Results,
 ) -> Result<Vec<EffectCost>, MeasureError> {
-    let Some(all) = results.points.iter().find(|it| it.setting == results.base) else {
+    let Some(all) = results.start() else {
         return Ok(Vec::new());
     };
     let mut effect_costs = Vec::new();
@@ -81,13 +81,7 @@ pub fn effect_costs(
         let pixels = all.cost.pixels.max(1) as f64;
         let saved = |count: fn(&Point) -> u64| (count(all) as f64 - count(point) as f64) / pixels;
         let rays = saved(|it| it.cost.rays);
-        let [least, most] = [false, true].map(|most| {
-            let ends = time::interval(&point.cost.seconds).zip(time::interval(&all.cost.seconds));
-            ends.map(|([low, high], [least, most_of_all])| match most {
-                true => 1.0 - low / most_of_all,
-                false => 1.0 - high / least,
-            })
-        });
+        let ratio = Ratio::of(&point.cost, &all.cost);
         let blob_bytes = all.cost.blob_bytes as i64 - point.cost.blob_bytes as i64;
         let code = code(bench, &results.base, name)?;
         let format = Board::named(BOARD).map(Board::format);
@@ -98,8 +92,8 @@ pub fn effect_costs(
             lost,
             rays,
             tests: saved(|it| it.cost.tests),
-            time: 1.0 - point.cost.time() / all.cost.time().max(f64::MIN_POSITIVE),
-            time_range: least.zip(most).map(|(least, most)| [least, most]),
+            time: 1.0 - ratio.median,
+            time_range: ratio.ends.map(|[low, high]| [1.0 - high, 1.0 - low]),
             blob_bytes,
             instructions: format
                 .filter(|_| rays > 0.0)

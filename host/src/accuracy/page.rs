@@ -2,14 +2,14 @@
 //!
 //! `page.html` is the template, with the page's style and script; its marks `{{NAME}}` are replaced here.
 
+use super::columns::figure;
 use super::{
     COLUMNS, EffectCost, Parameter, Point, Results, Setting, Truth, answers, frontier, frontier_by,
     instance_notes, sentences,
 };
 use crate::measure::board::core_names;
-use crate::picture::write_png;
-use crate::table::{counted, grouped, significant};
-use base64::Engine;
+use crate::report::{escape, picture_url};
+use crate::table::{counted, grouped};
 use gridel_core::format::limits::MAX_RAY_DEPTH;
 use serde_json::json;
 use std::collections::HashMap;
@@ -74,7 +74,7 @@ pub fn page(
         "<ul>\n{}</ul>\n<p>Sampling error: {truth} of a setting against the reference; it is what samples, depth, \
          cut-off, lattice and left-out effects do. Arithmetic error: the picture of the setting's number format against \
          {truth} of the same setting. Both are RMSEs, and need not add up.</p>\n{NOTES}",
-        list(sentences(&results.base, &results.points)),
+        list(sentences(results)),
         truth = code(results.reference.truth.picture()),
     );
     let parts = [
@@ -105,11 +105,6 @@ const NOTES: &str = "<p>A bar spans the repeats of a time, or the least and the 
     beside them, MEMORY.md states. t counts units of the last place of single precision. SSIM is structural similarity, \
     1 for equal pictures; FLIP is the mean difference that an eye sees.</p>\n";
 
-pub(super) fn escape(text: &str) -> String {
-    let text = text.replace('&', "&amp;").replace('<', "&lt;");
-    text.replace('>', "&gt;").replace('"', "&quot;")
-}
-
 /// A number, as a power of two if it is one.
 fn power(number: f64) -> String {
     let exponent = number.log2();
@@ -129,15 +124,8 @@ fn code(text: &str) -> String {
     marked.collect()
 }
 
-fn image([width, height]: [u16; 2], pixels: &[u8]) -> io::Result<String> {
-    let mut file = Vec::new();
-    write_png(&mut file, [width.into(), height.into()], pixels, None)?;
-    let data = base64::engine::general_purpose::STANDARD.encode(file);
-    Ok(format!("data:image/png;base64,{data}"))
-}
-
 /// Returns the parameter that differs from the scene file's setting, as the page's colors name it.
-fn lever(setting: &Setting, base: &Setting) -> &'static str {
+fn parameter(setting: &Setting, base: &Setting) -> &'static str {
     match setting.differs(base)[..] {
         [] => "base",
         [Parameter::Format] => "format",
@@ -182,7 +170,7 @@ fn data(size: [u16; 2], results: &Results, pictures: &[PagePicture]) -> io::Resu
             .filter_map(|board| Some((board.to_owned(), json!(point.instructions(board)?))))
             .collect();
         json!({
-            "name": point.name, "words": point.setting.words(base), "lever": lever(&point.setting, base),
+            "name": point.name, "words": point.setting.words(base), "parameter": parameter(&point.setting, base),
             "rmse": errors.rmse, "flip": errors.flip, "ssim": (1.0 - errors.ssim).max(0.0),
             "sampling": point.parts.sampling, "arithmetic": point.parts.arithmetic,
             "ms": ms, "range": range, "rays": point.rays_per_pixel(), "boards": boards,
@@ -218,7 +206,7 @@ impl Images {
         if let Some(&number) = self.numbers.get(pixels) {
             return Ok(Some(number));
         }
-        let image = image(size, pixels)?;
+        let image = picture_url(size, pixels)?;
         // The reference is always there, so that differences have something to differ from.
         if !self.images.is_empty() && self.bytes + image.len() > MOST_PICTURE_BYTES {
             return Ok(None);
@@ -229,11 +217,6 @@ impl Images {
         self.numbers.insert(pixels.to_vec(), number);
         Ok(Some(number))
     }
-}
-
-/// A small figure, to five decimals.
-fn figure(value: f64) -> String {
-    significant((value * 1e5).round() / 1e5)
 }
 
 /// The table of the front, the fastest first.
@@ -271,10 +254,7 @@ fn effects(results: &Results) -> String {
     if results.effects.is_empty() {
         return String::new();
     }
-    let all = results.points.iter().find(|it| it.setting == results.base);
-    let work = all.map_or(1.0, |it| {
-        (it.cost.rays + it.cost.tests) as f64 / it.cost.pixels.max(1) as f64
-    });
+    let work = results.start().map_or(1.0, Point::work_per_pixel);
     let worst = results.effects.iter().map(|it| it.lost.rmse);
     let worst = worst.fold(1e-9, f64::max);
     let mut text = format!(

@@ -1,7 +1,7 @@
 //! The plot of all settings for documents: a picture without a script.
 
-use super::page::escape;
 use super::{Point, Results, frontier, frontier_by};
+use crate::report::escape;
 use crate::table::significant;
 use plotters::prelude::*;
 use std::fmt::Write;

@@ -309,7 +309,7 @@ mod tests {
     use std::collections::HashSet;
 
     #[test]
-    fn every_lever_is_turned_alone_and_nothing_twice() {
+    fn every_parameter_is_changed_alone_and_nothing_twice() {
         let base = Setting {
             format: Format::F32,
             lattice_bits: 24,

@@ -16,7 +16,7 @@
 //! | `crossing.rs`, `shapes.rs`, `cone.rs`, `torus.rs` | where rays cross primitives |
 //! | `path.rs`, `camera.rs` | a ray on its way from the eye, and how it begins |
 //! | `search.rs`, `nearest.rs`, `hit.rs` | crossings, those that may be the nearest, and the surface there |
-//! | `trace.rs`, `surface.rs`, `light.rs`, `aim.rs` | the rays of a sample, what they see, and what arrives from lights |
+//! | `trace.rs`, `surface.rs`, `light.rs`, `aim.rs`, `solid_angle.rs` | the rays of a sample, what they see, and what arrives from lights |
 //! | `shade.rs`, `paint.rs`, `log2.rs`, `levels.rs`, `bump.rs`, `media.rs`, `facets.rs`, `sky.rs`, `directions.rs` | the rules of effects |
 //! | `tone.rs`, `picture.rs` | from samples to pixels, with more bits where that is needed |
 //! | `reason.rs`, `report.rs`, `page.rs` | why a pixel is open, and what was found |

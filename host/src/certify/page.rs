@@ -1,9 +1,8 @@
 //! The page about a certified picture. It loads nothing from anywhere.
 
 use super::report::Report;
-use crate::picture::write_png;
+use crate::report::{escape, picture_url};
 use crate::table::{counted, grouped};
-use base64::Engine;
 use std::fmt::Write;
 use std::io;
 
@@ -202,13 +201,11 @@ fn widths(report: &Report) -> String {
     chart + "</table>\n"
 }
 
-fn image([width, height]: [u16; 2], pixels: &[u8]) -> io::Result<String> {
-    let mut png = Vec::new();
-    write_png(&mut png, [width.into(), height.into()], pixels, None)?;
-    let [shown_width, shown_height] = shown_size([width, height]);
-    let data = base64::engine::general_purpose::STANDARD.encode(png);
+fn image(size: [u16; 2], pixels: &[u8]) -> io::Result<String> {
+    let url = picture_url(size, pixels)?;
+    let [width, height] = shown_size(size);
     Ok(format!(
-        "<img alt=\"\" width=\"{shown_width}\" height=\"{shown_height}\" src=\"data:image/png;base64,{data}\">"
+        "<img alt=\"\" width=\"{width}\" height=\"{height}\" src=\"{url}\">"
     ))
 }
 
@@ -218,12 +215,6 @@ fn shown_size(size: [u16; 2]) -> [u32; 2] {
     let [width, height] = size.map(u32::from);
     let by = (USUAL / width.max(height).max(1)).max(1);
     [width * by, height * by]
-}
-
-fn escape(text: &str) -> String {
-    text.replace('&', "&amp;")
-        .replace('<', "&lt;")
-        .replace('>', "&gt;")
 }
 
 const HEAD: &str = "<!DOCTYPE html>\n<html lang=\"en\">\n<meta charset=\"utf-8\">\n\

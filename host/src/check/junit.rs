@@ -1,6 +1,7 @@
 //! Findings as JUnit XML.
 
 use super::report::{Finding, Outcome, Report};
+use crate::report::escape;
 use std::fmt::Write as _;
 use std::io::{self, Write};
 
@@ -90,12 +91,8 @@ fn counts(findings: &[Finding]) -> String {
 /// Text as an attribute's value. Characters that XML cannot hold are left out.
 fn escaped(text: &str) -> String {
     let mut escaped = String::with_capacity(text.len());
-    for character in text.chars() {
+    for character in escape(text).chars() {
         match character {
-            '&' => escaped += "&amp;",
-            '<' => escaped += "&lt;",
-            '>' => escaped += "&gt;",
-            '"' => escaped += "&quot;",
             '\'' => escaped += "&apos;",
             // Readers would take them for spaces.
             '\t' | '\n' | '\r' => {

@@ -7,8 +7,7 @@ use super::run::Run;
 use crate::explained;
 use crate::measure::Rendered;
 use crate::picture::hash;
-use crate::render::MOST_PIXELS;
-use crate::table::grouped;
+use crate::render::{MOST_PIXELS, too_many_pixels};
 use gridel_core::{Format, Scene, Settings, Structure};
 use std::io;
 
@@ -161,12 +160,8 @@ impl Run<'_> {
 
 /// Rejects a picture of too many pixels.
 pub(super) fn check_pixels(settings: &Settings, most: usize) -> Result<(), String> {
-    let pixels = usize::from(settings.width) * usize::from(settings.height);
-    if pixels <= most {
-        return Ok(());
+    match too_many_pixels([settings.width, settings.height], most) {
+        Some(clause) => Err(format!("{clause}; choose a smaller `size`")),
+        None => Ok(()),
     }
-    let [pixels, most] = [pixels, most].map(grouped);
-    Err(format!(
-        "{pixels} pixels exceed the largest size of {most}; choose a smaller `size`"
-    ))
 }

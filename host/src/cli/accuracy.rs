@@ -11,7 +11,9 @@ pub use arguments::Arguments;
 use super::arguments::{GeometryOptions, SceneOptions, check_quality};
 use super::failure::Failure;
 use super::input::stem;
-use super::output::{check_folder, check_writable, print, print_json_warned, write_texts};
+use super::output::{
+    check_folder, check_writable, print, print_json_warned, results_folder, write_texts,
+};
 use super::source::{import, warn_of_file};
 use choice::{Choice, choice};
 use folder::{CSV, PAGE, PLOT, kept, pictures};
@@ -21,12 +23,12 @@ use gridel_host::accuracy::{
     frontier, least_reference_samples, page, plot, reference_setting, sentences, sweep,
 };
 use gridel_host::measure::InstanceCount;
+use gridel_host::render::too_many_pixels;
 use gridel_host::scene::{Imported, RenderSettings};
 use gridel_host::table::{counted, grouped, significant};
 use measure::measure;
 use report::{csv, text};
 use serde::Serialize;
-use std::path::PathBuf;
 
 /// Samples per pixel of a reference, where no more are needed.
 const REFERENCE_SAMPLES: u16 = 256;
@@ -71,10 +73,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     arguments.output.as_deref().map_or(Ok(()), check_folder)?;
     let (imported, mut warnings) = read(arguments)?;
     let stem = stem(path);
-    let folder = match &arguments.output {
-        Some(folder) => folder.clone(),
-        None => PathBuf::from(format!("accuracy-{stem}")),
-    };
+    let folder = results_folder(arguments.output.as_deref(), "accuracy", &stem);
     let size = measured_size(arguments, &imported.scene.render)?;
     let failed = |error: MeasureError| Failure::in_file(path, error);
     let mut bench = Bench::new(&imported.scene, arguments.accel, size)
@@ -111,11 +110,8 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         (&settings, &reference),
     )?;
     let pictures = pictures(&folder, size, &results)?;
-    let fault = |error: std::io::Error| {
-        Failure::failed(error.to_string(), "report this as a fault of gridel")
-    };
-    let page = page(&stem, size, &results, &pictures).map_err(fault)?;
-    let plot = plot(&results).map_err(fault)?;
+    let page = page(&stem, size, &results, &pictures).map_err(Failure::fault)?;
+    let plot = plot(&results).map_err(Failure::fault)?;
     let csv = csv(&results.points);
     write_texts(&folder, &[(PAGE, page), (CSV, csv), (PLOT, plot)])?;
 
@@ -133,7 +129,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
             frontier: frontier(&results.points),
             answers: answers(&results),
             effects: &results.effects,
-            sentences: sentences(&results.base, &results.points),
+            sentences: sentences(&results),
             cheapest: choice.as_ref(),
         };
         print_json_warned(&printed, &warnings)?;
@@ -179,18 +175,13 @@ fn measured_size(arguments: &Arguments, stated: &RenderSettings) -> Result<[u16;
     let size = arguments
         .size
         .unwrap_or_else(|| smaller([stated.width, stated.height]));
-    let pixels = usize::from(size[0]) * usize::from(size[1]);
-    if pixels <= MOST_PIXELS {
-        return Ok(size);
+    match too_many_pixels(size, MOST_PIXELS) {
+        Some(clause) => Err(Failure::usage(
+            format!("{clause}, which takes about 1 GB of memory"),
+            "ask for a smaller `--size`: errors, and times per ray, hardly depend on it",
+        )),
+        None => Ok(size),
     }
-    Err(Failure::usage(
-        format!(
-            "{} pixels exceed the largest size of {}, which takes about 1 GB of memory",
-            grouped(pixels),
-            grouped(MOST_PIXELS)
-        ),
-        "ask for a smaller `--size`: errors, and times per ray, hardly depend on it",
-    ))
 }
 
 /// The samples per pixel of the reference.

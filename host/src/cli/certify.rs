@@ -1,28 +1,29 @@
 //! `gridel certify`: encloses the exact picture, and measures how far each number format is from it.
 
+mod state;
+
 use super::arguments::{
-    self, GeometryOptions, PictureOptions, SceneOptions, TraceOptions, distinct, quoted, seconds,
+    self, GeometryOptions, PictureOptions, SceneOptions, TraceOptions, distinct_or, seconds,
 };
 use super::failure::Failure;
 use super::input::stem;
-use super::output::{check_folder, print, print_json_warned, warn, write_files};
+use super::output::{check_folder, print, print_json_warned, results_folder, write_files};
 use super::progress::Progress;
 use super::saving::Saving;
 use super::source::Source;
 use clap::Args;
-use flate2::Crc;
 use gridel_core::{Format, Settings, Structure};
 use gridel_host::certify::{
     Enclosed, FormatPicture, MOST_PIXELS, Pictures, Report, World, certify, exact_picture, map,
     page, pictures, sentence,
 };
-use gridel_host::output::write_whole;
 use gridel_host::picture::write_png;
+use gridel_host::render::too_many_pixels;
 use gridel_host::table::{Align, Table, grouped};
 use serde::Serialize;
+use state::State;
 use std::fmt::Write as _;
 use std::fs;
-use std::io;
 use std::path::{Path, PathBuf};
 
 /// Prove how far each number format is from the exact picture
@@ -76,10 +77,6 @@ const PAGE: &str = "certify.html";
 const JSON: &str = "certify.json";
 const MAP: &str = "map.png";
 const EXACT: &str = "exact.png";
-const STATE: &str = "certify.state";
-
-/// The version of what is proved and how. Raise it with every change, so that older states are not continued.
-const RULES: u32 = 8;
 
 /// The JSON output.
 #[derive(Serialize)]
@@ -115,15 +112,8 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let structure = source.structure(&scene, None)?;
     let settings = arguments.picture.settings(&scene);
     let count = usize::from(settings.width) * usize::from(settings.height);
-    if count > MOST_PIXELS {
-        return Err(Failure::usage(
-            format!(
-                "{} pixels exceed the largest size of {}",
-                grouped(count),
-                grouped(MOST_PIXELS)
-            ),
-            "ask for a smaller `--size`",
-        ));
+    if let Some(clause) = too_many_pixels([settings.width, settings.height], MOST_PIXELS) {
+        return Err(Failure::usage(clause, "ask for a smaller `--size`"));
     }
     let world = World::of(&scene).map_err(|unknown| {
         Failure::rejected(
@@ -132,24 +122,15 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         )
     })?;
     let stem = stem(input);
-    let folder = match &arguments.output {
-        Some(folder) => folder.clone(),
-        None => PathBuf::from(format!("certify-{stem}")),
-    };
+    let folder = results_folder(arguments.output.as_deref(), "certify", &stem);
     let results = [PAGE, JSON, MAP, EXACT].map(|name| folder.join(name));
-    let state = State {
-        path: folder.join(STATE),
-        key: key(scene.header().checksum, source.time(), &settings),
-    };
+    let state = State::new(&folder, scene.header().checksum, source.time(), &settings);
     source.reject_lost(results.iter().chain([&state.path]))?;
-    reject_foreign(&state, &results)?;
+    state.reject_foreign(&results)?;
     fs::create_dir_all(&folder).map_err(|error| Failure::writing(&folder, &error))?;
 
     // Formats first: they reject settings that no picture has, in a moment.
-    let formats = match &arguments.format[..] {
-        [] => Format::ALL.to_vec(),
-        asked => distinct(asked),
-    };
+    let formats = distinct_or(&arguments.format, &Format::ALL);
     let pictures = pictures(&scene, structure, settings, &formats).map_err(|error| {
         Failure::usage(
             error.to_string(),
@@ -191,109 +172,12 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     }
 }
 
-/// Returns a key of the certified picture, so that the state of another picture is not continued.
-fn key(checksum: u32, time: Option<i32>, settings: &Settings) -> String {
-    let Settings {
-        width,
-        height,
-        samples,
-        depth,
-        ..
-    } = settings;
-    let time = time.map_or(String::new(), |ticks| format!(" time {ticks}"));
-    format!(
-        "gridel {} certify {RULES} blob {checksum:08x}{time} size {width}x{height} samples {samples} depth {depth}\n",
-        env!("CARGO_PKG_VERSION")
-    )
-}
-
-/// The file from which an interrupted run continues: a line with the key, the pixels, and a checksum of both.
-struct State {
-    path: PathBuf,
-    key: String,
-}
-
-impl State {
-    /// The pixels of a run before this one; none are done if there was none, or of another picture.
-    fn read(&self, count: usize) -> Result<Vec<Enclosed>, Failure> {
-        let mut pixels = vec![Enclosed::default(); count];
-        let bytes = match fs::read(&self.path) {
-            Ok(bytes) => bytes,
-            Err(error) if error.kind() == io::ErrorKind::NotFound => return Ok(pixels),
-            Err(error) => return Err(Failure::reading(&self.path, &error)),
-        };
-        let cause = match self.kept(&bytes) {
-            Ok(kept) => {
-                let into: &mut [u8] = bytemuck::cast_slice_mut(&mut pixels);
-                if kept.len() == into.len() {
-                    into.copy_from_slice(kept);
-                    return Ok(pixels);
-                }
-                "is damaged"
-            }
-            Err(cause) => cause,
-        };
-        warn(format!(
-            "{} {cause}; all pixels are evaluated again, and the file is replaced",
-            self.path.display()
-        ));
-        Ok(pixels)
-    }
-
-    /// The bytes of the pixels.
-    fn kept<'b>(&self, bytes: &'b [u8]) -> Result<&'b [u8], &'static str> {
-        let (all, sum) = bytes.split_last_chunk().ok_or("is damaged")?;
-        // The checksum holds for the key, too: without it, a damaged key looks like that of another picture.
-        if u32::from_le_bytes(*sum) != sum_of(&[all]) {
-            return Err("is damaged");
-        }
-        let pixels = all.strip_prefix(self.key.as_bytes());
-        pixels.ok_or("is of another picture")
-    }
-
-    fn write(&self, pixels: &[Enclosed]) -> Result<(), Failure> {
-        // Without a copy, which would be as large as the pixels of the largest picture: 320 MiB.
-        let parts = [self.key.as_bytes(), bytemuck::cast_slice(pixels)];
-        let sum = sum_of(&parts).to_le_bytes();
-        write_whole(&self.path, |out| {
-            parts.iter().try_for_each(|part| out.write_all(part))?;
-            out.write_all(&sum)
-        })
-        .map_err(|error| Failure::writing(&self.path, &error))
-    }
-}
-
-/// The checksum of the parts of a state.
-fn sum_of(parts: &[&[u8]]) -> u32 {
-    let mut sum = Crc::new();
-    parts.iter().for_each(|part| sum.update(part));
-    sum.sum()
-}
-
-type Found<'f> = (&'f Report, &'f [Enclosed], &'f [FormatPicture]);
-
-/// Rejects files in the place of results where no state says that they are results.
-fn reject_foreign(state: &State, results: &[PathBuf]) -> Result<(), Failure> {
-    let foreign = match state.path.exists() {
-        true => None,
-        false => results.iter().find(|path| path.exists()),
-    };
-    let Some(path) = foreign else {
-        return Ok(());
-    };
-    Err(Failure::usage(
-        format!(
-            "{} exists, and no {STATE} of an earlier run is beside it: it would be overwritten",
-            path.display()
-        ),
-        "give another folder with `-o`, or move that file away",
-    ))
-}
+type Results<'r> = (&'r Report, &'r [Enclosed], &'r [FormatPicture]);
 
 fn write_results(
     [page_path, json_path, map_path, exact_path]: &[PathBuf; 4],
     name: &str,
-    (report, pixels, pictures): Found<'_>,
+    (report, pixels, pictures): Results<'_>,
     command: &str,
 ) -> Result<(), Failure> {
     let size = report.size.map(u32::from);
@@ -302,9 +186,7 @@ fn write_results(
         map: &map,
         exact: &exact,
     };
-    let failed =
-        |error: io::Error| Failure::failed(error.to_string(), "report this as a fault of gridel");
-    let page = page(name, report, &shown, command).map_err(failed)?;
+    let page = page(name, report, &shown, command).map_err(Failure::fault)?;
     let commanded = Commanded {
         explain: command,
         report,
@@ -333,9 +215,8 @@ fn explain_command(arguments: &Arguments, settings: &Settings) -> String {
     let time = arguments.time.map(|seconds| format!(" --time={seconds}"));
     let time = time.unwrap_or_default();
     format!(
-        "gridel explain {}{}{time} --size {width}x{height} --samples {samples} --depth {depth} --pixel ",
-        quoted(&arguments.input.to_string_lossy()),
-        arguments.geometry.written(),
+        "{}{time} --size {width}x{height} --samples {samples} --depth {depth} --pixel ",
+        arguments.geometry.explain_command(&arguments.input),
     )
 }
 

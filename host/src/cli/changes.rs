@@ -3,9 +3,9 @@
 use super::arguments::{LightChange, SceneOptions};
 use super::failure::Failure;
 use glam::DVec3;
+use gridel_core::Scene;
 use gridel_core::format::light_form::LightForm;
 use gridel_core::format::record::{self, View};
-use gridel_core::{BlobError, Scene};
 use gridel_host::compile::{self, CompileError};
 use gridel_host::scene::{Light, ToneMapping};
 use gridel_host::state::State;
@@ -18,15 +18,11 @@ pub struct Changes {
     pub time: Option<i32>,
 }
 
-/// Returns the error of values that are proved to be in their range.
-pub fn fault(error: BlobError) -> Failure {
-    Failure::failed(error.to_string(), "report this as a fault of gridel")
-}
-
 impl Changes {
     /// Returns the scene with these changes.
     pub fn apply<'a>(&'a self, scene: &Scene<'a>) -> Result<Scene<'a>, Failure> {
-        self.state.apply(scene).map_err(fault)
+        // The values are proved to be in their range.
+        self.state.apply(scene).map_err(Failure::fault)
     }
 
     /// Returns the changes that options make.

@@ -7,7 +7,7 @@ use super::output::{
 };
 use super::progress::Progress;
 use clap::Args;
-use gridel_host::check::{self, Blessed, Manifest, Outcome, Report};
+use gridel_host::check::{self, Manifest, Outcome, Recorded, Report};
 use gridel_host::output::Files;
 use gridel_host::table::{counted, printable};
 use serde::Serialize;
@@ -81,23 +81,23 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     for warning in &report.warnings {
         warn(warning);
     }
-    let recorded = manifest.pictures().filter(|_| arguments.bless);
-    let outputs = outputs(arguments, &manifest).chain(recorded.map(Path::to_owned));
+    let references = manifest.pictures().filter(|_| arguments.bless);
+    let outputs = outputs(arguments, &manifest).chain(references.map(Path::to_owned));
     let inputs = report.files.iter().map(PathBuf::as_path);
     reject_inputs(inputs, outputs, "a file that a scene reads")?;
-    let blessed = arguments.bless.then(|| check::bless(&manifest, &report));
-    let staged = match &blessed {
-        Some(blessed) => blessed.files(),
+    let records = arguments.bless.then(|| check::record(&manifest, &report));
+    let staged = match &records {
+        Some(records) => records.files(),
         None => Ok(Files::default()),
     };
-    if let Some(blessed) = blessed.as_ref().filter(|_| staged.is_ok()) {
-        blessed.note_in(&mut report);
+    if let Some(records) = records.as_ref().filter(|_| staged.is_ok()) {
+        records.note_in(&mut report);
     }
     // Everything runs, whatever fails. A report that cannot be written does not lose findings, and the findings set the
     // exit code in either case. The changes to recorded figures were printed before.
-    let diff = blessed.as_ref().filter(|_| staged.is_ok());
-    let diff = diff.map(Blessed::diff).unwrap_or_default();
-    let printed = print_findings(arguments, &report, blessed.as_ref(), &diff);
+    let diff = records.as_ref().filter(|_| staged.is_ok());
+    let diff = diff.map(Recorded::diff).unwrap_or_default();
+    let printed = print_findings(arguments, &report, records.as_ref(), &diff);
     let shown = match &arguments.diff {
         Some(folder) => write_evidence(folder, &report),
         None => Ok(()),
@@ -149,7 +149,7 @@ fn prove_outputs(arguments: &Arguments, manifest: &Manifest) -> Result<(), Failu
 fn print_findings(
     arguments: &Arguments,
     report: &Report,
-    blessed: Option<&Blessed>,
+    records: Option<&Recorded>,
     diff: &str,
 ) -> Result<(), Failure> {
     let (passed, failed, recorded) = (report.passed(), report.failed(), report.recorded());
@@ -164,7 +164,7 @@ fn print_findings(
             report,
         })
     } else {
-        let recorded = match blessed {
+        let recorded = match records {
             Some(_) => format!("{recorded} recorded, "),
             None => String::new(),
         };
@@ -173,7 +173,10 @@ fn print_findings(
         let text = format!("{}{reasons}{summary}{diff}", report.table());
         // Standard output is the XML's alone, so that it can be read.
         match arguments.junit.as_deref().is_some_and(is_standard) {
-            true => print_aside(text),
+            true => {
+                print_aside(text);
+                Ok(())
+            }
             false => print(text),
         }
     };
@@ -183,7 +186,7 @@ fn print_findings(
             counted(not_run, "figure")
         ));
     }
-    for what in blessed.into_iter().flat_map(|blessed| &blessed.left) {
+    for what in records.into_iter().flat_map(|records| &records.left) {
         warn(format!("{what} cannot be recorded"));
     }
     printed

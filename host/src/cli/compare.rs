@@ -2,7 +2,7 @@
 
 use super::arguments::TargetPoint;
 use super::arguments::{
-    self, SceneOptions, StructureOptions, check_hierarchy, check_room, distinct, scene_help,
+    self, SceneOptions, StructureOptions, check_hierarchy, check_room, distinct_or, scene_help,
     scene_long_help,
 };
 use super::failure::Failure;
@@ -151,9 +151,7 @@ pub fn run(arguments: &Arguments, memory: &PeakAlloc) -> Result<(), Failure> {
     }
     let grown = grown.map_err(failed)?;
     if let (Some(folder), Some(growth)) = (&arguments.plot, &grown) {
-        let charts = charts(&stem(path), &comparison, growth).map_err(|error| {
-            Failure::failed(error.to_string(), "report this as a fault of gridel")
-        })?;
+        let charts = charts(&stem(path), &comparison, growth).map_err(Failure::fault)?;
         write_texts(folder, &charts)?;
     }
     check_answers(&comparison, grown.as_ref())?;
@@ -170,10 +168,7 @@ pub fn run(arguments: &Arguments, memory: &PeakAlloc) -> Result<(), Failure> {
 /// Returns the options of the comparison, without its memory and whether it copies instances.
 fn options(arguments: &Arguments) -> Result<Options<'static>, Failure> {
     let default = Options::default();
-    let structures = match &arguments.accel[..] {
-        [] => default.structures.clone(),
-        asked => distinct(asked),
-    };
+    let structures = distinct_or(&arguments.accel, &default.structures);
     check_hierarchy("--builder", !arguments.builder.is_empty(), &structures)?;
     let geometry = &arguments.scene_options.geometry;
     check_room(geometry.room, &arguments.accel)?;
@@ -189,10 +184,7 @@ fn options(arguments: &Arguments) -> Result<Options<'static>, Failure> {
         structures,
         format: arguments.format,
         size: arguments.size,
-        builders: match &arguments.builder[..] {
-            [] => default.builders.clone(),
-            asked => distinct(asked),
-        },
+        builders: distinct_or(&arguments.builder, &default.builders),
         compiling,
         repeats: arguments.repeat.into(),
         ..default

@@ -3,6 +3,7 @@
 use gridel_host::compile::CompileError;
 use gridel_host::table::shown;
 use miette::{Diagnostic, MietteHandlerOpts, Report};
+use std::fmt::Display;
 use std::io;
 use std::path::Path;
 use std::process::ExitCode;
@@ -57,7 +58,7 @@ fn about(path: &Path, done: &str) -> String {
     shown(&format!("{} cannot be {done}", path.display())).into_owned()
 }
 
-fn fault(cause: impl Into<String>, remedy: impl Into<String>) -> Report {
+fn diagnosis(cause: impl Into<String>, remedy: impl Into<String>) -> Report {
     let [cause, remedy] = [cause.into(), remedy.into()].map(|it| shown(&it).into_owned());
     Report::new(Fault { cause, remedy })
 }
@@ -65,17 +66,22 @@ fn fault(cause: impl Into<String>, remedy: impl Into<String>) -> Report {
 impl Failure {
     /// Returns a failure with its cause and remedy, sentences without capital and full stop.
     pub fn failed(cause: impl Into<String>, remedy: impl Into<String>) -> Self {
-        Self::Failed(fault(cause, remedy))
+        Self::Failed(diagnosis(cause, remedy))
     }
 
     /// Returns the error of a wrong command line.
     pub fn usage(cause: impl Into<String>, remedy: impl Into<String>) -> Self {
-        Self::Usage(fault(cause, remedy))
+        Self::Usage(diagnosis(cause, remedy))
     }
 
     /// Returns the error of a budget that would be exceeded.
     pub fn rejected(cause: impl Into<String>, remedy: impl Into<String>) -> Self {
-        Self::Rejected(fault(cause, remedy))
+        Self::Rejected(diagnosis(cause, remedy))
+    }
+
+    /// Returns the error of what cannot fail.
+    pub fn fault(error: impl Display) -> Self {
+        Self::failed(error.to_string(), "report this as a fault of gridel")
     }
 
     /// Returns the error of a file that cannot be read.

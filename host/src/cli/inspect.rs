@@ -11,10 +11,12 @@ use super::output::{print, print_json_warned};
 use super::source::{Compiling, Source};
 use clap::Args;
 use glam::DVec3;
-use gridel_core::{Format, Kind, Scene, Structure};
+use gridel_core::{Format, Kind, Scene};
 use gridel_host::compile::{self, Names};
 use gridel_host::measure::board::{MemoryReport, WorkingRow, working_rows};
-use gridel_host::measure::{Deforming, MemoryMap, WorkingMemory, working_memory};
+use gridel_host::measure::{
+    Deforming, MemoryMap, WorkingMemory, longest_leaf, structure_names, working_memory,
+};
 use gridel_host::state::raised_materials;
 use gridel_host::table::{Align, Table, counted, grouped, power_of_two, printable};
 use joints::JointLine;
@@ -167,38 +169,29 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         chosen: false,
     };
     let source = Source::open(&arguments.input, &scene_options, None, compiling)?;
-    let scene = source.scene()?;
+    let (scene, blob) = (source.scene()?, source.blob.bytes());
     let target = arguments.target.target();
     let format = target.map_or(Format::Fixed, |target| target.board.format());
     // Whoever plays the blob's tracks needs the effects of all times.
-    let raised = raised_materials(&scene, source.blob.bytes());
+    let raised = raised_materials(&scene, blob);
     let moving = scene.with_materials(&raised);
     let moving = moving.as_ref().unwrap_or(&scene);
     let inspection = Inspection {
-        memory_map: MemoryMap::of(&scene, source.blob.bytes()),
+        memory_map: MemoryMap::of(&scene, blob),
         limits: limits(moving),
         contents: contents(&scene),
-        parts: PartLine::all(&scene, source.blob.bytes()),
-        tracks: TrackList::of(source.blob.bytes()),
-        joints: JointLine::all(&scene, source.blob.bytes()),
-        deforming: Deforming::all(&scene, source.blob.bytes()),
+        parts: PartLine::all(&scene, blob),
+        tracks: TrackList::of(blob),
+        joints: JointLine::all(&scene, blob),
+        deforming: Deforming::all(&scene, blob),
         names: NameLists {
             instances: source.names(&scene).instances,
-            ..Names::of_blob(&scene, source.blob.bytes())
-                .unwrap_or_default()
-                .into()
+            ..Names::of_blob(&scene, blob).unwrap_or_default().into()
         },
         working_memory: working_memory(moving),
-        working_rows: working_rows(moving, source.blob.bytes()),
-        effects: CalledFor::at_all_times(
-            source.report.as_ref(),
-            &scene,
-            moving,
-            source.blob.bytes(),
-        ),
-        memory: arguments
-            .target
-            .memory_report(&scene, source.blob.bytes(), format)?,
+        working_rows: working_rows(moving, blob),
+        effects: CalledFor::at_all_times(source.report.as_ref(), &scene, moving, blob),
+        memory: arguments.target.memory_report(&scene, blob, format)?,
     };
     if arguments.json {
         print_json_warned(&inspection, &source.warnings)?;
@@ -230,12 +223,6 @@ fn limits(scene: &Scene<'_>) -> Limits {
     }
 }
 
-/// Most primitives in a leaf, of the scene and of its parts.
-pub fn longest_leaf(scene: &Scene<'_>) -> u16 {
-    let parts = scene.parts().iter().map(|part| part.header().longest_leaf);
-    parts.fold(scene.header().longest_leaf, u16::max)
-}
-
 fn contents(scene: &Scene<'_>) -> Contents {
     let header = scene.header();
     let all = || std::iter::once(scene).chain(scene.parts());
@@ -253,11 +240,7 @@ fn contents(scene: &Scene<'_>) -> Contents {
         }
     }
     Contents {
-        structures: Structure::ALL
-            .into_iter()
-            .filter(|&structure| scene.holds(structure))
-            .map(Structure::name)
-            .collect(),
+        structures: structure_names(scene),
         objects: header.objects,
         primitives: header.primitives,
         collapsed: kept.into_iter().filter(|kept| !kept).count(),
@@ -266,6 +249,28 @@ fn contents(scene: &Scene<'_>) -> Contents {
         instances: scene.instances().len(),
         lights: scene.lights().len(),
         materials: scene.materials().len(),
+    }
+}
+
+/// A line of the text: a word, and its value.
+type Line = (&'static str, String);
+
+impl Contents {
+    fn primitives_text(&self) -> String {
+        let kinds = self.kinds.iter();
+        let kinds = kinds.map(|(kind, count)| format!("{kind} {}", grouped(count)));
+        let kinds = kinds.collect::<Vec<_>>().join(", ");
+        let primitives = grouped(self.primitives);
+        match (kinds.is_empty(), self.collapsed) {
+            (true, 0) => String::from("0"),
+            (true, collapsed) => {
+                format!("{}, which collapsed on the lattice", grouped(collapsed))
+            }
+            (_, 0) => format!("{primitives}: {kinds}"),
+            (_, collapsed) => {
+                format!("{primitives}: {kinds}, and {collapsed} that collapsed on the lattice")
+            }
+        }
     }
 }
 
@@ -314,66 +319,59 @@ impl Inspection {
     }
 
     fn facts(&self) -> Table {
-        let Self {
-            limits,
-            contents,
-            names,
-            ..
-        } = self;
+        let groups = [
+            self.content_lines(),
+            self.name_lines(),
+            self.motion_lines(),
+            self.limit_lines(),
+            self.effect_lines(),
+        ];
         let mut table = Table::untitled([Align::Left, Align::Left]);
-        let mut line = |what: &str, value: String| table.row([what.to_owned(), value]);
-        line("structures", contents.structures.join(", "));
-        line("objects", grouped(contents.objects));
-        let kinds: Vec<_> = contents
-            .kinds
-            .iter()
-            .map(|(kind, count)| format!("{kind} {}", grouped(count)))
-            .collect();
-        line(
-            "primitives",
-            match (kinds.is_empty(), contents.collapsed) {
-                (true, 0) => String::from("0"),
-                (true, collapsed) => format!(
-                    "{}, which collapsed on the lattice",
-                    grouped(collapsed as u64)
-                ),
-                (_, 0) => format!("{}: {}", grouped(contents.primitives), kinds.join(", ")),
-                (_, collapsed) => format!(
-                    "{}: {}, and {collapsed} that collapsed on the lattice",
-                    grouped(contents.primitives),
-                    kinds.join(", ")
-                ),
-            },
-        );
+        for (what, value) in groups.into_iter().flatten() {
+            table.row([what.to_owned(), value]);
+        }
+        table
+    }
+
+    fn content_lines(&self) -> Vec<Line> {
+        let contents = &self.contents;
+        let mut lines = vec![
+            ("structures", contents.structures.join(", ")),
+            ("objects", grouped(contents.objects)),
+            ("primitives", contents.primitives_text()),
+        ];
         if contents.instances > 0 {
-            line(
-                "instances",
-                format!(
-                    "{} of {}",
-                    grouped(contents.instances),
-                    counted(contents.parts, "part")
-                ),
-            );
+            let parts = counted(contents.parts, "part");
+            let instances = grouped(contents.instances);
+            lines.push(("instances", format!("{instances} of {parts}")));
         }
-        for (number, part) in self.parts.iter().enumerate() {
-            line("part", part.text(number));
-        }
-        line("materials", contents.materials.to_string());
-        line("lights", contents.lights.to_string());
-        for (what, names) in [
-            ("object names", &names.objects),
-            ("material names", &names.materials),
-            ("light names", &names.lights),
-        ] {
-            if names.iter().any(|name| !name.is_empty()) {
-                line(what, first_names(names));
-            }
-        }
-        for (number, joint) in self.joints.iter().enumerate() {
-            line("joint", joint.text(number));
-        }
+        let parts = self.parts.iter().enumerate();
+        lines.extend(parts.map(|(number, part)| ("part", part.text(number))));
+        lines.push(("materials", contents.materials.to_string()));
+        lines.push(("lights", contents.lights.to_string()));
+        lines
+    }
+
+    fn name_lines(&self) -> Vec<Line> {
+        let lists = [
+            ("object names", &self.names.objects),
+            ("material names", &self.names.materials),
+            ("light names", &self.names.lights),
+        ];
+        let has_one = |(_, names): &(_, &Vec<String>)| names.iter().any(|name| !name.is_empty());
+        let lists = lists.into_iter().filter(has_one);
+        lists
+            .map(|(what, names)| (what, first_names(names)))
+            .collect()
+    }
+
+    /// Joints, tracks, and meshes whose vertices move.
+    fn motion_lines(&self) -> Vec<Line> {
+        let joints = self.joints.iter().enumerate();
+        let joints = joints.map(|(number, joint)| ("joint", joint.text(number)));
+        let mut lines: Vec<Line> = joints.collect();
         if let Some(moves) = &self.tracks {
-            line(
+            lines.push((
                 "tracks",
                 format!(
                     "{} from {} s to {} s, {} bytes",
@@ -382,48 +380,47 @@ impl Inspection {
                     moves.last,
                     grouped(moves.bytes)
                 ),
-            );
-            for track in &moves.tracks {
-                line("track", track.text());
-            }
+            ));
+            lines.extend(moves.tracks.iter().map(|track| ("track", track.text())));
         }
-        for mesh in &self.deforming {
-            line("deforming mesh", mesh.to_string());
-        }
-        line("stack depth", limits.stack_depth.to_string());
-        line("work depth", limits.work_depth.to_string());
-        line("longest leaf", limits.longest_leaf.to_string());
-        line(
-            "lattice",
-            format!(
-                "{} bits, stored in {}; step {} and unit {} scene units",
-                limits.lattice_bits,
-                limits.storage_bits,
-                power_of_two(limits.step),
-                power_of_two(limits.unit)
-            ),
+        let deforming = self.deforming.iter();
+        lines.extend(deforming.map(|mesh| ("deforming mesh", mesh.to_string())));
+        lines
+    }
+
+    fn limit_lines(&self) -> Vec<Line> {
+        let limits = &self.limits;
+        let lattice = format!(
+            "{} bits, stored in {}; step {} and unit {} scene units",
+            limits.lattice_bits,
+            limits.storage_bits,
+            power_of_two(limits.step),
+            power_of_two(limits.unit)
         );
         let [low, high] = limits.bounds;
         let corner = |[x, y, z]: [f64; 3]| format!("({x}, {y}, {z})");
-        line(
-            "coordinate step",
-            format!(
-                "{} scene units, counted from {}",
-                power_of_two(limits.coordinate_step),
-                corner(limits.coordinate_origin)
-            ),
+        let coordinate_step = format!(
+            "{} scene units, counted from {}",
+            power_of_two(limits.coordinate_step),
+            corner(limits.coordinate_origin)
         );
-        line(
-            "bounds",
-            format!("{} to {} scene units", corner(low), corner(high)),
-        );
+        let bounds = format!("{} to {} scene units", corner(low), corner(high));
+        vec![
+            ("stack depth", limits.stack_depth.to_string()),
+            ("work depth", limits.work_depth.to_string()),
+            ("longest leaf", limits.longest_leaf.to_string()),
+            ("lattice", lattice),
+            ("coordinate step", coordinate_step),
+            ("bounds", bounds),
+        ]
+    }
+
+    fn effect_lines(&self) -> Vec<Line> {
         if self.effects.is_empty() {
-            line("effects", String::from("none"));
+            return vec![("effects", String::from("none"))];
         }
-        for effect in &self.effects {
-            line("effect", effect.to_string());
-        }
-        table
+        let effects = self.effects.iter();
+        effects.map(|it| ("effect", it.to_string())).collect()
     }
 }
 

@@ -9,7 +9,7 @@ use std::collections::BTreeSet;
 use std::fmt::Display;
 use std::fs;
 use std::io::{self, IsTerminal, Write};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 /// Writes a file whole or not at all, or standard output.
 pub fn write_file(
@@ -77,6 +77,11 @@ pub fn check_folder(folder: &Path) -> Result<(), Failure> {
         ));
     }
     Ok(())
+}
+
+/// Returns the folder of results: the requested one, or one named after the command and the scene.
+pub fn results_folder(requested: Option<&Path>, command: &str, stem: &str) -> PathBuf {
+    requested.map_or_else(|| format!("{command}-{stem}").into(), Path::to_owned)
 }
 
 /// Rejects to write over a file of another sort, such as the buffer of a glTF scene, or a program's own.
@@ -186,10 +191,9 @@ pub fn print(text: impl Display) -> Result<(), Failure> {
 }
 
 /// Prints on standard error, where standard output has another document.
-pub fn print_aside(text: impl Display) -> Result<(), Failure> {
+pub fn print_aside(text: impl Display) {
     // Standard error may be closed; that is no reason to stop.
     let _ = write!(io::stderr(), "{text}");
-    Ok(())
 }
 
 /// Prints one JSON document on standard output.
@@ -213,17 +217,14 @@ pub struct Warned<'w, T: Serialize> {
 /// Returns a value as one JSON document.
 pub fn json(value: &impl Serialize) -> Result<String, Failure> {
     let text = serde_json::to_string_pretty(value);
-    let text = text
-        .map_err(|error| Failure::failed(error.to_string(), "report this as a fault of gridel"))?;
-    Ok(text + "\n")
+    Ok(text.map_err(Failure::fault)? + "\n")
 }
 
 /// Prints a report about `output`: on standard output, or on standard error if the output itself goes to standard
 /// output.
 pub fn print_about(output: &Path, text: impl Display) -> Result<(), Failure> {
     if is_standard(output) {
-        // Standard error may be closed; the output is written.
-        let _ = write!(io::stderr(), "{text}");
+        print_aside(text);
         return Ok(());
     }
     print(text)
@@ -248,6 +249,5 @@ pub fn printed(written: io::Result<()>) -> Result<(), Failure> {
 
 /// Prints a warning on standard error.
 pub fn warn(sentence: impl Display) {
-    // Standard error may be closed; that is no reason to stop.
-    let _ = writeln!(io::stderr(), "warning: {}", shown(&sentence.to_string()));
+    print_aside(format!("warning: {}\n", shown(&sentence.to_string())));
 }

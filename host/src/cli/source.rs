@@ -6,7 +6,7 @@ mod size;
 mod time;
 
 use super::arguments::{LightChange, SceneOptions, TraceOptions, check_quality, check_room};
-use super::changes::{Changes, fault};
+use super::changes::Changes;
 use super::failure::Failure;
 use super::input::Input;
 use super::output::warn;
@@ -303,7 +303,7 @@ impl Source {
             Failure::failed(cause, "change the tracks, or ask for other times")
         })?;
         if let Some(options) = &self.for_pictures {
-            let chosen = Changes::of(&state.apply(scene).map_err(fault)?, options)?;
+            let chosen = Changes::of(&state.apply(scene).map_err(Failure::fault)?, options)?;
             (state.view, state.lights) = (chosen.state.view, chosen.state.lights);
         }
         Ok(Changes {

@@ -1,6 +1,6 @@
 //! `gridel verify`: tests the properties of a scene.
 
-use super::arguments::{self, GeometryOptions, check_quality, check_room, distinct, quoted};
+use super::arguments::{self, GeometryOptions, check_quality, check_room, distinct_or};
 use super::failure::Failure;
 use super::output::{print, print_json_warned};
 use super::progress::Progress;
@@ -63,10 +63,7 @@ pub struct Arguments {
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let input = &arguments.input;
     let compiling = compile::Options {
-        structures: match &arguments.accel[..] {
-            [] => Structure::ALL.to_vec(),
-            asked => distinct(asked),
-        },
+        structures: distinct_or(&arguments.accel, &Structure::ALL),
         quality: arguments.quality.unwrap_or_default(),
         ..compile::Options::default()
     };
@@ -197,8 +194,7 @@ fn worst_rays(arguments: &Arguments, report: &Report) -> String {
 /// The command that explains a ray, in the scene as it was read here.
 fn explain(arguments: &Arguments, ray: &str, format: &str, structure: &str) -> String {
     format!(
-        "gridel explain {}{} --ray={ray} --format {format} --accel {structure}",
-        quoted(&arguments.input.to_string_lossy()),
-        arguments.geometry.written()
+        "{} --ray={ray} --format {format} --accel {structure}",
+        arguments.geometry.explain_command(&arguments.input)
     )
 }

@@ -14,6 +14,27 @@ pub const CHARTS: [&str; 6] = [
     "growth-setup.svg",
 ];
 
+/// What a chart of growth shows, its unit, and the figure of a row.
+type GrowthChart = (&'static str, &'static str, fn(&Row) -> Option<f64>);
+
+/// The charts of growth, in the order of [`CHARTS`].
+const GROWTH: [GrowthChart; 4] = [
+    (
+        "primary rays per second on one thread",
+        "rays per second",
+        primary_rate,
+    ),
+    ("bytes of the structure", "bytes", |row| {
+        Some(row.own_bytes as f64)
+    }),
+    ("most memory while building on one thread", "bytes", |row| {
+        row.peak_bytes.map(|bytes| bytes as f64)
+    }),
+    ("seconds to set up on one thread", "seconds", |row| {
+        Some(row.setup_seconds)
+    }),
+];
+
 /// The comment in every chart, by which an earlier one is known.
 const MARK: &str = "<!-- gridel compare -->";
 
@@ -36,7 +57,7 @@ pub fn charts(
     name: &str,
     comparison: &Comparison,
     growth: &Growth,
-) -> Result<[(&'static str, String); CHARTS.len()], ChartError> {
+) -> Result<Vec<(&'static str, String)>, ChartError> {
     let groups: Vec<String> = comparison.rows.iter().map(|row| row.name.clone()).collect();
     let bar = |name: &str, of: &dyn Fn(&Row) -> Option<f64>| Series {
         name: name.to_owned(),
@@ -72,21 +93,8 @@ pub fn charts(
         groups.iter().map(curve).collect()
     };
     let title = |what: &str| format!("{name}: {what}");
-    let copied = match growth.instances {
-        Some(_) => ", instances copied",
-        None => "",
-    };
-    let grown = |what: &str| title(&format!("{what}, over parts of the scene{copied}"));
-    let objects = "primitives";
-    let [
-        tests_name,
-        rates_name,
-        growing_rates,
-        growing_bytes,
-        growing_peak,
-        growing_setup,
-    ] = CHARTS;
-    let charts = [
+    let [tests_name, rates_name, growth_names @ ..] = CHARTS;
+    let mut charts = vec![
         (
             tests_name,
             bars(&title("tests per ray"), "tests", &groups, &tests)?,
@@ -100,42 +108,16 @@ pub fn charts(
                 &rates,
             )?,
         ),
-        (
-            growing_rates,
-            curves(
-                &grown("primary rays per second on one thread"),
-                objects,
-                "rays per second",
-                &curve(primary_rate),
-            )?,
-        ),
-        (
-            growing_bytes,
-            curves(
-                &grown("bytes of the structure"),
-                objects,
-                "bytes",
-                &curve(|row| Some(row.own_bytes as f64)),
-            )?,
-        ),
-        (
-            growing_peak,
-            curves(
-                &grown("most memory while building on one thread"),
-                objects,
-                "bytes",
-                &curve(|row| row.peak_bytes.map(|bytes| bytes as f64)),
-            )?,
-        ),
-        (
-            growing_setup,
-            curves(
-                &grown("seconds to set up on one thread"),
-                objects,
-                "seconds",
-                &curve(|row| Some(row.setup_seconds)),
-            )?,
-        ),
     ];
-    Ok(charts.map(|(name, svg)| (name, svg.replace("</svg>", &format!("{MARK}\n</svg>")))))
+    let copied = match growth.instances {
+        Some(_) => ", instances copied",
+        None => "",
+    };
+    for (name, (what, unit, of)) in growth_names.into_iter().zip(GROWTH) {
+        let title = title(&format!("{what}, over parts of the scene{copied}"));
+        charts.push((name, curves(&title, "primitives", unit, &curve(of))?));
+    }
+    let marked = |svg: String| svg.replace("</svg>", &format!("{MARK}\n</svg>"));
+    let charts = charts.into_iter().map(|(name, svg)| (name, marked(svg)));
+    Ok(charts.collect())
 }

@@ -59,7 +59,7 @@ pub struct Sample {
 }
 
 /// A ray of the tree.
-#[derive(Clone, Debug, Serialize)]
+#[derive(Clone, Debug, Default, Serialize)]
 pub struct Ray {
     pub kind: &'static str,
     /// The ray that caused it, by its place among the sample's rays.
@@ -248,6 +248,11 @@ impl Ray {
         event: &Event,
         light: &mut bool,
     ) {
+        if let Some(lighting) = self.lights.last_mut()
+            && lighting.record(frame, event)
+        {
+            return;
+        }
         match *event {
             Event::Query { .. } => {
                 let walk = begin(event);
@@ -266,11 +271,6 @@ impl Ray {
                 *light = true;
                 self.lights
                     .push(Lighting::new(number, cosine, LightOutcome::Lit));
-            }
-            Event::Filtered { left } => {
-                if let Some(lighting) = self.lights.last_mut() {
-                    lighting.filtered.push(left);
-                }
             }
             Event::Lit { number, radiance } => {
                 *light = false;
@@ -314,36 +314,11 @@ impl Ray {
                     color,
                 });
             }
-            Event::BehindTriangle => {
-                if let Some(lighting) = self.lights.last_mut() {
-                    lighting.outcome = LightOutcome::BehindTriangle;
-                }
-            }
             Event::Ambient { radiance } => self.ambient = Some(radiance),
             Event::Emitted { radiance } => self.emitted = Some(radiance),
             Event::EmittedByLight => self.is_emitted_by_light = true,
             Event::Lens { point } => self.from_lens = Some(frame.place(point).to_array()),
-            Event::FromArea { point } => {
-                if let Some(lighting) = self.lights.last_mut() {
-                    lighting.from_area = Some(frame.place(point).to_array());
-                }
-            }
-            Event::FromEnvironment { direction, .. } => {
-                if let Some(lighting) = self.lights.last_mut() {
-                    lighting.from_environment = Some(direction);
-                }
-            }
             Event::Environment { texel, sun } => self.environment = Some((texel, sun)),
-            Event::Outside => {
-                if let Some(lighting) = self.lights.last_mut() {
-                    lighting.outcome = LightOutcome::Outside;
-                }
-            }
-            Event::Fallen { arriving } => {
-                if let Some(lighting) = self.lights.last_mut() {
-                    lighting.arriving = Some(arriving);
-                }
-            }
             Event::Added { source, radiance } => {
                 self.added = radiance;
                 self.background = source == Source::Background;
@@ -400,6 +375,20 @@ impl Lighting {
             radiance: [0.0; 3],
             outcome,
         }
+    }
+
+    /// Records an event that is the light's alone, and returns whether it is one.
+    fn record(&mut self, frame: &Frame, event: &Event) -> bool {
+        match *event {
+            Event::Filtered { left } => self.filtered.push(left),
+            Event::BehindTriangle => self.outcome = LightOutcome::BehindTriangle,
+            Event::FromArea { point } => self.from_area = Some(frame.place(point).to_array()),
+            Event::FromEnvironment { direction, .. } => self.from_environment = Some(direction),
+            Event::Outside => self.outcome = LightOutcome::Outside,
+            Event::Fallen { arriving } => self.arriving = Some(arriving),
+            _ => return false,
+        }
+        true
     }
 
     fn outcome(&self) -> LightOutcome {

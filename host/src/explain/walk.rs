@@ -7,8 +7,8 @@ mod step;
 pub use step::{Candidate, Culled, Plane, Side, Step, Tested, Verdict};
 
 use super::recorder::Unlisted;
+use crate::shape::rounding;
 use crate::trace::{Frame, SceneRay};
-use crate::verify::rounded;
 use glam::DVec3;
 use gridel_core::observe::event::NodeId;
 use gridel_core::{Event, Format, Scene};
@@ -225,7 +225,7 @@ impl Walk {
             .max(largest(ray.start))
             .max(distance.abs() / ray.frame.length(1.0));
         // The sum over start, t from either place, and point, on three axes.
-        let kernels = 8.0 * ray.frame.length(rounded::step(ray.format, units));
+        let kernels = 8.0 * ray.frame.length(rounding::step(ray.format, units));
         let sum = largest(self.origin) + largest(self.start) + distance.abs();
         ray.aside + ray.turned * inside + kernels + 8.0 * f64::EPSILON * sum
     }

@@ -64,8 +64,7 @@ impl Deforming {
     }
 
     fn of(part: Option<usize>, scene: &Scene<'_>, targets: &MorphTargets<'_>) -> Option<Self> {
-        let mut held = Structure::ALL.into_iter().filter(|it| scene.holds(*it));
-        let can_refit = held.all(|it| Self::STRUCTURES.contains(&it));
+        let can_refit = scene.structures().all(|it| Self::STRUCTURES.contains(&it));
         let moves = has_room(scene) || !targets.is_empty();
         if !can_refit || scene.count(Kind::Triangle) == 0 || !moves {
             return None;

@@ -1,8 +1,6 @@
-//! The first hits of the rays through the middles of pixels.
+//! The part of a first hit that errors are measured by.
 
-use crate::render::{self, Job};
-use gridel_core::render::RenderError;
-use gridel_core::{Format, Scene, Settings, Structure};
+use crate::render::PixelHit;
 use serde::{Deserialize, Serialize};
 
 /// The first hit of the ray through the middle of a pixel.
@@ -48,28 +46,19 @@ impl From<FirstHit> for Fields {
     }
 }
 
+impl From<PixelHit> for FirstHit {
+    fn from(hit: PixelHit) -> Self {
+        Self {
+            object: hit.object,
+            instance: hit.instance,
+            distance: hit.distance,
+        }
+    }
+}
+
 impl FirstHit {
     /// Returns whether both hit the same object, of the same instance.
     pub fn is_on(&self, other: &Self) -> bool {
         (self.object, self.instance) == (other.object, other.instance)
     }
-}
-
-/// Returns the first hit of each pixel; `None` on a miss.
-///
-/// # Errors
-/// If the settings are out of their range, or the scene does not hold the structure.
-pub fn first_hits(
-    scene: &Scene<'_>,
-    (structure, format): (Structure, Format),
-    settings: Settings,
-) -> Result<Vec<Option<FirstHit>>, RenderError> {
-    let job = Job::whole(format, structure, settings);
-    let hits = render::first_hits(scene, &job)?.into_iter();
-    let hit = |hit: render::PixelHit| FirstHit {
-        object: hit.object,
-        instance: hit.instance,
-        distance: hit.distance,
-    };
-    Ok(hits.map(|it| it.map(hit)).collect())
 }

@@ -1,5 +1,6 @@
 //! Boxes of surfaces, and the error bounds of these.
 
+use crate::shape::rounding::step;
 use crate::shape::{ExactMap, Solid, Surface};
 use glam::DVec3;
 use gridel_core::Format;
@@ -83,16 +84,16 @@ impl Extent {
 
 /// Returns the distance of a format's neighboring numbers at a place, in units.
 pub(super) fn spacing(format: Format, magnitude: f64) -> f64 {
+    let step = step(format, magnitude);
     match format {
-        Format::Fixed => f64::powi(2.0, -13),
-        Format::F32 => f64::powi(2.0, -23) * magnitude,
-        Format::F64 => f64::powi(2.0, -52) * magnitude,
+        Format::Fixed => step,
+        Format::F32 | Format::F64 => 2.0 * step,
     }
 }
 
 /// The error bound of a primitive's surface next to a place, as the table of `Hit::error` has it.
 pub(super) fn bound(format: Format, solid: &Solid, place: DVec3) -> f64 {
-    let u = 0.5 * spacing(format, 1.0);
+    let u = step(format, 1.0);
     let plane = |normal: DVec3, through: DVec3| {
         let normal = normal.normalize_or_zero();
         if normal.abs().max_element() == 1.0 {
@@ -101,14 +102,14 @@ pub(super) fn bound(format: Format, solid: &Solid, place: DVec3) -> f64 {
         let relative = (through - place).abs();
         match format {
             Format::Fixed => {
-                let sub_step = spacing(format, 1.0);
+                let sub_step = step(format, 1.0);
                 4.0 * sub_step + relative.element_sum() * f64::powi(2.0, -28)
             }
             _ => u * (16.0 * relative + 4.0 * place.abs()).dot(normal.abs()),
         }
     };
     let curved = |size: f64| match format {
-        Format::Fixed => 8.0 * spacing(format, 1.0),
+        Format::Fixed => 8.0 * step(format, 1.0),
         _ => u * (20.0 * size + 4.0 * place.abs().max_element()),
     };
     match solid.surface() {
@@ -116,7 +117,7 @@ pub(super) fn bound(format: Format, solid: &Solid, place: DVec3) -> f64 {
         Surface::Plane { normal, point } => plane(normal, point),
         Surface::Sphere { radius, .. } => curved(radius),
         Surface::Curved => match format {
-            Format::Fixed => 8.0 * spacing(format, 1.0),
+            Format::Fixed => 8.0 * step(format, 1.0),
             _ => 16.0 * u * Extent::of(solid).magnitude(),
         },
     }
@@ -131,7 +132,7 @@ pub(super) fn placed_bound(
     in_part: f64,
     [reach, magnitude]: [f64; 2],
 ) -> f64 {
-    let (sub_step, u) = (spacing(Format::Fixed, 1.0), 0.5 * spacing(format, 1.0));
+    let (sub_step, u) = (step(Format::Fixed, 1.0), step(format, 1.0));
     match format {
         Format::Fixed => map.length(in_part + 8.0 * sub_step) + 20.0 * sub_step,
         _ => map.length(in_part) + u * (32.0 * reach + 4.0 * magnitude),

@@ -12,6 +12,8 @@ pub mod exact;
 mod exact_map;
 mod keys;
 mod lattice;
+#[doc(hidden)]
+pub mod rounding;
 mod snapped;
 mod sphere;
 pub(crate) mod transform;

@@ -1,5 +1,6 @@
 use super::*;
 use crate::compile::{Compiled, Options, compile};
+use crate::random::Random;
 use crate::scene;
 
 /// A sphere of radius 1 around the origin.
@@ -124,16 +125,10 @@ const EDGES: [f64; 16] = [
 fn rays_that_are_set_up_together_have_the_hits_of_each_alone() {
     let ball = sample_of_wide();
     let scene = ball.blob.scene().unwrap();
-    let mut state = 0x2545_f491_4f6c_dd1d_u64;
-    let mut number = |edges: bool, size: f64| {
-        state ^= state << 13;
-        state ^= state >> 7;
-        state ^= state << 17;
-        if edges && state.is_multiple_of(5) {
-            EDGES[(state >> 32) as usize % EDGES.len()]
-        } else {
-            (state as i64 as f64) / (1_u64 << 63) as f64 * size
-        }
+    let mut random = Random(1);
+    let mut number = |edges: bool, size: f64| match edges && random.one_in(5) {
+        true => EDGES[random.below(EDGES.len())],
+        false => size * random.signed(),
     };
     // As many rays as fill no batch.
     let rays: Vec<_> = (0..40_003)

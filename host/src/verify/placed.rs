@@ -1,7 +1,8 @@
 //! Instances by the integers of their maps, for exact arithmetic that shares no code with the kernels.
 
-use super::rounded::{HitId, RoundedRay, step};
+use super::rounded::{HitId, RoundedRay};
 use crate::shape::exact::Line;
+use crate::shape::rounding::step;
 use crate::shape::{ExactMap, Solid};
 use gridel_core::format::record::UnitBox;
 use gridel_core::{Format, Hit, Number, Scene};

@@ -2,17 +2,8 @@
 
 use crate::shape::Solid;
 use crate::shape::exact::Line;
+use crate::shape::rounding::step;
 use gridel_core::{Format, Kind, Number, Ray, Scene};
-
-/// Returns the step of a format. For `fixed` it is a sub-step. For the others it is the unit of rounding times the
-/// largest magnitude among the coordinates of ray, hit and shape.
-pub fn step(format: Format, magnitude: f64) -> f64 {
-    match format {
-        Format::Fixed => f64::powi(2.0, -13),
-        Format::F32 => f64::powi(2.0, -24) * magnitude,
-        Format::F64 => f64::powi(2.0, -53) * magnitude,
-    }
-}
 
 /// A ray as the kernels of a format have it, rounded; every number is exact.
 #[derive(Clone, Copy, Debug)]

@@ -1,9 +1,12 @@
 //! Contact shadows: what lies in the dark by `f64`, and what another format says of it.
 
-use super::check::{Fault, Property, Tested, ask, depart};
+use super::ask::ask;
+use super::leave::depart;
 use super::placed::PLACED;
-use super::rounded::{HitId, RoundedRay, step};
+use super::property::{Fault, Property, Tested};
+use super::rounded::{HitId, RoundedRay};
 use crate::random::Random;
+use crate::shape::rounding::step;
 use crate::shape::{ExactMap, Solid};
 use crate::trace::UnitRay;
 use glam::DVec3;
@@ -175,17 +178,13 @@ pub fn lost<N: Number>(scene: &Scene<'_>, ray: &Ray<N>) -> Tested {
             if blocker::<N>(scene, light, from).is_some() {
                 return None;
             }
-            Some(Fault {
-                property: Property::Shadows,
-                format: N::FORMAT,
-                structure: Structure::List,
-                what: format!(
-                    "light {number} reaches {}, though {} blocks it {:?} units away",
-                    HitId::of(&hit).written(scene),
-                    HitId::of(&nearest).written(scene),
-                    nearest.t
-                ),
-            })
+            let what = format!(
+                "light {number} reaches {}, though {} blocks it {:?} units away",
+                HitId::of(&hit).written(scene),
+                HitId::of(&nearest).written(scene),
+                nearest.t
+            );
+            Some(Fault::of::<N>(Property::Shadows, Structure::List, what))
         });
     let faults = found.collect();
     Tested { tests, faults }

@@ -48,17 +48,17 @@ fn blessing_makes_checks_hold() {
     assert_eq!(size("shown/quick-f32.png"), [24, 18]);
     assert_eq!(folder.read("check.toml"), MANIFEST.as_bytes());
 
-    let blessed = folder.done(&["check", "check.toml", "--bless"]);
+    let recorded = folder.done(&["check", "check.toml", "--bless"]);
     assert!(
-        blessed.contains("2 passed, 3 recorded, 0 failed, 0 skipped")
-            && !blessed.contains("FAILED"),
-        "{blessed}"
+        recorded.contains("2 passed, 3 recorded, 0 failed, 0 skipped")
+            && !recorded.contains("FAILED"),
+        "{recorded}"
     );
     for line in [
         "\n-hash = {}   # a line to keep\n",
         "\n+hash = { fixed = \"",
     ] {
-        assert!(blessed.contains(line), "{blessed}");
+        assert!(recorded.contains(line), "{recorded}");
     }
     let text = String::from_utf8(folder.read("check.toml")).unwrap();
     assert!(text.contains("   # a line to keep\n"), "{text}");

@@ -1,7 +1,7 @@
 //! All hits of triangles, against exact arithmetic.
 
 use super::*;
-use gridel_host::verify::rounded::step;
+use gridel_host::shape::rounding::step;
 use gridel_tests::bounds::{CROSSING, allowed};
 
 /// The axis along which t is counted.

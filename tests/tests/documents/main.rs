@@ -8,6 +8,7 @@ mod features;
 mod keys;
 mod limits;
 mod memory;
+mod modules;
 mod paper;
 mod peers;
 mod pictures;
@@ -30,6 +31,19 @@ fn repository() -> PathBuf {
 
 fn text(path: &str) -> String {
     fs::read_to_string(repository().join(path)).unwrap_or_else(|error| panic!("{path}: {error}"))
+}
+
+/// The paths of all Rust sources below a folder, without those of builds.
+fn sources(folder: &Path) -> Vec<PathBuf> {
+    let entries = fs::read_dir(folder).expect("a folder");
+    let paths = entries.map(|entry| entry.expect("an entry").path());
+    let found = paths.flat_map(|path| match path.is_dir() {
+        true if path.ends_with("target") => Vec::new(),
+        true => sources(&path),
+        false if path.extension().is_some_and(|it| it == "rs") => vec![path],
+        false => Vec::new(),
+    });
+    found.collect()
 }
 
 /// The first block of a language behind a heading.

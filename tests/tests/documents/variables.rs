@@ -1,6 +1,6 @@
 //! CONTRIBUTING.md lists every environment variable that the project reads.
 
-use super::{repository, text};
+use super::{repository, sources, text};
 use std::collections::BTreeSet;
 use std::fs;
 use std::path::Path;
@@ -16,32 +16,21 @@ fn names(source: &str, into: &mut BTreeSet<String>) {
     }
 }
 
-fn names_in_folder(folder: &Path, into: &mut BTreeSet<String>) {
-    for entry in fs::read_dir(folder).expect("a folder") {
-        let path = entry.expect("an entry").path();
-        let is_output = path.file_name().is_some_and(|name| name == "target");
-        if is_of_the_c_library(&path) {
-            continue;
-        }
-        if path.is_dir() && !is_output {
-            names_in_folder(&path, into);
-        } else if path.extension().is_some_and(|it| it == "rs") {
-            names(&fs::read_to_string(&path).expect("a source"), into);
-        }
-    }
-}
-
 /// Names of the C library's constants begin as those of variables do. Neither the library nor the test of its header
 /// reads variables of the project.
 fn is_of_the_c_library(path: &Path) -> bool {
-    path.ends_with("core/c") || path.ends_with("tests/tests/c_header.rs")
+    let library = repository().join("core/c");
+    path.starts_with(library) || path.ends_with("tests/tests/c_header.rs")
 }
 
 #[test]
 fn contributing_page_lists_exactly_the_environment_variables() {
     let mut used = BTreeSet::new();
     for folder in ["core", "host", "tests"] {
-        names_in_folder(&repository().join(folder), &mut used);
+        let sources = sources(&repository().join(folder)).into_iter();
+        for path in sources.filter(|path| !is_of_the_c_library(path)) {
+            names(&fs::read_to_string(&path).expect("a source"), &mut used);
+        }
     }
     names(&text(".ci/run"), &mut used);
     let page = text("CONTRIBUTING.md");

@@ -5,8 +5,8 @@ use glam::DVec3;
 use gridel_core::{Format, RayError, Scene, Structure};
 use gridel_host::scene::Shape;
 use gridel_host::shape::Sphere;
+use gridel_host::shape::rounding::step;
 use gridel_host::trace::{Query, Rejection, SceneHit, SceneRay, trace};
-use gridel_host::verify::rounded::step;
 use gridel_tests::query::held;
 use gridel_tests::scenes;
 

@@ -4,7 +4,7 @@ use super::{LIMIT, ball, exact_line};
 use glam::DVec3;
 use gridel_core::format::limits::FARTHEST;
 use gridel_core::{Format, List, NoCount, Number, Pencil, Ray, RayError};
-use gridel_host::verify::rounded::step;
+use gridel_host::shape::rounding::step;
 use gridel_tests::effort::part_of;
 use gridel_tests::every_format;
 use gridel_tests::exact::{minus, vector};

@@ -6,7 +6,7 @@ use glam::{DQuat, DVec3};
 use gridel_core::{List, NoCount, Number, Scene};
 use gridel_host::shape::Solid;
 use gridel_host::shape::Torus;
-use gridel_host::verify::rounded::step;
+use gridel_host::shape::rounding::step;
 use gridel_tests::cases::{Case, lattice, slope};
 use gridel_tests::effort::part_of;
 use gridel_tests::every_format;

@@ -2,7 +2,7 @@
 
 use super::lists::Lists;
 use super::{
-    BATCH, Closest, Found, How, Met, NONE, Nearest, Question, ask_some, chunks_of, each_chunk,
+    BATCH, Closest, FirstHit, Hit, How, NONE, Nearest, Question, ask_some, chunks_of, each_chunk,
 };
 use crate::rays::{Rays, Ready};
 #[cfg(target_arch = "x86_64")]
@@ -21,7 +21,7 @@ pub fn all(
     rays: Rays<'_>,
     how: How,
     needs_normals: bool,
-) -> Result<Vec<(usize, Found)>, TryReserveError> {
+) -> Result<Vec<(usize, Hit)>, TryReserveError> {
     let chunks = each_chunk(how, chunks_of(rays.len()), |numbers| {
         let numbers = (numbers, usize::MAX);
         if needs_normals {
@@ -38,12 +38,12 @@ pub fn all(
 }
 
 /// All hits of some rays, or as many of the first hits of each.
-fn all_of<Q: Question<Answer = Found>>(
+fn all_of<Q: Question<Answer = Hit>>(
     scene: &Scene<'_>,
     rays: Rays<'_>,
     how: How,
     (numbers, most): (Range<usize>, usize),
-) -> Result<Vec<(usize, Found)>, TryReserveError> {
+) -> Result<Vec<(usize, Hit)>, TryReserveError> {
     #[cfg(target_arch = "x86_64")]
     if let (Format::F32, Structure::Wide, SimdLevel::Avx2(avx2)) =
         (how.format, how.structure, simd::level())
@@ -59,22 +59,22 @@ fn all_of<Q: Question<Answer = Found>>(
     dispatch!(how, all_chunk, [Q], (scene, rays, numbers, most))
 }
 
-fn all_chunk<N: Number, A: Accel, Q: Question<Answer = Found>>(
+fn all_chunk<N: Number, A: Accel, Q: Question<Answer = Hit>>(
     scene: &Scene<'_>,
     rays: Rays<'_>,
     numbers: Range<usize>,
     most: usize,
-) -> Result<Vec<(usize, Found)>, TryReserveError> {
+) -> Result<Vec<(usize, Hit)>, TryReserveError> {
     all_inline::<N, A, Q>(scene, rays, numbers, most)
 }
 
 #[inline(always)]
-fn all_inline<N: Number, A: Accel, Q: Question<Answer = Found>>(
+fn all_inline<N: Number, A: Accel, Q: Question<Answer = Hit>>(
     scene: &Scene<'_>,
     rays: Rays<'_>,
     numbers: Range<usize>,
     most: usize,
-) -> Result<Vec<(usize, Found)>, TryReserveError> {
+) -> Result<Vec<(usize, Hit)>, TryReserveError> {
     let frame = Frame::of(scene);
     let mut all = Vec::new();
     all.try_reserve(2 * numbers.len())?;
@@ -92,13 +92,13 @@ fn all_inline<N: Number, A: Accel, Q: Question<Answer = Found>>(
                     return ControlFlow::Break(());
                 }
                 let hit = Some(hit);
-                let met = Met {
+                let first = FirstHit {
                     scene,
                     ray,
                     scale,
                     hit,
                 };
-                let hit = Q::hit(met);
+                let hit = Q::hit(first);
                 // Without one where the t of a plane leaves double precision.
                 if hit.primitive != NONE {
                     reserved = all.try_reserve(1);
@@ -128,7 +128,7 @@ pub fn locations(
     how: How,
     multiple_hits: bool,
     max_hits: Option<usize>,
-    place: impl Fn(&SceneRay, &Found) -> (f64, [f64; 3]) + Sync,
+    place: impl Fn(&SceneRay, &Hit) -> (f64, [f64; 3]) + Sync,
 ) -> Result<Vec<Locations>, TryReserveError> {
     let most = max_hits.unwrap_or(usize::MAX);
     let chunks = each_chunk(how, chunks_of(rays.len()), |numbers| {
@@ -136,7 +136,7 @@ pub fn locations(
         if multiple_hits {
             hits = all_of::<Nearest>(scene, rays, how, (numbers, most))?;
         } else {
-            let mut first = vec![Found::MISS; numbers.len()];
+            let mut first = vec![Hit::MISS; numbers.len()];
             ask_some::<Nearest>(scene, rays, how, (numbers.start, &mut first));
             let met = numbers.zip(first);
             hits.extend(met.filter(|(_, hit)| hit.primitive != NONE && most > 0));

@@ -1,7 +1,7 @@
 //! First hits, written to arrays.
 
 use super::limits::first_accepted;
-use super::{CHUNK, Closest, Found, How, NONE, Nearest, ask_some, chunks_of, each_chunk};
+use super::{CHUNK, Closest, Hit, How, NONE, Nearest, ask_some, chunks_of, each_chunk};
 use crate::rays::Rays;
 use gridel_core::Scene;
 use gridel_host::trace::SceneRay;
@@ -92,9 +92,9 @@ pub fn cast<T, A, P, M>(
     form: &Rows<A, P, M>,
 ) where
     T: Send + Copy,
-    A: Fn(&Found) + Sync,
-    P: Fn(&SceneRay, &Found) -> Option<Placed> + Sync,
-    M: Fn(&Found) -> (T, u32) + Sync,
+    A: Fn(&Hit) + Sync,
+    P: Fn(&SceneRay, &Hit) -> Option<Placed> + Sync,
+    M: Fn(&Hit) -> (T, u32) + Sync,
 {
     let mut chunks = Vec::with_capacity(rays.len().div_ceil(CHUNK));
     for numbers in chunks_of(rays.len()) {
@@ -103,13 +103,13 @@ pub fn cast<T, A, P, M>(
         columns = rest;
     }
     let write = |(start, mut columns): (usize, Columns<'_, T>)| {
-        let mut hits = [Found::MISS; WRITTEN];
+        let mut hits = [Hit::MISS; WRITTEN];
         let mut start = start;
         while !columns.t.is_empty() {
             let count = WRITTEN.min(columns.t.len());
             let (rows, rest) = columns.split(count);
             let hits = &mut hits[..count];
-            hits.fill(Found::MISS);
+            hits.fill(Hit::MISS);
             if form.places_normals {
                 ask_some::<Nearest>(scene, rays, how, (start, hits));
             } else {
@@ -132,7 +132,7 @@ pub fn cast<T, A, P, M>(
                             (hit.t, rows.uv[row]) = (placed.t, placed.uv);
                             hit.normal = placed.normal.unwrap_or(hit.normal);
                         }
-                        None => *hit = Found::MISS,
+                        None => *hit = Hit::MISS,
                     }
                 }
                 (rows.t[row], rows.primitive[row]) = (form.number)(hit);
@@ -151,10 +151,10 @@ pub fn cast<T, A, P, M>(
 
 /// Where a ray meets a hit, if that is within the limits of the ray.
 #[inline(always)]
-fn within<P: Fn(&SceneRay, &Found) -> Option<Placed>>(
+fn within<P: Fn(&SceneRay, &Hit) -> Option<Placed>>(
     rays: Rays<'_>,
     number: usize,
-    hit: &Found,
+    hit: &Hit,
     place: &P,
 ) -> Option<Placed> {
     // The function itself, because one by reference is not inlined.
@@ -165,10 +165,10 @@ fn within<P: Fn(&SceneRay, &Found) -> Option<Placed>>(
 /// The next hit of a ray within its limits, and where the ray meets it.
 #[cold]
 #[inline(never)]
-fn next_within<P: Fn(&SceneRay, &Found) -> Option<Placed>>(
+fn next_within<P: Fn(&SceneRay, &Hit) -> Option<Placed>>(
     (scene, rays, how): (&Scene<'_>, Rays<'_>, How),
     number: usize,
-    hit: &mut Found,
+    hit: &mut Hit,
     place: &P,
 ) -> Option<Placed> {
     let mut placed = None;

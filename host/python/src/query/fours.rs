@@ -1,7 +1,7 @@
 //! Questions about rays in `f32` through `wide` with AVX2: four are made ready at once, and everything is compiled for
 //! AVX2.
 
-use super::{BATCH, Met, Question, ask_chunk};
+use super::{BATCH, FirstHit, Question, ask_chunk};
 use crate::rays::Rays;
 use gridel_core::format::limits::MAX_STACK_DEPTH;
 use gridel_core::{Scene, Stack, Wide};
@@ -42,7 +42,7 @@ pub fn ask<Q: Question>(
                 if ray.any_hit(scene, stack.as_view()) {
                     let (ray, scale) = (ray.ray(), &scale);
                     let hit = None;
-                    *answer = Q::hit(Met {
+                    *answer = Q::hit(FirstHit {
                         scene,
                         ray,
                         scale,
@@ -65,7 +65,7 @@ pub fn ask<Q: Question>(
             };
             if let Some(hit) = &met[place] {
                 let (ray, scale, hit) = (ray.ray(), &scale, Some(hit));
-                *answer = Q::hit(Met {
+                *answer = Q::hit(FirstHit {
                     scene,
                     ray,
                     scale,

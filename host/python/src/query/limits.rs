@@ -4,7 +4,7 @@
 //! moved it. So rays are searched a little beyond their limits, and what is found is compared with them.
 
 use super::lists::Lists;
-use super::{Any, Found, How, NONE, Nearest, ask, ask_some, bare, fill, found};
+use super::{Any, Hit, How, NONE, Nearest, ask, ask_some, bare, fill, with_normal};
 use crate::rays::{Rays, prepare};
 use gridel_core::accel::DynAccel;
 use gridel_core::{Accel, Fixed, Format, Number, Scene, Structure, Wide};
@@ -13,7 +13,7 @@ use std::collections::TryReserveError;
 use std::ops::ControlFlow;
 
 /// Gives the t of a hit, from the ray as it is searched.
-pub type Place<'p> = dyn Fn(&SceneRay, &Found) -> f64 + Sync + 'p;
+pub type Place<'p> = dyn Fn(&SceneRay, &Hit) -> f64 + Sync + 'p;
 
 /// Rays whose hits are found before they are compared.
 const COMPARED: usize = 256;
@@ -36,11 +36,11 @@ pub fn any(
                 ask_some::<Any>(scene, rays, how, (start, answers));
                 continue;
             }
-            let hits = &mut [Found::MISS; COMPARED][..answers.len()];
+            let hits = &mut [Hit::MISS; COMPARED][..answers.len()];
             ask_some::<Nearest>(scene, rays, how, (start, hits));
             for ((number, hit), answer) in (start..).zip(hits).zip(answers) {
                 let ray = rays.searched(number);
-                let mut is_within = |hit: &Found| rays.holds(number, place(&ray, hit));
+                let mut is_within = |hit: &Hit| rays.holds(number, place(&ray, hit));
                 *answer = hit.primitive != NONE
                     && (is_within(hit) || first_accepted(scene, rays, how, number, &mut is_within));
             }
@@ -56,7 +56,7 @@ pub(super) fn first_accepted(
     rays: Rays<'_>,
     how: How,
     number: usize,
-    accepts: &mut dyn FnMut(&Found) -> bool,
+    accepts: &mut dyn FnMut(&Hit) -> bool,
 ) -> bool {
     dispatch!(how, accepted_of, [], (scene, rays, number, accepts))
 }
@@ -65,7 +65,7 @@ fn accepted_of<N: Number, A: Accel>(
     scene: &Scene<'_>,
     rays: Rays<'_>,
     number: usize,
-    accepts: &mut dyn FnMut(&Found) -> bool,
+    accepts: &mut dyn FnMut(&Hit) -> bool,
 ) -> bool {
     let ready = prepare::<N>(scene, &Frame::of(scene), &rays.searched(number));
     let Ok((ray, scale)) = ready else {
@@ -73,7 +73,7 @@ fn accepted_of<N: Number, A: Accel>(
     };
     let mut accepted = false;
     Lists::new(usize::MAX).each::<A>(scene, &ray, |hit| {
-        let hit = found(scene, (&ray, &scale), hit);
+        let hit = with_normal(scene, (&ray, &scale), hit);
         accepted = hit.primitive != NONE && accepts(&hit);
         match accepted {
             true => ControlFlow::Break(()),

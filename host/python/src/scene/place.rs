@@ -1,7 +1,7 @@
 //! Where rays meet triangles as they were given.
 
 use super::NativeScene;
-use crate::query::{Found, NONE, Placed};
+use crate::query::{Hit, NONE, Placed};
 use crate::rays::Rays;
 use glam::DVec3;
 use gridel_host::scene::Shape;
@@ -31,7 +31,7 @@ impl NativeScene {
 
     /// Starts to load the triangle of a hit: those of rays side by side are far apart in memory.
     #[inline(always)]
-    pub(super) fn load_ahead(&self, hit: &Found) {
+    pub(super) fn load_ahead(&self, hit: &Hit) {
         #[cfg(target_arch = "x86_64")]
         if hit.primitive != NONE
             && hit.instance == NONE
@@ -66,7 +66,7 @@ impl NativeScene {
     /// mesh's, or the ray passes beside it. Never outside of the ray's interval.
     // Inlined, it computes what is used there, and nothing else.
     #[inline(always)]
-    pub(super) fn place(&self, ray: &SceneRay, hit: &Found) -> Meeting {
+    pub(super) fn place(&self, ray: &SceneRay, hit: &Hit) -> Meeting {
         let triangle = match hit.instance {
             NONE => self.corners(hit.primitive),
             _ => None,
@@ -124,7 +124,7 @@ impl NativeScene {
 
     /// The t and normal of a hit, and the weights of the corners of its triangle.
     #[inline(always)]
-    pub(super) fn placed(&self, ray: &SceneRay, hit: &Found) -> Placed {
+    pub(super) fn placed(&self, ray: &SceneRay, hit: &Hit) -> Placed {
         let met = self.place(ray, hit);
         Placed {
             t: met.t,
@@ -139,7 +139,7 @@ impl NativeScene {
     pub(super) fn place_all(
         &self,
         rays: Rays<'_>,
-        hits: &mut Vec<(usize, Found)>,
+        hits: &mut Vec<(usize, Hit)>,
     ) -> Result<Vec<[f32; 2]>, TryReserveError> {
         let mut all = Vec::new();
         all.try_reserve_exact(hits.len())?;

@@ -4,27 +4,18 @@ use super::*;
 use crate::certify::crossing::Start;
 use crate::certify::deep::{self, Ball};
 use crate::certify::interval::Interval;
+use crate::random::Random;
 use crate::shape::Solid;
 use crate::shape::exact::{Line, Real};
 use gridel_core::geometry::Geometry;
 use gridel_core::geometry::torus::Torus as Record;
 
-/// Numbers without an end, each the same in every run.
-struct Random(u64);
+fn within(random: &mut Random, most: i64) -> i64 {
+    random.within(-most as i32, most as i32).into()
+}
 
-impl Random {
-    fn below(&mut self, end: i64) -> i64 {
-        self.0 = self.0.wrapping_mul(0x5851_f42d_4c95_7f2d).wrapping_add(1);
-        (self.0 >> 33) as i64 % end
-    }
-
-    fn within(&mut self, most: i64) -> i64 {
-        self.below(2 * most + 1) - most
-    }
-
-    fn vector(&mut self, most: i64) -> [i64; 3] {
-        [0; 3].map(|_| self.within(most))
-    }
+fn vector(random: &mut Random, most: i64) -> [i64; 3] {
+    [0; 3].map(|_| within(random, most))
 }
 
 fn record(center: [i64; 3], axis: [i64; 3], [major, minor]: [i64; 2]) -> Record {
@@ -97,10 +88,10 @@ fn crossings_hold_those_of_320_bits() {
     for number in 0..3_000_usize {
         // Rings, hairs, horns and spindles, near and far.
         let radii = [[1000, 300], [5000, 20], [400, 400], [300, 900], [2, 800]][number % 5];
-        let center = random.vector([0, 1 << 10, 1 << 22][number % 3]);
+        let center = vector(&mut random, [0, 1 << 10, 1 << 22][number % 3]);
         let axis = match number % 4 {
             0 => [0, 1, 0],
-            _ => random.vector(1 << [3, 24, 14][number % 3]),
+            _ => vector(&mut random, 1 << [3, 24, 14][number % 3]),
         };
         if axis == [0; 3] {
             continue;
@@ -114,8 +105,8 @@ fn crossings_hold_those_of_320_bits() {
         };
         // Towards some point in or next to the solid.
         let reach = radii[0] + radii[1];
-        let origin = [0, 1, 2].map(|k| center[k] + random.within(3 * reach));
-        let target = [0, 1, 2].map(|k| center[k] + random.within(reach));
+        let origin = [0, 1, 2].map(|k| center[k] + within(&mut random, 3 * reach));
+        let target = [0, 1, 2].map(|k| center[k] + within(&mut random, reach));
         let direction = [0, 1, 2].map(|k| target[k] - origin[k]);
         let exact = truth(recorded, origin, direction);
         all += exact.len();
@@ -145,7 +136,7 @@ fn rays_from_the_surface_do_not_meet_it_where_they_start() {
     let mut random = Random(3);
     let (mut all, mut sure) = (0, 0);
     for _ in 0..500 {
-        let direction = random.vector(1000);
+        let direction = vector(&mut random, 1000);
         // Level rays start on both sides.
         if 9 * direction[0] + 12 * direction[1] + 20 * direction[2] == 0 {
             continue;

@@ -23,12 +23,12 @@ tests_per_ray = 0.25
         (report.passed(), report.failed(), report.not_run()),
         (2, 6, 0)
     );
-    let blessed = bless(&manifest, &report);
-    assert!(blessed.left.is_empty());
+    let recorded = record(&manifest, &report);
+    assert!(recorded.left.is_empty());
     assert_eq!(folder.text(), text);
-    record(&blessed);
+    keep(&recorded);
     let new = folder.text();
-    let diff = blessed.diff();
+    let diff = recorded.diff();
     assert!(diff.contains("-working_bytes = 1 # too small\n"), "{diff}");
     assert!(
         new.contains("blob_bytes = 1_000_000 # plenty\nstack_entries = 0\n"),
@@ -61,18 +61,18 @@ tests_per_ray = 0.25
         "{}",
         report.table()
     );
-    assert_eq!(bless(&manifest, &report).diff(), "");
+    assert_eq!(record(&manifest, &report).diff(), "");
 }
 
 #[test]
-fn blessing_keeps_line_ends() {
+fn recording_keeps_line_ends() {
     let folder = Folder::new();
     let plain = "# by hand\n[[check]]\nscene = \"ball.toml\"\nhash = {} # new\n\n# end\n";
     let mixed = plain.replacen('\n', "\r\n", 4);
     for text in [plain.replace('\n', "\r\n"), mixed, plain.to_owned()] {
         let (manifest, report) = folder.run(&text);
-        let blessed = bless(&manifest, &report);
-        record(&blessed);
+        let recorded = record(&manifest, &report);
+        keep(&recorded);
         let new = folder.text();
         let ends = |text: &str| -> Vec<bool> {
             let lines = text.split_inclusive('\n');
@@ -81,7 +81,7 @@ fn blessing_keeps_line_ends() {
         assert_eq!(ends(&new), ends(&text), "{new:?}");
         assert_ne!(new, text);
         // One line changes.
-        let diff = blessed.diff();
+        let diff = recorded.diff();
         assert_eq!(
             diff.lines().filter(|it| it.starts_with('-')).count(),
             2,
@@ -98,7 +98,7 @@ fn another_picture_is_broken_and_shown() {
     let (manifest, report) = folder.run(text);
     assert_eq!(report.failed(), 2);
     assert!(why(&report.findings[1]).contains("ball.png cannot be read"));
-    record(&bless(&manifest, &report));
+    keep(&record(&manifest, &report));
     let (_, report) = folder.run(&folder.text());
     assert_eq!((report.passed(), report.failed()), (2, 0));
 
@@ -161,8 +161,8 @@ fn unreadable_files_fail_and_other_checks_go_on() {
         assert!(why(finding).contains(cause), "{}", why(finding));
     }
     // None of that can be recorded.
-    let blessed = bless(&manifest, &report);
-    assert_eq!((blessed.left.len(), blessed.diff().as_str()), (4, ""));
+    let recorded = record(&manifest, &report);
+    assert_eq!((recorded.left.len(), recorded.diff().as_str()), (4, ""));
 }
 
 /// Broken pictures of all checks and boards lie in one folder.
@@ -219,8 +219,8 @@ fn formats_that_differ_are_named_where_their_reference_is_not_recorded() {
     let text = "[[check]]\nscene = \"ball.toml\"\nformats = [\"fixed\", \"f64\"]\nreference = \"one.png\"\n";
     let (manifest, mut report) = folder.run(text);
     assert!(why(&report.findings[0]).contains("let `gridel check --bless`"));
-    let blessed = bless(&manifest, &report);
-    blessed.note_in(&mut report);
+    let recorded = record(&manifest, &report);
+    recorded.note_in(&mut report);
     assert_eq!((report.failed(), report.recorded()), (2, 0));
     for finding in &report.findings {
         let why = why(finding);
@@ -242,26 +242,26 @@ fn pictures_that_differ_are_not_recorded_as_one_reference() {
     let both = |tolerance: &str| check("ball", tolerance) + &check("dark", tolerance);
     for _ in 0..2 {
         let (manifest, mut report) = folder.run(&both(""));
-        let blessed = bless(&manifest, &report);
+        let recorded = record(&manifest, &report);
         assert!(
-            blessed.left[0].contains("name a file for each"),
+            recorded.left[0].contains("name a file for each"),
             "{:?}",
-            blessed.left
+            recorded.left
         );
-        assert_eq!((blessed.left.len(), blessed.diff().as_str()), (1, ""));
-        blessed.note_in(&mut report);
+        assert_eq!((recorded.left.len(), recorded.diff().as_str()), (1, ""));
+        recorded.note_in(&mut report);
         assert_eq!(report.recorded(), 0, "{}", report.table());
         // The same where one of them passes with the reference that is there.
         let (manifest, mut report) = folder.run(&check("ball", ""));
-        let blessed = bless(&manifest, &report);
-        record(&blessed);
-        blessed.note_in(&mut report);
+        let recorded = record(&manifest, &report);
+        keep(&recorded);
+        recorded.note_in(&mut report);
         assert_eq!(report.failed(), 0, "{}", report.table());
     }
 
     fs::remove_file(folder.path("one.png")).unwrap();
     let (manifest, _) = folder.run(&both("tolerance = { channel = 40 }\n"));
-    record(&bless(&manifest, &run(&manifest, &|| ())));
+    keep(&record(&manifest, &run(&manifest, &|| ())));
     let (_, report) = folder.run(&folder.text());
     assert_eq!(
         (report.passed(), report.failed()),
@@ -274,7 +274,7 @@ fn pictures_that_differ_are_not_recorded_as_one_reference() {
     fs::remove_file(folder.path("one.png")).unwrap();
     let other = check("dark", "size = [8, 6]\n");
     let (manifest, report) = folder.run(&(check("ball", "size = [16, 12]\n") + &other));
-    let left = bless(&manifest, &report).left.join("\n");
+    let left = record(&manifest, &report).left.join("\n");
     assert!(left.contains("has another size than another one"), "{left}");
     assert!(!left.contains("tolerance"), "{left}");
 }
@@ -331,7 +331,7 @@ fn a_manifest_that_changed_meanwhile_is_not_written_over() {
     let (manifest, report) = folder.run(text);
     let edited = format!("# edited\n{text}");
     fs::write(folder.path("check.toml"), &edited).unwrap();
-    let (path, error) = bless(&manifest, &report).files().unwrap_err();
+    let (path, error) = record(&manifest, &report).files().unwrap_err();
     assert_eq!(path, folder.path("check.toml"));
     assert!(error.to_string().contains("has changed"), "{error}");
     assert_eq!(folder.text(), edited);

@@ -59,6 +59,6 @@ fn why(finding: &Finding) -> &str {
     }
 }
 
-fn record(blessed: &Blessed) {
-    blessed.files().unwrap().keep().unwrap();
+fn keep(recorded: &Recorded) {
+    recorded.files().unwrap().keep().unwrap();
 }

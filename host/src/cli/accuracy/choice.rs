@@ -4,7 +4,7 @@ use super::arguments::Arguments;
 use crate::cli::arguments::quoted;
 use clap::ValueEnum;
 use gridel_core::Effects;
-use gridel_host::accuracy::{Limits, Point, Results, cheapest_within, most_accurate};
+use gridel_host::accuracy::{Limits, ONCE, Point, Results, cheapest, most_accurate};
 use gridel_host::table::counted;
 use serde::Serialize;
 
@@ -32,7 +32,7 @@ pub fn choice(arguments: &Arguments, stem: &str, results: &Results) -> Option<Ch
     let point = match (arguments.max_error, arguments.max_rays) {
         (None, None) => None,
         (None, Some(rays)) => most_accurate(&results.points, rays, board),
-        (Some(_), _) => cheapest_within(&results.points, limits, board),
+        (Some(_), _) => cheapest(&results.points, limits, board),
     }?;
     let setting = &point.setting;
     let stated = setting.cutoff == results.base.cutoff && arguments.cutoff.is_none();
@@ -73,7 +73,7 @@ pub fn choice(arguments: &Arguments, stem: &str, results: &Results) -> Option<Ch
 /// Returns how certain it is that a point is the fastest within a bound.
 fn noise(fastest: &Point, points: &[Point], limits: Limits) -> String {
     let Some(repeats) = fastest.cost.interval() else {
-        return String::from(", timed once, so its noise is unknown");
+        return format!(", {ONCE}");
     };
     let within = points.iter().filter(|point| limits.hold(point));
     let others = within.filter(|point| !fastest.cost.is_below(&point.cost));

@@ -2,11 +2,9 @@
 
 use crate::cli::failure::Failure;
 use crate::cli::output::write_file;
-use gridel_core::Rgb888;
-use gridel_core::render::Pixel;
 use gridel_host::accuracy::{PagePicture, Results};
 use gridel_host::check::Image;
-use gridel_host::picture::write_png;
+use gridel_host::picture::{srgb_of, write_png};
 use std::path::{Path, PathBuf};
 
 /// Files of the output folder.
@@ -14,14 +12,6 @@ pub const RESULTS: &str = "results.json";
 pub const PAGE: &str = "page.html";
 pub const CSV: &str = "results.csv";
 pub const PLOT: &str = "rmse.svg";
-
-/// Returns the pixels of a picture as a display takes them.
-pub fn encoded(pixels: &[[u16; 3]]) -> Vec<u8> {
-    let pixels = pixels
-        .iter()
-        .flat_map(|&linear| Rgb888::encode(linear, None).0);
-    pixels.collect()
-}
 
 /// Returns the results of an earlier run with the same key. Results of other runs, and other files, are not replaced.
 pub fn kept(folder: &Path, key: &str) -> Result<Option<Results>, Failure> {
@@ -106,7 +96,7 @@ pub fn pictures(
     };
     let mut pictures = vec![PagePicture {
         name: String::new(),
-        pixels: encoded(&results.reference.pixels),
+        pixels: srgb_of(&results.reference.pixels),
     }];
     for point in &results.points {
         pictures.push(PagePicture {

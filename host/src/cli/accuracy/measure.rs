@@ -1,7 +1,7 @@
 //! Measures every setting, step by step.
 
 use super::arguments::Arguments;
-use super::folder::{RESULTS, encoded, write_picture};
+use super::folder::{RESULTS, write_picture};
 use crate::cli::failure::Failure;
 use crate::cli::output::write_file;
 use crate::cli::progress::Progress;
@@ -9,6 +9,7 @@ use crate::cli::saving::Saving;
 use crate::cli::threads;
 use gridel_host::accuracy::{Bench, MeasureError, Point, Results, Setting, effect_costs, given_up};
 use gridel_host::measure::difference_picture;
+use gridel_host::picture::srgb_of;
 use std::io;
 use std::path::Path;
 
@@ -96,7 +97,7 @@ impl Run<'_, '_> {
                 let (point, pixels) = measured.map_err(|it| self.failed(it))?;
                 let difference = difference_picture(&results.reference.pixels, &pixels);
                 let (name, size) = (setting.name(), self.bench.size());
-                write_picture(self.folder, size, &name, &encoded(&pixels))?;
+                write_picture(self.folder, size, &name, &srgb_of(&pixels))?;
                 write_picture(
                     self.folder,
                     size,

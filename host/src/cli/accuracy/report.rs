@@ -34,7 +34,7 @@ pub fn text(folder: &Path, size: [u16; 2], results: &Results, choice: Option<&Ch
         let _ = writeln!(text, "{sentence}");
     }
     text.push('\n');
-    for sentence in sentences(&results.base, &results.points) {
+    for sentence in sentences(results) {
         let _ = writeln!(text, "{sentence}");
     }
     let _ = writeln!(

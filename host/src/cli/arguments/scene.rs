@@ -9,6 +9,7 @@ use glam::DVec3;
 use gridel_core::Effects;
 use gridel_host::scene::{self, Instances, MoleculeStyle, NormalsChoice, ToneMapping};
 use std::num::NonZeroUsize;
+use std::path::Path;
 use std::str::FromStr;
 
 /// Help for the argument that names a scene file.
@@ -103,6 +104,12 @@ impl GeometryOptions {
         let textures =
             texture_bytes.map_or(String::new(), |most| format!(" --texture-bytes {most}"));
         format!("{}{bits}{room}{textures}", import.written())
+    }
+
+    /// Returns the command that explains the scene of an input, up to the pixel or the ray.
+    pub fn explain_command(&self, input: &Path) -> String {
+        let input = quoted(&input.to_string_lossy());
+        format!("gridel explain {input}{}", self.written())
     }
 }
 

@@ -61,6 +61,14 @@ pub fn distinct<T: Copy + PartialEq>(names: &[T]) -> Vec<T> {
     distinct
 }
 
+/// Names without repetition; all where none is given.
+pub fn distinct_or<T: Copy + PartialEq>(names: &[T], all: &[T]) -> Vec<T> {
+    match names {
+        [] => all.to_vec(),
+        names => distinct(names),
+    }
+}
+
 /// The name of a builder of hierarchies.
 pub fn builder() -> impl TypedValueParser<Value = Builder> {
     PossibleValuesParser::new(Builder::ALL.map(Builder::name)).try_map(|name| {

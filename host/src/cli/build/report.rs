@@ -1,13 +1,12 @@
 //! The report of `build`, as a table and as JSON.
 
 use crate::cli::effects::CalledFor;
-use crate::cli::inspect::longest_leaf;
-use gridel_core::{Scene, Structure};
+use gridel_core::Scene;
 use gridel_host::compile::{
     EnvironmentFigures, Figures, KeptNames, LeftOut, Report, Supplied, TableStats, TextureFigures,
 };
-use gridel_host::measure::InstanceCount;
 use gridel_host::measure::board::{Account, MemoryReport};
+use gridel_host::measure::{InstanceCount, longest_leaf, structure_names};
 use gridel_host::resolution::Unresolved;
 use gridel_host::table::{Align, Table, counted, grouped, power_of_two};
 use serde::Serialize;
@@ -80,11 +79,7 @@ impl<'r> Built<'r> {
             primitives: header.primitives,
             instances: None,
             bytes_otherwise: None,
-            structures: Structure::ALL
-                .into_iter()
-                .filter(|&structure| scene.holds(structure))
-                .map(Structure::name)
-                .collect(),
+            structures: structure_names(scene),
             stack_depth: scene.stack_depth(),
             longest_leaf: longest_leaf(scene),
             lattice_bits: header.lattice_bits,

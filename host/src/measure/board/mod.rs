@@ -7,6 +7,8 @@
 //! | `programs.rs` | these figures, and what bounds the others |
 //! | `estimate.rs` | code and call stack of a scene's program |
 //! | `memory.rs` | the memory report: what a scene takes of a board, and what remains |
+//! | `account.rs` | flash or RAM, item by item |
+//! | `rendering.rs` | the format, structure and width that a report holds for |
 //! | `working.rs` | RAM of parts, of meshes that deform, and of instances that move |
 //! | `text.rs` | the memory report as text |
 //! | `advice.rs` | what makes it smaller |

@@ -5,8 +5,8 @@ use crate::shapes::{hold, of_every_sort};
 use glam::DVec3;
 use gridel_core::geometry::{self, Geometry};
 use gridel_core::{Kind, Number, Scene};
+use gridel_host::shape::rounding;
 use gridel_host::shape::{Plane, Solid};
-use gridel_host::verify::rounded;
 use gridel_tests::cases::{Case, lattice, slope};
 use gridel_tests::effort::part_of;
 use gridel_tests::query::{UnitRay, closest, through};
@@ -99,14 +99,14 @@ fn axis_parallel_planes_are_exact_from_everywhere() {
             assert_eq!(hit.normal.map(N::ratio_to_f64), [0.0, 1.0, 0.0]);
             let t = N::far_to_f64(hit.t);
             let exact = (origin.y - height) / -way.y * way.abs().max_element();
-            let step = rounded::step(N::FORMAT, exact.max(4e4));
+            let step = rounding::step(N::FORMAT, exact.max(4e4));
             // The direction is rounded, too.
             let cosine = -way.normalize().y;
             let most = 8.0 * step / cosine
                 + exact * gridel_tests::bounds::ratio_step::<N>() * 16.0 / cosine;
             assert!((t - exact).abs() <= most, "{ray:?}: {t} {exact}");
             // From far away, too, the point is where the ray comes to the scene.
-            let near = rounded::step(N::FORMAT, 1e5) * 32.0 / cosine
+            let near = rounding::step(N::FORMAT, 1e5) * 32.0 / cosine
                 + back.min(1e5) * gridel_tests::bounds::ratio_step::<N>() * 32.0 / cosine
                 + back * f64::powi(2.0, -50);
             for k in [0, 2] {
@@ -279,7 +279,7 @@ fn planes_are_met_from_two_to_the_twentieth_scene_widths() {
             assert!(off <= hit.error.length_to_f64(), "{hit:?} {off}");
             // Two roundings where the ray comes to the box, and those of its slopes on the way.
             let step =
-                rounded::step(N::FORMAT, 1e5) + 1e5 * gridel_tests::bounds::ratio_step::<N>();
+                rounding::step(N::FORMAT, 1e5) + 1e5 * gridel_tests::bounds::ratio_step::<N>();
             let most = 32.0 * step / sine.abs() + f64::powi(2.0, 36 - 50);
             let aside = (point - target).length();
             assert!(
@@ -353,7 +353,7 @@ fn planes_far_beside_the_scene_are_met_in_their_place() {
                 };
                 assert_eq!(hit.primitive, 0, "{}", about());
                 let off = (N::far_to_f64(hit.t) - exact).abs() * sine;
-                let most = 8.0 * rounded::step(N::FORMAT, far.max(exact));
+                let most = 8.0 * rounding::step(N::FORMAT, far.max(exact));
                 assert!(off <= most, "{off} {most}, {}", about());
                 farthest = farthest.max(exact);
             }

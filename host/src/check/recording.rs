@@ -13,7 +13,7 @@ const MARK: &str = "\u{feff}";
 
 /// A manifest with the new records.
 #[derive(Clone, Debug)]
-pub struct Blessed {
+pub struct Recorded {
     path: PathBuf,
     old: String,
     new: String,
@@ -28,7 +28,7 @@ pub struct Blessed {
 /// stay.
 ///
 /// ```
-/// use gridel_host::check::{Manifest, bless, run};
+/// use gridel_host::check::{Manifest, record, run};
 ///
 /// let folder = tempfile::tempdir()?;
 /// let path = folder.path().join("check.toml");
@@ -40,13 +40,13 @@ pub struct Blessed {
 ///
 /// let manifest = Manifest::read(&path)?;
 /// let report = run(&manifest, &|| ());
-/// let recorded = bless(&manifest, &report);
+/// let recorded = record(&manifest, &report);
 /// recorded.files().map_err(|(_, error)| error)?.keep().map_err(|(_, error)| error)?;
 /// assert_eq!(run(&Manifest::read(&path)?, &|| ()).failed(), 0);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
-pub fn bless(manifest: &Manifest, report: &Report) -> Blessed {
-    let mut blessed = Blessed {
+pub fn record(manifest: &Manifest, report: &Report) -> Recorded {
+    let mut recorded = Recorded {
         path: manifest.path.clone(),
         old: manifest.text.clone(),
         new: manifest.text.clone(),
@@ -56,7 +56,7 @@ pub fn bless(manifest: &Manifest, report: &Report) -> Blessed {
     };
     // It was read before, so it is TOML.
     let Ok(mut document) = manifest.text.parse::<DocumentMut>() else {
-        return blessed;
+        return recorded;
     };
     let mut values = Vec::<((usize, &[Key]), &Figure)>::new();
     for finding in &report.findings {
@@ -69,7 +69,7 @@ pub fn bless(manifest: &Manifest, report: &Report) -> Blessed {
                 // The formats of a check share its budgets: the largest figure counts.
                 let place = (*check, keys.as_slice());
                 match values.iter_mut().find(|(other, _)| *other == place) {
-                    Some((_, recorded)) if recorded.within(figure) => *recorded = figure,
+                    Some((_, largest)) if largest.within(figure) => *largest = figure,
                     Some(_) => {}
                     None => values.push((place, figure)),
                 }
@@ -77,16 +77,16 @@ pub fn bless(manifest: &Manifest, report: &Report) -> Blessed {
             None if matches!(finding.outcome, Outcome::Failed(_)) => {
                 let what = format!("{}: {}", finding.check, finding.what);
                 // In several formats it is still one thing.
-                if !blessed.left.contains(&what) {
-                    blessed.left.push(what);
+                if !recorded.left.contains(&what) {
+                    recorded.left.push(what);
                 }
             }
             Some(Record::Picture(_)) | None => {}
         }
     }
-    blessed.record_pictures(report);
+    recorded.record_pictures(report);
     if values.is_empty() {
-        return blessed;
+        return recorded;
     }
     for ((check, keys), figure) in values {
         let checks = document.get_mut("check");
@@ -101,11 +101,11 @@ pub fn bless(manifest: &Manifest, report: &Report) -> Blessed {
     };
     let new = document.to_string();
     let new = super::diff::with_line_ends(old, new.strip_prefix(MARK).unwrap_or(&new));
-    blessed.new = mark.to_owned() + &new;
-    blessed
+    recorded.new = mark.to_owned() + &new;
+    recorded
 }
 
-impl Blessed {
+impl Recorded {
     /// Records a picture for each reference that is broken: the first that differs from it. All pictures with this
     /// reference must be like the recorded one; else it is left.
     fn record_pictures(&mut self, report: &Report) {
