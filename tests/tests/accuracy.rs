@@ -144,15 +144,17 @@ fn effects_are_ordered_by_what_they_cost(results: &Results) {
     let alone: Vec<&Point> = results.points.iter().filter(left_out).collect();
     assert!(alone.len() > 2);
     assert_eq!(results.effects.len(), alone.len());
-    let all = &results.points[0];
-    let work = (all.cost.rays + all.cost.tests) as f64 / all.cost.pixels as f64;
     let prices = results.effects.iter().map(|cost| {
         let point = alone
             .iter()
             .find(|it| it.name == cost.without)
             .expect("a point");
         assert_eq!(Some(cost.lost), point.lost);
-        cost.lost.rmse / ((cost.rays + cost.tests) / work).max(0.01)
+        let saved = cost.rays + cost.tests;
+        match saved > 0.0 {
+            true => (false, cost.lost.rmse / saved),
+            false => (true, cost.lost.rmse),
+        }
     });
     assert!(prices.collect::<Vec<_>>().is_sorted());
     let shadow = results

@@ -1,10 +1,10 @@
 //! The answers at the top of the page: the setting for a given error, the effect of the number format, and what to
 //! leave out.
 
-use super::columns::figure;
+use super::columns::error_figure;
 use super::ratio::{ONCE, Ratio};
 use super::{Cost, Limits, Parameter, Point, Results, Truth, cheapest};
-use crate::table::counted;
+use crate::table::{counted, significant};
 use gridel_core::Format;
 
 /// Error bounds for the answers, the largest first.
@@ -50,7 +50,7 @@ fn setting_answer(results: &Results) -> Option<String> {
                 "for an error (RMSE) of at most {bound} use {}: {}, error {}{rivals}",
                 setting_text(results, point),
                 time_text(&point.cost),
-                error_text(point.errors.rmse),
+                error_figure(point.errors.rmse),
             )
         })
         .collect();
@@ -94,8 +94,8 @@ fn format_answer(results: &Results, all: &Point) -> Option<String> {
             },
             largest => format!(
                 "differs from {from} by an RMSE of {} (largest difference {} of 255)",
-                error_text(point.parts.arithmetic),
-                (255.0 * largest).ceil()
+                error_figure(point.parts.arithmetic),
+                significant(255.0 * largest)
             ),
         };
         let own = format == results.base.format;
@@ -119,7 +119,7 @@ fn format_answer(results: &Results, all: &Point) -> Option<String> {
     (!text.is_empty()).then(|| {
         format!(
             "The number format: {text}; samples and the other settings make an error of {}.",
-            error_text(all.parts.sampling)
+            error_figure(all.parts.sampling)
         )
     })
 }
@@ -145,7 +145,7 @@ fn saving_answer(results: &Results, all: &Point) -> Option<String> {
     };
     let error = match added(first) {
         added if added < 5e-6 => String::from("adds no error"),
-        added => format!("adds an error of {}", error_text(added)),
+        added => format!("adds an error of {}", error_figure(added)),
     };
     Some(format!(
         "Give up first: {}, which saves {:.0} % of the rays and tests, {}, and {error}.",
@@ -155,19 +155,15 @@ fn saving_answer(results: &Results, all: &Point) -> Option<String> {
     ))
 }
 
-/// An error in words, which is 0 only where there is none.
-fn error_text(error: f64) -> String {
-    match 0.0 < error && error < 5e-6 {
-        true => String::from("less than 0.00001"),
-        false => figure(error),
-    }
-}
-
 fn time_text(cost: &Cost) -> String {
-    let time = 1e3 * cost.time();
+    let shown = |seconds: f64| match 1e3 * seconds {
+        long if long >= 1.0 => format!("{long:.1}"),
+        short => format!("{short:.4}"),
+    };
+    let time = shown(cost.time());
     match cost.interval() {
-        Some([least, most]) => format!("{time:.1} ms ({:.1} to {:.1})", 1e3 * least, 1e3 * most),
-        None => format!("{time:.1} ms ({ONCE})"),
+        Some([least, most]) => format!("{time} ms ({} to {})", shown(least), shown(most)),
+        None => format!("{time} ms ({ONCE})"),
     }
 }
 

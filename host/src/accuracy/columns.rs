@@ -28,6 +28,14 @@ pub(super) fn figure(value: f64) -> String {
     significant((value * 1e5).round() / 1e5)
 }
 
+/// An error in words, which is 0 only where there is none.
+pub(super) fn error_figure(error: f64) -> String {
+    match 0.0 < error && error < 5e-6 {
+        true => String::from("less than 0.00001"),
+        false => figure(error),
+    }
+}
+
 impl Point {
     /// The setting's figures, column by column.
     pub fn cells(&self) -> [String; COLUMNS.len()] {

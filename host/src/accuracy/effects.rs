@@ -44,16 +44,15 @@ pub struct EffectCost {
 /// The board for figures when no board is given.
 pub const BOARD: &str = "mps2-an386";
 
-/// The least part of the work that counts as saved, so that effects that cost no rays are compared, too.
-const LEAST_SAVING: f64 = 0.01;
-
 impl EffectCost {
-    /// The error that leaving the effect out adds, per part of the rays and tests that it saves. The effect with the
-    /// smallest price is left out first.
-    fn price(&self, all: &Point) -> f64 {
-        let work = all.work_per_pixel().max(f64::MIN_POSITIVE);
-        let saved = (self.rays + self.tests) / work;
-        self.lost.rmse / saved.max(LEAST_SAVING)
+    /// The error that leaving the effect out adds, per ray and test that it saves. The effect with the smallest price is
+    /// left out first. What saves none of them follows, that with the smallest error first.
+    fn price(&self) -> (bool, f64) {
+        let saved = self.rays + self.tests;
+        match saved > 0.0 {
+            true => (false, self.lost.rmse / saved),
+            false => (true, self.lost.rmse),
+        }
     }
 }
 
@@ -102,7 +101,10 @@ pub fn effect_costs(
             ram: all.cost.working_bytes as i64 - point.cost.working_bytes as i64,
         });
     }
-    effect_costs.sort_by(|a, b| a.price(all).total_cmp(&b.price(all)));
+    effect_costs.sort_by(|a, b| {
+        let ((idle, price), (other_idle, other)) = (a.price(), b.price());
+        idle.cmp(&other_idle).then(price.total_cmp(&other))
+    });
     Ok(effect_costs)
 }
 

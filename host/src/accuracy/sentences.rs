@@ -1,6 +1,6 @@
 //! The cost and the saving of each parameter in one sentence.
 
-use super::columns::figure;
+use super::columns::error_figure;
 use super::ratio::{Ratio, factor, part};
 use super::{Parameter, Point, Results, Setting};
 use crate::table::significant;
@@ -93,8 +93,8 @@ pub fn sentences(results: &Results) -> Vec<String> {
             error_text(first.errors.rmse, last.errors.rmse, each),
             first.setting.value(parameter),
             last.setting.value(parameter),
-            figure(first.errors.rmse),
-            figure(last.errors.rmse),
+            error_figure(first.errors.rmse),
+            error_figure(last.errors.rmse),
         ));
     }
     sentences
@@ -105,6 +105,7 @@ fn error_text(from: f64, to: f64, each: impl Fn(f64) -> f64) -> String {
     match (from, to) {
         (0.0, 0.0) => String::from("leaves the error at 0"),
         (0.0, _) => format!("makes an error of {} out of none", significant(to)),
+        (_, 0.0) => format!("removes an error of {}", significant(from)),
         _ => format!("makes the error {} as large", factor(each(to / from))),
     }
 }

@@ -137,10 +137,7 @@ fn help(report: &MemoryReport, what: &str, scene: &Scene<'_>) -> String {
         _ => report.flash_advice(scene),
     };
     if report.has_code_for_more {
-        steps.insert(
-            0,
-            format!("build the program and measure it, because {NOT_BUILT}"),
-        );
+        steps.insert(0, format!("build the program and measure it: {NOT_BUILT}"));
     }
     if what.ends_with("flash") {
         let blob = "a smaller blob: `gridel build --max-bytes` says what makes it smaller";

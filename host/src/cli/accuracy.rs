@@ -16,7 +16,7 @@ use super::output::{
 };
 use super::source::{import, warn_of_file};
 use choice::{Choice, choice};
-use folder::{CSV, PAGE, PLOT, kept, pictures};
+use folder::{CSV, PAGE, PICTURES, PLOT, kept, pictures};
 use gridel_core::format::checksum;
 use gridel_host::accuracy::{
     Bench, EffectCost, MOST_MEASURED_SAMPLES, MeasureError, Point, Setting, Truth, answers,
@@ -97,7 +97,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         reference.cutoff
     );
     let kept = kept(&folder, &key)?;
-    std::fs::create_dir_all(folder.join("pictures"))
+    std::fs::create_dir_all(folder.join(PICTURES))
         .map_err(|error| Failure::writing(&folder, &error))?;
     for name in [PAGE, CSV, PLOT] {
         check_writable(&folder.join(name))?;

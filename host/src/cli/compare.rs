@@ -159,7 +159,10 @@ pub fn run(arguments: &Arguments, memory: &PeakAlloc) -> Result<(), Failure> {
     match comparison.rejected.first() {
         Some(rejected) if !arguments.accel.is_empty() => Err(Failure::rejected(
             rejected.why.clone(),
-            "give it a larger `--budget`, or fewer cells",
+            match rejected.structure == Structure::Grid.name() {
+                true => "give it fewer cells, with `--grid`",
+                false => "give it a larger `--budget`",
+            },
         )),
         _ => Ok(()),
     }
@@ -171,7 +174,7 @@ fn options(arguments: &Arguments) -> Result<Options<'static>, Failure> {
     let structures = distinct_or(&arguments.accel, &default.structures);
     check_hierarchy("--builder", !arguments.builder.is_empty(), &structures)?;
     let geometry = &arguments.scene_options.geometry;
-    check_room(geometry.room, &arguments.accel)?;
+    check_room(geometry.room, &structures)?;
     let lattice_bits = geometry.lattice_bits;
     let compiling = arguments.structure_options.apply(compile::Options {
         structures: structures.clone(),

@@ -2,8 +2,9 @@
 
 use super::walk::Walk;
 use crate::trace::Frame;
+use gridel_core::format::record::Material;
 use gridel_core::observe::event::{QueryHit, Source};
-use gridel_core::{Event, RayKind, Scene};
+use gridel_core::{Effects, Event, RayKind, Scene};
 use serde::{Serialize, Serializer};
 
 /// An explanation of a pixel or of a ray of the caller's own. Colors are linear, 1 being display white.
@@ -116,6 +117,8 @@ pub struct Ray {
     pub dropped: Vec<Weighted>,
     /// True if the ray depth ended it at a mirror or at glass.
     pub too_deep: bool,
+    /// A bound of the weights of the rays that exceed the depth.
+    pub cut: [f64; 3],
     /// Rays that it causes, by their places.
     pub children: Vec<usize>,
 }
@@ -240,6 +243,30 @@ pub(super) fn kind_name(kind: RayKind) -> &'static str {
 }
 
 impl Ray {
+    /// A bound of what the rays from the surface weigh that was hit.
+    fn most_sent(&self, scene: &Scene<'_>) -> [f64; 3] {
+        let material = self.hit.as_ref().and_then(|hit| scene.material(hit.object));
+        let Some(material) = material else {
+            return [0.0; 3];
+        };
+        let weight = self.absorbed.unwrap_or(self.weight);
+        let is_indirect = scene.effects().contains(Effects::INDIRECT);
+        [0, 1, 2].map(|channel| {
+            // 30 fraction bits.
+            let ratio = |of: [i32; 3]| f64::from(of[channel]) / f64::powi(2.0, 30);
+            let diffuse = if is_indirect {
+                ratio(material.diffuse)
+            } else {
+                0.0
+            };
+            let sent = match material.maps & Material::MAPS_ALPHA {
+                0 => ratio(material.mirror) + ratio(material.transmit) + diffuse,
+                _ => 1.0,
+            };
+            weight[channel] * sent.min(1.0)
+        })
+    }
+
     pub(super) fn record(
         &mut self,
         scene: &Scene<'_>,
@@ -329,7 +356,10 @@ impl Ray {
                 kind: kind_name(kind),
                 weight,
             }),
-            Event::TooDeep => self.too_deep = true,
+            Event::TooDeep => {
+                self.too_deep = true;
+                self.cut = self.most_sent(scene);
+            }
             _ => {
                 let shadow = self.lights.last_mut().and_then(|l| l.shadow.last_mut());
                 let walk = if *light { shadow } else { self.walk.as_mut() };

@@ -188,7 +188,7 @@ impl Shown<'_> {
         }
         let too_deep: Vec<f64> = rays()
             .filter(|ray| ray.too_deep)
-            .map(|ray| peak(ray.weight))
+            .map(|ray| peak(ray.cut))
             .collect();
         if !too_deep.is_empty() {
             let lost: f64 = too_deep.iter().sum::<f64>() / self.explanation.samples.len() as f64;

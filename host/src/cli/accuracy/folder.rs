@@ -12,6 +12,8 @@ pub const RESULTS: &str = "results.json";
 pub const PAGE: &str = "page.html";
 pub const CSV: &str = "results.csv";
 pub const PLOT: &str = "rmse.svg";
+/// The folder of pictures in it.
+pub const PICTURES: &str = "pictures";
 
 /// Returns the results of an earlier run with the same key. Results of other runs, and other files, are not replaced.
 pub fn kept(folder: &Path, key: &str) -> Result<Option<Results>, Failure> {
@@ -26,7 +28,13 @@ pub fn kept(folder: &Path, key: &str) -> Result<Option<Results>, Failure> {
         ))
     };
     if !file.exists() {
-        let mut others = [PAGE, CSV, PLOT].map(|name| folder.join(name)).into_iter();
+        let others = [PAGE, CSV, PLOT].map(|name| folder.join(name));
+        let pictures = std::fs::read_dir(folder.join(PICTURES))
+            .into_iter()
+            .flatten();
+        let mut others = others
+            .into_iter()
+            .chain(pictures.flatten().map(|entry| entry.path()));
         return match others.find(|path| path.exists()) {
             Some(path) => foreign(&path),
             None => Ok(None),
@@ -56,7 +64,7 @@ pub fn kept(folder: &Path, key: &str) -> Result<Option<Results>, Failure> {
 
 /// The path of a picture.
 fn picture(folder: &Path, name: &str) -> PathBuf {
-    let pictures = folder.join("pictures");
+    let pictures = folder.join(PICTURES);
     pictures.join(name).with_added_extension("png")
 }
 

@@ -2,7 +2,7 @@
 
 use super::InUnits;
 use super::step::{Culled, Plane, Side, Tested};
-use crate::verify::rounded;
+use crate::shape::rounding::step;
 use gridel_core::observe::event::Sides;
 
 impl InUnits {
@@ -93,7 +93,7 @@ impl InUnits {
             };
         }
         // Volumes have boundaries that are no planes of axes.
-        let margin = 64.0 * rounded::step(self.format, span[0].abs().max(span[1].abs()));
+        let margin = 64.0 * step(self.format, span[0].abs().max(span[1].abs()));
         match span[0] - span[1] > margin {
             true => Culled::NotInVolume,
             false => Culled::Margin,

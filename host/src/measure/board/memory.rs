@@ -18,14 +18,13 @@ use super::rendering::Rendering;
 use super::working;
 use crate::measure::bytes::{MemoryMap, board_memory};
 use crate::state::raised_materials;
-use crate::table::grouped;
+use crate::table::{counted, grouped};
 use gridel_core::format::track::Track;
 use gridel_core::{Prevalidated, Rgb565, Scene, Structure, Tracks};
 use serde::Serialize;
 
 /// Why figures of code and call stack are upper bounds.
-pub const NOT_BUILT: &str =
-    "its own program was not built: the figures are those of a program with code for more";
+pub const NOT_BUILT: &str = "the figures are those of a program with code for more than the scene needs, as its own was not built";
 
 /// Memory of a board that a scene is to fit into.
 #[derive(Clone, Copy, Debug)]
@@ -167,7 +166,7 @@ impl MemoryReport {
         }
         let need = board_memory(scene, format, scene.view().depth);
         ram.add(
-            format!("traversal stack, {} entries", scene.stack_depth()),
+            format!("traversal stack, {}", counted(scene.stack_depth(), "entry")),
             Some(need.stack as u64),
         );
         ram.add(WORK_LIST, Some((need.workspace - need.stack) as u64));
