@@ -104,40 +104,63 @@ impl Scene {
 
     fn show_lights(&mut self) {
         for number in 0..self.lights.len() {
-            let form = self.light_forms.get_mut(number).and_then(Option::as_mut);
-            let Some(form) = form.filter(|form| form.is_visible) else {
-                continue;
-            };
-            form.is_visible = false;
-            let Light::Point { position, color } = self.lights[number] else {
-                continue;
-            };
-            let Some(shape) = seen(position, &form.shape) else {
-                continue;
-            };
-            form.is_surface = true;
-            let name = match self.light_names.get(number) {
-                Some(name) if !name.is_empty() => name.clone(),
-                _ => format!("light {number}"),
-            };
-            self.objects.push(Object {
-                name: name.clone(),
-                material: self.materials.len(),
-                shape,
-                normals: Normals::default(),
-                attributes: Attributes::default(),
-                place: self.places.light(number),
-            });
-            self.materials.push(Material {
-                place: self.places.light(number),
-                name,
-                diffuse: Diffuse::Plain(BLACK),
-                emission: color,
-                lights: false,
-                is_sampled: true,
-                ..Material::default()
-            });
+            let lamp = self.lamp(number);
+            if let Some(form) = self.light_forms.get_mut(number).and_then(Option::as_mut) {
+                form.is_visible = false;
+                form.is_surface |= lamp.is_some();
+            }
+            if let Some((object, material)) = lamp {
+                self.objects.push(object);
+                self.materials.push(Material {
+                    lights: false,
+                    is_sampled: true,
+                    ..material
+                });
+            }
         }
+    }
+
+    /// Returns the object of a light that is visible, and its material, the next one.
+    fn lamp(&self, number: usize) -> Option<(Object, Material)> {
+        let form = self.light_forms.get(number).copied().flatten();
+        let form = form.filter(|form| form.is_visible)?;
+        let Light::Point { position, color } = self.lights[number] else {
+            return None;
+        };
+        let shape = seen(position, &form.shape)?;
+        let name = match self.light_names.get(number) {
+            Some(name) if !name.is_empty() => name.clone(),
+            _ => format!("light {number}"),
+        };
+        let object = Object {
+            name: name.clone(),
+            material: self.materials.len(),
+            shape,
+            normals: Normals::default(),
+            attributes: Attributes::default(),
+            place: self.places.light(number),
+        };
+        let material = Material {
+            place: self.places.light(number),
+            name,
+            diffuse: Diffuse::Plain(BLACK),
+            emission: color,
+            ..Material::default()
+        };
+        Some((object, material))
+    }
+
+    /// Returns a scene whose visible lights are objects that glow, and light others as such; `None` without such lights.
+    pub(super) fn with_lamps(&self) -> Option<Self> {
+        let mut scene: Option<Self> = None;
+        for number in 0..self.lights.len() {
+            if let Some((object, material)) = scene.as_ref().unwrap_or(self).lamp(number) {
+                let scene = scene.get_or_insert_with(|| self.clone());
+                scene.objects.push(object);
+                scene.materials.push(material);
+            }
+        }
+        scene
     }
 
     /// Returns the object with the surface of a light.

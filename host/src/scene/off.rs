@@ -9,7 +9,7 @@
 //! Vertices of other than three coordinates (`4OFF`, `nOFF`) and binary files are rejected. Comments begin with `#`.
 
 use super::importer::{Importer, Input, stem};
-use super::polygon::{self, MAX_CONCAVE};
+use super::polygon;
 use super::size::Size;
 use super::text::{Source, Warnings};
 use super::words::Words;
@@ -352,17 +352,13 @@ fn read_faces(
             warnings.add(source, line, sentence);
             continue;
         }
-        let cut = polygon::triangulate(&points).ok_or_else(|| {
-            let cause = format!("face {face} (from 0) is concave and has {corner_count} vertices");
-            let remedy = format!("split it into faces of at most {MAX_CONCAVE} vertices");
-            wrong(line, cause, &remedy)
-        })?;
-        if !cut.exact {
-            let sentence = "a face crosses itself; its triangles cover more than it encloses";
+        let (cut, crosses) =
+            polygon::cut("face", &points).map_err(|[cause, remedy]| wrong(line, cause, &remedy))?;
+        if let Some(sentence) = crosses {
             warnings.add(source, line, sentence);
         }
         let named = |triangle: [u32; 3]| triangle.map(|corner| corners[corner as usize]);
-        triangles.extend(cut.triangles.into_iter().map(named));
+        triangles.extend(cut.into_iter().map(named));
     }
     if triangles.is_empty() {
         return Err(source.error(

@@ -1,21 +1,26 @@
-//! The columns of a PDB file (format 3.3): ATOM, HETATM, MODEL, ENDMDL, END, CONECT and REMARK 350. Atoms behind
-//! an END begin a model of their own, because programs of dynamics end their frames so.
+//! The columns of a PDB file (format 3.3): ATOM, HETATM, MODEL, ENDMDL, END, CONECT, LINK, SSBOND, MTRIX and REMARK
+//! 350. Atoms behind an END begin a model of their own, because programs of dynamics end their frames so.
 //!
 //! Columns are those of the format's description, counted from 1. The importer reads only what drawing needs, so it
 //! accepts files that omit the rest or break its rules. Serial numbers may be `*****` or hexadecimal, and everything
 //! after the coordinates may be missing.
 
 mod biomt;
+mod bonds;
 mod columns;
+mod mtrix;
+mod names;
 
 use super::importer::{Importer, Input};
-use super::molecule::{self, Atom, Element, End, Model, Parsed, Site};
+use super::molecule::{self, Atom, Bond, Element, End, Model, Parsed, Site};
 use super::text::{Source, Warnings};
 use super::{Imported, SceneError};
 use biomt::Assemblies;
 use columns::columns;
 use glam::DVec3;
 use gridel_core::Up;
+use mtrix::Generating;
+use names::element_of_name;
 
 pub(super) const IMPORTER: Importer = Importer {
     name: "PDB",
@@ -59,6 +64,7 @@ pub(super) fn parse_into<'a>(
     warnings: &mut Warnings,
 ) -> Result<Parsed<'a>, SceneError> {
     let mut assemblies = Assemblies::default();
+    let mut generating = Generating::default();
     // The number that the file gives the next model, if the next atom starts one.
     let mut next_model = Some("1");
     for (number, line) in source.lines() {
@@ -85,14 +91,27 @@ pub(super) fn parse_into<'a>(
                 for first in [12, 17, 22, 27] {
                     let to = columns(line, first, first + 4).trim();
                     if !from.is_empty() && !to.is_empty() {
-                        let ends = [from, to].map(End::Serial);
-                        parsed.add_bond(source, (number, ends))?;
+                        let bond = Bond {
+                            record: "CONECT",
+                            line: number,
+                            ends: [from, to].map(End::Serial),
+                        };
+                        parsed.add_bond(source, bond)?;
                     }
                 }
+            }
+            "LINK" | "SSBOND" => {
+                if let Some(bond) = bonds::stated(number, line) {
+                    parsed.add_bond(source, bond)?;
+                }
+            }
+            "MTRIX1" | "MTRIX2" | "MTRIX3" => {
+                generating.row(source, number, line, &mut parsed)?;
             }
             _ => {}
         }
     }
+    generating.finish(source, &mut parsed)?;
     Ok(parsed)
 }
 
@@ -129,16 +148,11 @@ fn atom<'a>(
     let residue = columns(line, 18, 21).trim();
     let element = match stated_symbol(line) {
         Some(symbol) => Element::from_symbol(symbol),
-        None => element_of_name(field, columns(line, 1, 6) == "HETATM"),
+        None => element_of_name(field, residue, columns(line, 1, 6) == "HETATM"),
     };
-    let element = element.unwrap_or_else(|| {
-        let sentence = format!(
-            "the element of the atom {:?} is unknown; it is drawn in pink",
-            field.trim()
-        );
-        warnings.add(source, number, sentence);
-        Element::UNKNOWN
-    });
+    let of = ["of the atom ", field.trim()];
+    let element = Element::or_unknown(element, of, (source, number), warnings);
+    let segment = columns(line, 73, 76).trim();
     Ok(Atom {
         site: Site {
             element,
@@ -154,6 +168,12 @@ fn atom<'a>(
         residue,
         number: columns(line, 23, 26).trim(),
         insertion: columns(line, 27, 27).trim(),
+        label: "",
+        // Charges and numbers of lines can stand there, too.
+        segment: match has_letter(segment) {
+            true => segment,
+            false => "",
+        },
     })
 }
 
@@ -161,36 +181,12 @@ fn atom<'a>(
 /// or have something else: line numbers of old files, or a part of a longer word.
 fn stated_symbol(line: &str) -> Option<&str> {
     let symbol = columns(line, 77, 78).trim();
-    let has_letter = |text: &str| text.contains(|c: char| c.is_ascii_alphabetic());
     // A charge begins with a digit or a sign.
     let is_word = has_letter(columns(line, 79, 79));
     let is_known = || Element::from_symbol(symbol).is_some();
     (has_letter(symbol) && (!is_word || is_known())).then_some(symbol)
 }
 
-/// Returns the element from the four columns of an atom's name, whose first two are the symbol,
-/// right-justified: ` CA ` is a carbon, `CA  ` is calcium.
-fn element_of_name(field: &str, hetero: bool) -> Option<Element> {
-    // The wwPDB's name for an atom of an unknown element; it is neither uranium nor nitrogen.
-    if field.trim() == "UNK" {
-        return None;
-    }
-    let letters = field.trim_start_matches(|c: char| c.is_whitespace() || c.is_ascii_digit());
-    let (one, two, rest) = (
-        columns(letters, 1, 1),
-        columns(letters, 1, 2),
-        columns(letters, 3, 4),
-    );
-    let is_symbol =
-        |symbol: &str| symbol.len() == 2 && symbol.ends_with(|c: char| c.is_ascii_alphabetic());
-    // Many programs start all names in the first column. So two letters are a symbol only in two cases. The second is a
-    // small letter; or no more letters follow and the atom is not in a biopolymer, whose elements have one letter.
-    let written_small = two.ends_with(|c: char| c.is_ascii_lowercase());
-    let no_biopolymer = hetero || !one.starts_with(['H', 'C', 'N', 'O', 'P', 'S']);
-    let alone = letters.len() == field.len() && !rest.contains(|c: char| c.is_ascii_alphabetic());
-    if is_symbol(two) && (written_small || (alone && no_biopolymer)) {
-        Element::from_symbol(two).or_else(|| Element::from_symbol(one))
-    } else {
-        Element::from_symbol(one)
-    }
+fn has_letter(text: &str) -> bool {
+    text.contains(|c: char| c.is_ascii_alphabetic())
 }

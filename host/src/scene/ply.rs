@@ -9,7 +9,7 @@ mod header;
 mod payload;
 
 use super::importer::{Importer, Input, stem};
-use super::polygon::{self, MAX_CONCAVE};
+use super::polygon;
 use super::size::Size;
 use super::text::{Warnings, check_encoding};
 use super::{
@@ -251,18 +251,12 @@ fn mesh(
             short += 1;
             continue;
         }
-        let cut = polygon::triangulate(&points).ok_or_else(|| {
-            wrong(
-                format!(
-                    "face {number} (from 0) is concave and has {} vertices",
-                    points.len()
-                ),
-                &format!("split it into faces of at most {MAX_CONCAVE} vertices"),
-            )
+        let (cut, crosses) = polygon::cut("face", &points).map_err(|[cause, remedy]| {
+            wrong(format!("face {number} (from 0): {cause}"), &remedy)
         })?;
-        crossing += usize::from(!cut.exact);
+        crossing += usize::from(crosses.is_some());
         let named = |triangle: [u32; 3]| triangle.map(|corner| corners[corner as usize] as u32);
-        triangles.extend(cut.triangles.into_iter().map(named));
+        triangles.extend(cut.into_iter().map(named));
     }
     for (count, sentence) in [
         (

@@ -23,6 +23,25 @@ pub(super) struct Triangulation {
     pub(super) exact: bool,
 }
 
+/// Triangles, and a warning if what they make up crosses itself.
+pub(super) type Cut = (Vec<[u32; 3]>, Option<String>);
+
+/// Triangulates a `what`, a face or a polygon, of a file.
+///
+/// # Errors
+/// If it is concave and has more than [`MAX_CONCAVE`] vertices: cause and remedy.
+pub(super) fn cut(what: &str, vertices: &[DVec3]) -> Result<Cut, [String; 2]> {
+    let count = vertices.len();
+    let Some(cut) = triangulate(vertices) else {
+        return Err([
+            format!("a concave {what} of {count} vertices is too large"),
+            format!("split it into {what}s of at most {MAX_CONCAVE} vertices"),
+        ]);
+    };
+    let crosses = || format!("a {what} crosses itself; its triangles cover more than it encloses");
+    Ok((cut.triangles, (!cut.exact).then(crosses)))
+}
+
 /// Triangulates a polygon of at least three finite vertices; `None` if it is concave and has more
 /// than [`MAX_CONCAVE`].
 ///

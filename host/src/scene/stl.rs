@@ -77,6 +77,13 @@ fn read(input: Input<'_>) -> Result<Imported, SceneError> {
     match announced {
         Some(count) if length(count) == found => binary(path, &bytes, Warnings::default()),
         _ if is_text(&bytes) => text(&Source::from_bytes(path, bytes)),
+        _ if let Some(line) = late_solid(&bytes) => Err(SceneError::new(
+            path,
+            format!(
+                "the text begins with other lines; `solid`, with which STL begins, is in line {line}"
+            ),
+            "remove the lines before it",
+        )),
         Some(count) if length(count) < found => {
             let more = found - length(count);
             let mut warnings = Warnings::default();
@@ -98,6 +105,13 @@ fn read(input: Input<'_>) -> Result<Imported, SceneError> {
             "export it again; a text begins with `solid`, and a binary file has at least 84 bytes",
         )),
     }
+}
+
+/// Returns the line of the first `solid` of a text that begins with something else.
+fn late_solid(bytes: &[u8]) -> Option<usize> {
+    let text = str::from_utf8(bytes).ok()?;
+    let line = text.lines().position(|line| is_text(line.as_bytes()))?;
+    Some(line + 1)
 }
 
 /// Rejects what fits into no memory.
@@ -142,6 +156,10 @@ fn binary(path: &Path, bytes: &[u8], mut warnings: Warnings) -> Result<Imported,
         soup.push(corners);
         colored += usize::from(triangle[48..] != [0; 2]);
     }
+    if bytes[..HEAD].windows(6).any(|it| it == b"COLOR=") {
+        let sentence = "the color of the header (`COLOR=`) is ignored; the surface has one color";
+        warnings.add_times(SourceSpan::of(path), 1, sentence);
+    }
     if colored > 0 {
         let sentence = "the attributes of a triangle, which some programs use for its color, are \
                         ignored; the surface has one color";
@@ -162,6 +180,8 @@ fn text(source: &Source) -> Result<Imported, SceneError> {
     let mut size = Size::default();
     // The corners of the facet that is open.
     let mut facet: Option<Vec<DVec3>> = None;
+    // The line of the last `endfacet` behind which no solid ends.
+    let mut unended = None;
     let lines = source.lines();
     let statements = lines.flat_map(|(number, line)| Statements(line).map(move |it| (number, it)));
     for (number, line) in statements {
@@ -208,10 +228,12 @@ fn text(source: &Source) -> Result<Imported, SceneError> {
                     size.triangles += 1;
                     check_size(&source.path, size).map_err(|error| error.at_line(number))?;
                     soup.push([a, b, c]);
+                    unended = Some(number);
                 }
                 _ => return Err(misplaced("this facet has not three vertices")),
             },
-            "outer" | "endloop" | "endsolid" => {}
+            "endsolid" => unended = None,
+            "outer" | "endloop" => {}
             _ => {
                 let sentence = format!(
                     "lines that begin with {word:?} are ignored",
@@ -226,6 +248,10 @@ fn text(source: &Source) -> Result<Imported, SceneError> {
             "the file ends inside a facet",
             "copy the file again, or export it again",
         ));
+    }
+    if let Some(line) = unended {
+        let sentence = "the text ends behind this facet without `endsolid`; it may be cut off";
+        warnings.add(source, line, sentence);
     }
     let (name, place) = solid;
     objects.extend(soup.object(name, place));

@@ -105,10 +105,9 @@ fn parse<'a>(
 /// Rejects extended XYZ whose first columns are not element and position.
 fn check_columns(source: &Source, comment: &str) -> Result<(), SceneError> {
     const USUAL: [&str; 2] = ["species:S:1:pos:R:3", "Z:I:1:pos:R:3"];
-    let Some((_, properties)) = comment.split_once("Properties=") else {
+    let Some(properties) = value_of(comment, "Properties") else {
         return Ok(());
     };
-    let properties = properties.trim_start_matches('"');
     let begins = |usual: &str| {
         let rest = properties.strip_prefix(usual);
         rest.is_some_and(|rest| !rest.starts_with(|c: char| c.is_ascii_digit()))
@@ -124,6 +123,22 @@ fn check_columns(source: &Source, comment: &str) -> Result<(), SceneError> {
         "the first columns of the atoms are not element and position",
         format!("write the file with the columns {} first", USUAL[0]),
     ))
+}
+
+/// Returns what follows a key and its equals sign, around which spaces are allowed.
+fn value_of<'a>(comment: &'a str, key: &str) -> Option<&'a str> {
+    let mut found = comment.match_indices(key).filter_map(|(at, _)| {
+        let (before, after) = (&comment[..at], &comment[at + key.len()..]);
+        let is_word = !before.ends_with(|c: char| c.is_alphanumeric() || c == '_');
+        let value = after.trim_start().strip_prefix('=')?;
+        is_word.then(|| {
+            value
+                .trim_start()
+                .trim_start_matches(['"', '\''])
+                .trim_start()
+        })
+    });
+    found.next()
 }
 
 fn atom<'a>(
@@ -151,14 +166,8 @@ fn atom<'a>(
         Ok(number) => Element::from_number(number),
         Err(_) => Element::from_symbol(name),
     };
-    let element = element.unwrap_or_else(|| {
-        let sentence = format!(
-            "the element of the atom {name:?} is unknown; it is drawn in pink",
-            name = shortened(name)
-        );
-        warnings.add(source, line, sentence);
-        Element::UNKNOWN
-    });
+    let of = ["of the atom ", name];
+    let element = Element::or_unknown(element, of, (source, line), warnings);
     Ok(Atom {
         site: Site {
             element,
@@ -166,14 +175,8 @@ fn atom<'a>(
         },
         line,
         model,
-        serial: "",
         name,
-        altloc: "",
-        chain: "",
-        asym: "",
-        residue: "",
-        number: "",
-        insertion: "",
+        ..Atom::default()
     })
 }
 
@@ -292,6 +295,7 @@ mod tests {
             ("1\n\nC 0 inf 0\n", "t.xyz:3: the y coordinate of an atom is \"inf\", which is not a finite number"),
             ("1\n\n1 C 0 0 0\n", "t.xyz:3: the x coordinate of an atom is \"C\", which is not a number"),
             ("1\nProperties=id:I:1:species:S:1:pos:R:3\n1 C 0 0 0\n", "t.xyz:2: the first columns of the atoms are not element and position"),
+            ("1\nProperties = pos:R:3:Z:I:1\n1 0 0 6\n", "t.xyz:2: the first columns of the atoms are not element and position"),
             ("1\nProperties=species:S:1:pos:R:30\nC 0 0 0\n", "t.xyz:2: the first columns of the atoms are not element and position"),
         ] {
             let error = model(text, 1).unwrap_err();
@@ -303,9 +307,13 @@ mod tests {
             "\"species:S:1:pos:R:3:forces:R:3\"",
             "Z:I:1:pos:R:3 pbc=\"T T T\"",
         ] {
-            let text = format!("1\nLattice=\"1 0 0\" Properties={properties}\n6 0 0 0\n");
-            assert_eq!(symbols(&model(&text, 1).unwrap()), "C", "{properties}");
+            for is in ["=", " = ", " =", "=  "] {
+                let text = format!("1\nLattice=\"1 0 0\" Properties{is}{properties}\n6 0 0 0\n");
+                assert_eq!(symbols(&model(&text, 1).unwrap()), "C", "{properties}");
+            }
         }
+        let other = "1\nMyProperties=pos:R:3 Properties of a carbon\n6 0 0 0\n";
+        assert_eq!(symbols(&model(other, 1).unwrap()), "C");
     }
 
     #[test]

@@ -123,6 +123,19 @@ impl Importer<'_> {
         Ok(attributes)
     }
 
+    /// Warns of colors that weight only a part of the light that a material sends on.
+    pub(super) fn warn_of_colors(&mut self, attributes: &Attributes, material: usize) {
+        let made = &self.scene.materials[material];
+        let is_diffuse = made.mirror == [0.0; 3] && made.transmit == [0.0; 3];
+        if is_diffuse || attributes.colors.iter().all(|it| *it == [1.0; 3]) {
+            return;
+        }
+        let name = shortened(&made.name);
+        self.warn(format!(
+            "COLOR_0 on material {name:?} weights its diffuse color alone, not what it mirrors or lets through"
+        ));
+    }
+
     /// The material of a primitive, each read once.
     pub(super) fn material(&mut self, part: &Primitive<'_>) -> Result<usize, SceneError> {
         let material = part.material();

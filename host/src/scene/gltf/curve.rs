@@ -189,6 +189,11 @@ impl Curve {
         if !numbers.into_iter().all(f64::is_finite) {
             return Err("a number is not finite");
         }
+        // A blob counts ticks in 32 bits.
+        let is_late = |key: &Key| i32::try_from(tick(key.seconds)).is_err();
+        if self.keys.iter().any(is_late) {
+            return Err("a time is beyond 44739 seconds, the limit");
+        }
         if !self
             .keys
             .is_sorted_by(|one, other| one.seconds < other.seconds)

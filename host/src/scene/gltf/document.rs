@@ -2,6 +2,7 @@
 
 use super::container::{self, Container};
 use super::normal_transforms::{self, NormalTransforms};
+use super::text::Counts;
 use crate::scene::text::Warnings;
 use crate::scene::{SceneError, SourceSpan};
 use crate::table::shortened;
@@ -25,6 +26,8 @@ pub(super) fn read(
     warnings: &mut Warnings,
 ) -> Result<(Document, Option<Vec<u8>>, NormalTransforms), SceneError> {
     let container = container::split(path, bytes, warnings)?;
+    let counts = Counts::of(container.text);
+    counts.check(path)?;
     let mut root = parse(path, &container, warnings)?;
     check_version(path, &root.asset.version)?;
     let least = root.asset.min_version.as_ref();
@@ -38,6 +41,7 @@ pub(super) fn read(
             AGAIN,
         ));
     }
+    warn_of_unlisted(path, &counts, &root, warnings);
     leave_out_shapeless(path, &mut root, warnings);
     complete_images(path, &mut root, warnings);
     check_indices(path, &root)?;
@@ -47,6 +51,24 @@ pub(super) fn read(
     let transforms = normal_transforms::read(path, container.text)?;
     warn_of_targets(path, container.text, warnings);
     Ok((document, blob, transforms))
+}
+
+/// Warns of extensions that elements have and the file does not list.
+fn warn_of_unlisted(path: &Path, counts: &Counts<'_>, root: &Root, warnings: &mut Warnings) {
+    let names = counts.extensions.iter();
+    let names = names.filter(|name| {
+        !root
+            .extensions_used
+            .iter()
+            .any(|it| it.as_bytes() == **name)
+    });
+    let names: Vec<_> = names.map(|it| String::from_utf8_lossy(it)).collect();
+    if !names.is_empty() {
+        let names = names.join(", ");
+        let sentence =
+            format!("`extensionsUsed` does not list extensions that elements have: {names}");
+        warnings.add_times(SourceSpan::of(path), 1, sentence);
+    }
 }
 
 /// Warns of attributes of morph targets that the crate leaves out, given the JSON text of a file, which is valid.

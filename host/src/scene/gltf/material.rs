@@ -50,13 +50,38 @@ pub(super) fn is_cut_out(material: &gltf::Material<'_>) -> bool {
     material.alpha_mode() == AlphaMode::Mask && !is_there(material)
 }
 
-/// A sentence on an index of refraction that is taken otherwise.
-pub(super) fn ignored(material: &gltf::Material<'_>) -> Option<String> {
+/// Sentences on numbers of a material that are taken otherwise.
+pub(super) fn ignored(material: &gltf::Material<'_>) -> impl Iterator<Item = String> {
     let name = name(material);
+    let surface = material.pbr_metallic_roughness();
+    let through = material.transmission();
+    let one = |number: f32| vec![number];
+    let factors = [
+        ("base color", surface.base_color_factor().to_vec()),
+        ("metallic", one(surface.metallic_factor())),
+        ("roughness", one(surface.roughness_factor())),
+        ("emissive", material.emissive_factor().to_vec()),
+        (
+            "transmission",
+            through.map_or(Vec::new(), |it| one(it.transmission_factor())),
+        ),
+    ];
+    let is_within = |numbers: &[f32]| numbers.iter().all(|it| (0.0..=1.0).contains(it));
+    let beyond = factors.into_iter().filter(move |(_, it)| !is_within(it));
+    let outside = format!(
+        "factor of material {:?} is outside of its range, 0 to 1",
+        shortened(&name)
+    );
+    let beyond = beyond.map(move |(what, _)| format!("the {what} {outside}"));
+    index_taken(material, &name).into_iter().chain(beyond)
+}
+
+/// A sentence on an index of refraction that is taken otherwise.
+fn index_taken(material: &gltf::Material<'_>, name: &str) -> Option<String> {
     let index = material.ior().filter(|ior| !(1.0..=4.0).contains(ior));
     index.map(|ior| {
         let taken = taken_ior(ior);
-        format!("the index of refraction {ior} of material {name:?} is taken as {taken}; it must be 1 to 4", name = shortened(&name))
+        format!("the index of refraction {ior} of material {name:?} is taken as {taken}; it must be 1 to 4", name = shortened(name))
     })
 }
 

@@ -26,6 +26,7 @@ mod normal_transforms;
 mod normals;
 mod place;
 mod shared;
+mod text;
 mod view;
 
 use super::access::Access;
@@ -215,7 +216,7 @@ impl Importer<'_> {
             "skins are ignored; their meshes stand unbent at their nodes",
         );
         for material in document.materials() {
-            if let Some(sentence) = material::ignored(&material) {
+            for sentence in material::ignored(&material) {
                 self.warn(sentence);
             }
         }
@@ -365,6 +366,7 @@ impl Importer<'_> {
                 _ => format!("{name} {}", part.index()),
             };
             let material = self.material(&part)?;
+            self.warn_of_colors(&attributes, material);
             objects.push(Object {
                 name,
                 material,

@@ -35,9 +35,10 @@ impl GroupColumns {
     }
 }
 
-/// Columns of `pdbx_struct_oper_list`.
+/// Columns of `pdbx_struct_oper_list` and of `struct_ncs_oper`.
 pub(super) struct OperatorColumns {
     name: Column,
+    code: Column,
     /// Three rows of the matrix, each with its entry of the vector.
     rows: [[Column; 4]; 3],
 }
@@ -51,8 +52,14 @@ impl OperatorColumns {
         };
         Self {
             name: table.column("id"),
+            code: table.column("code"),
             rows: [row(1), row(2), row(3)],
         }
+    }
+
+    /// Returns whether the file lacks the atoms that an operator of `struct_ncs_oper` generates.
+    pub(super) fn generates(&self, table: &Table<'_>) -> bool {
+        table.value([self.code]).eq_ignore_ascii_case("generate")
     }
 
     pub(super) fn read<'a>(&self, table: &Table<'a>) -> Matrix<'a> {

@@ -6,15 +6,17 @@
 //! files of the same structure.
 
 mod assembly;
+mod bonds;
 mod cif;
 mod table;
 
 use super::importer::{Importer, Input};
-use super::molecule::{self, Atom, Element, End, Model, Parsed, Site};
+use super::molecule::{self, Atom, Element, Model, Parsed, Site};
 use super::text::{Source, Warnings};
 use super::{Imported, SceneError};
 use crate::table::shortened;
 use assembly::{GroupColumns, OperatorColumns};
+use bonds::BondColumns;
 use cif::{Token, Tokens};
 use glam::DVec3;
 use gridel_core::Up;
@@ -115,13 +117,30 @@ pub(super) fn parse_into<'a>(
         }
     }
     parser.row(&single)?;
-    if parser.parsed.atoms.is_empty() && source.text.contains("_atom_site_fract_x") {
-        return Err(source.error(
-            "the atoms have no Cartesian coordinates, as in CIF files of small molecules",
-            "convert the file to mmCIF or PDB",
-        ));
+    match parser.parsed.atoms.is_empty() {
+        true => unread(source).map_or(Ok(parser.parsed), Err),
+        false => Ok(parser.parsed),
     }
-    Ok(parser.parsed)
+}
+
+/// The error of a file whose atoms stand in a category of other CIF files.
+fn unread(source: &Source) -> Option<SceneError> {
+    let has = |tag: &str| {
+        source.lines().any(|(_, line)| {
+            let start = line.trim_start().get(..tag.len());
+            start.is_some_and(|it| it.eq_ignore_ascii_case(tag))
+        })
+    };
+    let cause = if has("_atom_site_fract_x") {
+        "the atoms have no Cartesian coordinates, as in CIF files of small molecules"
+    } else if has("_atom_site_Cartn_x") {
+        "the atoms stand in _atom_site_Cartn_x, as in CIF files of small molecules; _atom_site.Cartn_x is read"
+    } else if has("_chem_comp_atom.") {
+        "the atoms stand in _chem_comp_atom, which describes a chemical component; _atom_site is read"
+    } else {
+        return None;
+    };
+    Some(source.error(cause, "convert the file to mmCIF or PDB"))
 }
 
 struct Parser<'a, 'w> {
@@ -186,7 +205,17 @@ impl<'a> Parser<'a, '_> {
     fn read(&mut self, table: &Table<'a>, columns: &Columns) -> Result<(), SceneError> {
         match columns {
             Columns::Atom(columns) => self.atom(table, columns)?,
-            Columns::Bond(columns) => self.bond(table, columns)?,
+            Columns::Bond(columns) => {
+                if let Some(bond) = columns.read(table) {
+                    self.parsed.add_bond(self.source, bond)?;
+                }
+            }
+            Columns::Generating(columns) => {
+                if columns.generates(table) {
+                    self.parsed
+                        .add_generating(self.source, columns.read(table))?;
+                }
+            }
             Columns::Group(columns) => {
                 let names = 1 + columns.count_of_chains(table);
                 self.parsed.spend_names(self.source, table.line, names)?;
@@ -230,14 +259,9 @@ impl<'a> Parser<'a, '_> {
         }
         let name = table.value(columns.name);
         let symbol = table.value([columns.symbol]);
-        let element = Element::from_symbol(symbol).unwrap_or_else(|| {
-            let sentence = format!(
-                "the element {symbol:?} is unknown; it is drawn in pink",
-                symbol = shortened(symbol)
-            );
-            self.warnings.add(self.source, table.line, sentence);
-            Element::UNKNOWN
-        });
+        let element = Element::from_symbol(symbol);
+        let at = (self.source, table.line);
+        let element = Element::or_unknown(element, ["", symbol], at, self.warnings);
         let number = match table.value([columns.model]) {
             "" => "1",
             number => number,
@@ -250,6 +274,8 @@ impl<'a> Parser<'a, '_> {
                 *place.insert(self.parsed.models.len() - 1)
             }
         };
+        let asym = table.value(columns.asym);
+        let is_numbered = !table.value([columns.number[0]]).is_empty();
         let atom = Atom {
             site: Site {
                 element,
@@ -261,35 +287,14 @@ impl<'a> Parser<'a, '_> {
             name,
             altloc: table.value([columns.altloc]),
             chain: table.value(columns.chain),
-            asym: table.value(columns.asym),
+            asym,
             residue: table.value(columns.residue),
             number: table.value(columns.number),
             insertion: table.value([columns.insertion]),
+            label: table.value([columns.label]),
+            segment: if is_numbered { "" } else { asym },
         };
         self.parsed.add(self.source, atom)
-    }
-
-    fn bond(&mut self, table: &Table<'a>, columns: &BondColumns) -> Result<(), SceneError> {
-        // Hydrogen bonds do not count, and a partner that symmetry moves is not where its atom is.
-        let kind = table.value([columns.kind]);
-        let is_bond = ["covale", "disulf", "metalc"].iter().any(|bond| {
-            kind.get(..bond.len())
-                .is_some_and(|start| start.eq_ignore_ascii_case(bond))
-        });
-        let [first, second] = columns.symmetry.map(|column| table.value([column]));
-        if !is_bond || first != second {
-            return Ok(());
-        }
-        let ends = columns.ends.each_ref().map(|end| {
-            End::Name([
-                table.value(end.chain),
-                table.value(end.number),
-                table.value([end.insertion]),
-                table.value(end.name),
-                table.value([end.altloc]),
-            ])
-        });
-        self.parsed.add_bond(self.source, (table.line, ends))
     }
 }
 
@@ -299,6 +304,8 @@ enum Columns {
     Bond(BondColumns),
     Group(GroupColumns),
     Operator(OperatorColumns),
+    /// Operators that generate the rest of the asymmetric unit.
+    Generating(OperatorColumns),
 }
 
 impl Columns {
@@ -308,6 +315,7 @@ impl Columns {
                 "atom_site" => Self::Atom(AtomColumns::of(table)),
                 "struct_conn" => Self::Bond(BondColumns::of(table)),
                 "pdbx_struct_assembly_gen" => Self::Group(GroupColumns::of(table)),
+                "struct_ncs_oper" => Self::Generating(OperatorColumns::of(table)),
                 "pdbx_struct_oper_list" => Self::Operator(OperatorColumns::of(table)),
                 _ => return None,
             },
@@ -324,6 +332,7 @@ struct AtomColumns {
     chain: [Column; 2],
     asym: [Column; 2],
     number: [Column; 2],
+    label: Column,
     insertion: Column,
     position: [Column; 3],
     model: Column,
@@ -341,43 +350,10 @@ impl AtomColumns {
             chain: [column("auth_asym_id"), column("label_asym_id")],
             asym: [column("label_asym_id"), column("auth_asym_id")],
             number: [column("auth_seq_id"), column("label_seq_id")],
+            label: column("label_seq_id").or_else(|| column("auth_seq_id")),
             insertion: column("pdbx_PDB_ins_code"),
             position: ["Cartn_x", "Cartn_y", "Cartn_z"].map(column),
             model: column("pdbx_PDB_model_num"),
-        }
-    }
-}
-
-struct EndColumns {
-    chain: [Column; 2],
-    number: [Column; 2],
-    insertion: Column,
-    name: [Column; 2],
-    altloc: Column,
-}
-
-struct BondColumns {
-    kind: Column,
-    symmetry: [Column; 2],
-    ends: [EndColumns; 2],
-}
-
-impl BondColumns {
-    fn of(table: &Table<'_>) -> Self {
-        let end = |n: usize| {
-            let column = |name: &str| table.column(&format!("ptnr{n}_{name}"));
-            EndColumns {
-                chain: [column("auth_asym_id"), column("label_asym_id")],
-                number: [column("auth_seq_id"), column("label_seq_id")],
-                insertion: table.column(&format!("pdbx_ptnr{n}_PDB_ins_code")),
-                name: [column("label_atom_id"), column("auth_atom_id")],
-                altloc: table.column(&format!("pdbx_ptnr{n}_label_alt_id")),
-            }
-        };
-        Self {
-            kind: table.column("conn_type_id"),
-            symmetry: ["ptnr1_symmetry", "ptnr2_symmetry"].map(|name| table.column(name)),
-            ends: [end(1), end(2)],
         }
     }
 }

@@ -14,6 +14,9 @@ use std::collections::{BTreeSet, HashMap, HashSet};
 /// Number of names that a message lists.
 const LISTED: usize = 20;
 
+/// The name of the assembly of the atoms in the file and the copies that its operators generate.
+pub(super) const GENERATED: &str = "generated";
+
 /// Atoms that are copied together.
 pub(super) struct Copied {
     /// Indices of atoms in file order.

@@ -1,10 +1,12 @@
 //! The elements: radii and colors of their atoms.
 
 use crate::scene::Color;
+use crate::scene::text::{Source, Warnings};
 use crate::srgb::linear_of_srgb;
+use crate::table::shortened;
 
 /// A chemical element.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 pub(crate) struct Element(u8);
 
 impl Element {
@@ -30,6 +32,21 @@ impl Element {
         (1..ELEMENTS.len())
             .contains(&number.into())
             .then_some(Self(number))
+    }
+
+    /// Returns the element that was found, or the unknown one with a warning. `of` and `name` say whose it is.
+    pub(in crate::scene) fn or_unknown(
+        found: Option<Self>,
+        [of, name]: [&str; 2],
+        (source, line): (&Source, usize),
+        warnings: &mut Warnings,
+    ) -> Self {
+        found.unwrap_or_else(|| {
+            let name = shortened(name);
+            let sentence = format!("the element {of}{name:?} is unknown; it is drawn in pink");
+            warnings.add(source, line, sentence);
+            Self::UNKNOWN
+        })
     }
 
     /// The symbol, such as `Fe`; `X` for unknown elements.

@@ -18,7 +18,8 @@ impl<'a> Parsed<'a> {
         source: &Source,
         atom: Atom<'a>,
     ) -> Result<(), SceneError> {
-        self.spend(source, atom.line, size_of::<Atom>())?;
+        let index = if atom.altloc.is_empty() { 0 } else { INDEX };
+        self.spend(source, atom.line, size_of::<Atom>() + index)?;
         self.atoms.push(atom);
         Ok(())
     }
@@ -40,7 +41,7 @@ impl<'a> Parsed<'a> {
         source: &Source,
         bond: Bond<'a>,
     ) -> Result<(), SceneError> {
-        self.spend(source, bond.0, size_of::<Bond>() + INDEX)?;
+        self.spend(source, bond.line, size_of::<Bond>() + INDEX)?;
         self.bonds.push(bond);
         Ok(())
     }
@@ -73,6 +74,19 @@ impl<'a> Parsed<'a> {
         line: usize,
     ) -> Result<(), SceneError> {
         self.spend(source, line, size_of::<Matrix>() + INDEX)
+    }
+
+    /// Adds an operator that generates a copy of all atoms, likewise. The identity generates none.
+    pub(in crate::scene) fn add_generating(
+        &mut self,
+        source: &Source,
+        operator: Matrix<'a>,
+    ) -> Result<(), SceneError> {
+        if !operator.is_identity() {
+            self.spend(source, operator.line, size_of::<Matrix>() + INDEX)?;
+            self.generating.push(operator);
+        }
+        Ok(())
     }
 
     fn spend(&mut self, source: &Source, line: usize, bytes: usize) -> Result<(), SceneError> {

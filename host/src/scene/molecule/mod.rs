@@ -15,21 +15,23 @@ mod element;
 mod limit;
 mod operators;
 mod parsed;
+mod residues;
 mod select;
+mod stated;
 
 pub(crate) use bonds::perceive;
 pub(crate) use draw::{BoundingSphere, draw};
 pub(crate) use element::Element;
 pub(crate) use parsed::Site;
-pub(super) use parsed::{Atom, End, Group, Matrix, Model, Operators, Parsed};
+pub(super) use parsed::{Atom, Bond, End, Group, Matrix, Model, Operators, Parsed};
 
 use super::importer::Input;
 use super::text::{Source, Warnings};
 use super::{Imported, Instance, Material, MoleculeStyle, Part, Scene, SceneError};
-use crate::table::shortened;
-use assembly::{Copied, assemble};
+use crate::table::grouped;
+use assembly::{Copied, GENERATED, assemble};
 use limit::check_size;
-use std::collections::{HashMap, HashSet};
+use stated::{find_bonds, missing_ends};
 
 /// Makes a scene of the atoms that `parse` reads from a file.
 ///
@@ -44,7 +46,8 @@ pub(super) fn import(
     let assembly = input.choices.assembly;
     let source = &input.into_source()?;
     let mut warnings = Warnings::default();
-    let parsed = parse(source, &mut warnings)?;
+    let mut parsed = parse(source, &mut warnings)?;
+    generate(source, &mut parsed, assembly.is_some(), &mut warnings);
     let atoms = select::select(source, &parsed, options)?;
     if parsed.models.len() > 1 {
         let other = usize::from(options.model == 1);
@@ -78,6 +81,30 @@ pub(super) fn import(
         assemblies: true,
         ..Imported::of(scene, warnings.into_sentences())
     })
+}
+
+/// Makes the copies that operators generate an assembly, and warns of them unless an assembly is drawn.
+fn generate(source: &Source, parsed: &mut Parsed<'_>, is_chosen: bool, warnings: &mut Warnings) {
+    let copies = std::mem::take(&mut parsed.generating);
+    let Some(line) = copies.first().map(|it| it.line) else {
+        return;
+    };
+    if !is_chosen {
+        let sentence = format!(
+            "the file states {} copies of its atoms by operators (MTRIX, struct_ncs_oper), of which one is drawn; \
+             `--assembly {GENERATED}` draws all",
+            grouped(1 + copies.len())
+        );
+        warnings.add(source, line, sentence);
+    }
+    let mut operators = vec![Matrix::identity(line)];
+    operators.extend(copies);
+    parsed.groups.push(Group {
+        assemblies: [GENERATED].into(),
+        chains: None,
+        operators: Operators::Listed(operators),
+        line,
+    });
 }
 
 /// The atoms of a model, and their bonds.
@@ -176,94 +203,6 @@ fn shared(all: &mut Vec<Material>, more: Vec<Material>) -> Vec<usize> {
         })
     };
     more.into_iter().map(number).collect()
-}
-
-/// Warns of bonds to atoms that no model of the file has.
-fn missing_ends(source: &Source, parsed: &Parsed<'_>, warnings: &mut Warnings) {
-    if parsed.bonds.is_empty() {
-        return;
-    }
-    let mut missing: HashSet<&End<'_>> = named_ends(parsed).collect();
-    for end in parsed.atoms.iter().flat_map(ends_of) {
-        missing.remove(&end);
-    }
-    let mut all = parsed.bonds.iter().filter_map(|(line, bond)| {
-        let end = bond.iter().find(|end| missing.contains(end))?;
-        Some((*line, *end))
-    });
-    let Some((line, first)) = all.next() else {
-        return;
-    };
-    let named = match first {
-        End::Serial(serial) => format!("CONECT names the atom {serial}"),
-        End::Name(names) => {
-            let [chain, number, _, name, altloc] = names.map(shortened);
-            let at = if altloc.is_empty() {
-                ""
-            } else {
-                " at the alternate location "
-            };
-            format!("struct_conn names the atom {chain}/{number}/{name}{at}{altloc}")
-        }
-    };
-    let sentence = format!("{named}, which the file lacks; the bond is left out");
-    warnings.add_times(source.place(line), 1 + all.count(), sentence);
-}
-
-/// Returns the names of an atom in bonds.
-fn ends_of<'a>(atom: &Atom<'a>) -> [End<'a>; 3] {
-    let name = |altloc| [atom.chain, atom.number, atom.insertion, atom.name, altloc];
-    [
-        End::Serial(atom.serial),
-        End::Name(name(atom.altloc)),
-        End::Name(name("")),
-    ]
-}
-
-/// The ends that bonds name: far fewer than atoms have.
-fn named_ends<'p, 'a>(parsed: &'p Parsed<'a>) -> impl Iterator<Item = &'p End<'a>> {
-    parsed.bonds.iter().flat_map(|(_, ends)| ends)
-}
-
-/// The bonds between the chosen atoms: those of the file, and those that distances imply.
-fn find_bonds(
-    source: &Source,
-    parsed: &Parsed<'_>,
-    atoms: &[&Atom<'_>],
-    warnings: &mut Warnings,
-) -> Vec<[u32; 2]> {
-    let mut ends: HashMap<&End<'_>, Option<u32>> = HashMap::new();
-    ends.extend(named_ends(parsed).map(|end| (end, None)));
-    if !ends.is_empty() {
-        for (atom, index) in atoms.iter().zip(0..) {
-            for end in ends_of(atom) {
-                if let Some(first) = ends.get_mut(&end) {
-                    first.get_or_insert(index);
-                }
-            }
-        }
-    }
-    // An end that is missing here may be in another model or an alternate location.
-    let stated = parsed
-        .bonds
-        .iter()
-        .filter_map(|(_, [a, b])| Some([ends[a]?, ends[b]?]));
-    let sites: Vec<Site> = atoms.iter().map(|atom| atom.site).collect();
-    let (perceived, crowded) = perceive(&sites);
-    if let Some(&first) = crowded.first() {
-        let sentence = format!(
-            "{} atoms are crowded as in no molecule; no bonds are guessed among them",
-            crowded.len()
-        );
-        warnings.add(source, atoms[first as usize].line, sentence);
-    }
-    let mut bonds: Vec<[u32; 2]> = stated.chain(perceived).filter(|[a, b]| a != b).collect();
-    for bond in &mut bonds {
-        bond.sort_unstable();
-    }
-    bonds.sort_unstable();
-    bonds.dedup();
-    bonds
 }
 
 #[cfg(test)]

@@ -17,13 +17,14 @@ impl Default for Left {
 }
 
 /// An element at a position in angstroms.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct Site {
     pub(crate) element: Element,
     pub(crate) position: DVec3,
 }
 
 /// An atom as the file has it; fields that the file does not state are empty.
+#[derive(Default)]
 pub(in crate::scene) struct Atom<'a> {
     pub(in crate::scene) site: Site,
     pub(in crate::scene) line: usize,
@@ -39,14 +40,14 @@ pub(in crate::scene) struct Atom<'a> {
     /// Number of the residue in its chain, and the code of residues inserted after it.
     pub(in crate::scene) number: &'a str,
     pub(in crate::scene) insertion: &'a str,
+    /// The archive's number of the residue in `asym`, in mmCIF.
+    pub(in crate::scene) label: &'a str,
+    /// What distinguishes residues of one chain and number: the segment in PDB, and in mmCIF the archive's chain of
+    /// residues that the author did not number.
+    pub(in crate::scene) segment: &'a str,
 }
 
 impl<'a> Atom<'a> {
-    /// The key that distinguishes its residue from others of its model.
-    pub(in crate::scene) fn residue_key(&self) -> [&'a str; 3] {
-        [self.chain, self.number, self.insertion]
-    }
-
     pub(in crate::scene) fn full_name(&self) -> String {
         let Self {
             chain,
@@ -70,9 +71,10 @@ impl<'a> Atom<'a> {
 pub(in crate::scene) enum End<'a> {
     /// An atom's serial number, in PDB.
     Serial(&'a str),
-    /// Chain, residue number, insertion code, atom name and alternate location, in mmCIF. An empty location stands for
-    /// any.
+    /// Chain, residue number, insertion code, atom name and alternate location. An empty location stands for any.
     Name([&'a str; 5]),
+    /// The archive's chain and residue number, atom name and alternate location, in mmCIF.
+    Label([&'a str; 4]),
 }
 
 /// One of the models of a file.
@@ -108,6 +110,28 @@ impl Matrix<'_> {
     pub(in crate::scene) fn agrees(&self, other: &Self) -> bool {
         self.words == other.words
     }
+
+    /// An operator that leaves atoms where they are.
+    pub(super) fn identity(line: usize) -> Self {
+        Self {
+            name: "0",
+            words: [0, 1, 2].map(|row| {
+                let word = |column| if column == row { "1" } else { "0" };
+                [0, 1, 2, 3].map(word)
+            }),
+            line,
+            again: None,
+        }
+    }
+
+    pub(super) fn is_identity(&self) -> bool {
+        let is = |word: &&str, number: f64| word.parse() == Ok(number);
+        let mut rows = self.words.iter().zip(0..);
+        rows.all(|(row, at)| {
+            let mut words = row.iter().zip(0..);
+            words.all(|(word, column)| is(word, f64::from(u8::from(at == column))))
+        })
+    }
 }
 
 /// The operators of a group of chains, unread.
@@ -118,8 +142,13 @@ pub(in crate::scene) enum Operators<'a> {
     Expression(&'a str),
 }
 
-/// The ends of a bond, and its line.
-pub(in crate::scene) type Bond<'a> = (usize, [End<'a>; 2]);
+/// A bond that the file states.
+pub(in crate::scene) struct Bond<'a> {
+    /// The record or category that states it.
+    pub(in crate::scene) record: &'static str,
+    pub(in crate::scene) line: usize,
+    pub(in crate::scene) ends: [End<'a>; 2],
+}
 
 /// The content of a file, before one model and one set of alternate locations is chosen.
 #[derive(Default)]
@@ -132,6 +161,8 @@ pub(in crate::scene) struct Parsed<'a> {
     pub(in crate::scene) groups: Vec<Group<'a>>,
     /// Operators by their name, for expressions.
     pub(in crate::scene) operators: HashMap<&'a str, Matrix<'a>>,
+    /// Operators that generate the rest of the asymmetric unit from the atoms of the file.
+    pub(in crate::scene) generating: Vec<Matrix<'a>>,
     /// The memory that is left for more.
     pub(super) left: Left,
 }

@@ -1,13 +1,15 @@
 //! Chooses one model and one alternate location of each residue.
 
 use super::parsed::{Atom, Model, Parsed};
+use super::residues;
 use crate::scene::text::Source;
 use crate::scene::{MoleculeOptions, SceneError};
-use std::collections::{BTreeSet, HashMap};
+use std::collections::{BTreeSet, HashMap, HashSet};
 
 /// Returns the atoms of the requested model, in file order. A residue with alternate locations
 /// keeps the atoms of the requested location. It keeps those of its first location if it lacks that
-/// one or none is requested. Atoms without an alternate location are always kept.
+/// one or none is requested. Atoms without an alternate location are always kept. [`Locations`] says
+/// what becomes of an atom that lacks the location of its residue.
 pub(super) fn select<'p, 'a>(
     source: &Source,
     parsed: &'p Parsed<'a>,
@@ -35,23 +37,11 @@ pub(super) fn select<'p, 'a>(
             ),
         ));
     }
-    let of_model = || {
-        parsed
-            .atoms
-            .iter()
-            .filter(|atom| atom.model + 1 == options.model)
-    };
-
+    let all = parsed.atoms.iter();
+    let all: Vec<_> = all.filter(|it| it.model + 1 == options.model).collect();
     let wanted = options.altloc.map(String::from);
-    let mut chosen: HashMap<[&str; 3], &str> = HashMap::new();
-    let mut present = BTreeSet::new();
-    for atom in of_model().filter(|atom| !atom.altloc.is_empty()) {
-        present.insert(atom.altloc);
-        let choice = chosen.entry(atom.residue_key()).or_insert(atom.altloc);
-        if wanted.as_deref() == Some(atom.altloc) {
-            *choice = atom.altloc;
-        }
-    }
+    let located = all.iter().filter(|atom| !atom.altloc.is_empty());
+    let present: BTreeSet<&str> = located.map(|atom| atom.altloc).collect();
     if let Some(wanted) = &wanted
         && !present.contains(wanted.as_str())
     {
@@ -66,15 +56,70 @@ pub(super) fn select<'p, 'a>(
         let cause = format!("model {} has no alternate location {wanted}", options.model);
         return Err(source.error(cause, remedy));
     }
-    let selected: Vec<_> = of_model()
-        .filter(|atom| {
-            atom.altloc.is_empty() || chosen.get(&atom.residue_key()) == Some(&atom.altloc)
-        })
-        .collect();
+    let residues = residues::number(&all);
+    let located = || {
+        let pairs = all.iter().zip(&residues);
+        let pairs = pairs.filter(|(atom, _)| !atom.altloc.is_empty());
+        pairs.filter_map(|(atom, residue)| Some((*atom, (*residue)?)))
+    };
+    let locations = Locations::of(located, wanted.as_deref());
+    let keeps = |(atom, residue): (&&Atom<'_>, &Option<u32>)| match residue {
+        Some(residue) if !atom.altloc.is_empty() => {
+            locations.of_atom.get(&(*residue, atom.name)) == Some(&atom.altloc)
+        }
+        _ => true,
+    };
+    let selected = all.iter().zip(&residues).filter(|it| keeps(*it));
+    let selected: Vec<_> = selected.map(|(atom, _)| *atom).collect();
     if selected.is_empty() {
         return Err(empty(format!("model {} of the file", options.model)));
     }
     Ok(selected)
+}
+
+/// The alternate locations that are drawn.
+struct Locations<'a> {
+    /// By residue and atom name.
+    of_atom: HashMap<(u32, &'a str), &'a str>,
+}
+
+impl<'a> Locations<'a> {
+    /// Chooses one for each residue, and then for each of its atoms. An atom that lacks the residue's location keeps its
+    /// first one, if it is of the same kind of residue. Where a location is wanted, that one is not a rival of it:
+    /// another atom of the residue does not have both.
+    fn of<'p, I>(located: impl Fn() -> I, wanted: Option<&str>) -> Self
+    where
+        I: Iterator<Item = (&'p Atom<'a>, u32)>,
+        'a: 'p,
+    {
+        let mut of_residue: HashMap<u32, [&str; 2]> = HashMap::new();
+        for (atom, residue) in located() {
+            let own = [atom.altloc, atom.residue];
+            let choice = of_residue.entry(residue).or_insert(own);
+            if wanted == Some(atom.altloc) && choice[0] != atom.altloc {
+                *choice = own;
+            }
+        }
+        let is_chosen = |atom: &Atom<'_>, residue| of_residue[&residue][0] == atom.altloc;
+        let mut of_atom = HashMap::new();
+        let mut rivals: HashSet<(u32, &str)> = HashSet::new();
+        for (atom, residue) in located().filter(|(atom, residue)| is_chosen(atom, *residue)) {
+            of_atom.insert((residue, atom.name), atom.altloc);
+        }
+        for (atom, residue) in located().filter(|(atom, _)| Some(atom.altloc) != wanted) {
+            let chosen = of_atom.get(&(residue, atom.name)).copied();
+            if wanted.is_some() && chosen == wanted {
+                rivals.insert((residue, atom.altloc));
+            }
+        }
+        for (atom, residue) in located() {
+            let is_of_kind = of_residue[&residue][1] == atom.residue;
+            if is_of_kind && !rivals.contains(&(residue, atom.altloc)) {
+                of_atom.entry((residue, atom.name)).or_insert(atom.altloc);
+            }
+        }
+        Self { of_atom }
+    }
 }
 
 /// Returns a text with a file's own numbers of its models, for files that number them.

@@ -1,6 +1,10 @@
 mod assembly;
+mod generated;
 mod limits;
+mod locations;
+mod names;
 mod real;
+mod stated;
 
 use super::*;
 use crate::scene::{ImportOptions, MoleculeOptions, Shape};
@@ -397,6 +401,17 @@ fn mmcif_faults_name_line_and_cause() {
         fault("data_x\nloop_\n_atom_site_label\n_atom_site_fract_x\nC1 0.5\n"),
         "t.cif: the atoms have no Cartesian coordinates, as in CIF files of small molecules"
     );
+    for (tag, category) in [
+        ("_atom_site_Cartn_x", "_atom_site_Cartn_x"),
+        (
+            "_chem_comp_atom.pdbx_model_Cartn_x_ideal",
+            "_chem_comp_atom",
+        ),
+    ] {
+        let error = cif(&format!("data_x\nloop_\n{tag}\n0.5\n")).unwrap_err();
+        let cause = format!("the atoms stand in {category},");
+        assert!(error.cause.starts_with(&cause), "{error}");
+    }
 }
 
 #[test]

@@ -2,7 +2,7 @@
 
 use super::Importer;
 use super::reader::{Line, Lines};
-use crate::scene::polygon::{self, MAX_CONCAVE};
+use crate::scene::polygon;
 use crate::scene::size::Size;
 use crate::scene::{Attributes, Material, Normals, Object, SceneError, Shape};
 use crate::shape::{Cone, Sphere};
@@ -167,21 +167,15 @@ impl<'a> Importer<'a> {
                 },
             )?;
         }
-        let Some(result) = polygon::triangulate(&vertices) else {
-            return Err(self.source.error_at(
-                line.text,
-                format!("a concave polygon of {count} vertices is too large"),
-                format!("split it into polygons of at most {MAX_CONCAVE} vertices"),
-            ));
-        };
-        if !result.exact {
-            self.warnings.add(
-                self.source,
-                line.number,
-                "a polygon crosses itself; its triangles cover more than it encloses",
-            );
+        let (triangles, crosses) = polygon::cut("polygon", &vertices)
+            .map_err(|[cause, remedy]| self.source.error_at(line.text, cause, remedy))?;
+        if let Some(sentence) = crosses {
+            self.warnings.add(self.source, line.number, sentence);
         }
-        let triangles = result.triangles;
+        if numbers == 6 && normals.len() < vertices.len() {
+            let sentence = "a vertex of `pp` has no normal; its polygon is shaded flat";
+            self.warnings.add(self.source, line.number, sentence);
+        }
         let normals = match normals.len() == vertices.len() {
             true => Normals::given(normals, triangles.clone(), (&vertices, &triangles)),
             false => Normals::default(),

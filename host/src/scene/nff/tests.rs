@@ -412,3 +412,12 @@ fn display_values_are_shown_as_they_are() {
         }
     }
 }
+
+#[test]
+fn patches_that_lack_a_normal_are_warned_of() {
+    let text = "f 1 1 1 1 0 1 0 1\npp 3\n0 0 0 0 0 1\n1 0 0\n0 1 0 0 0 1\n";
+    let imported = read(text).unwrap();
+    let sentence = "a vertex of `pp` has no normal; its polygon is shaded flat";
+    let warned = imported.warnings.iter().any(|it| it.ends_with(sentence));
+    assert!(warned, "{:?}", imported.warnings);
+}

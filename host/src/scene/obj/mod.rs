@@ -15,11 +15,11 @@ mod parser;
 
 use super::access::Access;
 use super::importer::{Importer, Input};
-use super::polygon::{self, MAX_CONCAVE};
+use super::polygon;
 use super::text::{Source, Warnings};
 use super::texture::Images;
 use super::{Attributes, Color, Imported, Material, Normals, Object, Scene, SceneError, Shape};
-use crate::table::shortened;
+use crate::table::{grouped, shortened};
 use glam::{DVec2, DVec3};
 use gridel_core::Up;
 use parser::{NO_INDEX, Parsed, Part};
@@ -121,6 +121,12 @@ fn without_faces(source: &Source, parsed: &Parsed<'_>) -> SceneError {
     }
 }
 
+/// The most bytes of text of all material files: a material takes up to 300 times the bytes of its name.
+const MOST_LIBRARY_TEXT: usize = 10_000_000;
+
+/// The most names of material files.
+const MOST_LIBRARIES: usize = 1000;
+
 /// Reads the files that `mtllib` names. A missing one only causes a warning: it is often not delivered, and the
 /// geometry is complete.
 fn read_libraries(
@@ -132,7 +138,13 @@ fn read_libraries(
     let mut library = HashMap::new();
     let mut images = Images::new(access);
     let mut seen = HashSet::new();
+    // Few names are resolved: that takes calls of the system.
+    let mut named = HashSet::new();
+    let mut left = MOST_LIBRARY_TEXT;
     for &(line, names) in &parsed.libraries {
+        if !named.insert(names) {
+            continue;
+        }
         let allowed = |name: &str| {
             let path = access.resolve(&source.path, &name.replace('\\', "/"));
             path.map_err(|[cause, remedy]| {
@@ -148,12 +160,28 @@ fn read_libraries(
             names.take_while(|word| !word.starts_with('#')).collect()
         };
         for name in names {
+            named.insert(name);
+            if named.len() > MOST_LIBRARIES {
+                let cause = format!("the file names more than {MOST_LIBRARIES} material files");
+                let remedy = "put the materials together in one file";
+                return Err(source.error(cause, remedy).at_line(line));
+            }
             let path = allowed(name)?;
             if !seen.insert(path.clone()) {
                 continue;
             }
             match Source::read(&path, access) {
-                Ok(file) => library.extend(mtl::read(&file, &mut images, warnings)?),
+                Ok(file) => {
+                    left = left.checked_sub(file.text.len()).ok_or_else(|| {
+                        let most = grouped(MOST_LIBRARY_TEXT);
+                        let cause =
+                            format!("the material files have more than {most} bytes of text");
+                        source
+                            .error(cause, "leave materials out that no face uses")
+                            .at_line(line)
+                    })?;
+                    library.extend(mtl::read(&file, &mut images, warnings)?);
+                }
                 Err(error) => {
                     let cause = format!(
                         "the material file {name:?} {}; its materials are replaced",
@@ -238,22 +266,15 @@ impl Mesher<'_> {
                 local.push(seen.1);
                 points.push(self.vertices[corner as usize]);
             }
-            let Some(result) = polygon::triangulate(&points) else {
-                return Err(source
-                    .error(
-                        format!("a concave face of {} vertices is too large", face.corners),
-                        format!("split it into faces of at most {MAX_CONCAVE} vertices"),
-                    )
-                    .at_line(face.line));
-            };
-            if !result.exact {
-                let sentence = "a face crosses itself; its triangles cover more than it encloses";
+            let (cut, crosses) = polygon::cut("face", &points)
+                .map_err(|[cause, remedy]| source.error(cause, remedy).at_line(face.line))?;
+            if let Some(sentence) = crosses {
                 warnings.add(source, face.line, sentence);
             }
             if !of_corners.is_empty() {
                 let (outline, rest) = of_corners.split_at(face.corners);
                 of_corners = rest;
-                if !normals.add(self.normals, outline, &result.triangles) {
+                if !normals.add(self.normals, outline, &cut) {
                     let sentence = "a face has a normal that the file lacks, and is shaded flat";
                     warnings.add(source, face.line, sentence);
                 }
@@ -261,18 +282,13 @@ impl Mesher<'_> {
             if !of_texture.is_empty() {
                 let (outline, rest) = of_texture.split_at(face.corners);
                 of_texture = rest;
-                if !self.add_coordinates(&mut attributes, outline, &result.triangles) {
+                if !self.add_coordinates(&mut attributes, outline, &cut) {
                     let sentence =
                         "a face has texture coordinates that the file lacks, and no texture";
                     warnings.add(source, face.line, sentence);
                 }
             }
-            triangles.extend(
-                result
-                    .triangles
-                    .iter()
-                    .map(|t| t.map(|corner| local[corner as usize])),
-            );
+            triangles.extend(cut.iter().map(|t| t.map(|corner| local[corner as usize])));
         }
         let normals = Normals::given(normals.vectors, normals.triangles, (&vertices, &triangles));
         let shape = Shape::Mesh {

@@ -16,6 +16,7 @@ use crate::scene::texture::Images;
 use crate::scene::{Color, Diffuse, Material, NormalMap, SceneError, Texture, Wrap};
 use crate::table::shortened;
 use glam::{DAffine2, DVec2};
+use std::collections::HashSet;
 
 /// One material of a file.
 #[derive(Default)]
@@ -33,7 +34,7 @@ struct Statements<'s> {
     emission: Color,
     /// `map_Ke`: the number of its line, and the line.
     emissive: Option<(usize, &'s str)>,
-    roughness: f64,
+    roughness: Option<f64>,
     texture: Option<Texture>,
     /// The texture of normals.
     normals: Option<Texture>,
@@ -46,6 +47,7 @@ pub(super) fn read(
     warnings: &mut Warnings,
 ) -> Result<Vec<(String, Material)>, SceneError> {
     let mut all: Vec<Statements<'_>> = Vec::new();
+    let mut names = HashSet::new();
     for (number, line) in source.lines() {
         let words: Vec<&str> = line
             .split_whitespace()
@@ -62,6 +64,12 @@ pub(super) fn read(
                 .unwrap_or("")
                 .trim()
                 .to_owned();
+            if !names.insert(name.clone()) {
+                let name = shortened(&name);
+                let sentence =
+                    format!("the material {name:?} is defined again; the last one is used");
+                warnings.add(source, number, sentence);
+            }
             all.push(Statements {
                 name,
                 line: number,
@@ -89,16 +97,16 @@ pub(super) fn read(
             "Ks" => material.specular = reader.color(number, warnings)?,
             "Tf" => material.filter = reader.color(number, warnings)?,
             "Ns" => material.exponent = Some(reader.number_in([0.0, 1024.0], number, warnings)?),
-            "Ni" => material.density = Some(reader.number()?),
+            "Ni" => material.density = Some(reader.number(number, warnings)?),
             "d" => material.dissolve = Some(reader.number_in([0.0, 1.0], number, warnings)?),
             "Tr" => material.transparency = Some(reader.number_in([0.0, 1.0], number, warnings)?),
-            "illum" => material.illumination = Some(reader.number()?.clamp(0.0, 255.0) as u32),
+            "illum" => material.illumination = reader.illumination(number, warnings)?,
             "Ke" => {
                 material.emission = reader
                     .color_up_to(2047.0, number, warnings)?
                     .unwrap_or_default()
             }
-            "Pr" => material.roughness = taken_roughness(reader.number()?),
+            "Pr" => material.roughness = Some(reader.number_in([0.0, 1.0], number, warnings)?),
             "Ka" | "sharpness" => {}
             "map_Kd" => {
                 let instead = "the plain color is used";
@@ -179,6 +187,16 @@ impl Statements<'_> {
                 format!("Ni {density} is taken as {taken}, since it must be 1 to 4"),
             );
         }
+        let mirror = match illumination {
+            3 | 5 | 8 => specular,
+            _ => [0.0; 3],
+        };
+        let transmit = self.filter.unwrap_or([1.0; 3]).map(|c| c * (1.0 - opacity));
+        if self.roughness.is_some() && [mirror, transmit] == [[0.0; 3]; 2] {
+            let sentence =
+                "Pr is ignored, because the material neither mirrors nor lets light through";
+            warnings.add(source, self.line, sentence);
+        }
         Material {
             name: self.name.clone(),
             diffuse: Diffuse::Plain(diffuse.map(|c| c * opacity)),
@@ -190,15 +208,11 @@ impl Statements<'_> {
             shininess: self
                 .exponent
                 .map_or(default.shininess, |n| n.round().clamp(1.0, 1024.0) as u16),
-            mirror: if matches!(illumination, 3 | 5 | 8) {
-                specular
-            } else {
-                [0.0; 3]
-            },
-            transmit: self.filter.unwrap_or([1.0; 3]).map(|c| c * (1.0 - opacity)),
+            mirror,
+            transmit,
             ior: density.clamp(1.0, 4.0),
             emission: self.emission,
-            roughness: self.roughness,
+            roughness: taken_roughness(self.roughness.unwrap_or_default()),
             normal_map: self.normal_map(source, warnings),
             texture: self.texture.clone(),
             place: source.place(self.line),
@@ -262,7 +276,7 @@ fn taken_roughness(roughness: f64) -> f64 {
     if roughness < Material::LEAST_ROUGHNESS {
         0.0
     } else {
-        roughness.min(1.0)
+        roughness
     }
 }
 
@@ -275,8 +289,15 @@ struct Reader<'a> {
 }
 
 impl Reader<'_> {
-    /// Reads the last value, as options such as `-halo` come before it.
-    fn number(&self) -> Result<f64, SceneError> {
+    /// Reads the last value, as options such as `-halo` come before it. What comes before it has a warning.
+    fn number(&self, line: usize, warnings: &mut Warnings) -> Result<f64, SceneError> {
+        if let [ignored @ .., _] = self.values
+            && let Some(first) = ignored.first()
+        {
+            let (first, keyword) = (shortened(first), self.keyword);
+            let sentence = format!("{first:?} is ignored: the last value of {keyword} is taken");
+            warnings.add(self.source, line, sentence);
+        }
         match self.values.last() {
             Some(value) => self
                 .source
@@ -289,6 +310,21 @@ impl Reader<'_> {
         }
     }
 
+    /// Reads the number of a model of illumination; `None` with a warning for one that there is not.
+    fn illumination(
+        &self,
+        line: usize,
+        warnings: &mut Warnings,
+    ) -> Result<Option<u32>, SceneError> {
+        let number = self.number(line, warnings)?;
+        let known = (0..=10).find(|it| f64::from(*it) == number);
+        if known.is_none() {
+            let sentence = format!("illum {number} is none of 0 to 10, and is read as 2");
+            warnings.add(self.source, line, sentence);
+        }
+        Ok(known)
+    }
+
     /// Reads a number, and limits it to a range with a warning.
     fn number_in(
         &self,
@@ -296,7 +332,7 @@ impl Reader<'_> {
         line: usize,
         warnings: &mut Warnings,
     ) -> Result<f64, SceneError> {
-        let number = self.number()?;
+        let number = self.number(line, warnings)?;
         if !(least..=most).contains(&number) {
             let sentence = format!("{} is limited to the range {least} to {most}", self.keyword);
             warnings.add(self.source, line, sentence);
@@ -333,13 +369,16 @@ impl Reader<'_> {
                 values.push(word);
                 rest = behind.trim_start();
             }
-            let number = |k: usize, default: f64| {
-                let word: Option<&&str> = values.get(k);
-                word.and_then(|it| it.parse().ok()).unwrap_or(default)
+            let number = |k: usize, default: f64| match values.get(k) {
+                Some(word) => {
+                    let what = format!("a number of the option {option} of {}", self.keyword);
+                    self.source.number(word, &what)
+                }
+                None => Ok(default),
             };
             match option {
-                "-s" => scale = DVec2::new(number(0, 1.0), number(1, 1.0)),
-                "-o" => offset = DVec2::new(number(0, 0.0), number(1, 0.0)),
+                "-s" => scale = DVec2::new(number(0, 1.0)?, number(1, 1.0)?),
+                "-o" => offset = DVec2::new(number(0, 0.0)?, number(1, 0.0)?),
                 "-clamp" => clamps = values == ["on"],
                 _ => {
                     let sentence = format!("the option {option} of a texture is ignored");

@@ -68,9 +68,7 @@ pub(super) struct Face {
 const VERTEX: usize = size_of::<DVec3>() + size_of::<Color>() + size_of::<(usize, u32)>();
 
 /// Statements about parts that are not drawn, or not needed to draw.
-const PASSED_OVER: [&str; 8] = [
-    "vp", "mg", "bevel", "c_interp", "d_interp", "lod", "maplib", "call",
-];
+const PASSED_OVER: [&str; 7] = ["vp", "mg", "bevel", "c_interp", "d_interp", "lod", "maplib"];
 
 /// Reads all lines; `continued` are the [continued](super::lines::continued) ones of the file.
 ///
@@ -440,6 +438,11 @@ impl<'a> Parser<'a> {
                 "textures are not drawn; the plain colors are used",
             ),
             "" | "s" | "usemap" => {}
+            "call" | "csh" => {
+                let sentence =
+                    format!("what `{keyword}` brings, from a file or a program, is not read");
+                self.skip(number, &sentence, warnings);
+            }
             _ if keyword.starts_with('#') || PASSED_OVER.contains(&keyword) => {}
             _ => {
                 let sentence = format!(

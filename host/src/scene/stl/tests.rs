@@ -240,3 +240,43 @@ fn text_with_a_byte_order_mark_is_read() {
     let scene = samples::read("thing.stl", marked).unwrap().scene;
     assert_eq!(scene.objects.len(), 2);
 }
+
+#[test]
+fn text_that_ends_without_endsolid_is_warned_of() {
+    let cut = &TWO_SOLIDS[..TWO_SOLIDS.rfind("ENDSOLID").unwrap()];
+    let imported = read(cut.as_bytes()).unwrap();
+    assert_eq!(imported.scene.objects.len(), 2);
+    let [warning] = &imported.warnings[..] else {
+        panic!("{:?}", imported.warnings)
+    };
+    assert!(
+        warning.ends_with(
+            "thing.stl:24: the text ends behind this facet without `endsolid`; it may be cut off"
+        ),
+        "{warning}"
+    );
+    assert_eq!(
+        read(TWO_SOLIDS.as_bytes()).unwrap().warnings,
+        [] as [&str; 0]
+    );
+}
+
+#[test]
+fn text_behind_a_comment_is_named() {
+    let error = read(format!("; made by x\n\n{TWO_SOLIDS}").as_bytes()).unwrap_err();
+    assert_eq!(
+        error.cause,
+        "the text begins with other lines; `solid`, with which STL begins, is in line 3"
+    );
+}
+
+#[test]
+fn colors_of_binary_headers_are_warned_of() {
+    let mut bytes = file(&[[[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]]]);
+    assert_eq!(read(&bytes).unwrap().warnings, [] as [&str; 0]);
+    bytes[..10].copy_from_slice(b"COLOR=\xff\0\0\xff");
+    let [warning] = &read(&bytes).unwrap().warnings[..] else {
+        panic!("no warning")
+    };
+    assert!(warning.contains("`COLOR=`"), "{warning}");
+}

@@ -80,6 +80,7 @@ pub(super) fn read(input: Input<'_>, imports: &mut Imports) -> Result<Scene, Sce
         assembly: choices.assembly,
         materials: &mut materials,
         morphs: &mut morphs,
+        inside: 0,
     };
     let groups = root.or("group", BTreeMap::new(), |tables| reader.groups(tables))?;
     let items = root.or("object", Vec::new(), |list| reader.items(list))?;

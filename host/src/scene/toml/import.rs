@@ -6,13 +6,16 @@ use crate::scene::access::Access;
 use crate::scene::importer::{Choices, Importers, Input};
 use crate::scene::size::Keys;
 use crate::scene::{Choice, Imported, MoleculeOptions, Scene, SceneError};
-use crate::table::shortened;
+use crate::table::{grouped, shortened};
 use std::collections::HashMap;
 use std::path::PathBuf;
 use std::rc::Rc;
 
 /// Maximum number of files that are open inside each other; each takes stack.
 const MAX_OPEN: usize = 16;
+
+/// The most bytes of text of open files. While they are read, a byte takes up to 165 bytes of memory.
+const MOST_TEXT: usize = 22_000_000;
 
 /// Reads a file of this format.
 type Read = fn(Input<'_>, &mut Imports) -> Result<Scene, SceneError>;
@@ -26,6 +29,8 @@ pub(super) struct Imports {
     access: Access,
     /// Canonical paths, the outermost file first.
     open: Vec<PathBuf>,
+    /// Bytes of their text.
+    text: usize,
     /// Number of groups that are open inside each other, in all open files together.
     pub(super) nesting: usize,
     /// A scene may import a file many times, but with few different options.
@@ -111,6 +116,7 @@ impl Imports {
             importers: input.importers,
             access: input.access.clone(),
             open: Vec::new(),
+            text: 0,
             nesting: 0,
             done: HashMap::new(),
             warnings: Vec::new(),
@@ -131,9 +137,21 @@ impl Imports {
     }
 
     fn nested(&mut self, input: Input<'_>, canonical: PathBuf) -> Result<Scene, SceneError> {
+        let length = input.bytes.len();
+        self.text += length;
+        if self.text > MOST_TEXT {
+            let cause = format!(
+                "the text has {} bytes, with the files that import it; the limit is {}",
+                grouped(self.text),
+                grouped(MOST_TEXT)
+            );
+            let remedy = "write large meshes as PLY, OBJ or glTF, and import them";
+            return Err(SceneError::new(input.path, cause, remedy));
+        }
         self.open.push(canonical);
         let scene = (self.own.1)(input, self)?;
         self.open.pop();
+        self.text -= length;
         Ok(scene)
     }
 

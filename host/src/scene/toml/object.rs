@@ -33,6 +33,8 @@ pub(super) struct Reader<'r> {
     pub(super) materials: &'r mut Materials,
     /// Takes in the morph targets of imports.
     pub(super) morphs: &'r mut Morphs,
+    /// Number of groups and parts of this file that are open inside each other.
+    pub(super) inside: usize,
 }
 
 impl Reader<'_> {
@@ -67,7 +69,9 @@ impl Reader<'_> {
         if self.imports.nesting > MAX_NESTING {
             return Err(too_deep(self.source, &fields.span));
         }
+        self.inside += 1;
         let items = self.items(list)?;
+        self.inside -= 1;
         self.imports.nesting -= 1;
         if items.is_empty() {
             return Err(list.error(
@@ -111,16 +115,26 @@ impl Reader<'_> {
             "group" => Content::Group(self.members(&fields, "group")?),
             "instance" => Content::Instance(fields.require("group")?.name()?),
             "import" => {
-                let scene = self.import(&fields)?;
+                let mut scene = self.import(&fields)?;
                 let seen = |track: &Track| {
                     !track.target.is_of_joint() && track.target != TrackTarget::MorphWeight
                 };
-                if self.imports.nesting > 0 && scene.tracks.iter().any(seen) {
+                if self.inside > 0 {
                     let place = self.source.place(&fields.span);
-                    self.imports.warnings.push(format!(
-                        "{place}: the tracks of camera, lights and materials of an import inside of a group or \
-                         part move nothing"
-                    ));
+                    if scene.tracks.iter().any(seen) {
+                        self.imports.warnings.push(format!(
+                            "{place}: the tracks of camera, lights and materials of an import inside of a group or \
+                             part move nothing"
+                        ));
+                    }
+                    if let Some(lost) = besides_objects(&scene) {
+                        self.imports.warnings.push(format!(
+                            "{place}: an import inside of a group or part brings its objects alone, and not its {lost}"
+                        ));
+                    }
+                    if let Some(lit) = scene.with_lamps() {
+                        scene = Rc::new(lit);
+                    }
                 }
                 // Objects that all get another material do not need their own.
                 let adopt = |own| self.materials.adopt(own, &name);
@@ -174,6 +188,21 @@ impl Reader<'_> {
         kinds.check(fields, &file)?;
         Ok(scene)
     }
+}
+
+/// What a scene has besides objects and lights that are visible as such, in words.
+fn besides_objects(scene: &Scene) -> Option<String> {
+    let forms = scene.light_forms.iter().flatten();
+    let lamps = forms.filter(|it| it.is_visible).count();
+    let all = [
+        (scene.camera.is_some(), "camera"),
+        (scene.lights.len() > lamps, "lights"),
+        (scene.background.is_some(), "background"),
+        (scene.ambient != [0.0; 3], "ambient light"),
+        (scene.environment.is_some(), "environment"),
+    ];
+    let found: Vec<_> = all.iter().filter(|it| it.0).map(|it| it.1).collect();
+    (!found.is_empty()).then(|| found.join(", "))
 }
 
 /// The angle of `smooth` in degrees.

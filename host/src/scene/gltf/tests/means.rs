@@ -100,7 +100,6 @@ fn texture_of_emission_with_factor_0_is_not_read() {
 #[test]
 fn warnings_of_emission_are_those_of_the_weighted_factor() {
     let mut document = glowing();
-    document["extensionsUsed"] = json!(["KHR_materials_emissive_strength"]);
     document["materials"][0]["doubleSided"] = json!(true);
     document["materials"][0]["extensions"] =
         json!({"KHR_materials_emissive_strength": {"emissiveStrength": 4000}});

@@ -2,6 +2,7 @@ mod animation;
 mod appearance;
 mod cameras;
 mod costs;
+mod factors;
 mod files;
 mod geometry;
 mod instances;
@@ -35,6 +36,8 @@ fn document() -> Value {
     let data = STANDARD.encode(square());
     json!({
         "asset": {"version": "2.0"},
+        "extensionsUsed": ["KHR_lights_punctual", "KHR_materials_emissive_strength", "KHR_materials_ior",
+            "KHR_materials_transmission", "KHR_materials_volume", "KHR_texture_transform"],
         "scene": 0,
         "scenes": [{"nodes": [0, 1]}],
         "nodes": [

@@ -4,7 +4,7 @@ use super::*;
 use crate::scene::{Instances, Placement};
 
 /// A file as an assembly.
-fn assembled(file: &str, text: &str, wanted: &str) -> Result<Imported, SceneError> {
+pub(super) fn assembled(file: &str, text: &str, wanted: &str) -> Result<Imported, SceneError> {
     let options = ImportOptions {
         assembly: Some(wanted.to_owned()),
         ..ImportOptions::default()
@@ -13,7 +13,7 @@ fn assembled(file: &str, text: &str, wanted: &str) -> Result<Imported, SceneErro
 }
 
 /// Three chains of an atom each, with these remarks before them.
-fn chains(remarks: &[&str]) -> String {
+pub(super) fn chains(remarks: &[&str]) -> String {
     let remarks = remarks.iter().map(|it| format!("REMARK 350 {it}\n"));
     let mut text: String = remarks.collect();
     for (number, chain) in ["A", "B", "C"].iter().enumerate() {
@@ -240,7 +240,7 @@ fn chain_without_atoms_is_worth_a_warning() {
 
 /// Atoms of the chains A and B (by their authors X and X), and the operators 1 to 5 and P. Operators 1 to 5 are turns
 /// about z by 0, 90, 180 and 270 degrees, and a step along z. P is a step along x.
-fn cif_of(groups: &[[&str; 3]]) -> String {
+pub(super) fn cif_of(groups: &[[&str; 3]]) -> String {
     let mut text = String::from(
         "data_t\nloop_\n_pdbx_struct_assembly_gen.assembly_id\n\
          _pdbx_struct_assembly_gen.oper_expression\n_pdbx_struct_assembly_gen.asym_id_list\n",

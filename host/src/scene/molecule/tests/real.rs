@@ -31,7 +31,9 @@ fn real_molecules_have_the_atoms_that_gemmi_finds() {
             continue;
         };
         let imported = load(&path, &MoleculeOptions::default()).unwrap();
-        assert_eq!(imported.warnings, [] as [&str; 0], "{name}");
+        // Of a capsid the file has one of 60 copies.
+        let copies = usize::from(name.ends_with("2buk.pdb"));
+        assert_eq!(imported.warnings.len(), copies, "{:?}", imported.warnings);
         // Gemmi counts every alternate location.
         if fields[5] != "0" {
             assert!(

@@ -285,3 +285,100 @@ fn mirrors_and_glass_may_be_rough() {
     }
     assert!(!material("newmtl a\nKd .5\nPr .5\n").0.is_rough());
 }
+
+#[test]
+fn numbers_out_of_range_or_not_in_use_are_warned_of() {
+    for (text, warning) in [
+        (
+            "illum 3\nKs 1 1 1\nPr 7",
+            "Pr is limited to the range 0 to 1",
+        ),
+        (
+            "illum 3\nKs 1 1 1\nPr -5",
+            "Pr is limited to the range 0 to 1",
+        ),
+        (
+            "Pr 0.5",
+            "Pr is ignored, because the material neither mirrors nor lets light through",
+        ),
+        ("illum 99", "illum 99 is none of 0 to 10, and is read as 2"),
+        ("illum -3", "illum -3 is none of 0 to 10, and is read as 2"),
+        (
+            "illum 2.7",
+            "illum 2.7 is none of 0 to 10, and is read as 2",
+        ),
+        (
+            "d -halo 0.5",
+            "\"-halo\" is ignored: the last value of d is taken",
+        ),
+        (
+            "Ns 10 20",
+            "\"10\" is ignored: the last value of Ns is taken",
+        ),
+        (
+            "Kd 1 1 1\nnewmtl a",
+            "the material \"a\" is defined again; the last one is used",
+        ),
+    ] {
+        let (_, warnings) = material(&format!("newmtl a\n{text}\n"));
+        assert_eq!(warnings.len(), 1, "{warnings:?}");
+        assert!(warnings[0].ends_with(warning), "{warnings:?}");
+    }
+    for text in [
+        "illum 3\nKs 1 1 1\nPr 0.5",
+        "d 0.5\nPr 0.5",
+        "illum 10",
+        "Ns 10 # 20",
+    ] {
+        let (_, warnings) = material(&format!("newmtl a\n{text}\n"));
+        assert_eq!(warnings, [] as [&str; 0], "{text}");
+    }
+}
+
+#[test]
+fn options_of_textures_are_finite() {
+    for word in ["nan", "inf", "-infinity"] {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("t.obj");
+        let library = format!("newmtl a\nmap_Kd -o 0 {word} a.png\n");
+        std::fs::write(folder.path().join("t.mtl"), library).unwrap();
+        std::fs::write(&path, format!("mtllib t.mtl\n{CORNERS}f 1 2 3\n")).unwrap();
+        let error = load(&path).unwrap_err();
+        let cause = format!(
+            "a number of the option -o of map_Kd is {word:?}, which is not a finite number"
+        );
+        assert_eq!((error.cause, error.line), (cause, Some(2)));
+    }
+}
+
+#[test]
+fn material_files_are_limited_and_named_once() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("t.obj");
+    let write = |libraries: &str| {
+        std::fs::write(&path, format!("{libraries}{CORNERS}f 1 2 3\n")).unwrap();
+        load(&path)
+    };
+    std::fs::write(folder.path().join("t.mtl"), "#".repeat(10_000_001)).unwrap();
+    assert_eq!(
+        write("mtllib t.mtl\n").unwrap_err().cause,
+        "the material files have more than 10,000,000 bytes of text"
+    );
+    std::fs::write(folder.path().join("t.mtl"), "").unwrap();
+    let start = std::time::Instant::now();
+    assert!(write(&"mtllib t.mtl\n".repeat(500_000)).is_ok());
+    assert!(start.elapsed().as_secs() < 30, "{:?}", start.elapsed());
+    let many: String = (0..2000).map(|it| format!("mtllib {it}\n")).collect();
+    let error = write(&many).unwrap_err();
+    assert_eq!(error.cause, "the file names more than 1000 material files");
+}
+
+#[test]
+fn statements_that_bring_other_files_are_warned_of() {
+    for (statement, keyword) in [("call big.obj", "call"), ("csh ls", "csh")] {
+        let imported = read(&format!("{CORNERS}f 1 2 3\n{statement}\n")).unwrap();
+        let warning =
+            format!("t.obj:6: what `{keyword}` brings, from a file or a program, is not read");
+        assert_eq!(imported.warnings, [warning]);
+    }
+}

@@ -7,6 +7,7 @@ mod imports;
 mod joints;
 mod keys;
 mod morph;
+mod nested_imports;
 mod objects;
 mod parts;
 mod textures;

@@ -1,0 +1,95 @@
+//! Numbers and extensions of materials, and colors of vertices, that are not taken as they are.
+
+use super::animation::animated;
+use super::*;
+
+#[test]
+fn colors_of_vertices_on_metal_and_glass_are_warned_of() {
+    let colored = |surface: Value, extensions: Value| {
+        let mut document = document();
+        document["meshes"][0]["primitives"][0]["attributes"]["COLOR_0"] = json!(2);
+        push(
+            &mut document,
+            "accessors",
+            json!({"bufferView": 0, "componentType": 5126, "count": 4, "type": "VEC3"}),
+        );
+        document["materials"][0]["pbrMetallicRoughness"] = surface;
+        document["materials"][0]["extensions"] = extensions;
+        warnings(&document)
+    };
+    let warning = "COLOR_0 on material \"plain\" weights its diffuse color alone, not what it mirrors or lets through";
+    let glass = json!({"KHR_materials_transmission": {"transmissionFactor": 0.5}});
+    let rough = json!({"metallicFactor": 0});
+    for (surface, extensions) in [
+        (json!({"roughnessFactor": 0.5}), json!({})),
+        (json!({"roughnessFactor": 0}), json!({})),
+        (rough.clone(), glass),
+    ] {
+        assert_eq!(colored(surface, extensions), [warning]);
+    }
+    assert_eq!(colored(rough, json!({})), [] as [&str; 0]);
+    assert_eq!(colored(json!({}), json!({})), [] as [&str; 0]);
+}
+
+#[test]
+fn factors_out_of_range_are_warned_of() {
+    let with = |surface: Value, emissive: f64| {
+        let mut document = document();
+        document["materials"][0]["pbrMetallicRoughness"] = surface;
+        document["materials"][0]["emissiveFactor"] = json!([emissive, 0, 0]);
+        warnings(&document)
+    };
+    let outside = |what: &str| {
+        format!("the {what} factor of material \"plain\" is outside of its range, 0 to 1")
+    };
+    let base = json!({"baseColorFactor": [1, -1, 0, 1], "metallicFactor": 0});
+    assert_eq!(with(base, 0.0), [outside("base color")]);
+    let rough = json!({"roughnessFactor": 7, "metallicFactor": -1});
+    assert_eq!(
+        with(rough, 5.0),
+        ["metallic", "roughness", "emissive"].map(outside)
+    );
+    assert_eq!(with(json!({"metallicFactor": 0}), 1.0), [] as [&str; 0]);
+}
+
+#[test]
+fn extensions_that_are_not_listed_are_warned_of() {
+    let mut document = document();
+    document["materials"][0]["extensions"] = json!({"EXT_paint": {"shine": 1}});
+    let unlisted = "`extensionsUsed` does not list extensions that elements have: EXT_paint";
+    assert_eq!(warnings(&document), [unlisted]);
+    document["extensionsUsed"] = json!(["KHR_lights_punctual", "EXT_paint"]);
+    assert_eq!(warnings(&document), ["extensions are ignored: EXT_paint"]);
+}
+
+#[test]
+fn times_beyond_the_limit_name_their_channel() {
+    let mut document = animated(json!([{
+        "channels": [{"sampler": 0, "target": {"node": 1, "path": "translation"}}],
+        "samplers": [{"input": 2, "output": 3}],
+    }]));
+    let bytes: Vec<u8> = [0.0_f32, 1.0, 1e6]
+        .iter()
+        .flat_map(|it| it.to_le_bytes())
+        .collect();
+    let uri = format!(
+        "data:application/octet-stream;base64,{}",
+        STANDARD.encode(bytes)
+    );
+    push(
+        &mut document,
+        "buffers",
+        json!({"byteLength": 12, "uri": uri}),
+    );
+    push(
+        &mut document,
+        "bufferViews",
+        json!({"buffer": 2, "byteLength": 12}),
+    );
+    let view = document["bufferViews"].as_array().unwrap().len() - 1;
+    document["accessors"][2]["bufferView"] = json!(view);
+    assert_eq!(
+        cause(&document),
+        "animation 0, channel 0 of node 1: a time is beyond 44739 seconds, the limit"
+    );
+}
