@@ -2,6 +2,7 @@
 //! one of the plane, so these rays start elsewhere.
 
 use crate::accel::Number;
+use crate::geometry::plane;
 use crate::number::{Format, extent, far_extent};
 use crate::observe::count::NoCount;
 use crate::query::{Hit, unbounded};
@@ -27,8 +28,9 @@ fn beyond<N: Number>(ray: &Ray<N>, hit: &Hit<N>) -> Option<[N::Wide; 3]> {
     (!place.iter().all(is_length)).then_some(place)
 }
 
-/// Returns the start of a ray that leaves a far place: where it comes to the scene's box. `None` if it does not come
-/// there, or crosses a plane before.
+/// Returns the start of a ray that leaves a far place: where it comes to the scene's box along its major axis. A ray
+/// that crosses a plane before starts at its place. Coordinates beyond lengths become the last length, beside which
+/// nothing of the box lies either.
 #[cold]
 #[inline(never)]
 pub(crate) fn depart_far<N: Number>(
@@ -41,5 +43,11 @@ pub(crate) fn depart_far<N: Number>(
     let ray = Ray::new(scene.bounds(), place, way, beside, N::far(i64::MAX)).ok()?;
     let crossed = unbounded::nearest(scene, &ray, &mut NoCount);
     let is_free = crossed.is_none_or(|plane| plane.t > ray.start_t);
-    (ray.holds_start() && is_free).then_some(ray.origin)
+    if is_free && ray.holds_start() {
+        return Some(ray.origin);
+    }
+    let zero = N::Wide::default();
+    let moved = is_free && ray.start_t > zero;
+    let point = ray.far_point(if moved { ray.start_t } else { zero })?;
+    Some(point.map(plane::held::<N>))
 }

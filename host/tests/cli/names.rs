@@ -92,7 +92,11 @@ fn blobs_for_boards_have_no_names() {
     }
     // Constants of the module have them.
     let module = String::from_utf8(folder.read("module/scene.rs")).unwrap();
-    for module_of in ["pub mod objects {", "pub mod materials {", "pub mod lights {"] {
+    for module_of in [
+        "pub mod objects {",
+        "pub mod materials {",
+        "pub mod lights {",
+    ] {
         assert!(module.contains(module_of), "{module}");
     }
 }
