@@ -17,13 +17,13 @@ pub(crate) struct FarHit<N: Number> {
     pub(super) after_start: N,
     /// Distance as the caller counts it. It distinguishes hits that lie farther away than kernels count.
     pub(crate) t: N::Wide,
-    pub(super) place: PrimitiveId,
+    pub(crate) place: PrimitiveId,
 }
 
 /// Returns the nearest hit in the interval that the caller gave. Ties go to the hit that comes first in the scene file.
 #[cold]
 #[inline(never)]
-pub(crate) fn nearest<N: Number, C: Observer>(
+pub(super) fn nearest<N: Number, C: Observer>(
     scene: &Scene<'_>,
     ray: &Ray<N>,
     count: &mut C,
@@ -45,7 +45,7 @@ pub(crate) fn nearest<N: Number, C: Observer>(
 /// Calls `consider` with every hit in the interval that the caller gave, in the order of their records. It returns
 /// whether the hit is the nearest so far.
 #[inline(always)]
-pub(super) fn each<N: Number, C: Observer>(
+pub(crate) fn each<N: Number, C: Observer>(
     scene: &Scene<'_>,
     ray: &Ray<N>,
     count: &mut C,

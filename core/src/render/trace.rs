@@ -12,7 +12,6 @@
 //! list of effects at the places that `shade` lists.
 
 use crate::accel::{Accel, Number};
-use crate::format::limits::UNBOUNDED;
 use crate::format::record::Light;
 use crate::observe::count::Observer;
 use crate::observe::event::{Event, RayKind, Source};
@@ -25,13 +24,13 @@ use crate::render::workspace::{Pending, State, WorkspaceView};
 use crate::scene::Scene;
 use crate::scene::textures::Footprint;
 use crate::shade::effect::{EffectList, Tracer};
-use crate::shade::far::{depart_far, far_place};
+use crate::shade::far::{FarHit, FarPlace};
 use crate::shade::sampler::Sampler;
 use crate::shade::surface::{
     Aim, Arrival, Bounce, Filter, Lighting, Reach, Secondary, Surface, depart, secondary_ray,
 };
 use crate::shade::{All, Color};
-use crate::target::{InSomeBuilds, WIDE, inline_on_boards};
+use crate::target::{WIDE, inline_on_boards};
 use core::marker::PhantomData;
 
 /// The parts of the scene and the renderer that the ray loop uses.
@@ -66,7 +65,7 @@ impl Loop<'_, '_> {
                 sampler,
                 spread: self.spread,
                 state: State::<N>::default(),
-                far_place: InSomeBuilds::of(None),
+                far: FarHit::of(None),
                 space,
                 count,
                 structure: PhantomData,
@@ -154,7 +153,7 @@ impl Loop<'_, '_> {
                 sampler: Sampler::new([0; 2], 0),
                 spread: self.spread,
                 state: State::<N>::default(),
-                far_place: InSomeBuilds::of(None),
+                far: FarHit::of(None),
                 space,
                 count,
                 structure: PhantomData,
@@ -177,8 +176,8 @@ struct Tracing<'t, 'w, 's, N: Number, A, C, const EFFECTS: u32> {
     sampler: Sampler,
     spread: Spread,
     state: State<N>,
-    /// The place of the ray's hit, if it is beyond lengths.
-    far_place: InSomeBuilds<Option<[N::Wide; 3]>, { UNBOUNDED as usize }>,
+    /// The place of the ray's hit.
+    far: FarHit<N>,
     space: &'t mut WorkspaceView<'w, N>,
     count: &'t mut C,
     structure: PhantomData<A>,
@@ -197,7 +196,7 @@ impl<N: Number, A: Accel, C: Observer, const EFFECTS: u32> Tracing<'_, '_, '_, N
             self.bring(Source::Background, brought.times(weight), radiance);
             return;
         };
-        self.far_place = InSomeBuilds::new(|| far_place(ray, &hit));
+        self.far = FarHit::new(|| FarPlace::of(ray, &hit));
         let required = All::required_by_material(material);
         let mut arrival = Arrival {
             hit: &hit,
@@ -317,11 +316,10 @@ impl<N: Number, A: Accel, C: Observer, const EFFECTS: u32> Tracing<'_, '_, '_, N
         }
     }
 
-    /// The start of a ray from the hit if that is beyond lengths: see [`depart_far`].
+    /// The start of a ray from a hit that is beyond lengths: see [`FarPlace::depart`].
     #[inline(always)]
     fn depart_far(&self, way: [N::Wide; 3]) -> Option<[N; 3]> {
-        let place = self.far_place.get().copied().flatten()?;
-        depart_far(self.scene, place, way)
+        self.far.get()?.as_ref()?.depart(self.scene, way)
     }
 
     /// The radiance that a light adds to a surface that it reaches.

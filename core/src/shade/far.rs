@@ -2,52 +2,75 @@
 //! one of the plane, so these rays start elsewhere.
 
 use crate::accel::Number;
+use crate::format::limits::UNBOUNDED;
 use crate::geometry::plane;
-use crate::number::{Format, extent, far_extent};
+use crate::number::{Format, extent};
 use crate::observe::count::NoCount;
 use crate::query::{Hit, unbounded};
 use crate::ray::Ray;
 use crate::scene::Scene;
+use crate::target::InSomeBuilds;
 
-/// Returns the place of a hit if it is beyond the lengths of the format.
-#[inline(always)]
-pub(crate) fn far_place<N: Number>(ray: &Ray<N>, hit: &Hit<N>) -> Option<[N::Wide; 3]> {
-    // A point that stands for a farther one lies at least this far away: a plane's own point reaches to half of
-    // the longest length.
-    let can_be_far = N::FORMAT == Format::Fixed
-        && hit.is_unbounded()
-        && extent(hit.point) >= N::FAR.half().half();
-    if can_be_far { beyond(ray, hit) } else { None }
-}
-
-#[cold]
-#[inline(never)]
-fn beyond<N: Number>(ray: &Ray<N>, hit: &Hit<N>) -> Option<[N::Wide; 3]> {
-    let place = ray.far_point(hit.t)?;
-    let is_length = |&x: &N::Wide| N::narrow(x).widen() == x;
-    (!place.iter().all(is_length)).then_some(place)
-}
-
-/// Returns the start of a ray that leaves a far place: where it comes to the scene's box along its major axis. A ray
-/// that crosses a plane before starts at its place. Coordinates beyond lengths become the last length, beside which
-/// nothing of the box lies either.
-#[cold]
-#[inline(never)]
-pub(crate) fn depart_far<N: Number>(
-    scene: &Scene<'_>,
+/// A place beyond lengths that a plane was hit at.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct FarPlace<N: Number> {
     place: [N::Wide; 3],
-    way: [N::Wide; 3],
-) -> Option<[N; 3]> {
-    // A place that far away is rounded, and can lie behind its own plane.
-    let beside = N::wide_over(far_extent::<N>(place), 1 << 16);
-    let ray = Ray::new(scene.bounds(), place, way, beside, N::far(i64::MAX)).ok()?;
-    let crossed = unbounded::nearest(scene, &ray, &mut NoCount);
-    let is_free = crossed.is_none_or(|plane| plane.t > ray.start_t);
-    if is_free && ray.holds_start() {
-        return Some(ray.origin);
+    /// The plane.
+    primitive: u32,
+}
+
+/// The place of a hit that is beyond lengths. It is absent in builds without shapes that can be hit there.
+pub(crate) type FarHit<N> = InSomeBuilds<Option<FarPlace<N>>, { UNBOUNDED as usize }>;
+
+impl<N: Number> FarPlace<N> {
+    /// Returns the place of a hit if it is beyond the lengths of the format.
+    #[inline(always)]
+    pub(crate) fn of(ray: &Ray<N>, hit: &Hit<N>) -> Option<Self> {
+        // A point that stands for a farther one lies at least this far away: a plane's own point reaches to half of
+        // the longest length.
+        let can_be_far = N::FORMAT == Format::Fixed
+            && hit.is_unbounded()
+            && extent(hit.point) >= N::FAR.half().half();
+        if can_be_far {
+            Self::beyond(ray, hit)
+        } else {
+            None
+        }
     }
-    let zero = N::Wide::default();
-    let moved = is_free && ray.start_t > zero;
-    let point = ray.far_point(if moved { ray.start_t } else { zero })?;
-    Some(point.map(plane::held::<N>))
+
+    #[cold]
+    #[inline(never)]
+    fn beyond(ray: &Ray<N>, hit: &Hit<N>) -> Option<Self> {
+        let place = ray.far_point(hit.t)?;
+        let is_length = |&x: &N::Wide| N::narrow(x).widen() == x;
+        let is_beyond = !place.iter().all(is_length);
+        let primitive = hit.primitive;
+        is_beyond.then_some(Self { place, primitive })
+    }
+
+    /// Returns the start of a ray from here: where it comes to the scene's box along its major axis. If it passes the
+    /// box there, it starts beside it, as far away as lengths reach. `None` for a ray that does not come there, or
+    /// crosses another plane before. From a nearer point of the plane it passes the box, too.
+    #[cold]
+    #[inline(never)]
+    pub(crate) fn depart(&self, scene: &Scene<'_>, way: [N::Wide; 3]) -> Option<[N; 3]> {
+        let zero = N::Wide::default();
+        let ray = Ray::new(scene.bounds(), self.place, way, zero, N::far(i64::MAX)).ok()?;
+        if ray.start_t <= zero {
+            return None;
+        }
+        let mut is_free = true;
+        unbounded::each(scene, &ray, &mut NoCount, |plane| {
+            // Rounding can put the place behind its own plane.
+            is_free &= plane.t > ray.start_t || scene.primitive_at(plane.place) == self.primitive;
+            false
+        });
+        if !is_free {
+            return None;
+        }
+        if ray.holds_start() {
+            return Some(ray.origin);
+        }
+        Some(ray.far_point(ray.start_t)?.map(plane::held::<N>))
+    }
 }
