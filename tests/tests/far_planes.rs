@@ -11,7 +11,7 @@ fn rays_leave_planes_at_any_distance() {
         [camera]
         eye = [0, 0.6, 12]
         target = [0, 0.4, 0]
-        fov = 60
+        fov = 40
         [[light]]
         kind = 'directional'
         direction = [-0.2, -0.3, -1]

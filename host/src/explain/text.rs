@@ -48,7 +48,7 @@ impl Display for Shown<'_> {
             let mean = color(mean);
             writeln!(
                 f,
-                "The mean of the samples is {mean}: it was limited to display white, or tone mapped."
+                "It shows the mean of the samples, {mean}, limited to display white or tone mapped."
             )?;
         }
         for sentence in self.sentences() {

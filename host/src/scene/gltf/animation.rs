@@ -106,7 +106,7 @@ impl Motion {
                 Property::Rotation => Some(&mut moves.rotation),
                 Property::Scale => Some(&mut moves.scale),
             };
-            let error = |cause: &str| {
+            let error = |cause: String| {
                 SceneError::new(
                     path,
                     format!(
@@ -114,7 +114,7 @@ impl Motion {
                         channel.animation().index(),
                         target.node().index()
                     ),
-                    "export the animation again",
+                    "export the animation again, or leave it out with `--animation none`",
                 )
             };
             let mut found = match curve {

@@ -178,31 +178,32 @@ impl Curve {
     }
 
     /// Proves what glTF promises.
-    pub(super) fn check(&self, property: Property) -> Result<(), &'static str> {
+    pub(super) fn check(&self, property: Property) -> Result<(), String> {
         if self.keys.is_empty() {
-            return Err("it has no keys, or not a value for each");
+            return Err("it has no keys, or not a value for each".into());
         }
         let numbers = self.keys.iter().flat_map(|key| {
             let vectors = [key.value, key.entering, key.leaving];
             vectors.into_iter().flatten().chain([key.seconds])
         });
         if !numbers.into_iter().all(f64::is_finite) {
-            return Err("a number is not finite");
+            return Err("a number is not finite".into());
         }
         // A blob counts ticks in 32 bits.
         let is_late = |key: &Key| i32::try_from(tick(key.seconds)).is_err();
-        if self.keys.iter().any(is_late) {
-            return Err("a time is beyond 44739 seconds, the limit");
+        if let Some(late) = self.keys.iter().find(|key| is_late(key)) {
+            let time = late.seconds;
+            return Err(format!("the time {time} is beyond 44739 seconds, the limit"));
         }
         if !self
             .keys
             .is_sorted_by(|one, other| one.seconds < other.seconds)
         {
-            return Err("its times do not ascend");
+            return Err("its times do not ascend".into());
         }
         let turns = |key: &Key| key.value != [0.0; 4];
         if property == Property::Rotation && !self.keys.iter().all(turns) {
-            return Err("a rotation has length 0");
+            return Err("a rotation has length 0".into());
         }
         Ok(())
     }

@@ -90,6 +90,6 @@ fn times_beyond_the_limit_name_their_channel() {
     document["accessors"][2]["bufferView"] = json!(view);
     assert_eq!(
         cause(&document),
-        "animation 0, channel 0 of node 1: a time is beyond 44739 seconds, the limit"
+        "animation 0, channel 0 of node 1: the time 1000000 is beyond 44739 seconds, the limit"
     );
 }
