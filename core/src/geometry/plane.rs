@@ -166,7 +166,7 @@ fn far_dot<N: Arithmetic>(far: [N::Wide; 3], ratios: [N; 3]) -> N::Wide {
 }
 
 /// Returns a far coordinate as a length: the nearest that leaves room for error bounds.
-pub(crate) fn held<N: Arithmetic>(coordinate: N::Wide) -> N {
+fn held<N: Arithmetic>(coordinate: N::Wide) -> N {
     let most = N::narrow(N::far(1 << 60)) - N::from_unit(16);
     N::narrow(coordinate).max(-most).min(most)
 }

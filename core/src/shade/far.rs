@@ -3,7 +3,6 @@
 
 use crate::accel::Number;
 use crate::format::limits::UNBOUNDED;
-use crate::geometry::plane;
 use crate::number::{Format, extent};
 use crate::observe::count::NoCount;
 use crate::query::{Hit, unbounded};
@@ -42,15 +41,15 @@ impl<N: Number> FarPlace<N> {
     #[inline(never)]
     fn beyond(ray: &Ray<N>, hit: &Hit<N>) -> Option<Self> {
         let place = ray.far_point(hit.t)?;
-        let is_length = |&x: &N::Wide| N::narrow(x).widen() == x;
-        let is_beyond = !place.iter().all(is_length);
         let primitive = hit.primitive;
-        is_beyond.then_some(Self { place, primitive })
+        lengths::<N>(place)
+            .is_none()
+            .then_some(Self { place, primitive })
     }
 
-    /// Returns the start of a ray from here: where it comes to the scene's box along its major axis. If it passes the
-    /// box there, it starts beside it, as far away as lengths reach. `None` for a ray that does not come there, or
-    /// crosses another plane before. From a nearer point of the plane it passes the box, too.
+    /// Returns the start of a ray from here: where it comes to the scene's box along its major axis. `None` for a ray
+    /// that does not come there, crosses another plane before, or is beyond lengths there. From a nearer point of the
+    /// plane most of them pass the box, too.
     #[cold]
     #[inline(never)]
     pub(crate) fn depart(&self, scene: &Scene<'_>, way: [N::Wide; 3]) -> Option<[N; 3]> {
@@ -71,6 +70,12 @@ impl<N: Number> FarPlace<N> {
         if ray.holds_start() {
             return Some(ray.origin);
         }
-        Some(ray.far_point(ray.start_t)?.map(plane::held::<N>))
+        lengths::<N>(ray.far_point(ray.start_t)?)
     }
+}
+
+/// Returns a place as lengths, if it is within them.
+fn lengths<N: Number>(place: [N::Wide; 3]) -> Option<[N; 3]> {
+    let lengths = place.map(N::narrow);
+    (lengths.map(N::widen) == place).then_some(lengths)
 }
