@@ -2,6 +2,7 @@
 //! one of the plane, so these rays start elsewhere.
 
 use crate::accel::Number;
+use crate::axis::pick;
 use crate::format::limits::UNBOUNDED;
 use crate::number::{Format, extent};
 use crate::observe::count::NoCount;
@@ -53,11 +54,12 @@ impl<N: Number> FarPlace<N> {
     #[cold]
     #[inline(never)]
     pub(crate) fn depart(&self, scene: &Scene<'_>, way: [N::Wide; 3]) -> Option<[N; 3]> {
-        let zero = N::Wide::default();
-        let ray = Ray::new(scene.bounds(), self.place, way, zero, N::far(i64::MAX)).ok()?;
-        if ray.start_t <= zero {
+        // Most light comes from above, and most planes lie below.
+        if !self.is_before_box(scene, way) {
             return None;
         }
+        let zero = N::Wide::default();
+        let ray = Ray::new(scene.bounds(), self.place, way, zero, N::far(i64::MAX)).ok()?;
         let mut is_free = true;
         unbounded::each(scene, &ray, &mut NoCount, |plane| {
             // Rounding can put the place behind its own plane.
@@ -71,6 +73,23 @@ impl<N: Number> FarPlace<N> {
             return Some(ray.origin);
         }
         lengths::<N>(ray.far_point(ray.start_t)?)
+    }
+
+    /// Returns whether the scene's box begins ahead of a ray from here, along its major axis.
+    fn is_before_box(&self, scene: &Scene<'_>, way: [N::Wide; 3]) -> bool {
+        let [x, y, z] = way.map(N::magnitude);
+        let axis = match () {
+            () if x >= y && x >= z => 0,
+            () if y >= z => 1,
+            () => 2,
+        };
+        let place = pick(self.place, axis);
+        let [first, last] = pick(scene.bounds().0, axis).map(|side| N::from_unit(side).widen());
+        if pick(way, axis) > N::Wide::default() {
+            place < first
+        } else {
+            place > last
+        }
     }
 }
 

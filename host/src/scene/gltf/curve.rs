@@ -193,7 +193,9 @@ impl Curve {
         let is_late = |key: &Key| i32::try_from(tick(key.seconds)).is_err();
         if let Some(late) = self.keys.iter().find(|key| is_late(key)) {
             let time = late.seconds;
-            return Err(format!("the time {time} is beyond 44739 seconds, the limit"));
+            return Err(format!(
+                "the time {time} is beyond 44739 seconds, the limit"
+            ));
         }
         if !self
             .keys
