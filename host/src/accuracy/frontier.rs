@@ -3,7 +3,7 @@
 use super::Point;
 
 /// Returns which points are on the Pareto frontier: no other dominates them. A point dominates another if its error is no
-/// larger, its cost certainly no higher, and one of the two is better. Costs are those of [`Cost::is_below`].
+/// larger, its cost certainly no higher, and one of the two is better. Costs are those of [`Cost::is_below`](super::Cost::is_below).
 pub fn frontier(points: &[Point]) -> Vec<bool> {
     frontier_by(points, |point| point.errors.rmse)
 }

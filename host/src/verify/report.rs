@@ -33,7 +33,7 @@ pub struct FormatReport {
     pub judged: u64,
     /// Rays that do not graze what they meet.
     pub worst: Worst,
-    /// Rays that graze ([`judge::GRAZING`]): a surface that is off by a step is met many steps later.
+    /// Rays that graze ([`judge::GRAZING`](super::judge::GRAZING)): a surface that is off by a step is met many steps later.
     pub worst_grazing: Worst,
 }
 
