@@ -51,7 +51,12 @@ fn rays_leave_planes_at_any_distance() {
         normal = [0, 1, 0.01]";
     let sky =
         format!("{SHADOW}\n[environment]\nhorizon = 0.2\nzenith = [0.1, 0.2, 0.9]\nground = 0.1");
-    for file in [MIRROR, SHADOW, &sky] {
+    let sun = "kind = 'directional'\n        direction = [0, -0.05, 1]";
+    assert!(SHADOW.contains(sun));
+    let lit_by = |light: &str| SHADOW.replace(sun, light);
+    let point = lit_by("kind = 'point'\nposition = [1, 4, -6]\ncolor = 800\nfalloff = 'square'");
+    let area = lit_by("kind = 'sphere'\ncenter = [1, 6, -6]\nradius = 0.5\nradiance = 2000");
+    for file in [MIRROR, SHADOW, &sky, &point, &area] {
         let imported =
             gridel_host::scene::read("far.toml".as_ref(), file.into(), &Default::default());
         let blob = blob(&imported.expect("a scene").scene);

@@ -4,7 +4,7 @@ use glam::{DAffine2, DQuat, DVec2, DVec3};
 use gridel_core::{Effects, Format, Scene, Settings, Structure};
 use gridel_host::blob::Blob;
 use gridel_host::compile::{Options, compile};
-use gridel_host::render::{Job, render_linear};
+use gridel_host::render::{Aov, Job, Values, render_aovs, render_linear};
 use gridel_host::scene::{
     self, Attributes, Camera, Diffuse, Image, Instance, Light, Material, NormalMap, Normals, Part,
     Placement, Shape, SourceSpan, Texture,
@@ -103,15 +103,19 @@ fn blob_of(scene: &scene::Scene) -> Blob {
     compile(scene, &options).expect("compiles").blob
 }
 
-fn red(blob: &Blob, format: Format, structure: Structure) -> Vec<f64> {
-    let scene = blob.scene().expect("valid");
+fn job(scene: &Scene<'_>, format: Format, structure: Structure) -> Job {
     let settings = Settings {
         width: SIDE,
         height: SIDE,
         samples: 1,
-        ..Settings::of(&scene)
+        ..Settings::of(scene)
     };
-    let job = Job::whole(format, structure, settings);
+    Job::whole(format, structure, settings)
+}
+
+fn red(blob: &Blob, format: Format, structure: Structure) -> Vec<f64> {
+    let scene = blob.scene().expect("valid");
+    let job = job(&scene, format, structure);
     let picture = render_linear(&scene, &job, &|| ()).expect("a picture");
     let red = picture.pixels.iter().map(|pixel| f64::from(pixel[0]));
     red.collect()
@@ -405,4 +409,30 @@ fn what_has_no_normal_map_pays_for_none() {
     let plain = Effects::SHADOW.with(Effects::TEXTURE);
     assert_eq!(figures(&without), (1, plain));
     assert_eq!(figures(&with).1, plain.with(Effects::NORMAL_MAP));
+}
+
+/// A white surface under a white light has the cosine between both.
+#[test]
+fn normals_of_pixels_are_those_that_light_meets() {
+    let to_light = DVec3::new(0.2, -0.1, 1.0).normalize();
+    for lies in layouts() {
+        let blob = blob_of(&square(lies, 1.0, true, to_light));
+        let scene = blob.scene().expect("valid");
+        for format in Format::ALL {
+            let job = job(&scene, format, Structure::DualSplit);
+            let values = render_aovs(&scene, &job, &[Aov::Normal]).expect("pixels");
+            let [Values::Vectors(normals)] = &values[..] else {
+                panic!("normals are vectors");
+            };
+            let radiance = red(&blob, format, Structure::DualSplit);
+            let mut most = 0.0_f64;
+            for (pixel, _) in places() {
+                let normal = DVec3::from(normals[pixel].map(f64::from));
+                let off = normal.dot(to_light).max(0.0) - radiance[pixel];
+                assert!(off.abs() < 1e-3, "{format:?}, pixel {pixel}: {off}");
+                most = most.max(normal.x.abs());
+            }
+            assert!(most > 0.3, "the normals are those of the square: {most}");
+        }
+    }
 }

@@ -169,13 +169,13 @@ impl<N: Arithmetic> Ray<N> {
     #[cold]
     pub(crate) fn from_anywhere(
         bounds: &UnitBox,
-        origin: [N; 3],
+        origin: [N::Wide; 3],
         direction: [N::Wide; 3],
         tmax: Option<N::Wide>,
     ) -> Option<Self> {
         let beside = N::step_beside(N::ZERO).widen();
         let tmax = tmax.unwrap_or(N::far(i64::MAX));
-        Self::new(bounds, origin.map(N::widen), direction, beside, tmax).ok()
+        Self::new(bounds, origin, direction, beside, tmax).ok()
     }
 
     inline_on_hosts!(

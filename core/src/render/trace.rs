@@ -12,6 +12,7 @@
 //! list of effects at the places that `shade` lists.
 
 use crate::accel::{Accel, Number};
+use crate::format::limits::UNBOUNDED;
 use crate::format::record::Light;
 use crate::observe::count::Observer;
 use crate::observe::event::{Event, RayKind, Source};
@@ -23,12 +24,10 @@ use crate::render::start::Start;
 use crate::render::workspace::{Pending, State, WorkspaceView};
 use crate::scene::Scene;
 use crate::scene::textures::Footprint;
+use crate::shade::departure::{FarHit, FarPlace, Origin, depart_later, secondary_ray};
 use crate::shade::effect::{EffectList, Tracer};
-use crate::shade::far::{FarHit, FarPlace};
 use crate::shade::sampler::Sampler;
-use crate::shade::surface::{
-    Aim, Arrival, Bounce, Filter, Lighting, Reach, Secondary, Surface, depart, secondary_ray,
-};
+use crate::shade::surface::{Aim, Arrival, Bounce, Filter, Lighting, Reach, Secondary, Surface};
 use crate::shade::{All, Color};
 use crate::target::{WIDE, inline_on_boards};
 use core::marker::PhantomData;
@@ -72,8 +71,8 @@ impl Loop<'_, '_> {
             };
             let (ray, weight, kind) = match waiting {
                 Some(next) => {
-                    let (origin, direction) = (next.origin, next.direction.map(N::widen));
-                    let ray = secondary_ray(self.scene, origin, direction, None);
+                    let (origin, direction) = (Origin::of(next.origin), next.direction);
+                    let ray = secondary_ray(self.scene, &origin, direction.map(N::widen), None);
                     (tracing.depth, tracing.kind) = (next.depth, next.kind);
                     tracing.state = next.state;
                     (ray, next.weight, next.kind)
@@ -196,7 +195,9 @@ impl<N: Number, A: Accel, C: Observer, const EFFECTS: u32> Tracing<'_, '_, '_, N
             self.bring(Source::Background, brought.times(weight), radiance);
             return;
         };
-        self.far = FarHit::new(|| FarPlace::of(ray, &hit));
+        if UNBOUNDED && let Some(far) = FarPlace::of(ray, &hit) {
+            self.far = FarHit::of(Some(far));
+        }
         let required = All::required_by_material(material);
         let mut arrival = Arrival {
             hit: &hit,
@@ -316,18 +317,12 @@ impl<N: Number, A: Accel, C: Observer, const EFFECTS: u32> Tracing<'_, '_, '_, N
         }
     }
 
-    /// The start of a ray from a hit that is beyond lengths: see [`FarPlace::depart`].
-    #[inline(always)]
-    fn depart_far(&self, way: [N::Wide; 3]) -> Option<[N; 3]> {
-        self.far.get()?.as_ref()?.depart(self.scene, way)
-    }
-
     /// The radiance that a light adds to a surface that it reaches.
     #[inline(always)]
     fn lit(&mut self, number: u32, light: &Light, surface: &Surface<'_, N>) -> Color<N> {
         let mut state = self.state;
-        let origin = depart(self.scene, surface.hit, surface.hit.front, true);
-        let (way, distance) = light.seen_from(origin);
+        let origin = Origin::to_lights(self.scene, surface.hit, &self.far);
+        let (way, distance) = light.seen_from(&origin);
         let mut aim = Aim {
             way,
             distance,
@@ -339,10 +334,6 @@ impl<N: Number, A: Accel, C: Observer, const EFFECTS: u32> Tracing<'_, '_, '_, N
             distance,
             apparent_distance,
         } = aim;
-        let origin = match distance {
-            None => self.depart_far(way).unwrap_or(origin),
-            Some(_) => origin,
-        };
         let Some((slopes, _)) = N::slopes(way) else {
             return Color::BLACK;
         };
@@ -473,10 +464,7 @@ impl<'s, N: Number, A: Accel, C: Observer, const EFFECTS: u32> Tracer<'s, N>
         } = secondary;
         let peak = weight.peak();
         if peak > N::ZERO && peak * N::radiance(1 << 20) > N::radiance(self.scene.view.cutoff) {
-            let origin = match self.depart_far(direction.map(N::widen)) {
-                Some(origin) => origin,
-                None => depart(self.scene, hit, outward, false),
-            };
+            let origin = depart_later(self.scene, hit, &self.far, outward, direction);
             // The list is as long as the depth requires, so there is a place.
             let _ = self.space.work.push(Pending {
                 origin,

@@ -64,7 +64,7 @@ impl Effect for AreaLight {
                 .iter()
                 .fold(0.0, |longest: f64, it| longest.max(it.abs()));
             let reach = lighting.distance.map_or(0.0, N::far_to_f64);
-            let from = lighting.origin.map(N::length_to_f64);
+            let from = lighting.origin.place().map(N::far_to_f64);
             let axis = |k: usize| from[k] + way[k] / longest * reach;
             let point = [axis(0), axis(1), axis(2)];
             tracer.count().event(Event::FromArea { point });

@@ -3,19 +3,24 @@
 use crate::accel::Number;
 use crate::format::record::Light;
 use crate::number::{Format, far_extent};
+use crate::shade::departure::Origin;
 
 /// The longest distance that `fixed` holds, with 13 fraction bits.
 const LONGEST: i64 = i32::MAX as i64;
 
 impl Light {
-    /// The way from a point to this light, of any length, and how far along its largest component
-    /// the light is; `None` for infinitely far.
+    /// The way from a surface to this light, of any length, and how far along its largest component the light is; `None`
+    /// for infinitely far.
     #[inline(always)]
-    pub(crate) fn seen_from<N: Number>(&self, point: [N; 3]) -> ([N::Wide; 3], Option<N::Wide>) {
+    pub(crate) fn seen_from<N: Number>(
+        &self,
+        origin: &Origin<N>,
+    ) -> ([N::Wide; 3], Option<N::Wide>) {
         if self.directional == 1 {
             return (self.vector.map(N::far), None);
         }
-        let axis = |k: usize| N::far(self.vector[k]) - point[k].widen();
+        let place = origin.place();
+        let axis = |k: usize| N::far(self.vector[k]) - place[k];
         let way = [axis(0), axis(1), axis(2)];
         (way, Some(far_extent::<N>(way)))
     }

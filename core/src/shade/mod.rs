@@ -23,9 +23,9 @@
 
 mod basis;
 mod color;
+pub(crate) mod departure;
 pub(crate) mod effect;
 pub(crate) mod facets;
-pub(crate) mod far;
 pub(crate) mod light;
 mod material;
 pub mod sampler;

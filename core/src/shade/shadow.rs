@@ -8,8 +8,9 @@ use crate::number::extent;
 use crate::observe::count::Observer;
 use crate::observe::event::{Event, RayKind};
 use crate::shade::Color;
+use crate::shade::departure::{Origin, depart, secondary_ray};
 use crate::shade::effect::{Effect, Tracer};
-use crate::shade::surface::{Filter, Lighting, Reach, Surface, depart, secondary_ray};
+use crate::shade::surface::{Filter, Lighting, Reach, Surface};
 
 pub(crate) struct Shadow;
 
@@ -59,10 +60,10 @@ fn through<'s, N: Number, X: Tracer<'s, N>>(
     for _ in 0..=MAX_SHADOW_SURFACES {
         // The light itself, and objects that touch it, cast no shadow.
         let end = distance.map(|distance| {
-            let magnitude = extent(origin).max(N::narrow(distance));
+            let magnitude = extent(origin.point()).max(N::narrow(distance));
             distance - N::error_bound(magnitude).widen()
         });
-        let Some(ray) = secondary_ray(scene, origin, way, end) else {
+        let Some(ray) = secondary_ray(scene, &origin, way, end) else {
             return left;
         };
         tracer.count().ray(RayKind::Shadow, &ray);
@@ -108,7 +109,7 @@ fn through<'s, N: Number, X: Tracer<'s, N>>(
         if left.peak() * N::radiance(1 << 20) <= N::radiance(scene.view.cutoff) {
             return Color::BLACK;
         }
-        origin = depart(scene, &hit, !hit.front, false);
+        origin = Origin::of(depart(scene, &hit, !hit.front, false));
         // The way continues along the same slopes, so its largest component stays the measure. It starts outside the
         // surface. So objects at its end, such as the light itself, can be nearer by that distance.
         let beside = (hit.error + hit.error).widen();

@@ -17,6 +17,7 @@ use crate::observe::count::Observer;
 use crate::observe::event::Event;
 use crate::query::Hit;
 use crate::ray::Ray;
+use crate::shade::departure::Origin;
 use crate::shade::effect::{Effect, Tracer};
 use crate::shade::surface::{Lighting, Secondary, Surface};
 
@@ -148,11 +149,10 @@ fn lift<'s, N: Number, X: Tracer<'s, N>>(
     if N::from_wide(N::dot(way, facing)) <= hit.error {
         return false;
     }
-    let from = lighting.origin;
-    lighting.origin = moved(from, way);
+    lighting.origin = Origin::of(moved(lighting.origin.point(), way));
     // Only a point light has another direction from there: of the others one was drawn, or they are far away.
     if lighting.light.is_point() {
-        (lighting.way, lighting.distance) = lighting.light.seen_from(lighting.origin);
+        (lighting.way, lighting.distance) = lighting.light.seen_from(&lighting.origin);
         // The distance by which a light falls off is that from there, too.
         if const { Effects::AVAILABLE.contains(Effects::FALLOFF) }
             && lighting.light.form().is_some()

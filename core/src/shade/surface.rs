@@ -2,14 +2,12 @@
 
 use crate::accel::Number;
 use crate::format::Effects;
-use crate::format::limits::UNBOUNDED;
 use crate::format::record::{Light, Material};
 use crate::observe::event::RayKind;
 use crate::query::Hit;
-use crate::ray::Ray;
-use crate::scene::Scene;
 use crate::scene::textures::Footprint;
 use crate::shade::Color;
+use crate::shade::departure::Origin;
 use crate::shade::facets::Facets;
 use crate::shade::light::Distance;
 
@@ -78,7 +76,7 @@ impl<N: Number> Interface<N> {
 pub(crate) struct Lighting<'l, N: Number> {
     pub(crate) light: &'l Light,
     /// The start of the way to the light.
-    pub(crate) origin: [N; 3],
+    pub(crate) origin: Origin<N>,
     /// The way to the light, of any length.
     pub(crate) way: [N::Wide; 3],
     /// The distance of the light along the largest component of `way`; `None` for infinitely far.
@@ -214,38 +212,4 @@ pub(crate) struct Secondary<N: Number> {
     /// True if it leaves on the side of the geometric normal.
     pub(crate) outward: bool,
     pub(crate) weight: Color<N>,
-}
-
-/// Returns the start of a ray that leaves a hit. On its way to a light the ray can start on the surface itself, because
-/// it certainly leads away from it. A mirrored ray can be rounded into the surface.
-///
-/// Out of line, because copies of it took more of the call stack than the call.
-#[inline(never)]
-pub(crate) fn depart<N: Number>(
-    scene: &Scene<'_>,
-    hit: &Hit<N>,
-    outward: bool,
-    to_light: bool,
-) -> [N; 3] {
-    match (outward, to_light) {
-        (true, true) => hit.offset_point(),
-        (true, false) => hit.outside(),
-        _ => hit.inside(scene),
-    }
-}
-
-/// Returns a ray from a hit, with all `t` up to an end, or without one. Only in scenes with shapes without bounds it
-/// can start, and end, far from the scene's box.
-#[inline(always)]
-pub(crate) fn secondary_ray<N: Number>(
-    scene: &Scene<'_>,
-    origin: [N; 3],
-    way: [N::Wide; 3],
-    end: Option<N::Wide>,
-) -> Option<Ray<N>> {
-    if UNBOUNDED && scene.has_unbounded {
-        return Ray::from_anywhere(scene.bounds(), origin, way, end);
-    }
-    let end = end.unwrap_or(N::FAR.widen());
-    Ray::from_inside(scene.bounds(), origin, way, end)
 }

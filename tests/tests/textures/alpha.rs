@@ -149,3 +149,15 @@ fn surfaces_that_alpha_hides_cast_no_shadow_rays() {
         assert_eq!(shadow_rays(&visible, format), all / 3 * 2);
     }
 }
+
+#[test]
+fn albedo_is_the_color_of_what_alpha_hides() {
+    for (alpha, of) in [(128, Alpha::Blend(1.0)), (127, Alpha::CutOut(0.5))] {
+        let blob = blob_of(&before_a_wall([255, 255, 0, alpha], of));
+        let scene = blob.scene().expect("valid");
+        for format in Format::ALL {
+            let found = albedo(&scene, format)[35 * 90 + 50];
+            assert_near(found, [1.0, 1.0, 0.0], 0.001, format.name());
+        }
+    }
+}

@@ -45,11 +45,8 @@ pub(super) fn element_of_name(field: &str, residue: &str, hetero: bool) -> Optio
 
 /// The element of an ion: its symbol has two letters, and its residue is named like it, as in `CL`, `Na+` and `CU1`.
 fn ion(name: &str, residue: &str) -> Option<Element> {
-    let symbol = |text: &str| text.trim_matches(|c: char| !c.is_ascii_alphabetic()).len();
-    let [name, residue] = [name, residue].map(|text| {
-        let letters = text.trim_matches(|c: char| !c.is_ascii_alphabetic());
-        (letters, symbol(text))
-    });
-    let is_ion = name.1 == 2 && residue.1 == 2 && name.0.eq_ignore_ascii_case(residue.0);
-    is_ion.then(|| Element::from_symbol(name.0)).flatten()
+    let letters = |text| str::trim_matches(text, |c: char| !c.is_ascii_alphabetic());
+    let symbol = letters(name);
+    let is_ion = symbol.len() == 2 && symbol.eq_ignore_ascii_case(letters(residue));
+    is_ion.then(|| Element::from_symbol(symbol)).flatten()
 }
