@@ -92,7 +92,7 @@ pub use observe::count::{Counters, NoCount, Observer};
 pub use observe::event::{Event, RayKind};
 #[cfg(all(feature = "avx2", target_arch = "x86_64"))]
 #[doc(hidden)]
-pub use query::{FourReadyRays, ReadyRay};
+pub use query::{FourReadyRays, HitNormals, ReadyRay};
 pub use query::{
     Hit, HitList, PrimitiveHit, Solid, all_hits, any_hit, closest_hit, closest_primitive,
     containment_ray, contains, count_hits,

@@ -2,6 +2,9 @@
 //!
 //! In `f32` every operation of that test is done in lanes, up to the square root.
 
+#[cfg(all(feature = "avx2", target_arch = "x86_64"))]
+pub(crate) mod normals;
+
 use crate::format::cluster::{LANES, Pack, Rows};
 use crate::geometry::{Crossing, sphere};
 use crate::number::Arithmetic;

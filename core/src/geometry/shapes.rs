@@ -437,10 +437,15 @@ impl<'a> Shapes<'a> {
 
     /// A sphere, of which some blobs have no record but in a cluster.
     fn sphere(&self, index: usize) -> Option<([i32; 3], i32)> {
-        let id = self.place(Kind::Sphere, index as u32);
-        match id.lane() {
-            Some(lane) => self.clusters().packs.sphere(id.number, lane),
-            None => self.spheres.get(index),
+        self.sphere_at(self.place(Kind::Sphere, index as u32))
+    }
+
+    /// Center and radius of the sphere at a place, in 1/256 unit.
+    #[inline(always)]
+    pub(crate) fn sphere_at(&self, place: PrimitiveId) -> Option<([i32; 3], i32)> {
+        match place.lane() {
+            Some(lane) => self.clusters().packs.sphere(place.number, lane),
+            None => self.spheres.get(place.number as usize),
         }
     }
 
@@ -475,8 +480,8 @@ impl<'a> Shapes<'a> {
                 (Some(lane), Kind::Triangle) => {
                     triangle::surface(self.clusters().strips.triangle(place.number, lane)?, point)
                 }
-                (Some(lane), _) => {
-                    let (center, radius) = self.clusters().packs.sphere(place.number, lane)?;
+                (Some(_), _) => {
+                    let (center, radius) = self.sphere_at(place)?;
                     sphere::surface(center, radius, point)
                 }
             };

@@ -8,6 +8,8 @@ use crate::accel::stack::StackView;
 use crate::accel::traverse::Traverse;
 use crate::accel::wide::cull::WideLanes;
 use crate::accel::{Accel, Wide};
+use crate::format::Kind;
+use crate::geometry::pack::normals::{LaneNormals, MetSpheres};
 use crate::geometry::strip::StripRay;
 use crate::observe::count::NoCount;
 use crate::ray::{FourGivenRays, FourRays, Ray};
@@ -28,6 +30,52 @@ pub struct ReadyRay {
 pub struct FourReadyRays {
     ready: u32,
     rays: [ReadyRay; 4],
+}
+
+/// Normals of up to eight hits, of which spheres are computed all at once.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct HitNormals {
+    spheres: MetSpheres,
+    normals: LaneNormals,
+}
+
+impl HitNormals {
+    /// Forgets all hits.
+    #[inline(always)]
+    pub fn clear(&mut self) {
+        self.spheres.clear();
+    }
+
+    /// Adds a hit, in a scene that [suits](FourReadyRays::suit).
+    #[inline(always)]
+    pub fn add(&mut self, lane: usize, scene: &Scene<'_>, ray: &ReadyRay, hit: &PrimitiveHit<f32>) {
+        let place = hit.best.place;
+        if place.kind == Kind::Sphere
+            && let Some(sphere) = scene.space.shapes.sphere_at(place)
+        {
+            let at = (&ray.ray, hit.best.t);
+            self.spheres.add(lane, sphere, at, hit.leaves());
+        }
+    }
+
+    /// Computes the normals of the hits that were added.
+    #[inline(always)]
+    pub fn compute(&mut self, avx2: Avx2) {
+        self.normals = self.spheres.normals(avx2);
+    }
+
+    /// Returns [`PrimitiveHit::normal`] of a hit.
+    #[inline(always)]
+    pub fn get(
+        &self,
+        lane: usize,
+        scene: &Scene<'_>,
+        ray: &ReadyRay,
+        hit: &PrimitiveHit<f32>,
+    ) -> Option<[f32; 3]> {
+        let normal = self.normals.get(lane);
+        normal.or_else(|| hit.normal(scene, &ray.ray))
+    }
 }
 
 impl FourReadyRays {
@@ -64,13 +112,16 @@ impl FourReadyRays {
         let [a, b, c, d] = &mut self.rays;
         let cull = [&mut a.cull, &mut b.cull, &mut c.cull, &mut d.cull];
         WideLanes::write_four(&rays, cull);
-        let strip_rays = [
-            &mut a.strip_ray,
-            &mut b.strip_ray,
-            &mut c.strip_ray,
-            &mut d.strip_ray,
-        ];
-        StripRay::write_four(&rays, &scene.space.shapes.clusters().strips, strip_rays);
+        let strips = &scene.space.shapes.clusters().strips;
+        if strips.len() > 0 {
+            let strip_rays = [
+                &mut a.strip_ray,
+                &mut b.strip_ray,
+                &mut c.strip_ray,
+                &mut d.strip_ray,
+            ];
+            StripRay::write_four(&rays, strips, strip_rays);
+        }
         for (lane, ready) in self.rays.iter_mut().enumerate() {
             rays.write(lane, &mut ready.ray);
         }

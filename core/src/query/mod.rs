@@ -33,7 +33,7 @@ pub use contains::{Solid, containment_ray, contains};
 pub use every_hit::{OrderedHit, every_hit};
 #[cfg(all(feature = "avx2", target_arch = "x86_64"))]
 #[doc(hidden)]
-pub use four::{FourReadyRays, ReadyRay};
+pub use four::{FourReadyRays, HitNormals, ReadyRay};
 pub use hit::{Hit, PrimitiveHit};
 
 use crate::accel::stack::StackView;

@@ -8,7 +8,8 @@ use super::{
 };
 use gridel_core::format::limits::MAX_STACK_DEPTH;
 use gridel_core::{
-    Format, FourGivenRays, FourReadyRays, NoCount, ReadyRay, Scene, Stack, Structure, Wide,
+    Format, FourGivenRays, FourReadyRays, HitNormals, NoCount, ReadyRay, Scene, Stack, Structure,
+    Wide,
 };
 use gridel_cpu::{Avx2, F64x4};
 use std::{array, slice};
@@ -165,15 +166,23 @@ fn closest_of_each(
     let mut rejections = Rejections::default();
     let mut batch: Batch = array::from_fn(|_| Four::empty());
     let mut met = [None; BATCH];
+    let mut normals = [HitNormals::default(); BATCH / 8];
     for first in (0..rays.len().min(hits.len())).step_by(BATCH) {
         load_ahead(rays, hits, first + BATCH..first + 2 * BATCH);
         let rays = &rays[first..rays.len().min(first + BATCH)];
         fill(avx2, &mut batch, scene, frame, rays);
+        normals.iter_mut().for_each(HitNormals::clear);
         for (place, met) in met[..rays.len()].iter_mut().enumerate() {
             *met = match batch[place / 4].get(place % 4) {
                 Some((ray, _)) => ray.closest_primitive(scene, stack.as_view()),
                 None => None,
             };
+            if let (Some(met), Some((ray, _))) = (met, batch[place / 4].get(place % 4)) {
+                normals[place / 8].add(place % 8, scene, ray, met);
+            }
+        }
+        for normals in &mut normals {
+            normals.compute(avx2);
         }
         for (place, (scene_ray, hit)) in rays.iter().zip(&mut hits[first..]).enumerate() {
             let Some((ray, scale)) = batch[place / 4].get(place % 4) else {
@@ -185,7 +194,7 @@ fn closest_of_each(
                 *hit = SceneHit::MISS;
                 continue;
             };
-            let Some(normal) = met.normal(scene, ray.ray()) else {
+            let Some(normal) = normals[place / 8].get(place % 8, scene, ray, met) else {
                 *hit = SceneHit::MISS;
                 continue;
             };

@@ -173,12 +173,20 @@ fn rays_that_are_set_up_together_have_the_hits_of_each_alone() {
     }
 }
 
-/// A mesh and a sphere, as `wide` stores them.
+/// A mesh and spheres of many sizes, as `wide` stores them.
 fn sample_of_wide() -> Compiled {
-    let file = "[[object]]\nkind = 'sphere'\ncenter = [0, 0, 0]\nradius = 0.5\nname = 'ball'\n\
-        [[object]]\nkind = 'mesh'\nname = 'mesh'\n\
+    let sphere = |number: i32| {
+        let [x, y, z] = [7, 11, 13].map(|step| f64::from(number * step % 17) / 10.0 - 0.8);
+        let radius = f64::exp2(-f64::from(number % 21)) / 2.0;
+        format!(
+            "[[object]]\nkind = 'sphere'\ncenter = [{x}, {y}, {z}]\nradius = {radius}\nname = 'ball {number}'\n"
+        )
+    };
+    let spheres: String = (0..60).map(sphere).collect();
+    let file = "[[object]]\nkind = 'mesh'\nname = 'mesh'\n\
         vertices = [[-1, -1, -1], [1, -1, -1], [0, 1, -0.5], [0, 0, 1]]\n\
         faces = [[0, 1, 2], [0, 3, 1], [1, 3, 2], [2, 3, 0]]";
+    let file = spheres + file;
     let imported = scene::read("wide.toml".as_ref(), file.into(), &Default::default()).unwrap();
     let options = Options {
         structures: vec![Structure::Wide],

@@ -2,7 +2,7 @@
 
 use crate::Avx2;
 use core::arch::x86_64::*;
-use core::ops::{Add, Mul, Sub};
+use core::ops::{Add, Div, Mul, Sub};
 
 /// Eight numbers.
 #[derive(Clone, Copy, Debug)]
@@ -103,6 +103,12 @@ impl F32x8 {
         Self(avx2!(_mm256_fmadd_ps(self.0, factor.0, summand.0)))
     }
 
+    /// Square roots, rounded to nearest.
+    #[inline(always)]
+    pub fn sqrt(self) -> Self {
+        Self(avx2!(_mm256_sqrt_ps(self.0)))
+    }
+
     /// Magnitudes.
     #[inline(always)]
     pub fn abs(self) -> Self {
@@ -161,5 +167,14 @@ impl Mul for F32x8 {
     #[inline(always)]
     fn mul(self, other: Self) -> Self {
         Self(avx2!(_mm256_mul_ps(self.0, other.0)))
+    }
+}
+
+impl Div for F32x8 {
+    type Output = Self;
+
+    #[inline(always)]
+    fn div(self, other: Self) -> Self {
+        Self(avx2!(_mm256_div_ps(self.0, other.0)))
     }
 }
