@@ -171,13 +171,20 @@ impl Emitted<'_> {
     }
 }
 
-/// A text with values in place of its markers.
+/// A text with values in place of its markers, but not of those within values: names can be anything.
 fn filled(text: &str, values: &[(&str, String)]) -> String {
-    let mut text = text.to_owned();
-    for (marker, value) in values {
-        text = text.replace(marker, value);
+    let mut filled = String::new();
+    let mut rest = text;
+    while let Some(start) = rest.find('@') {
+        let (before, from) = rest.split_at(start);
+        let markers = values.iter().filter(|(marker, _)| from.starts_with(marker));
+        let (marker, value) = markers
+            .max_by_key(|(marker, _)| marker.len())
+            .map_or(("@", "@"), |(marker, value)| (*marker, value));
+        filled.extend([before, value]);
+        rest = &from[marker.len()..];
     }
-    text
+    filled + rest
 }
 
 /// The constant that states a scene unit in coordinate steps; nothing where a step is longer than a unit, or the number
@@ -430,5 +437,21 @@ fn number(format: Format) -> &'static str {
         Format::Fixed => "gridel_core::Fixed",
         Format::F32 => "f32",
         Format::F64 => "f64",
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn markers_within_values_are_text() {
+        let values = [
+            ("@NAMES", String::from("a @LOAD b@")),
+            ("@LOAD", String::from("fn load")),
+            ("@LOADS", String::from("2")),
+        ];
+        let text = filled("@NAMES, @LOAD, @LOADS, x@LOADER, @", &values);
+        assert_eq!(text, "a @LOAD b@, fn load, 2, xfn loadER, @");
     }
 }

@@ -1,19 +1,22 @@
 //! Constants for what has a name in a scene.
 
 use crate::compile::Names;
+use crate::table::grouped;
 use gridel_core::Scene;
 use std::collections::BTreeMap;
-use std::fmt::Write;
 
 /// Constants of one kind at most: beyond that, names are data and not handles for a program.
 const MOST: usize = 1_000;
+
+/// Names and groups of names that comments list at most.
+const LISTED: usize = 8;
 
 /// A kind of named things: the module of its constants, what they number, and their type.
 type Kind<'n> = (&'static str, &'static str, &'static str, &'n [String]);
 
 /// Returns modules of constants, one for each kind that has names; nothing for a scene without names.
 ///
-/// Names that give the same identifier, or none, have no constant.
+/// Names that give the same identifier, or none, have no constant. A comment says so.
 pub(super) fn constants(scene: &Scene<'_>, names: &Names) -> String {
     // Instances that were copied into the scene have no number any more.
     let placed = &names.instances[..names.instances.len().min(scene.instances().len())];
@@ -48,34 +51,75 @@ pub(super) fn constants(scene: &Scene<'_>, names: &Names) -> String {
 
 fn module((module, what, number, names): Kind<'_>) -> Option<String> {
     let mut numbers = BTreeMap::<String, Vec<usize>>::new();
+    let mut nameless = Vec::new();
     for (place, name) in names.iter().enumerate() {
-        if let Some(identifier) = identifier(name) {
-            numbers.entry(identifier).or_default().push(place);
+        match identifier(name) {
+            Some(identifier) => numbers.entry(identifier).or_default().push(place),
+            None if name.is_empty() => {}
+            None => nameless.push(format!("{}: no letter or digit of ASCII", quoted(name))),
         }
     }
     // In the order of the numbers, as the scene file has them.
-    let unique = numbers.into_iter().filter(|(_, places)| places.len() == 1);
-    let mut unique: Vec<_> = unique
-        .map(|(identifier, places)| (places[0], identifier))
-        .collect();
-    unique.sort_unstable();
-    if unique.is_empty() || unique.len() > MOST {
+    let mut constants = Vec::new();
+    let mut without = Vec::new();
+    for (identifier, places) in numbers {
+        match places[..] {
+            [place] => constants.push((place, identifier)),
+            _ => {
+                let names = list(places.iter().map(|&place| quoted(&names[place])));
+                without.push((places[0], format!("{names}: all would be `{identifier}`")));
+            }
+        }
+    }
+    constants.sort_unstable();
+    without.sort_unstable();
+    let without = without.into_iter().map(|(_, why)| why).chain(nameless);
+    let mut comments: Vec<_> = without.collect();
+    if constants.len() > MOST {
+        comments = vec![format!(
+            "all {}: more than {} names",
+            grouped(constants.len()),
+            grouped(MOST)
+        )];
+        constants.clear();
+    }
+    if constants.is_empty() && comments.is_empty() {
         return None;
     }
     let mut text = format!(
         "/// Numbers of the scene's {what}, by name. They hold for this blob: write both again together.\n\
          #[allow(dead_code)]\npub mod {module} {{\n"
     );
-    for (place, identifier) in unique {
-        let name = names[place].escape_debug();
-        writeln!(
-            text,
-            "    /// `{name}`\n    pub const {identifier}: {number} = {place};"
-        )
-        .ok()?;
+    for (place, identifier) in constants {
+        let name = quoted(&names[place]);
+        text += &format!("    /// {name}\n    pub const {identifier}: {number} = {place};\n");
+    }
+    if !comments.is_empty() {
+        text += "    // Without a constant:\n";
+    }
+    for comment in shortened(&comments) {
+        text += &format!("    // - {comment}\n");
     }
     text += "}\n";
     Some(text)
+}
+
+/// A name as it can stand in a comment.
+fn quoted(name: &str) -> String {
+    format!("`{}`", name.escape_debug())
+}
+
+/// The first of many texts, and how many there are more.
+fn shortened(texts: &[String]) -> impl Iterator<Item = String> {
+    let more = texts.len().saturating_sub(LISTED);
+    let more = (more > 0).then(|| format!("{} more", grouped(more)));
+    texts.iter().take(LISTED).cloned().chain(more)
+}
+
+fn list(names: impl Iterator<Item = String>) -> String {
+    shortened(&names.collect::<Vec<_>>())
+        .collect::<Vec<_>>()
+        .join(", ")
 }
 
 /// Returns a name as the identifier of a constant: capital letters, digits and single underscores. `None` if the name
@@ -130,7 +174,7 @@ mod tests {
         let compiled = compile(&read.unwrap().scene, &Options::default()).unwrap();
         let scene = compiled.blob.scene().unwrap();
         let names = Names {
-            objects: list(&["ball", "", "a ball", "a-ball", "`\n"]),
+            objects: list(&["ball", "", "a ball", "a-ball", "球"]),
             lights: list(&["", "sun"]),
             instances: list(&["copied"]),
             ..Names::default()
@@ -138,13 +182,27 @@ mod tests {
         let text = constants(&scene, &names);
         assert!(text.contains("pub const BALL: u32 = 0;"), "{text}");
         assert!(text.contains("pub const SUN: usize = 1;"), "{text}");
-        for absent in ["A_BALL", "COPIED", "materials"] {
+        let why = "`a ball`, `a-ball`: all would be `A_BALL`\n";
+        assert!(
+            text.contains(&format!("    // Without a constant:\n    // - {why}")),
+            "{text}"
+        );
+        assert!(
+            text.contains("// - `球`: no letter or digit of ASCII"),
+            "{text}"
+        );
+        for absent in ["const A_BALL", "COPIED", "materials"] {
             assert!(!text.contains(absent), "{text}");
         }
         let many = Names {
             objects: (0..=MOST).map(|number| format!("atom {number}")).collect(),
             ..Names::default()
         };
-        assert_eq!(constants(&scene, &many), "");
+        let text = constants(&scene, &many);
+        assert!(
+            text.contains("// - all 1,001: more than 1,000 names"),
+            "{text}"
+        );
+        assert!(!text.contains("const "), "{text}");
     }
 }
