@@ -136,7 +136,7 @@ fn help(report: &MemoryReport, what: &str, scene: &Scene<'_>) -> String {
         "ram" | "target ram" => report.ram_advice(scene),
         _ => report.flash_advice(scene),
     };
-    if report.has_code_for_more {
+    if report.is_bounded {
         steps.insert(0, format!("build the program and measure it: {NOT_BUILT}"));
     }
     if what.ends_with("flash") {

@@ -256,7 +256,7 @@ fn memory_reports_of_fixtures_are_measured() {
                 "inspect", &path, "--target", board, "--flash", "1G", "--ram", "1G",
             ]);
             let report = &report["memory_report"];
-            assert_eq!(report["has_code_for_more"], false, "{name} {board}");
+            assert_eq!(report["is_bounded"], false, "{name} {board}");
             assert_eq!(report["measured"], true, "{name} {board}");
         }
     }
@@ -273,7 +273,7 @@ fn upper_bounds_decide_nothing() {
     let target = ["--target", "stm32vldiscovery", "--ram", "1M", "--flash"];
     let report = folder.json(&[&["inspect", "rare.toml"], &target[..], &["1M"]].concat());
     let flash = sum(&report, "flash", "");
-    assert_eq!(report["memory_report"]["has_code_for_more"], true);
+    assert_eq!(report["memory_report"]["is_bounded"], true);
     let build = |flash: u64| {
         let flash = flash.to_string();
         folder.run(

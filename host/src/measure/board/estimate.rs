@@ -2,7 +2,7 @@
 
 use super::Board;
 use super::account::Account;
-use super::programs::{Footprint, Known, Profile, Programs, everything};
+use super::programs::{Figure, Known, Profile, Programs, everything};
 use gridel_core::{Format, Structure};
 
 /// The parts of a program that was built for every board, besides that of all parts.
@@ -36,11 +36,9 @@ pub struct ProgramEstimate<'p> {
 impl ProgramEstimate<'_> {
     pub fn code(&self, profile: Profile) -> Option<Known> {
         // A structure adds the same to one program as to others.
-        let code = self.figure(
-            profile,
-            |it| it.code,
-            |bytes, [other, dual_split]| (bytes + other).saturating_sub(dual_split),
-        );
+        let code = self.figure(profile, Figure::Code, |bytes, [other, dual_split]| {
+            (bytes + other).saturating_sub(dual_split)
+        });
         code.map(|code| Known {
             bytes: code.bytes + code.bytes.div_ceil(OWN_SIZES),
             ..code
@@ -48,24 +46,22 @@ impl ProgramEstimate<'_> {
     }
 
     pub fn call_stack(&self, profile: Profile) -> Option<Known> {
-        let call_stack = self.figure(
-            profile,
-            |it| it.call_stack,
-            |bytes, [other, dual_split]| (bytes * other).div_ceil(dual_split.max(1)),
-        );
+        let call_stack = self.figure(profile, Figure::CallStack, |bytes, [other, dual_split]| {
+            (bytes * other).div_ceil(dual_split.max(1))
+        });
         call_stack.map(|known| Known {
             bytes: known.bytes + FRAME_ALIGNMENT,
             ..known
         })
     }
 
-    /// Returns true if the figures are those of a program with code for more parts.
-    pub fn has_code_for_more(&self) -> bool {
+    /// Returns true if the figures are upper bounds from other programs.
+    pub fn is_bounded(&self) -> bool {
         let is_measured = |(board, format): (&Board, Format), structure| {
             let place = (board, format, structure);
             let known = self
                 .programs
-                .figure(place, self.parts, Profile::Fast, |it| it.code);
+                .figure(place, self.parts, Profile::Fast, Figure::Code);
             known.is_some_and(|known| known.measured)
         };
         !is_measured(self.here, self.structure) && !is_measured(self.similar, Structure::DualSplit)
@@ -76,7 +72,7 @@ impl ProgramEstimate<'_> {
     fn figure(
         &self,
         profile: Profile,
-        figure: fn(&Footprint) -> u64,
+        figure: Figure,
         through: fn(u64, [u64; 2]) -> u64,
     ) -> Option<Known> {
         let Self {

@@ -3,7 +3,7 @@
 //! Sizes of the blob and of working memory are exact. Code and call stack are those of programs that the project's
 //! tests built for boards ([`Programs`]). They are built in two profiles: a fast one, and one with the feature `small`,
 //! both linked with `lto = "fat"` and `codegen-units = 1`. Code is that of the fast program; the call stack is the
-//! larger of both. A program that was not built is bounded by the smallest with code for more, and the report says so.
+//! larger of both. A program that was not built is bounded by others, and the report says so.
 //!
 //! On one board of each kind of core many programs were built. For other boards, and for structures other
 //! than dual-split nodes, the figures are scaled by programs that were built for both.
@@ -24,7 +24,8 @@ use gridel_core::{Prevalidated, Rgb565, Scene, Structure, Tracks};
 use serde::Serialize;
 
 /// Why figures of code and call stack are upper bounds.
-pub const NOT_BUILT: &str = "the figures are those of a program with code for more than the scene needs, as its own was not built";
+pub const NOT_BUILT: &str =
+    "the figures are upper bounds from other programs, as its own was not built";
 
 /// Memory of a board that a scene is to fit into.
 #[derive(Clone, Copy, Debug)]
@@ -52,8 +53,8 @@ pub struct MemoryReport {
     pub plays_tracks: bool,
     /// True if the scene's own program was built and measured, in both profiles.
     pub measured: bool,
-    /// True if the figures of code and call stack are those of a program with code for more.
-    pub has_code_for_more: bool,
+    /// True if the figures of code and call stack are upper bounds from other programs.
+    pub is_bounded: bool,
     pub flash: Account,
     pub ram: Account,
     /// The scene's program, built for speed.
@@ -198,7 +199,7 @@ impl MemoryReport {
             kind: (!board.is_emulated()).then_some(board.measured),
             plays_tracks: plays_tracks(blob),
             measured: all_measured && measured(program.code(Profile::Fast)),
-            has_code_for_more: program.has_code_for_more(),
+            is_bounded: program.is_bounded(),
             flash,
             ram,
             fast,
@@ -228,8 +229,7 @@ impl MemoryReport {
                 format!("\nThe figures are scaled from those of a {there}.")
             }
             (_, false) => String::from(
-                "\nThis program was not built: the figures are those of a program with code for more, an \
-                 upper\nbound.",
+                "\nThis program was not built: the figures are upper bounds from other programs.",
             ),
         };
         format!(
@@ -302,7 +302,7 @@ impl MemoryReport {
         let is_bound = |what: &str| what.starts_with(CODE) || what.starts_with(CALL_STACK);
         let bounds = account.items.iter().filter(|item| is_bound(&item.what));
         let bounds: u64 = bounds.filter_map(|item| item.bytes).sum();
-        self.has_code_for_more && account.at_least() - bounds <= account.available
+        self.is_bounded && account.at_least() - bounds <= account.available
     }
 
     /// Returns the parts that are not known, and why; `None` if all are.

@@ -12,10 +12,12 @@
 //! | `working.rs` | RAM of parts, of meshes that deform, and of instances that move |
 //! | `text.rs` | the memory report as text |
 //! | `advice.rs` | what makes it smaller |
+//! | `bounds.rs` | upper bounds of programs that were not built |
 //! | `instructions.rs` | instructions per ray of recorded pictures |
 
 mod account;
 mod advice;
+mod bounds;
 mod estimate;
 mod instructions;
 mod memory;

@@ -2,10 +2,11 @@
 //! shapes, wider forms of storage and effects that a program has code for.
 //!
 //! The board tests write `programs.json`. Code is not a sum: the size of a part depends on the compiler's work on the
-//! rest, by some percent of the program. So a program that was built is reported exactly. One that was not is bounded
-//! by the smallest that holds all of it and more.
+//! rest, by some percent of the program. So a program that was built is reported exactly. One that was not has
+//! [`bounds`].
 
 use super::Board;
+use super::bounds::{self, Parts};
 use crate::measure::median;
 use gridel_core::{Effects, Format, Kind, Structure};
 use serde::{Deserialize, Serialize};
@@ -28,6 +29,22 @@ pub struct Footprint {
     /// RAM for the view of a part, where the program places parts.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub part_view: Option<u64>,
+}
+
+/// A kind of figure.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Figure {
+    Code,
+    CallStack,
+}
+
+impl Footprint {
+    fn figure(&self, figure: Figure) -> u64 {
+        match figure {
+            Figure::Code => self.code,
+            Figure::CallStack => self.call_stack,
+        }
+    }
 }
 
 /// The build profile of a program.
@@ -116,41 +133,34 @@ impl Programs {
         self.0.get(&key_text(program_key))
     }
 
-    /// Returns a figure of a program with code for some parts: measured, or bounded by the programs with code
-    /// for more. `None` if there is no such program.
+    /// Returns a figure of a program with code for some parts: measured, or an upper bound from other programs. `None` if
+    /// none has code for all parts.
     pub fn figure(
         &self,
         program_key: ProgramKey<'_>,
         parts: &[&str],
         profile: Profile,
-        figure: fn(&Footprint) -> u64,
+        figure: Figure,
     ) -> Option<Known> {
         let built = self.at(program_key)?;
-        let of = |program: &Program| program.footprint(profile).as_ref().map(figure);
+        let of = |program: &Program| Some(program.footprint(profile)?.figure(figure));
         if let Some(bytes) = built.get(&key(parts)).and_then(of) {
             return Some(Known {
                 bytes,
                 measured: true,
             });
         }
-        let known: Vec<(Vec<&str>, u64)> = built
-            .iter()
-            .filter_map(|(key, program)| Some((key.split(' ').collect(), of(program)?)))
-            .collect();
-        let holds = |more: &[&str], less: &[&str]| less.iter().all(|part| more.contains(part));
-        let more = known.iter().filter(|(all, _)| holds(all, parts));
-        let least = more.map(|&(_, bytes)| bytes).min()?;
-        // The compiler sometimes makes less code of a program with more parts. So the bound is raised by the largest
-        // such excess among the programs that were built.
-        let pairs = known
-            .iter()
-            .flat_map(|less| known.iter().map(move |more| (less, more)));
-        let excess = pairs
-            .filter(|((less, small), (more, large))| small > large && holds(more, less))
-            .map(|((_, small), (_, large))| *small as f64 / *large as f64)
-            .fold(1.0, f64::max);
+        let known = built.iter();
+        let known = known.filter_map(|(key, program)| Some((bits(key.split(' ')), of(program)?)));
+        let known: Vec<_> = known.collect();
+        let parts = bits(parts.iter().copied());
+        let mut bound = bounds::from_more(&known, parts)?;
+        // The call stack is that of the deepest path, to which most parts add nothing.
+        if figure == Figure::Code {
+            bound = bounds::from_less(&known, parts).map_or(bound, |sum| bound.min(sum));
+        }
         Some(Known {
-            bytes: (least as f64 * excess).ceil() as u64,
+            bytes: bound.ceil() as u64,
             measured: false,
         })
     }
@@ -207,6 +217,14 @@ pub fn everything() -> impl Iterator<Item = &'static str> {
     parts().filter(|&part| part != INSTANCES)
 }
 
+/// Returns parts as bits.
+fn bits<'p>(required: impl Iterator<Item = &'p str>) -> Parts {
+    let place = |part| parts().position(|it| it == part);
+    required
+        .filter_map(place)
+        .fold(0, |bits, place| bits | 1 << place)
+}
+
 /// Returns the name of a program: its parts in their order.
 fn key(required: &[&str]) -> String {
     let required = parts().filter(|part| required.contains(part));
@@ -238,7 +256,7 @@ mod tests {
     }
 
     fn code(programs: &Programs, parts: &[&str]) -> Option<Known> {
-        programs.figure(PROGRAM, parts, Profile::Fast, |it| it.code)
+        programs.figure(PROGRAM, parts, Profile::Fast, Figure::Code)
     }
 
     #[test]
@@ -272,18 +290,54 @@ mod tests {
     }
 
     #[test]
-    fn program_that_was_not_built_is_bounded_by_the_smallest_with_more() {
+    fn program_that_was_not_built_takes_at_most_the_smaller_bound() {
         let mut all = vec![
             (&["sphere"][..], 1000),
             (&["sphere", "shadow", "mirror"], 1500),
-            (&["sphere", "shadow", "mirror", "checker"], 1600),
         ];
         let known = code(&programs(&all), &["sphere", "shadow"]);
         assert_eq!(known.map(|it| (it.bytes, it.measured)), Some((1500, false)));
-        // Where more code made a program smaller, by 2 %, it may be so here as well.
-        all.push((&["sphere", "mirror", "checker"], 1632));
-        let known = code(&programs(&all), &["sphere", "shadow"]);
-        assert_eq!(known.map(|it| it.bytes), Some(1530));
+        all.extend([(&["disc"][..], 900), (&["disc", "shadow"], 1100)]);
+        let programs = programs(&all);
+        let known = code(&programs, &["sphere", "shadow"]);
+        assert_eq!(known.map(|it| (it.bytes, it.measured)), Some((1200, false)));
+    }
+
+    #[test]
+    fn bounds_of_recorded_programs_by_the_others_are_near() {
+        let recorded = Programs::recorded();
+        let mut excess = Vec::new();
+        for (place, built) in &recorded.0 {
+            for profile in [Profile::Fast, Profile::Small] {
+                for (name, program) in built {
+                    let Some(footprint) = program.footprint(profile) else {
+                        continue;
+                    };
+                    let mut others = recorded.clone();
+                    others.0.get_mut(place).unwrap().remove(name);
+                    let others = others.0[place].iter();
+                    let known = others.filter_map(|(key, program)| {
+                        let code = program.footprint(profile)?.code;
+                        Some((bits(key.split(' ')), code))
+                    });
+                    let known: Vec<_> = known.collect();
+                    let parts = bits(name.split(' '));
+                    if let Some(sum) = bounds::from_less(&known, parts) {
+                        excess.push(sum / footprint.code as f64);
+                    }
+                }
+            }
+        }
+        excess.sort_unstable_by(f64::total_cmp);
+        let below = excess.iter().filter(|&&it| it < 1.0).count();
+        assert!(
+            excess.len() > 250 && below * 100 < 3 * excess.len(),
+            "{below}"
+        );
+        assert!(
+            0.92 < excess[0] && excess[excess.len() - 1] < 1.36,
+            "{excess:?}"
+        );
     }
 
     #[test]
@@ -302,10 +356,10 @@ mod tests {
     fn program_beyond_all_that_were_built_is_unknown() {
         let programs = programs(&[(&["sphere"], 1000)]);
         assert_eq!(code(&programs, &["sphere", "shadow"]), None);
-        let small = programs.figure(PROGRAM, &["sphere"], Profile::Small, |it| it.code);
+        let small = programs.figure(PROGRAM, &["sphere"], Profile::Small, Figure::Code);
         assert_eq!(small, None);
         let elsewhere = (&BOARDS[1], Format::Fixed, Structure::DualSplit);
-        let figure = programs.figure(elsewhere, &["sphere"], Profile::Fast, |it| it.code);
+        let figure = programs.figure(elsewhere, &["sphere"], Profile::Fast, Figure::Code);
         assert_eq!(figure, None);
     }
 
