@@ -231,7 +231,7 @@ typedef struct gridel_hit {
 typedef struct gridel_ray_f32 {
   // The origin.
   float origin[3];
-  // Its direction, of any length but 0.
+  // Its direction, of any length but 0 for which the t of a hit is a number of this type.
   float direction[3];
   // The least t of a hit, in multiples of the direction.
   float t_min;
@@ -261,7 +261,7 @@ typedef struct gridel_hit_f32 {
 typedef struct gridel_ray_f64 {
   // The origin.
   double origin[3];
-  // Its direction, of any length but 0.
+  // Its direction, of any length but 0 for which the t of a hit is a number of this type.
   double direction[3];
   // The least t of a hit, in multiples of the direction.
   double t_min;

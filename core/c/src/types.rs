@@ -92,7 +92,7 @@ pub struct gridel_hit {
 pub struct gridel_ray_f32 {
     /// The origin.
     pub origin: [f32; 3],
-    /// Its direction, of any length but 0.
+    /// Its direction, of any length but 0 for which the t of a hit is a number of this type.
     pub direction: [f32; 3],
     /// The least t of a hit, in multiples of the direction.
     pub t_min: f32,
@@ -126,7 +126,7 @@ pub struct gridel_hit_f32 {
 pub struct gridel_ray_f64 {
     /// The origin.
     pub origin: [f64; 3],
-    /// Its direction, of any length but 0.
+    /// Its direction, of any length but 0 for which the t of a hit is a number of this type.
     pub direction: [f64; 3],
     /// The least t of a hit, in multiples of the direction.
     pub t_min: f64,

@@ -69,7 +69,8 @@ pub fn containment_ray<N: Number>(
 
 /// Returns true if an object contains a point, given in units. The test counts how often a ray from the point crosses
 /// the object's surface, by the half-open rule of [`all_hits`]: inside, the count is odd. That is right for every
-/// closed mesh and every solid, and for a closed mesh whose surface is inside out as well.
+/// closed mesh and every solid, and for a closed mesh whose surface is inside out as well. Where closed shells of one
+/// mesh overlap, an even number of them counts as outside, as a cavity does.
 ///
 /// A point very near the surface can be on either side; the answer is the same each time, in every structure. Very near
 /// means below the rounding of the format: 2^-13 unit in `fixed`, and the [error bound](crate::Hit::error) of a hit

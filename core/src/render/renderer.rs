@@ -310,7 +310,8 @@ impl<'s, 'a, N: Number, A: Accel, const EFFECTS: u32> Renderer<'s, 'a, N, A, EFF
     }
 
     /// Returns the ray from the eye through the middle of a pixel that can lie anywhere, also left of the picture or above
-    /// it: each number is -65,535 to 65,535. Inside of the picture it is the [primary ray](Self::primary_ray).
+    /// it: each number is -65,535 to 65,535. Inside of the picture it is the [primary ray](Self::primary_ray). In `fixed`,
+    /// beside a picture more than 1,000 times as high as wide, it can be off by up to 7 pixels.
     ///
     /// ```
     /// # static BLOB: &[u8] =

@@ -14,7 +14,7 @@ use crate::shade::sampler::Sampler;
 
 impl<N: Number, A: Accel, const EFFECTS: u32> Renderer<'_, '_, N, A, EFFECTS> {
     /// Returns one pixel, linear, 65535 being white. The picture continues outside of its edges: in `f32` and `f64` to
-    /// any pixel, in `fixed` to one and a half times its width and height. For pixels beyond, give
+    /// any pixel, in `fixed` to those below one and a half times its width and height. For pixels from there on, give
     /// [`linear_along`](Self::linear_along) a ray of [`ray_through`](Self::ray_through). This holds for rows, rectangles
     /// and cursors, too.
     ///

@@ -15,15 +15,18 @@ use std::time::{Duration, Instant};
 /// The outcome of a program's run.
 pub(super) enum BoardRun {
     /// It printed these figures, and wrote a picture if it should.
-    Printed(BTreeMap<String, u64>, Result<Vec<u8>, String>),
+    Printed(Figures, Result<Vec<u8>, String>),
     /// The emulator or a file is missing.
     NotRun(String),
     /// It could not be built, or it failed.
     Failed(String),
 }
 
+/// What a program printed by name: a figure, or the text in place of one.
+pub(super) type Figures = BTreeMap<String, Result<u64, String>>;
+
 /// The figures and the picture of a program that ran.
-type Output = (BTreeMap<String, u64>, Result<Vec<u8>, String>);
+type Output = (Figures, Result<Vec<u8>, String>);
 
 /// The reason why a program did not run to its end.
 enum Obstacle {
@@ -50,14 +53,13 @@ pub(super) fn run(manifest: &Manifest, board: &Board, blob: &Blob) -> BoardRun {
 }
 
 fn try_run(manifest: &Manifest, board: &Board, blob: &Blob) -> Result<Output, Obstacle> {
-    let version = Command::new(&board.emulator).arg("--version").output();
-    if version.is_err() {
+    let folder = TemporaryFolder::new().map_err(failed("a temporary folder cannot be made"))?;
+    if !is_installed(board, folder.path()) {
         return Err(Obstacle::Missing(format!(
             "{} is not installed",
             board.emulator
         )));
     }
-    let folder = TemporaryFolder::new().map_err(failed("a temporary folder cannot be made"))?;
     let program = match &board.program {
         Program::Elf(file) => built_before(manifest, file)?,
         Program::Firmware(firmware) => {
@@ -75,16 +77,21 @@ fn try_run(manifest: &Manifest, board: &Board, blob: &Blob) -> Result<Output, Ob
     let printed = emulate(board, &program, folder.path())?;
     let mut figures = BTreeMap::new();
     for (name, value) in printed.lines().filter_map(|line| line.split_once(' ')) {
-        let Ok(value) = value.trim().parse::<u64>() else {
+        if !board.budget.contains_key(name) {
             continue;
-        };
-        let other = figures.insert(String::from(name), value);
-        if let Some(other) =
-            other.filter(|&other| other != value && board.budget.contains_key(name))
-        {
-            return Err(Obstacle::Failure(format!(
-                "the program prints the figure {name:?} twice: {other} and {value}"
-            )));
+        }
+        let value = value.trim();
+        let value = value.parse::<u64>().map_err(|_| String::from(value));
+        match (figures.get(name), &value) {
+            (Some(Ok(other)), Ok(value)) if other != value => {
+                return Err(Obstacle::Failure(format!(
+                    "the program prints the figure {name:?} twice: {other} and {value}"
+                )));
+            }
+            (Some(Ok(_)), _) => {}
+            _ => {
+                figures.insert(String::from(name), value);
+            }
         }
     }
     let picture = match &board.picture {
@@ -93,6 +100,16 @@ fn try_run(manifest: &Manifest, board: &Board, blob: &Blob) -> Result<Output, Ob
         None => Ok(Vec::new()),
     };
     Ok((figures, picture))
+}
+
+/// Returns true if the emulator can be started. It is ended at once, as only its own run has limits.
+fn is_installed(board: &Board, folder: &Path) -> bool {
+    let mut command = Command::new(&board.emulator);
+    command.arg("--version").current_dir(folder);
+    for set in [Command::stdout, Command::stderr, Command::stdin] {
+        set(&mut command, Stdio::null());
+    }
+    Running::start(&mut command).is_ok()
 }
 
 /// A program that was built before, if it is one.

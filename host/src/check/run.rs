@@ -211,9 +211,9 @@ impl Run<'_> {
             let most = Some(Figure::Count(most));
             let found = printed
                 .as_ref()
-                .map(|(figures, _)| figures.get(name).copied());
+                .map(|(figures, _)| figures.get(name).cloned());
             match (found, &broken) {
-                (Some(Some(found)), _) => {
+                (Some(Some(Ok(found))), _) => {
                     let board = [Key::Name("board".into()), Key::Item(number)];
                     let entry = ["budget", name].map(|name| Key::Name(name.into()));
                     let keys = board.into_iter().chain(entry).collect();
@@ -225,8 +225,13 @@ impl Run<'_> {
                     };
                     self.held_to(on(), compared, keys, None);
                 }
-                (Some(None), _) => {
-                    let why = format!("the program does not print the figure {name:?}");
+                (Some(other), _) => {
+                    let why = match other {
+                        Some(Err(text)) => format!(
+                            "the program prints {text:?} as the figure {name:?}: no whole number below 2^64"
+                        ),
+                        _ => format!("the program does not print the figure {name:?}"),
+                    };
                     self.push(on(), name, None, most, Outcome::Failed(why));
                 }
                 (None, Some(outcome)) => {

@@ -235,6 +235,8 @@ fn cameras_that_cannot_be_and_flags_for_blobs_are_rejected() {
         let inspect = ["inspect", "quick.gridel", option, "1,2,3"];
         folder.fails(2, &inspect, &[&format!("{option} is for scene files")]);
     }
+    let inspect = ["inspect", "quick.gridel", "--target", "1,2,3"];
+    folder.fails(2, &inspect, &["--target X,Y,Z is for scene files"]);
     let build = [
         "build", "a.obj", "-o", "a.gridel", "--target", "1,2,3", "--target",
     ];

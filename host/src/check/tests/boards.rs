@@ -6,8 +6,7 @@ use std::os::unix::fs::PermissionsExt;
 /// A program in place of the emulator.
 fn emulator(folder: &Folder, script: &str) -> String {
     let path = folder.path("emulator");
-    let version = "if [ \"$1\" = --version ]; then exit 0; fi";
-    fs::write(&path, format!("#!/bin/sh\n{version}\n{script}\n")).unwrap();
+    fs::write(&path, format!("#!/bin/sh\n{script}\n")).unwrap();
     fs::set_permissions(&path, PermissionsExt::from_mode(0o755)).unwrap();
     path.display().to_string()
 }
@@ -54,6 +53,36 @@ fn figures_are_held_and_recorded() {
     keep(&recorded);
     let recorded = "budget = { loops = 12, bytes = 500, lost = 1 } # all";
     assert!(folder.text().contains(recorded), "{}", folder.text());
+}
+
+#[test]
+fn figures_that_are_no_whole_numbers_are_shown() {
+    let folder = Folder::new();
+    fs::write(folder.path("program.elf"), "\x7fELF").unwrap();
+    let toy = emulator(
+        &folder,
+        "echo a 18446744073709551616; echo b -1; echo loops are counted; echo loops 12",
+    );
+    let text = board(&toy, "budget = { a = 1, b = 1, loops = 12 }");
+    let (_, report) = folder.run(&text);
+    let whys: Vec<_> = report.findings.iter().map(why).collect();
+    for (why, text) in whys.iter().zip([
+        "\"18446744073709551616\" as the figure \"a\"",
+        "\"-1\" as the figure \"b\"",
+    ]) {
+        assert!(why.contains(text), "{whys:?}");
+    }
+    assert_eq!((report.passed(), report.failed()), (1, 2), "{whys:?}");
+}
+
+#[test]
+fn emulators_that_never_end_are_ended() {
+    let folder = Folder::new();
+    fs::write(folder.path("program.elf"), "\x7fELF").unwrap();
+    let toy = emulator(&folder, "while true; do sleep 0.1; done");
+    let (_, report) = folder.run(&board(&toy, "budget = { loops = 1 }\nseconds = 1"));
+    let why = why(&report.findings[0]);
+    assert!(why.contains("has not ended after 1 s"), "{why}");
 }
 
 #[test]

@@ -14,8 +14,8 @@ use gridel_host::scene::{Camera, Color, Scene, TrackTarget};
 #[derive(Args, Clone, Debug, Default)]
 #[command(next_help_heading = "Options for camera and lights")]
 pub struct ViewOptions {
-    /// Place the camera here, in scene units. A blob keeps no target and no tilted up: give `--target` and `--up`, too
-    /// [default: the file's, or where everything is seen]
+    /// Place the camera here, in scene units. To render a blob, give `--target` and `--up`, too: it keeps no target and
+    /// no tilted up [default: the file's, or where everything is seen]
     #[arg(long, value_name = "X,Y,Z", value_parser = vector, allow_hyphen_values = true,
         display_order = 100)]
     eye: Option<DVec3>,
@@ -29,8 +29,8 @@ pub struct ViewOptions {
     pub size: Option<[u16; 2]>,
 
     /// Point this direction up. With a track `camera.orbit` the orbit of a scene file turns about it, that of a blob
-    /// does not [default: the file's, or y; z for STL and NFF; for a blob the picture's, or an axis that it is upright
-    /// on]
+    /// does not [default: the file's, or y; z for STL and NFF; to render a blob the picture's, or an axis that it is
+    /// upright on]
     #[arg(long, value_name = "X,Y,Z", value_parser = vector, allow_hyphen_values = true,
         display_order = 102)]
     up: Option<DVec3>,
@@ -52,7 +52,7 @@ impl ViewOptions {
     pub fn given(&self) -> [(bool, &'static str); 5] {
         [
             (self.eye.is_some(), "--eye"),
-            (self.target.is_some(), "--target"),
+            (self.target.is_some(), "--target X,Y,Z"),
             (self.up.is_some(), "--up"),
             (self.fov.is_some(), "--fov"),
             (self.background.is_some(), "--background"),

@@ -43,8 +43,8 @@ pub struct OutputOptions {
     /// an .exr, else to NumPy files named after the picture, such as out.depth.npy
     ///
     /// depth is the distance from the eye; inf where nothing is hit. normal has length 1 and is that of
-    /// shading, on the side of the eye; 0 where nothing is hit. albedo is the color in white light from
-    /// everywhere, without the light that the surface emits. object, primitive and instance are numbers
+    /// shading, on the side of the eye; 0 where nothing is hit. albedo is the diffuse color; 0 on mirrors and
+    /// glass. object, primitive and instance are numbers
     /// as `gridel trace` prints them; 4294967295 for none. uv are texture coordinates; inf for none
     #[arg(long, value_name = "NAMES", value_delimiter = ',', value_parser = arguments::aov(),
         conflicts_with = "frames")]
