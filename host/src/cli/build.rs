@@ -99,7 +99,8 @@ pub struct Arguments {
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     check_outputs(arguments)?;
     let scene_options = arguments.target.with_target(&arguments.scene_options)?;
-    let source = Source::compile(&arguments.scene, &scene_options, compiling(arguments)?)?;
+    let mut source = Source::compile(&arguments.scene, &scene_options, compiling(arguments)?)?;
+    source.warn_of_dim_reflections(None);
     source.reject_lost([&arguments.output])?;
     if let Some(folder) = &arguments.emit_rust {
         source.reject_lost([emit::BLOB, emit::MODULE].map(|name| folder.join(name)))?;

@@ -165,7 +165,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
             "add `--time SECONDS`, such as `--time 0`",
         ));
     }
-    let source = Source::to_trace(
+    let mut source = Source::to_trace(
         &arguments.input,
         &arguments
             .target_point
@@ -177,6 +177,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         Structure::Wide,
     )?;
     source.reject_lost(target.files(&arguments.files.output))?;
+    source.warn_of_dim_reflections(Some(arguments.with.format));
     let scene = source.scene()?;
     let unresolved = source.warn_of_unresolved(&scene, Some(arguments.with.format));
     let job = job(arguments, (&source, &scene), target.most_pixels())?;

@@ -375,6 +375,14 @@ pub fn warn_of_file(path: &Path, sentences: Vec<String>, warnings: &mut Vec<Stri
 const NAMED: usize = 5;
 
 impl Source {
+    /// Warns of rough materials that show too little of a light in `fixed`, unless another format is chosen.
+    pub fn warn_of_dim_reflections(&mut self, format: Option<Format>) {
+        let report = self.report.as_ref();
+        let report = report.filter(|_| format.is_none_or(|it| it == Format::Fixed));
+        let sentences = report.map_or(Vec::new(), |report| report.dim_in_fixed.clone());
+        warn_of_file(self.input.path(), sentences, &mut self.warnings);
+    }
+
     /// Warns of objects that a format does not resolve, or without one any of them, and returns them.
     pub fn warn_of_unresolved(&self, scene: &Scene<'_>, format: Option<Format>) -> Vec<Unresolved> {
         let mut found = unresolved(scene);

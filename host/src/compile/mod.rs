@@ -24,6 +24,7 @@ mod motion;
 mod names;
 mod options;
 mod references;
+mod reflections;
 mod report;
 mod requirements;
 mod section;
@@ -142,6 +143,7 @@ pub fn compile_with_progress(
     check(scene, options)?;
     let scene_warnings = warnings::scene_warnings(scene);
     let scene = &*scene.with_emitters();
+    let dim_in_fixed = reflections::dim_reflections(scene);
     let has_targets = !scene.morph_targets.is_empty();
     let still = (has_targets && !morph::can_move(&options.structures)).then(|| at_rest(scene));
     let scene = still.as_deref().unwrap_or(scene);
@@ -152,6 +154,7 @@ pub fn compile_with_progress(
         .for_each(|part| compiled.report.add_part(part));
     compiled.report.keeps_rest = still.is_some();
     compiled.report.scene_warnings = scene_warnings;
+    compiled.report.dim_in_fixed = dim_in_fixed;
     Ok(compiled)
 }
 
