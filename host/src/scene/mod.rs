@@ -28,6 +28,7 @@ mod options;
 mod placement;
 mod places;
 mod polygon;
+mod raised;
 mod scale_range;
 mod size;
 mod source_span;
@@ -61,6 +62,7 @@ pub use options::{
 };
 pub use placement::Placement;
 pub use places::Places;
+pub(crate) use raised::Sends;
 pub(crate) use scale_range::ScaleRange;
 pub use size::MOST_INPUT;
 pub use source_span::SourceSpan;

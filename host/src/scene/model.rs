@@ -365,7 +365,7 @@ impl Material {
         self.texture.as_ref().or(normal_map)
     }
 
-    /// Returns whether rays are mirrored or refracted by facets.
+    /// Returns whether rays are mirrored or refracted by facets, as the material is at rest.
     pub fn is_rough(&self) -> bool {
         let sends = self.mirror != [0.0; 3] || self.transmit != [0.0; 3];
         self.roughness > 0.0 && sends
