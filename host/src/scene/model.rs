@@ -420,7 +420,7 @@ impl Object {
             ) => {
                 let mesh = (&vertices[..], &triangles[..]);
                 let displacements = &self.attributes.displacements;
-                self.normals = Normals::computed_for(mesh, degrees, !displacements.is_empty());
+                self.normals = Normals::computed_for(mesh, degrees, displacements);
                 self.normals.turn_with(mesh, displacements);
             }
             _ => self.normals = Normals::default(),
