@@ -37,6 +37,7 @@ pub(crate) mod tests;
 mod text;
 mod texture;
 mod track;
+mod track_name;
 mod without;
 mod words;
 

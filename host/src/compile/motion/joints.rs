@@ -59,7 +59,7 @@ pub fn check(scene: &Scene) -> Result<(), CompileError> {
         None => check_scales(scene),
         Some(track) => Err(CompileError::Track {
             place: track.place.clone(),
-            target: track.target.name(),
+            target: scene.target_of(track),
             cause: format!("there is no joint {}", track.index),
             remedy: String::from("use the number of a joint of the scene"),
         }),

@@ -128,8 +128,13 @@ impl ShadingData {
         let placed = place(&camera, &coordinates.header)?;
         let mut tracks = joints::kept_tracks(scene);
         exposure.change_tracks(&mut tracks)?;
-        let mut motion =
-            tracks::sections(tracks, &camera, &materials.numbers, &coordinates.header)?;
+        let mut motion = tracks::sections(
+            scene,
+            tracks,
+            &camera,
+            &materials.numbers,
+            &coordinates.header,
+        )?;
         motion.extend(joints::sections(scene, &coordinates.header)?);
         Ok(Self {
             view: placed.replace_in(&view, &coordinates.header),
