@@ -1,5 +1,6 @@
 //! Joints as records of a blob.
 
+use super::tracks::check_spline;
 use crate::compile::error::CompileError;
 use crate::compile::section::{Section, section};
 use crate::compile::view::coordinates::position;
@@ -78,6 +79,9 @@ fn check_scales(scene: &Scene) -> Result<(), CompileError> {
     }
     let mut ranges: Vec<ScaleRange> = Vec::with_capacity(scene.joints.len());
     for ((joint, tracks), moves) in scene.joints.iter().zip(JointTracks::of(scene)).zip(moves) {
+        if let Some(track) = tracks.scale.filter(|_| moves) {
+            check_spline(scene, track)?;
+        }
         let own = tracks.scale.map_or(ScaleRange::REST, |track| {
             ScaleRange::of(track.interpolation, &track.keys)
         });

@@ -114,7 +114,7 @@ fn check_camera(scene: &Scene, tracks: &[Track]) -> Result<(), CompileError> {
 }
 
 /// Checks that a spline does not lead out of the range of its values.
-fn check_spline(scene: &Scene, track: &Track) -> Result<(), CompileError> {
+pub fn check_spline(scene: &Scene, track: &Track) -> Result<(), CompileError> {
     match splines::beyond(track) {
         None => Ok(()),
         Some(cause) => {
