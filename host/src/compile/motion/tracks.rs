@@ -39,7 +39,10 @@ pub fn sections(
         let index = match track.target.is_of_material() {
             // Such a material is not visible.
             true => match materials[track.index] {
-                Some(number) => number,
+                Some(number) => {
+                    check_alpha(scene, track)?;
+                    number
+                }
                 None => continue,
             },
             false => track.index as u32,
@@ -109,6 +112,20 @@ fn check_camera(scene: &Scene, tracks: &[Track]) -> Result<(), CompileError> {
         Some(track) => {
             let cause = String::from("the camera has a rotation that moves, too");
             Err(fault(scene, track, (cause, "remove one of the two")))
+        }
+    }
+}
+
+/// Checks that a track makes no glass of a material whose texture has an alpha, which glass ignores.
+fn check_alpha(scene: &Scene, track: &Track) -> Result<(), CompileError> {
+    let material = &scene.materials[track.index];
+    let is_glass = material.transmit != [0.0; 3];
+    let becomes_glass = track.target == TrackTarget::MaterialTransmit && track.raises();
+    match material.alpha.is_some() && !is_glass && becomes_glass {
+        false => Ok(()),
+        true => {
+            let cause = String::from("the material has an `alpha`, and glass has none");
+            Err(fault(scene, track, (cause, "remove `alpha` or the track")))
         }
     }
 }

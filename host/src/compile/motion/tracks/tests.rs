@@ -1,5 +1,5 @@
 use crate::compile::{CompileError, Options, compile};
-use crate::scene::{Scene, read};
+use crate::scene::{Alpha, Scene, read};
 
 const BALL: &str = "[[object]]\nkind = 'sphere'\ncenter = [0, 0, 0]\nradius = 1\nmaterial = 'm'\n";
 
@@ -46,6 +46,28 @@ fn errors_of_tracks_name_their_targets_as_scene_files_do() {
             error.contains(&format!("track of {target}: at 1 s")),
             "{error}"
         );
+    }
+}
+
+#[test]
+fn tracks_that_make_glass_of_materials_with_alpha_are_rejected() {
+    for (last, transmit, is_rejected) in [(1.0, 0.0, true), (0.0, 0.0, false), (1.0, 0.5, false)] {
+        let mut scene = scene(&format!(
+            "[material.m]\ntransmit = {transmit}\n{BALL}\
+             [[track]]\ntarget = 'material.m.transmit'\ntimes = [0, 1]\nvalues = [0, {last}]\n"
+        ));
+        compiled(&scene).unwrap();
+        // Glass of a glTF file ignores its alpha at all times.
+        let mut materials = scene.materials.iter_mut();
+        materials.find(|it| it.name == "m").unwrap().alpha = Some(Alpha::CutOut(0.5));
+        match compiled(&scene) {
+            Ok(()) => assert!(!is_rejected, "{last} {transmit}"),
+            Err(error) => {
+                let error = error.to_string();
+                let says = error.contains("t.toml:8: track of material.m.transmit: ");
+                assert!(is_rejected && says && error.contains("`alpha`"), "{error}");
+            }
+        }
     }
 }
 
