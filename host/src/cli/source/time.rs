@@ -3,9 +3,11 @@
 use super::{Source, warn_of_file};
 use crate::cli::changes::Changes;
 use crate::cli::failure::Failure;
+use gridel_core::format::track::Track;
 use gridel_core::{Scene, Tracks};
 use gridel_host::scene::Posed;
 use gridel_host::state::{State, StateError, ticks};
+use gridel_host::view::Notes;
 
 /// Rejects a time beyond the first or the last tick, whose picture it would show.
 fn check(tracks: &Tracks<'_>, seconds: f64) -> Result<(), Failure> {
@@ -73,6 +75,30 @@ impl Source {
              a `[[track]]` of a TOML file moves a scene (see `gridel help scene`), and so does an animation of a glTF file";
         warn_of_file(self.input.path(), vec![sentence.into()], &mut warnings);
         warnings.pop()
+    }
+
+    /// Returns what a saved camera says about the scene besides.
+    pub fn notes(&self) -> Notes {
+        let all = match &self.report {
+            Some(_) => self.tracked.clone(),
+            None => {
+                let tracks = Tracks::from_bytes(self.blob.bytes());
+                let tracks = tracks.map_or(&[][..], |tracks| tracks.tracks());
+                // The others keep what stands still of a camera that moves.
+                let moving = tracks.iter().filter(|track| track.keys > 1);
+                moving.filter_map(Track::target).collect()
+            }
+        };
+        let of_camera = all.iter().filter(|it| it.is_of_camera());
+        let mut tracks: Vec<&str> = of_camera.map(|it| it.name()).collect();
+        tracks.dedup();
+        Notes {
+            tracks,
+            unstated: self
+                .report
+                .as_ref()
+                .map_or_else(Default::default, |it| it.unstated),
+        }
     }
 
     /// Returns the changes of the scene at a time in seconds.

@@ -39,7 +39,7 @@ use gridel_core::format::record::{self, View};
 use lights::{CAMERA, LightData, Space, on_lattice};
 use materials::MaterialData;
 use setting::Setting;
-pub use setting::{Shoulder, Supplied};
+pub use setting::{Shoulder, Supplied, Unstated};
 
 /// Everything of a blob that is not geometry.
 #[derive(Debug)]
@@ -49,6 +49,7 @@ pub struct ShadingData {
     pub requirements: Requirements,
     /// Parts that the scene lacks and the compiler supplied.
     pub supplied: Vec<Supplied>,
+    pub unstated: Unstated,
     materials: MaterialData,
     lights: LightData,
     /// The light around the scene.
@@ -140,6 +141,7 @@ impl ShadingData {
             view: placed.replace_in(&view, &coordinates.header),
             coordinates,
             requirements,
+            unstated: setting.unstated(scene),
             supplied: setting.supplied,
             materials,
             lights,
