@@ -2,7 +2,7 @@
 //! places its own.
 
 use crate::compile::{CompileError, light_record, place};
-use crate::scene::{Camera, Light};
+use crate::scene::{Camera, Lens, Light};
 use crate::shape::{Lattice, exp2};
 use glam::DVec3;
 use gridel_core::Scene;
@@ -57,6 +57,19 @@ impl Camera {
     /// If the camera has no direction or looks along up, or its eye lies beyond the blob's scene coordinates.
     pub fn in_blob(&self, scene: &Scene<'_>) -> Result<View, CompileError> {
         Ok(place(self, scene.header())?.view(scene))
+    }
+}
+
+impl Lens {
+    /// Returns the lens of a blob's camera; `None` for a pinhole. A camera that moves keeps its focus.
+    pub fn of_blob(scene: &Scene<'_>) -> Option<Self> {
+        let lens = scene.lens()?;
+        let step = Lattice::of_blob(scene).unit() * exp2(-13);
+        let [radius, focus] = [lens.radius, lens.focus].map(|it| it as f64 * step);
+        Some(Self {
+            radius,
+            focus: Some(focus),
+        })
     }
 }
 

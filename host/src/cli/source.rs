@@ -17,8 +17,7 @@ use gridel_host::compile::{self, Compiled, Names};
 use gridel_host::measure::Deforming;
 use gridel_host::morphed::morph_targets;
 use gridel_host::resolution::{FACTOR, Unresolved, unresolved};
-use gridel_host::scene::{self, Imported, Posed, SourceSpan, Track};
-use gridel_host::state::{self, State, StateError};
+use gridel_host::scene::{self, Imported, Posed, SourceSpan, Track, TrackTarget};
 use gridel_host::table::{counted, grouped, printable, significant};
 use std::path::{Path, PathBuf};
 
@@ -38,8 +37,9 @@ pub struct Source {
     names: Option<Names>,
     /// The placements at which moving instances were copied, if they were.
     posed: Option<Posed>,
-    /// True if the scene file has tracks that the blob has not: options replace them, or they move nothing.
-    has_idle_tracks: bool,
+    /// The targets of the scene file's tracks, also of those that the blob has not: options replace them, or they move
+    /// nothing.
+    tracked: Vec<TrackTarget>,
     /// Number of instances of a scene file that were copied.
     pub copied: usize,
     /// Effects of a scene file that were left out.
@@ -98,14 +98,12 @@ impl Source {
             source.changes = Some(changes);
             source.for_pictures = Some(options.clone());
         }
+        if options.time.or(options.opening).is_some() {
+            let still = source.warn_of_stillness();
+            source.warnings.extend(still);
+        }
         if let Some(seconds) = options.time.filter(|_| source.moves_otherwise()) {
-            let changes = {
-                let tracks = source.tracks()?;
-                time::check(&tracks, seconds)?;
-                let time = state::ticks(&tracks, seconds);
-                source.changes_at(&source.scene()?, &tracks, time)?
-            };
-            source.changes = Some(changes);
+            source.changes = Some(source.changes_at_time(seconds)?);
         }
         Ok(source)
     }
@@ -154,7 +152,7 @@ impl Source {
             for_pictures: None,
             names: None,
             posed: None,
-            has_idle_tracks: false,
+            tracked: Vec::new(),
             copied: 0,
             without: Effects::NONE,
             files: Vec::new(),
@@ -179,7 +177,7 @@ impl Source {
             chosen,
         }: Compiling,
     ) -> Result<Self, Failure> {
-        let (imported, has_tracks) = import_from(&input, options)?;
+        let (imported, tracked) = import_from(&input, options)?;
         if let Some(bits) = options.geometry.lattice_bits {
             compiling.lattice_bits = bits;
         }
@@ -217,58 +215,11 @@ impl Source {
             for_pictures: None,
             names: Some(names),
             posed: imported.posed,
-            has_idle_tracks: has_tracks,
+            tracked,
             copied: imported.copied,
             without: options.geometry.import.left_out(),
             made_by: Some((options.for_import(), compiling)),
         })
-    }
-
-    /// Returns whether a time concerns more than instances that were copied at their places at that time, and tracks
-    /// that do nothing. It does where there is an error to report.
-    fn moves_otherwise(&self) -> bool {
-        match self.tracks() {
-            Ok(tracks) => !tracks.is_empty(),
-            Err(_) => !matches!(self.posed, Some(Posed::AtTime | Posed::Always)),
-        }
-    }
-
-    /// Returns the tracks of a scene that moves; none where all of the scene file's do nothing.
-    pub fn tracks(&self) -> Result<Tracks<'_>, Failure> {
-        let tracks = Tracks::from_bytes(self.blob.bytes()).map_err(|error| self.invalid(error))?;
-        if !tracks.is_empty() || self.has_idle_tracks {
-            return Ok(tracks);
-        }
-        let file = self.input.path().display();
-        Err(match self.posed {
-            None | Some(Posed::Always) => Failure::usage(
-                format!(
-                    "nothing in {file} moves: it has no tracks, or none that Gridel can follow"
-                ),
-                "leave the time out; a `[[track]]` of a TOML file moves a scene (see `gridel help scene`), and so does an \
-                 animation of a glTF file",
-            ),
-            Some(Posed::AtTime) => Failure::usage(
-                format!("instances alone move in {file}, and copies of them are not blurred"),
-                "leave out `--instances flatten` or `--shutter`",
-            ),
-            Some(Posed::AtRest) => Failure::usage(
-                format!("instances alone move in {file}, and copies of them do not"),
-                "leave out `--instances flatten`, or ask for one picture after the other with `--time`",
-            ),
-        })
-    }
-
-    /// Warns of instances that move and are not blurred, because they were copied where they are at one time. Returns
-    /// all warnings.
-    pub fn warn_of_unblurred(&self) -> Vec<String> {
-        let mut warnings = self.warnings.clone();
-        if self.posed == Some(Posed::AtTime) {
-            let sentence =
-                "instances are copied where they are as the shutter opens, and are not blurred";
-            warn_of_file(self.input.path(), vec![sentence.into()], &mut warnings);
-        }
-        warnings
     }
 
     /// The error of a blob that is not valid.
@@ -284,37 +235,6 @@ impl Source {
             (None, _) => "build it again with `gridel build`",
         };
         Failure::failed(format!("{}: {error}", self.input.path().display()), remedy)
-    }
-
-    /// Returns the changes of a scene at a time of its tracks. Given options take precedence over the tracks.
-    pub fn changes_at(
-        &self,
-        scene: &Scene<'_>,
-        tracks: &Tracks<'_>,
-        time: i32,
-    ) -> Result<Changes, Failure> {
-        let at = || {
-            let state = State::at(&self.blob, scene, tracks, time)?;
-            state.apply(scene)?;
-            Ok(state)
-        };
-        let mut state = at().map_err(|error: StateError| {
-            let cause = format!("{}: {error}", self.input.path().display());
-            Failure::failed(cause, "change the tracks, or ask for other times")
-        })?;
-        if let Some(options) = &self.for_pictures {
-            let chosen = Changes::of(&state.apply(scene).map_err(Failure::fault)?, options)?;
-            (state.view, state.lights) = (chosen.state.view, chosen.state.lights);
-        }
-        Ok(Changes {
-            state,
-            time: Some(time),
-        })
-    }
-
-    /// Returns the time that the scene is shown at, in ticks; `None` for one without a time.
-    pub fn time(&self) -> Option<i32> {
-        self.changes.as_ref()?.time
     }
 
     /// Returns the checked view of the blob with the changes. Its names, tracks and morph targets are valid as well.
@@ -433,8 +353,11 @@ pub fn import(path: &Path, options: &SceneOptions) -> Result<Imported, Failure> 
     Ok(import_from(&Input::open(path)?, options)?.0)
 }
 
-/// Imports a scene file, and returns whether it has tracks, those that options replace among them.
-fn import_from(input: &Input, options: &SceneOptions) -> Result<(Imported, bool), Failure> {
+/// Imports a scene file, and returns what its tracks move, those that options replace among them.
+fn import_from(
+    input: &Input,
+    options: &SceneOptions,
+) -> Result<(Imported, Vec<TrackTarget>), Failure> {
     let path = input.path();
     if input.is_blob()? {
         return Err(Failure::failed(
@@ -494,7 +417,7 @@ fn import_from(input: &Input, options: &SceneOptions) -> Result<(Imported, bool)
         let by_light = |change: &LightChange| change.replaces(track.target, track.index);
         options.view.replaces(track.target) || options.lights.iter().any(by_light)
     };
-    let has_tracks = !imported.scene.tracks.is_empty();
+    let tracked = imported.scene.tracks.iter().map(|it| it.target).collect();
     imported.scene.tracks.retain(|track| !replaced(track));
-    Ok((imported, has_tracks))
+    Ok((imported, tracked))
 }

@@ -18,6 +18,11 @@ use std::path::PathBuf;
 /// `gridel render`. Dragging with the left mouse button orbits, with another button it pans, and the wheel
 /// zooms. A click explains a pixel.
 ///
+/// The key `s` saves the camera in a new file: as options on its first line, and as a table for the scene file, with
+/// its lens. Comments name tracks that would move it, and a background that the scene file does not state. A scene
+/// file without lights gets a light from its first camera, which stays there while it is viewed. It is saved, too,
+/// because `--eye` moves it.
+///
 /// A key changes among the structures that a blob was built with, and the list of all primitives. A scene file is
 /// compiled for `wide`, `flagged` and `bvh`, or for the structure of `--accel` alone.
 #[derive(Args)]
@@ -85,6 +90,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let structure = source.structure(&scene, arguments.with.accel)?;
     let settings = arguments.picture.settings(&scene);
     let state = State::new(&scene, arguments.with.format, structure, settings);
+    let state = state.noting(source.notes());
     #[cfg(feature = "view")]
     if !arguments.terminal {
         return in_window(arguments, &source, &scene, state);

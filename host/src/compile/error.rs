@@ -110,7 +110,7 @@ pub enum CompileError {
     #[diagnostic(help("{remedy}"))]
     Track {
         place: SourceSpan,
-        target: &'static str,
+        target: String,
         cause: String,
         remedy: String,
     },

@@ -49,7 +49,7 @@ pub use options::{LARGEST_LEAF, OnProgress, Options};
 pub use report::Report;
 pub use requirements::RequiringPart;
 pub(crate) use shading::light_record;
-pub use shading::{EnvironmentFigures, Shoulder, Supplied, TextureFigures, radiance};
+pub use shading::{EnvironmentFigures, Shoulder, Supplied, TextureFigures, Unstated, radiance};
 pub use structures::layout::TableStats;
 pub use structures::{takes_hierarchy, usual_budget};
 pub(crate) use view::camera::place;

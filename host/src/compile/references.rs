@@ -54,7 +54,7 @@ pub fn check(scene: &Scene) -> Result<(), CompileError> {
         };
         return Err(CompileError::Track {
             place: track.place.clone(),
-            target: target.name(),
+            target: scene.target_of(track),
             cause,
             remedy: String::from("give at least one key, and the number of an item of the scene"),
         });

@@ -5,7 +5,7 @@ use super::hierarchy::sah::sah_cost;
 use super::instances::Role;
 use super::names::KeptNames;
 use super::requirements::RequiringPart;
-use super::shading::{EnvironmentFigures, Supplied, TextureFigures};
+use super::shading::{EnvironmentFigures, Supplied, TextureFigures, Unstated};
 use super::structures::context::BuildContext;
 use super::structures::layout::{Layout, TableStats};
 use crate::scene::{Scene, Shape};
@@ -46,6 +46,9 @@ pub struct Report {
     pub environment: Option<EnvironmentFigures>,
     /// Parts that the compiler supplied because the scene has none.
     pub supplied: Vec<Supplied>,
+    /// The values of some of these parts.
+    #[serde(skip)]
+    pub unstated: Unstated,
     /// The time that the structures took to build, from primitives on the lattice to records.
     #[serde(skip)]
     pub setup: Duration,
@@ -99,6 +102,7 @@ impl Report {
             textures: shading.texture_figures().to_vec(),
             environment: shading.environment_figures(),
             supplied: shading.supplied.clone(),
+            unstated: shading.unstated,
             setup,
             tables: layouts.iter().filter_map(Layout::table_stats).collect(),
             still_lights: still_lights(scene, context.options.room),

@@ -20,6 +20,7 @@ pub(super) fn scene_warnings(scene: &Scene) -> Vec<String> {
         ));
     }
     warnings.extend(unused_maps(scene));
+    warnings.extend(lost_priorities(scene));
     let Some(camera) = scene.camera else {
         return warnings;
     };
@@ -62,6 +63,23 @@ fn unused_maps(scene: &Scene) -> Vec<String> {
         ))
     };
     unused.filter_map(warning).collect()
+}
+
+/// Returns a warning for each material that is glass by a track alone, and has a priority. A blob orders only glass at
+/// rest.
+fn lost_priorities(scene: &Scene) -> impl Iterator<Item = String> {
+    let materials = scene.materials.iter().zip(scene.sends());
+    let lost = materials.filter(|(material, sends)| {
+        material.priority.is_some() && material.transmit == [0.0; 3] && sends.transmits
+    });
+    lost.map(|(material, _)| {
+        let part = format!("material {}", printable(&material.name));
+        let part = RequiringPart::new(part, &material.place);
+        format!(
+            "the `priority` of {part} is ignored, because it is glass by a track alone; write a `transmit` above 0 in \
+             the material"
+        )
+    })
 }
 
 /// Primitives that a warning names; the rest are counted.
@@ -195,6 +213,25 @@ mod tests {
                 lines
                     .iter()
                     .all(|it| it.contains("flag") && it.contains("glows"))
+            );
+        }
+    }
+
+    #[test]
+    fn priority_of_glass_by_a_track_alone_is_ignored_with_a_warning() {
+        for (transmit, expected) in [(0.0, 1), (0.1, 0)] {
+            let file = format!(
+                "[material.water]\ntransmit = {transmit}\npriority = 1\n\
+                 [[object]]\nkind = 'sphere'\ncenter = [0, 0, 0]\nradius = 1\nmaterial = 'water'\n\
+                 [[track]]\ntarget = 'material.water.transmit'\ntimes = [0, 1]\nvalues = [0, 1]\n"
+            );
+            let imported = scene::read("s.toml".as_ref(), file.into(), &Default::default());
+            let lines = scene_warnings(&imported.unwrap().scene);
+            assert_eq!(lines.len(), expected, "{lines:?}");
+            assert!(
+                lines
+                    .iter()
+                    .all(|it| it.contains("`priority` of material water (s.toml:1)"))
             );
         }
     }

@@ -28,6 +28,7 @@ mod options;
 mod placement;
 mod places;
 mod polygon;
+mod raised;
 mod scale_range;
 mod size;
 mod source_span;
@@ -36,6 +37,7 @@ pub(crate) mod tests;
 mod text;
 mod texture;
 mod track;
+mod track_name;
 mod without;
 mod words;
 
@@ -61,6 +63,7 @@ pub use options::{
 };
 pub use placement::Placement;
 pub use places::Places;
+pub(crate) use raised::Sends;
 pub(crate) use scale_range::ScaleRange;
 pub use size::MOST_INPUT;
 pub use source_span::SourceSpan;

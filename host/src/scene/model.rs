@@ -365,7 +365,7 @@ impl Material {
         self.texture.as_ref().or(normal_map)
     }
 
-    /// Returns whether rays are mirrored or refracted by facets.
+    /// Returns whether rays are mirrored or refracted by facets, as the material is at rest.
     pub fn is_rough(&self) -> bool {
         let sends = self.mirror != [0.0; 3] || self.transmit != [0.0; 3];
         self.roughness > 0.0 && sends
@@ -420,7 +420,7 @@ impl Object {
             ) => {
                 let mesh = (&vertices[..], &triangles[..]);
                 let displacements = &self.attributes.displacements;
-                self.normals = Normals::computed_for(mesh, degrees, !displacements.is_empty());
+                self.normals = Normals::computed_for(mesh, degrees, displacements);
                 self.normals.turn_with(mesh, displacements);
             }
             _ => self.normals = Normals::default(),

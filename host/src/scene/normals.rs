@@ -113,15 +113,19 @@ impl Normals {
     /// vertex is the mean of such faces, weighted by their angles there. Vertices are the same where their coordinates
     /// are.
     pub fn computed(vertices: &[DVec3], triangles: &[[u32; 3]], degrees: f64) -> Self {
-        Self::computed_for((vertices, triangles), degrees, false)
+        Self::computed_for((vertices, triangles), degrees, &[])
     }
 
-    /// Like [`computed`](Self::computed), for a mesh that may move.
+    /// Like [`computed`](Self::computed), for a mesh that morph targets displace. A triangle is flat that has the normal
+    /// of its face in all poses.
     pub(super) fn computed_for(
         (vertices, triangles): (&[DVec3], &[[u32; 3]]),
         degrees: f64,
-        moves: bool,
+        displacements: &[Displacements],
     ) -> Self {
+        if degrees <= 0.0 {
+            return Self::default();
+        }
         let places = same_places(vertices);
         let faces: Vec<DVec3> = triangles
             .iter()
@@ -160,7 +164,12 @@ impl Normals {
                 numbers[group]
             }));
         }
-        Self::kept(vectors, corners, (vertices, triangles), moves)
+        let moves = !displacements.is_empty();
+        let mut normals = Self::kept(vectors, corners, (vertices, triangles), moves);
+        if moves {
+            normals.flatten_faces((vertices, triangles), displacements);
+        }
+        normals
     }
 
     /// The normals after a transform of the mesh.
@@ -197,6 +206,41 @@ impl Normals {
             all.changes = changes.collect();
         }
         all
+    }
+
+    /// Makes triangles flat whose normals turn as their faces do. A flat one has the normal of its face at all weights;
+    /// a smooth one has an interpolated normal between them.
+    fn flatten_faces(
+        &mut self,
+        (vertices, triangles): (&[DVec3], &[[u32; 3]]),
+        displacements: &[Displacements],
+    ) {
+        let mut left: Vec<usize> = (0..self.triangles.len()).collect();
+        left.retain(|&number| self.triangles[number] != Self::FLAT);
+        for pose in poses(displacements.len()) {
+            if left.is_empty() {
+                return;
+            }
+            let displaced = |(number, vertex): (usize, &DVec3)| {
+                let all = displacements.iter().zip(&pose);
+                all.fold(*vertex, |sum, (it, weight)| {
+                    sum + *weight * it.vectors[number]
+                })
+            };
+            let moved: Vec<DVec3> = vertices.iter().enumerate().map(displaced).collect();
+            let means = self.means(&moved, triangles);
+            left.retain(|&number| {
+                let face = face_normal(&moved, &triangles[number]);
+                let mut normals = self.triangles[number].iter().map(|it| means[*it as usize]);
+                face == DVec3::ZERO || normals.all(|it| (it - face).length() <= SAME)
+            });
+        }
+        for number in left {
+            self.triangles[number] = Self::FLAT;
+        }
+        if self.triangles.iter().all(|it| *it == Self::FLAT) {
+            *self = Self::default();
+        }
     }
 
     /// Computes how the normals change where vertices are displaced: they turn with the mean of the faces around.
@@ -257,6 +301,24 @@ impl Normals {
             changes: Vec::new(),
         }
     }
+}
+
+/// Returns the poses in which faces are compared: that at rest, one for each of some displacements, and two of all
+/// together. Each is a weight for each displacement. Faces that are parallel in a pose of no special weights are so in
+/// all: the angle between them follows polynomials of the weights.
+fn poses(count: usize) -> impl Iterator<Item = Vec<f64>> {
+    const GOLDEN: f64 = 0.618_033_988_749_894_8;
+    let alone = (0..count).map(move |one| {
+        let weights = (0..count).map(|it| f64::from(u8::from(it == one)));
+        weights.collect()
+    });
+    let together = [1.0, -1.0].map(|sign| {
+        let weights = (1..=count).map(|it| sign * (0.25 + (it as f64 * GOLDEN).fract()));
+        weights.collect()
+    });
+    std::iter::once(vec![0.0; count])
+        .chain(alone)
+        .chain(together)
 }
 
 /// Returns the matrix that turns normals where `matrix` moves points, and whether that mirrors. Outward stays outward.

@@ -29,7 +29,8 @@ impl ScaleRange {
     /// The range of a track, with that at rest.
     pub(crate) fn of(interpolation: Interpolation, keys: &[Key]) -> Self {
         let scales = extremes(interpolation, keys);
-        let scales = scales.map(|it| it.clamp(LEAST_SCALE, LARGEST_SCALE));
+        // A greater one than the largest is a fault.
+        let scales = scales.map(|it| it.max(LEAST_SCALE));
         scales.fold(Self::REST, |range, it| Self {
             least: range.least.min(it),
             greatest: range.greatest.max(it),
@@ -77,6 +78,7 @@ mod tests {
             ([key(0.0, 1.0, -3.0), key(1.0, 0.1, 0.0)], 0.097_222, 1.0),
             ([key(0.0, 1.0, 0.0), key(1.0, 60.0, 20.0)], 1.0, 60.0),
             ([key(0.0, 1.0, 8.0), key(2.0, 1.0, -8.0)], 1.0, 5.0),
+            ([key(0.0, 1.0, 0.0), key(1.0, 60.0, -80.0)], 1.0, 65.145_355),
         ] {
             let [low, high] = ScaleRange::of(Interpolation::Cubic, &keys).ends();
             assert!(

@@ -10,6 +10,7 @@
 //! | `refine.rs` | pictures from coarse to fine, drawn by threads of their own |
 //! | `frame.rs` | the pixels that are shown so far |
 //! | `summary.rs` | the explanation of a pixel in one line |
+//! | `notes.rs` | what a saved camera says about its scene |
 //! | `save.rs` | a camera as TOML |
 //! | `terminal.rs` | half blocks in a terminal |
 //! | `window.rs` | a window, with the Cargo feature `view` |
@@ -18,6 +19,7 @@ mod blocks;
 mod frame;
 mod keys;
 mod motion;
+mod notes;
 mod refine;
 mod save;
 mod shot;
@@ -30,6 +32,7 @@ pub mod window;
 pub use blocks::{Drawn, draw};
 pub use frame::Frame;
 pub use keys::{Action, KEYS, Key, action, key_help};
+pub use notes::Notes;
 pub use refine::Refiner;
 pub use save::{save, saved};
 pub use shot::{Shot, ViewError};

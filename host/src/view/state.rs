@@ -1,8 +1,9 @@
 //! The camera and the settings that are shown.
 
 use super::keys::Action;
+use super::notes::Notes;
 use super::shot::Shot;
-use crate::scene::Camera;
+use crate::scene::{Camera, Lens};
 use gridel_core::format::limits::MAX_SAMPLES;
 use gridel_core::format::record::View;
 use gridel_core::{Format, Scene, Settings, Structure};
@@ -26,6 +27,7 @@ pub struct State<'s> {
     structure: Structure,
     settings: Settings,
     heat_map: bool,
+    notes: Notes,
 }
 
 /// The remaining work after an action.
@@ -57,7 +59,14 @@ impl<'s> State<'s> {
             structure,
             settings,
             heat_map: false,
+            notes: Notes::default(),
         }
+    }
+
+    /// Returns the view whose saved cameras have these notes.
+    pub fn noting(mut self, notes: Notes) -> Self {
+        self.notes = notes;
+        self
     }
 
     /// Returns the scene from another camera, if that camera is valid.
@@ -79,6 +88,15 @@ impl<'s> State<'s> {
 
     pub fn camera(&self) -> &Camera {
         &self.camera
+    }
+
+    /// Returns the lens of all cameras; `None` for a pinhole.
+    pub fn lens(&self) -> Option<Lens> {
+        Lens::of_blob(self.scene)
+    }
+
+    pub fn notes(&self) -> &Notes {
+        &self.notes
     }
 
     pub fn settings(&self) -> Settings {

@@ -330,7 +330,7 @@ impl Live<'_, '_> {
     }
 
     fn save(&self) -> String {
-        match save(self.state.camera(), Path::new("")) {
+        match save(&self.state, Path::new("")) {
             Ok(path) => format!("the camera is in {}", path.display()),
             Err(error) => format!("the camera cannot be saved: {error}"),
         }

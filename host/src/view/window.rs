@@ -345,7 +345,7 @@ impl App<'_> {
     }
 
     fn save(&mut self) {
-        let message = match save(self.state.camera(), Path::new("")) {
+        let message = match save(&self.state, Path::new("")) {
             Ok(path) => format!("the camera is in {}", path.display()),
             Err(error) => format!("the camera cannot be saved: {error}"),
         };

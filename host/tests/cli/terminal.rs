@@ -254,6 +254,34 @@ mod live {
         assert!(end.ends_with("\x1b[?25h\x1b[?1049l"), "{end:?}");
     }
 
+    /// The light of a scene without lights lies above a shoulder of its first camera.
+    #[test]
+    fn saved_camera_and_light_of_a_scene_without_lights_show_the_view() {
+        let folder = Folder::new();
+        let objects = "[[object]]\nkind = 'box'\nmin = [0, 0, 0]\nmax = [2, 1, 4]\n";
+        let orbit = "[[track]]\ntarget = 'camera.orbit'\ntimes = [0, 1]\nvalues = [0, 90]\n";
+        folder.write("a.toml", format!("{objects}{orbit}").as_bytes());
+        let mut terminal = Terminal::open(&folder, "a.toml");
+        let first = terminal.frame("; h shows the keys");
+        terminal.press("\x1b[C\x1b[C\x1b[C\x1b[A+f");
+        let moved = terminal.frame("f64, wide, 1 sample; h");
+        assert!(moved != first);
+        terminal.press("s");
+        terminal.frame("the camera is in camera-1.toml");
+        terminal.press("q");
+        terminal.end();
+        let saved = String::from_utf8(folder.read("camera-1.toml")).unwrap();
+        assert!(saved.contains("tracks of camera.orbit beside"), "{saved}");
+        let is_value = |line: &&str| line.starts_with("# ") && line.contains(" = [");
+        let values = saved
+            .lines()
+            .filter(is_value)
+            .map(|it| format!("{}\n", &it[2..]));
+        let values: String = values.collect();
+        folder.write("b.toml", format!("{values}{saved}{objects}").as_bytes());
+        assert!(moved == rendered(&folder, &["b.toml", "--format", "f64"], [40, 30]));
+    }
+
     #[test]
     fn help_is_left_by_every_key() {
         let folder = Folder::with_quick();

@@ -165,7 +165,7 @@ impl Session {
         let [e, t, u] = [eye, target, up].map(|it| it.to_array());
         let camera = [&e[..], &t, &u, &[*fov_degrees]].concat();
         Ok((
-            json!({"camera": camera, "toml": saved(state.camera()), "moved": moved}),
+            json!({"camera": camera, "toml": saved(&state), "moved": moved}),
             Vec::new(),
         ))
     }

@@ -1,5 +1,6 @@
 //! Joints as records of a blob.
 
+use super::tracks::check_spline;
 use crate::compile::error::CompileError;
 use crate::compile::section::{Section, section};
 use crate::compile::view::coordinates::position;
@@ -59,7 +60,7 @@ pub fn check(scene: &Scene) -> Result<(), CompileError> {
         None => check_scales(scene),
         Some(track) => Err(CompileError::Track {
             place: track.place.clone(),
-            target: track.target.name(),
+            target: scene.target_of(track),
             cause: format!("there is no joint {}", track.index),
             remedy: String::from("use the number of a joint of the scene"),
         }),
@@ -78,6 +79,9 @@ fn check_scales(scene: &Scene) -> Result<(), CompileError> {
     }
     let mut ranges: Vec<ScaleRange> = Vec::with_capacity(scene.joints.len());
     for ((joint, tracks), moves) in scene.joints.iter().zip(JointTracks::of(scene)).zip(moves) {
+        if let Some(track) = tracks.scale.filter(|_| moves) {
+            check_spline(scene, track)?;
+        }
         let own = tracks.scale.map_or(ScaleRange::REST, |track| {
             ScaleRange::of(track.interpolation, &track.keys)
         });

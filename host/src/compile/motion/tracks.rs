@@ -1,11 +1,13 @@
 //! Tracks as records: times in ticks, values as integers.
 
 mod splines;
+#[cfg(test)]
+mod tests;
 
 use crate::compile::CompileError;
 use crate::compile::section::{Section, section};
 use crate::compile::view::camera::angle;
-use crate::scene::{Camera, Key, TICKS_PER_SECOND, Track};
+use crate::scene::{Camera, Key, Scene, TICKS_PER_SECOND, Track};
 use crate::shape::{exp2, unit};
 use crate::table::significant;
 use glam::{DQuat, DVec3};
@@ -18,20 +20,18 @@ use gridel_core::format::track::{
 /// Returns the sections of a scene's tracks; none where nothing moves. `camera` has the values that its tracks leave
 /// out. `materials` has the number in the blob of each material that an object has.
 pub fn sections(
+    scene: &Scene,
     tracks: Vec<Track>,
     camera: &Camera,
     materials: &[Option<u32>],
     header: &Header,
 ) -> Result<Vec<Section>, CompileError> {
     let mut all = tracks;
-    check_camera(&all)?;
+    check_camera(scene, &all)?;
     // Tracks that are supplied have the times of these.
     for track in &all {
-        times(track)?;
-        if let Some(cause) = splines::beyond(track) {
-            let remedy = "use smaller tangents, more keys, or linear interpolation";
-            return Err(fault(track, cause, remedy));
-        }
+        times(track).map_err(|it| fault(scene, track, it))?;
+        check_spline(scene, track)?;
     }
     complete(&mut all, camera);
     let mut numbered: Vec<(TrackTarget, u32, &Track)> = Vec::new();
@@ -39,7 +39,10 @@ pub fn sections(
         let index = match track.target.is_of_material() {
             // Such a material is not visible.
             true => match materials[track.index] {
-                Some(number) => number,
+                Some(number) => {
+                    check_alpha(scene, track)?;
+                    number
+                }
                 None => continue,
             },
             false => track.index as u32,
@@ -49,17 +52,14 @@ pub fn sections(
     numbered.sort_by_key(|&(target, index, _)| (target, index));
     for pair in numbered.windows(2) {
         if (pair[0].0, pair[0].1) == (pair[1].0, pair[1].1) {
-            return Err(CompileError::Track {
-                place: pair[1].2.place.clone(),
-                target: pair[1].0.name(),
-                cause: String::from("the property has two tracks"),
-                remedy: String::from("put the keys of both into one track"),
-            });
+            let cause = String::from("the property has two tracks");
+            let fault = (cause, "put the keys of both into one track");
+            return Err(self::fault(scene, pair[1].2, fault));
         }
     }
     let mut parts = Parts::default();
     for (target, index, track) in numbered {
-        let keys = keys(track, header)?;
+        let keys = keys(track, header).map_err(|it| fault(scene, track, it))?;
         parts.tracks.push(records::Track {
             target: target as u16,
             interpolation: track.interpolation as u16,
@@ -98,7 +98,7 @@ struct Parts {
 }
 
 /// Proves that a camera that is turned by rotations is turned by nothing else.
-fn check_camera(tracks: &[Track]) -> Result<(), CompileError> {
+fn check_camera(scene: &Scene, tracks: &[Track]) -> Result<(), CompileError> {
     let mut all = tracks.iter();
     let turned = all.any(|track| track.target == TrackTarget::CameraRotation);
     let aims = |track: &&Track| {
@@ -109,12 +109,35 @@ fn check_camera(tracks: &[Track]) -> Result<(), CompileError> {
     };
     match tracks.iter().find(aims).filter(|_| turned) {
         None => Ok(()),
-        Some(track) => Err(CompileError::Track {
-            place: track.place.clone(),
-            target: track.target.name(),
-            cause: String::from("the camera has a rotation that moves, too"),
-            remedy: String::from("remove one of the two"),
-        }),
+        Some(track) => {
+            let cause = String::from("the camera has a rotation that moves, too");
+            Err(fault(scene, track, (cause, "remove one of the two")))
+        }
+    }
+}
+
+/// Checks that a track makes no glass of a material whose texture has an alpha, which glass ignores.
+fn check_alpha(scene: &Scene, track: &Track) -> Result<(), CompileError> {
+    let material = &scene.materials[track.index];
+    let is_glass = material.transmit != [0.0; 3];
+    let becomes_glass = track.target == TrackTarget::MaterialTransmit && track.raises();
+    match material.alpha.is_some() && !is_glass && becomes_glass {
+        false => Ok(()),
+        true => {
+            let cause = String::from("the material has an `alpha`, and glass has none");
+            Err(fault(scene, track, (cause, "remove `alpha` or the track")))
+        }
+    }
+}
+
+/// Checks that a spline does not lead out of the range of its values.
+pub fn check_spline(scene: &Scene, track: &Track) -> Result<(), CompileError> {
+    match splines::beyond(track) {
+        None => Ok(()),
+        Some(cause) => {
+            let remedy = "use smaller tangents, more keys, or linear interpolation";
+            Err(fault(scene, track, (cause, remedy)))
+        }
     }
 }
 
@@ -169,17 +192,15 @@ pub fn places(tracks: &[Track], camera: &Camera) -> Vec<DVec3> {
         .collect()
 }
 
+/// What is wrong with a track, and the remedy.
+type Fault = (String, &'static str);
+
 /// An error of a track.
-fn fault(track: &Track, cause: String, remedy: &str) -> CompileError {
-    // A file without lines has many.
-    let number = match track.target.is_of_camera() {
-        true => String::new(),
-        false => format!("number {}: ", track.index),
-    };
+fn fault(scene: &Scene, track: &Track, (cause, remedy): Fault) -> CompileError {
     CompileError::Track {
         place: track.place.clone(),
-        target: track.target.name(),
-        cause: number + &cause,
+        target: scene.target_of(track),
+        cause,
         // A file without lines is one with an animation to choose.
         remedy: match track.place.line {
             0 if track.place.is_known() => {
@@ -191,14 +212,14 @@ fn fault(track: &Track, cause: String, remedy: &str) -> CompileError {
 }
 
 /// The times of a track's keys in ticks.
-fn times(track: &Track) -> Result<Vec<i32>, CompileError> {
+fn times(track: &Track) -> Result<Vec<i32>, Fault> {
     let mut times = Vec::with_capacity(track.keys.len());
     for key in &track.keys {
         let ticks = (key.seconds * f64::from(TICKS_PER_SECOND)).round();
         if ticks.abs() > f64::from(i32::MAX) {
             let most = i32::MAX as u32 / TICKS_PER_SECOND;
             let cause = format!("the time {} is beyond {most} seconds", key.seconds);
-            return Err(fault(track, cause, "use earlier times"));
+            return Err((cause, "use earlier times"));
         }
         times.push(ticks as i32);
     }
@@ -207,14 +228,13 @@ fn times(track: &Track) -> Result<Vec<i32>, CompileError> {
         let cause = format!(
             "the times {one} and {other} are less than a tick apart, 1/{TICKS_PER_SECOND} of a second"
         );
-        let remedy = "move them apart, or use only one of them";
-        return Err(fault(track, cause, remedy));
+        return Err((cause, "move them apart, or use only one of them"));
     }
     Ok(times)
 }
 
 /// The keys of a track: each one's time and words.
-fn keys(track: &Track, header: &Header) -> Result<Vec<(i32, Vec<i32>)>, CompileError> {
+fn keys(track: &Track, header: &Header) -> Result<Vec<(i32, Vec<i32>)>, Fault> {
     let kind = track.target.kind();
     let times = times(track)?;
     let seconds =
@@ -253,8 +273,7 @@ fn keys(track: &Track, header: &Header) -> Result<Vec<(i32, Vec<i32>)>, CompileE
                 if rounded.is_nan() || rounded.abs() > f64::from(most) {
                     let limit = f64::from(i32::MAX) / factor.abs();
                     let (cause, remedy) = which.too_large(kind, limit);
-                    let cause = format!("at {} s {cause}", key.seconds);
-                    return Err(fault(track, cause, remedy));
+                    return Err((format!("at {} s {cause}", key.seconds), remedy));
                 }
                 words.push(rounded as i32);
             }
@@ -424,43 +443,5 @@ impl Scale {
             }
         };
         track.keys.iter().map(value).collect()
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use crate::compile::{Options, compile};
-    use crate::scene::read;
-
-    fn fault(track: &str) -> String {
-        let file = format!(
-            "[[object]]\nkind = 'sphere'\ncenter = [0, 0, 0]\nradius = 1\n[[track]]\n{track}"
-        );
-        let imported = read("a.toml".as_ref(), file.into(), &Default::default()).unwrap();
-        let error = compile(&imported.scene, &Options::default()).unwrap_err();
-        error.to_string()
-    }
-
-    #[test]
-    fn numbers_that_are_too_large_are_named_with_their_limit() {
-        for (track, words) in [
-            (
-                "target = 'camera.orbit'\ntimes = [0, 1]\nvalues = [0, 46080]",
-                "at 1 s the angle is not within 128 turns, which are 46080 degrees",
-            ),
-            (
-                "target = 'camera.orbit'\ninterpolation = 'cubic'\ntimes = [0, 2]\nvalues = [0, 0]\n\
-                 tangents = [0, 30000]",
-                "at 2 s the tangent is too large: multiplied by the time since the key before, it must be at most 46080",
-            ),
-            (
-                "target = 'camera.orbit'\ninterpolation = 'cubic'\ntimes = [0, 2]\nvalues = [0, 0]\n\
-                 tangents = [-30000, 0]",
-                "at 0 s the tangent is too large: multiplied by the time to the next key, it must be at most 46080",
-            ),
-        ] {
-            let found = fault(track);
-            assert!(found.contains(words), "{found}");
-        }
     }
 }

@@ -132,7 +132,7 @@ fn check_stays(scene: &Scene, number: usize) -> Result<(), CompileError> {
         None => Ok(()),
         Some(track) => Err(CompileError::Track {
             place: track.place.clone(),
-            target: track.target.name(),
+            target: scene.target_of(track),
             cause: format!(
                 "{} is visible, and the object that shows it cannot change with time",
                 label(scene, number)

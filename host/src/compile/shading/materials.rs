@@ -8,7 +8,7 @@ use super::textures::{TextureFigures, Textures};
 use crate::compile::CompileError;
 use crate::compile::requirements::Requirements;
 use crate::compile::section::{Section, indices, section};
-use crate::scene::{Color, Diffuse, Material, Scene};
+use crate::scene::{Color, Diffuse, Material, Scene, Sends};
 use crate::shape::Lattice;
 use crate::table::printable;
 use gridel_core::Effects;
@@ -48,6 +48,7 @@ impl MaterialData {
         };
         let mut textures = Textures::default();
         let has_coordinates = with_coordinates(scene);
+        let sends = scene.sends();
         for object in scene.all_objects() {
             let material = &scene.materials[object.material];
             if !object.shape.is_bounded() && has_large_cells(material, lattice) {
@@ -64,7 +65,7 @@ impl MaterialData {
                 };
                 let record = record::Material {
                     maps,
-                    ..material_record(material, lattice)
+                    ..material_record(material, sends[object.material], lattice)
                 };
                 requirements.add(record.effects(), label(material), &material.place);
                 data.records.push(record);
@@ -74,7 +75,8 @@ impl MaterialData {
         }
         (data.textures, data.texture_figures) =
             textures.sections(scene.display_values, texture_bytes)?;
-        for (material, number) in scene.materials.iter().zip(&data.numbers) {
+        let materials = scene.materials.iter().zip(sends);
+        for ((material, sends), number) in materials.zip(&data.numbers) {
             let Some(number) = *number else {
                 continue;
             };
@@ -87,11 +89,15 @@ impl MaterialData {
                 put(&mut data.emissions, number, emission);
                 requirements.add(Effects::EMISSION, label(material), &material.place);
             }
-            if material.is_rough() {
+            if material.roughness > 0.0 && sends.any() {
                 let roughness = material.roughness.clamp(Material::LEAST_ROUGHNESS, 1.0);
                 let [alpha, ..] = ratio([roughness * roughness; 3]);
                 put(&mut data.roughnesses, number, alpha);
-                requirements.add(Effects::GLOSSY, label(material), &material.place);
+                let part = match material.is_rough() {
+                    true => label(material),
+                    false => format!("a track of {}", label(material)),
+                };
+                requirements.add(Effects::GLOSSY, part, &material.place);
             }
         }
         data.media = media(scene, &data.numbers, requirements)?;
@@ -143,7 +149,7 @@ fn label(material: &Material) -> String {
     format!("material {}", printable(&material.name))
 }
 
-fn material_record(material: &Material, lattice: &Lattice) -> record::Material {
+fn material_record(material: &Material, sends: Sends, lattice: &Lattice) -> record::Material {
     let (even, odd, checker_size, checker_origin) = match material.diffuse {
         Diffuse::Plain(color) => (color, color, 0, [0; 3]),
         Diffuse::Checker {
@@ -162,7 +168,10 @@ fn material_record(material: &Material, lattice: &Lattice) -> record::Material {
             (even, odd, q13(size.min(LARGEST_CELL)), origin.map(q13))
         }
     };
-    let (absorption, shift) = absorption(material, lattice);
+    let (absorption, shift) = match sends.transmits {
+        true => absorption(material, lattice),
+        false => ([0; 3], 0),
+    };
     record::Material {
         diffuse: ratio(even),
         odd: ratio(odd),
@@ -180,9 +189,6 @@ fn material_record(material: &Material, lattice: &Lattice) -> record::Material {
 
 /// Returns the coefficients of glass as a record has them, and the power of two that multiplies them.
 fn absorption(material: &Material, lattice: &Lattice) -> ([u32; 3], u16) {
-    if material.transmit == [0.0; 3] {
-        return ([0; 3], 0);
-    }
     let scaled = |shift: i32| {
         let scale = lattice.unit() * f64::powi(2.0, 32 - shift);
         material.absorption.map(|it| (it * scale).round())
@@ -197,4 +203,64 @@ fn absorption(material: &Material, lattice: &Lattice) -> ([u32; 3], u16) {
 /// Ratios with 30 fraction bits, 0 to 1.
 fn ratio(color: Color) -> [i32; 3] {
     color.map(|channel| (channel.clamp(0.0, 1.0) * f64::from(1 << 30)).round() as i32)
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::blob::Blob;
+    use crate::compile::{Compiled, Options, compile};
+    use crate::scene::read;
+    use crate::state::{State, ticks};
+    use gridel_core::{Effects, Tracks};
+
+    /// Glass and steel, with these weights at rest and tracks.
+    fn compiled(weights: [f64; 2], tracks: &str) -> Compiled {
+        let [transmit, mirror] = weights;
+        let file = format!(
+            "[material.glass]\ndiffuse = 0\ntransmit = {transmit}\nabsorption = [2, 0.1, 2]\n\
+             [material.steel]\ndiffuse = 0\nmirror = {mirror}\nroughness = 0.4\n\
+             [[object]]\nkind = 'sphere'\ncenter = [0, 0, 0]\nradius = 1\nmaterial = 'glass'\n\
+             [[object]]\nkind = 'sphere'\ncenter = [3, 0, 0]\nradius = 1\nmaterial = 'steel'\n{tracks}"
+        );
+        let imported = read("m.toml".as_ref(), file.into(), &Default::default()).unwrap();
+        compile(&imported.scene, &Options::default()).unwrap()
+    }
+
+    fn track(target: &str, last: f64) -> String {
+        format!("[[track]]\ntarget = 'material.{target}'\ntimes = [0, 1]\nvalues = [0, {last}]\n")
+    }
+
+    #[test]
+    fn materials_that_tracks_raise_are_those_with_the_same_values_at_rest() {
+        let tracks = track("glass.transmit", 1.0) + &track("steel.mirror", 0.8);
+        let moving = compiled([0.0, 0.0], &tracks);
+        let still = compiled([1.0, 0.8], "").blob;
+        let (scene, expected) = (moving.blob.scene().unwrap(), still.scene().unwrap());
+        let tracks = Tracks::from_bytes(moving.blob.bytes()).unwrap();
+        let state = State::at(&moving.blob, &scene, &tracks, ticks(&tracks, 1.0)).unwrap();
+        assert_eq!(state.materials, expected.materials());
+        let at_end = state.apply(&scene).unwrap();
+        assert_eq!(at_end.roughness(1), expected.roughness(1));
+        assert!(at_end.roughness(1).is_some());
+        assert_eq!(at_end.effects(), expected.effects());
+        let mut effects = moving.report.effects.iter();
+        let (_, glossy) = effects.find(|(name, _)| name == "glossy").unwrap();
+        assert_eq!(
+            glossy[0].to_string(),
+            "a track of material steel (m.toml:5)"
+        );
+    }
+
+    #[test]
+    fn materials_that_tracks_leave_black_cost_nothing() {
+        let tracks = track("glass.transmit", 0.0) + &track("steel.mirror", 0.0);
+        let plain = |blob: Blob| {
+            let scene = blob.scene().unwrap();
+            assert_eq!(scene.materials()[0].absorption, [0; 3]);
+            assert_eq!(scene.roughness(1), None);
+            assert!(!scene.effects().contains(Effects::GLOSSY));
+        };
+        plain(compiled([0.0, 0.0], &tracks).blob);
+        plain(compiled([0.0, 0.0], "").blob);
+    }
 }

@@ -39,7 +39,7 @@ use gridel_core::format::record::{self, View};
 use lights::{CAMERA, LightData, Space, on_lattice};
 use materials::MaterialData;
 use setting::Setting;
-pub use setting::{Shoulder, Supplied};
+pub use setting::{Shoulder, Supplied, Unstated};
 
 /// Everything of a blob that is not geometry.
 #[derive(Debug)]
@@ -49,6 +49,7 @@ pub struct ShadingData {
     pub requirements: Requirements,
     /// Parts that the scene lacks and the compiler supplied.
     pub supplied: Vec<Supplied>,
+    pub unstated: Unstated,
     materials: MaterialData,
     lights: LightData,
     /// The light around the scene.
@@ -128,13 +129,19 @@ impl ShadingData {
         let placed = place(&camera, &coordinates.header)?;
         let mut tracks = joints::kept_tracks(scene);
         exposure.change_tracks(&mut tracks)?;
-        let mut motion =
-            tracks::sections(tracks, &camera, &materials.numbers, &coordinates.header)?;
+        let mut motion = tracks::sections(
+            scene,
+            tracks,
+            &camera,
+            &materials.numbers,
+            &coordinates.header,
+        )?;
         motion.extend(joints::sections(scene, &coordinates.header)?);
         Ok(Self {
             view: placed.replace_in(&view, &coordinates.header),
             coordinates,
             requirements,
+            unstated: setting.unstated(scene),
             supplied: setting.supplied,
             materials,
             lights,

@@ -2,7 +2,7 @@
 
 use crate::compile::geometry::extent::Shapes;
 use crate::compile::view::framing::{BACKGROUND, framing_of};
-use crate::scene::{Camera, Color, Light};
+use crate::scene::{Camera, Color, Light, Scene};
 use crate::shape::unit;
 use glam::DVec3;
 use serde::{Serialize, Serializer};
@@ -94,6 +94,38 @@ impl Setting {
             supplied,
         }
     }
+
+    /// Returns what the compiler supplies for a scene with this setting.
+    pub fn unstated(&self, scene: &Scene) -> Unstated {
+        let mut supplied = self.supplied.iter();
+        let has_light = supplied.any(|it| matches!(it, Supplied::Light(_)));
+        let light = self.lights.last().filter(|_| has_light);
+        let background = Some(self.background);
+        Unstated {
+            light: light.map(|light| (*light, self.ambient)),
+            background: background.filter(|it| *it == BACKGROUND && scene.environment.is_none()),
+        }
+    }
+}
+
+/// What a scene does not state, and the compiler supplies for its pictures. A scene with another camera gets other
+/// values.
+///
+/// ```
+/// # let file = "[[object]]\nkind = 'sphere'\ncenter = [0, 0, 0]\nradius = 1\nname = 'ball'";
+/// # let imported = gridel_host::scene::read("ball.toml".as_ref(), file.into(), &Default::default())?;
+/// use gridel_host::compile::{BACKGROUND, Options, compile};
+///
+/// let unstated = compile(&imported.scene, &Options::default())?.report.unstated;
+/// assert!(unstated.light.is_some() && unstated.background == Some(BACKGROUND));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Unstated {
+    /// A light, and the ambient light that comes with it.
+    pub light: Option<(Light, Color)>,
+    /// The background, if it is that of scenes without a camera.
+    pub background: Option<Color>,
 }
 
 /// Returns the direction of a light from above the camera's left shoulder, and the shoulder. The light comes from

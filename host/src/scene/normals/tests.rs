@@ -133,3 +133,61 @@ fn transforms_keep_normals_at_right_angles_to_the_surface() {
         }
     }
 }
+
+/// The displacements that turn vertices about y, seen from above.
+fn turning(vertices: &[DVec3], degrees: f64) -> [Displacements; 1] {
+    let turn = DQuat::from_rotation_y(degrees.to_radians());
+    let vectors = vertices.iter().map(|it| turn * *it - *it).collect();
+    [Displacements { target: 0, vectors }]
+}
+
+#[test]
+fn sharp_faces_of_a_mesh_that_turns_are_flat() {
+    let (vertices, triangles) = cube();
+    let mesh = (&vertices[..], &triangles[..]);
+    let turned = turning(&vertices, 150.0);
+    for degrees in [0.0, 40.0, 89.0] {
+        assert!(
+            Normals::computed_for(mesh, degrees, &turned).is_flat(),
+            "{degrees}"
+        );
+    }
+    let round = Normals::computed_for(mesh, 91.0, &turned);
+    assert!(round.triangles.iter().all(|it| *it != Normals::FLAT));
+}
+
+/// A square of two triangles, of which only one corner is lifted, beside a triangle that stays.
+#[test]
+fn faces_that_bend_apart_are_smooth_where_an_angle_is_given() {
+    let points = [[0, 0], [1, 0], [1, 1], [0, 1], [5, 0], [6, 0], [5, 1]];
+    let vertices = points.map(|[x, y]| DVec3::new(x.into(), y.into(), 0.0));
+    let triangles = [[0, 1, 2], [0, 2, 3], [4, 5, 6]];
+    let mut vectors = vec![DVec3::ZERO; vertices.len()];
+    vectors[3] = DVec3::Z;
+    let lifted = [Displacements { target: 0, vectors }];
+    let mesh = (&vertices[..], &triangles[..]);
+    assert!(Normals::computed_for(mesh, 0.0, &lifted).is_flat());
+    let found = Normals::computed_for(mesh, 40.0, &lifted);
+    let is_flat: Vec<bool> = found
+        .triangles
+        .iter()
+        .map(|it| *it == Normals::FLAT)
+        .collect();
+    assert_eq!(is_flat, [false, false, true]);
+}
+
+/// Two halves that both targets bend by the same angle: together they lie in one plane only with equal weights.
+#[test]
+fn faces_that_are_parallel_at_some_weights_alone_are_smooth() {
+    let vertices =
+        [[0, 0], [0, 1], [-1, 0], [1, 0]].map(|[x, y]| DVec3::new(x.into(), y.into(), 0.0));
+    let triangles = [[0, 1, 2], [1, 0, 3]];
+    let lifted = |target: usize, corner: usize, by: f64| {
+        let mut vectors = vec![DVec3::ZERO; 4];
+        vectors[corner] = DVec3::Z * by;
+        Displacements { target, vectors }
+    };
+    let both = [lifted(0, 2, 1.0), lifted(1, 3, -1.0)];
+    let found = Normals::computed_for((&vertices, &triangles), 40.0, &both);
+    assert!(found.triangles.iter().all(|it| *it != Normals::FLAT));
+}

@@ -4,7 +4,7 @@ use super::shape::pair;
 use super::source::{Name, Source, nearest};
 use super::value::{Fields, Value};
 use crate::scene::texture::{Images, texture_transform};
-use crate::scene::{Alpha, Diffuse, Image, Material, NormalMap, SceneError, Texture, Wrap};
+use crate::scene::{Alpha, Color, Diffuse, Image, Material, NormalMap, SceneError, Texture, Wrap};
 use crate::table::shortened;
 use glam::{DAffine2, DVec2, DVec3};
 use std::collections::BTreeMap;
@@ -135,6 +135,7 @@ fn material(table: Value<'_>, images: &mut Images<'_>) -> Result<Material, Scene
     let texture = fields.or("texture", None, |value| {
         texture(value, images, DAffine2::IDENTITY).map(Some)
     })?;
+    let transmit = fields.or("transmit", default.transmit, Value::reflectance)?;
     Ok(Material {
         diffuse,
         highlight: fields.or("highlight", default.highlight, Value::reflectance)?,
@@ -143,13 +144,13 @@ fn material(table: Value<'_>, images: &mut Images<'_>) -> Result<Material, Scene
         })?,
         mirror: fields.or("mirror", default.mirror, Value::reflectance)?,
         roughness: roughness(&fields)?,
-        transmit: fields.or("transmit", default.transmit, Value::reflectance)?,
+        transmit,
         ior: fields.or("ior", default.ior, |value| value.number_in(1.0..=4.0))?,
         priority: priority(&fields)?,
         absorption: fields.or("absorption", default.absorption, Value::coefficients)?,
         normal_map: normal_map(&fields, texture.as_ref(), images)?,
         texture,
-        alpha: alpha(&fields)?,
+        alpha: alpha(&fields, transmit)?,
         emission: fields.or("emission", default.emission, Value::radiance)?,
         lights: fields.or("lights", default.lights, Value::boolean)?,
         ..default
@@ -192,7 +193,7 @@ fn roughness(fields: &Fields<'_>) -> Result<f64, SceneError> {
 }
 
 /// Reads the use of the texture's alpha, which glass ignores.
-fn alpha(fields: &Fields<'_>) -> Result<Option<Alpha>, SceneError> {
+fn alpha(fields: &Fields<'_>, transmit: Color) -> Result<Option<Alpha>, SceneError> {
     let cutoff = fields.get("cutoff");
     let Some(value) = fields.get("alpha") else {
         return match cutoff {
@@ -207,7 +208,7 @@ fn alpha(fields: &Fields<'_>) -> Result<Option<Alpha>, SceneError> {
         let remedy = "add a `texture`, or write a pane as `transmit = 0.5` and `ior = 1`";
         return Err(value.error("`alpha` needs `texture`", remedy));
     }
-    if fields.get("transmit").is_some() {
+    if transmit != [0.0; 3] {
         let remedy = "remove `alpha` or `transmit`";
         return Err(value.error("glass has no `alpha`: it lets light through", remedy));
     }

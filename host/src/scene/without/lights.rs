@@ -123,7 +123,6 @@ pub(super) fn remove_falloff(scene: &mut Scene) {
         *color = color.map(|channel| channel * factor);
         change_tracks(&mut scene.tracks, number, factor, DVec3::ZERO);
     }
-    scene.light_forms.clear();
 }
 
 /// The middle of all that has an end.
@@ -263,6 +262,18 @@ mod tests {
                 panic!("{:?}", left.lights);
             };
             assert!((color[0] - expected).abs() < 1e-9, "{rest}: {color:?}");
+        }
+    }
+
+    #[test]
+    fn lights_without_falloff_lose_nothing() {
+        let point = "[[light]]\nkind = 'point'\nposition = [0, 9, 0]\n";
+        let sun = "[[light]]\nkind = 'directional'\ndirection = [0, -1, 0]\n";
+        for lights in [String::new(), point.to_owned(), sun.to_owned() + point] {
+            let mut scene = scene(&format!("{lights}{FLOOR}"));
+            for effect in [Effects::FALLOFF, Effects::AREA_LIGHT] {
+                assert_eq!(leave_one_out(&mut scene, effect), None, "{lights}");
+            }
         }
     }
 

@@ -1,6 +1,6 @@
 //! Scenes whose materials lose what varies on a surface. What moves a color moves what is left of it.
 
-use crate::scene::{Color, Diffuse, Scene, Track};
+use crate::scene::{Color, Diffuse, Material, Scene, Track};
 use gridel_core::format::track::TrackTarget;
 
 /// Replaces checkerboards by the means of their two colors. Where both move, at other times or in another manner, the
@@ -35,6 +35,22 @@ pub(super) fn average_checkers(scene: &mut Scene) {
             (None, None) => (),
         }
     }
+}
+
+/// Changes materials that are glass, at rest or at a time of their tracks.
+pub(super) fn each_glass(scene: &mut Scene, change: impl Fn(&mut Material)) {
+    let sends = scene.sends();
+    let materials = scene.materials.iter_mut().zip(sends);
+    let glass = materials.filter(|(_, sends)| sends.transmits);
+    glass.for_each(|(material, _)| change(material));
+}
+
+/// Makes mirrors and glass smooth. A roughness that no ray meets is left alone.
+pub(super) fn make_smooth(scene: &mut Scene) {
+    let sends = scene.sends();
+    let materials = scene.materials.iter_mut().zip(sends);
+    let rough = materials.filter(|(_, sends)| sends.any());
+    rough.for_each(|(material, _)| material.roughness = 0.0);
 }
 
 /// Replaces textures by the means of their images.
@@ -85,6 +101,7 @@ fn is_in_step(one: &Track, other: &Track) -> bool {
 
 #[cfg(test)]
 mod tests {
+    use crate::scene::without::leave_one_out;
     use crate::scene::{Diffuse, Image, Scene, Texture, read};
     use gridel_core::Effects;
     use gridel_core::format::track::TrackTarget;
@@ -150,5 +167,22 @@ mod tests {
         let values = scene.tracks[0].keys.iter().map(|it| it.value);
         let expected = [[1.0, 0.0, 0.0, 0.0], [0.5, 0.0, 0.0, 0.0]];
         assert_eq!(values.collect::<Vec<_>>(), expected);
+    }
+
+    #[test]
+    fn properties_that_no_ray_meets_are_not_left_out() {
+        let material = "[material.m]\nmirror = 0\ntransmit = 0\nroughness = 0.4\npriority = 1\nabsorption = 1\n";
+        let ball = "[[object]]\nkind = 'sphere'\ncenter = [0, 0, 0]\nradius = 1\nmaterial = 'm'\n";
+        let raised = "[[track]]\ntarget = 'material.m.transmit'\ntimes = [0, 1]\nvalues = [0, 1]\n";
+        for (tracks, kept) in [("", [true; 3]), (raised, [false, false, true])] {
+            let text = format!("{material}{ball}{tracks}");
+            let imported = read("m.toml".as_ref(), text.into(), &Default::default());
+            let scene = imported.unwrap().scene;
+            let effects = [Effects::GLOSSY, Effects::ABSORPTION, Effects::NESTED];
+            for (effect, kept) in effects.into_iter().zip(kept) {
+                let names = leave_one_out(&mut scene.clone(), effect);
+                assert_eq!(names.is_none(), kept, "{effect}: {names:?}");
+            }
+        }
     }
 }

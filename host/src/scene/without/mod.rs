@@ -12,7 +12,7 @@ use crate::table::printable;
 use gridel_core::Effects;
 use gridel_core::format::track::TrackTarget;
 use lights::{remove_falloff, shrink_areas};
-use materials::{average_checkers, average_textures};
+use materials::{average_checkers, average_textures, each_glass, make_smooth};
 use std::borrow::Cow;
 
 /// Takes away what calls for an effect.
@@ -36,7 +36,7 @@ const REMOVALS: [(Effects, &str, Removal); Effects::NAMED.len()] = [
     (
         Effects::GLOSSY,
         "rough mirrors and rough glass are smooth",
-        |scene| each_material(scene, |material| material.roughness = 0.0),
+        make_smooth,
     ),
     (
         Effects::MIRROR,
@@ -57,12 +57,17 @@ const REMOVALS: [(Effects, &str, Removal); Effects::NAMED.len()] = [
     (
         Effects::NESTED,
         "glass within glass is refracted at every face, as if each were alone",
-        |scene| each_material(scene, |material| material.priority = None),
+        |scene| {
+            each_material(scene, |material| {
+                // Glass at rest alone has one.
+                material.priority = material.priority.filter(|_| material.transmit == [0.0; 3]);
+            });
+        },
     ),
     (
         Effects::ABSORPTION,
         "glass is as clear in its depth as at its surface",
-        |scene| each_material(scene, |material| material.absorption = [0.0; 3]),
+        |scene| each_glass(scene, |material| material.absorption = [0.0; 3]),
     ),
     (
         Effects::CHECKER,
@@ -101,7 +106,12 @@ const REMOVALS: [(Effects, &str, Removal); Effects::NAMED.len()] = [
     (
         Effects::ALPHA,
         "textures are opaque, also where they were not there",
-        |scene| each_material(scene, |material| material.alpha = None),
+        |scene| {
+            each_material(scene, |material| {
+                // Glass has none.
+                material.alpha = material.alpha.filter(|_| material.transmit != [0.0; 3]);
+            });
+        },
     ),
     (
         Effects::FALLOFF,

@@ -1,13 +1,16 @@
 //! Values of splines between keys.
 
-use crate::scene::{Interpolation, LARGEST_WEIGHT, Track, turning_points};
+use crate::scene::{Interpolation, LARGEST_SCALE, LARGEST_WEIGHT, Track, turning_points};
 use gridel_core::format::track::ValueKind;
 
-/// Returns where a spline leads out of the range of fields of view or weights, for an error. A device would limit it:
-/// there is no picture then, or another one.
+/// Returns where a spline leads out of the range of fields of view, scales or weights, for an error. A device would
+/// limit it: there is no picture then, or another one.
 pub(super) fn beyond(track: &Track) -> Option<String> {
     let kind = track.target.kind();
-    let is_limited = matches!(kind, ValueKind::FieldOfView | ValueKind::Weight);
+    let is_limited = matches!(
+        kind,
+        ValueKind::FieldOfView | ValueKind::Scale | ValueKind::Weight
+    );
     if !is_limited || track.interpolation != Interpolation::Cubic {
         return None;
     }
@@ -21,6 +24,11 @@ pub(super) fn beyond(track: &Track) -> Option<String> {
         if kind == ValueKind::Weight {
             return (value.abs() > LARGEST_WEIGHT).then(|| {
                 format!("at {seconds:.3} s the weight is {value:.3}; it must be from -64 to 64")
+            });
+        }
+        if kind == ValueKind::Scale {
+            return (value > LARGEST_SCALE).then(|| {
+                format!("at {seconds:.3} s the scale is {value:.3}; it must be at most {LARGEST_SCALE}")
             });
         }
         (value <= 0.0 || value >= 180.0).then(|| {
@@ -83,6 +91,30 @@ mod tests {
         compiled(16.0).unwrap();
         let error = compiled(60.0).unwrap_err().to_string();
         assert!(error.contains("at 0.500 s the weight is 75.000"), "{error}");
+    }
+
+    #[test]
+    fn splines_that_lead_beyond_the_largest_scale_are_rejected() {
+        let compiled = |tangent: f64| {
+            let file = format!(
+                "[[part]]\nname = 'p'\n[[part.object]]\nkind = 'sphere'\ncenter = [0, 0, 0]\nradius = 1\n\
+                 [[joint]]\nname = 'j'\n[[instance]]\npart = 'p'\njoint = 'j'\n\
+                 [[track]]\ntarget = 'joint.j.scale'\ninterpolation = 'cubic'\n\
+                 times = [0, 1]\nvalues = [60, 60]\ntangents = [{tangent}, -{tangent}]"
+            );
+            let imported = read("j.toml".as_ref(), file.into(), &Default::default()).unwrap();
+            compile(&imported.scene, &Options::default()).map(|_| ())
+        };
+        compiled(16.0).unwrap();
+        let error = compiled(60.0).unwrap_err().to_string();
+        for part in [
+            "j.toml:12",
+            "joint.j.scale: ",
+            "at 0.500 s the scale is 75.000",
+            "at most 64",
+        ] {
+            assert!(error.contains(part), "{error}");
+        }
     }
 
     #[test]

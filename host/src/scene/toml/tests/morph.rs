@@ -78,7 +78,7 @@ fn imports_bring_their_morph_targets() {
 #[test]
 fn smooth_normals_turn_with_the_faces() {
     let scene = scene(
-        "[morph.flat]\n[[object]]\nkind = 'mesh'\nsmooth = 80\n\
+        "[morph.flat]\n[[object]]\nkind = 'mesh'\nsmooth = 100\n\
          vertices = [[0, 0, 0], [1, 0, -1], [-1, 0, -1], [0, 1, 0]]\nfaces = [[0, 1, 3], [2, 0, 3]]\n\
          morph = { flat = [[0, 0, 0], [0, 0, 1], [0, 0, 1], [0, 0, 0]] }\n",
     );

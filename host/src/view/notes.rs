@@ -1,0 +1,12 @@
+//! What a saved camera says about its scene.
+
+use crate::compile::Unstated;
+
+/// What the picture of a camera depends on besides, for comments.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Notes {
+    /// Names of the tracks that move the camera, such as `camera.orbit`.
+    pub tracks: Vec<&'static str>,
+    /// What the scene file does not state.
+    pub unstated: Unstated,
+}
