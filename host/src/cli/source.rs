@@ -98,10 +98,6 @@ impl Source {
             source.changes = Some(changes);
             source.for_pictures = Some(options.clone());
         }
-        if options.time.or(options.opening).is_some() {
-            let still = source.warn_of_stillness();
-            source.warnings.extend(still);
-        }
         if let Some(seconds) = options.time.filter(|_| source.moves_otherwise()) {
             source.changes = Some(source.changes_at_time(seconds)?);
         }

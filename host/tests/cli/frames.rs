@@ -195,76 +195,13 @@ fn scenes_whose_tracks_do_nothing_have_a_picture_at_a_time() {
     folder.done(&[&["render", "orbit.toml", "-o", "open.ppm"], &open[..]].concat());
 }
 
-/// A blob does not tell a scene that never moved from one whose tracks options replaced.
-#[test]
-fn scenes_and_blobs_in_which_nothing_moves_have_a_picture_at_a_time() {
-    let folder = folder();
-    let sphere = b"[render]\nwidth = 24\nheight = 18\n[[object]]\nkind = 'sphere'\ncenter = [0, 0, 0]\nradius = 1\n";
-    folder.write("still.toml", sphere);
-    folder.done(&["build", "still.toml", "-o", "still.gridel"]);
-    let orbit = SCENE.split("[[track]]\ntarget = 'light").next().unwrap();
-    folder.write("orbit.toml", orbit.as_bytes());
-    let eye = ["--eye", "3,3,3"];
-    let build = ["build", "orbit.toml", "-o", "orbit.gridel"];
-    folder.done(&[&build[..], &eye].concat());
-    for (input, options, is_warned) in [
-        ("still.toml", &[][..], true),
-        ("still.gridel", &[], true),
-        ("orbit.toml", &eye, false),
-        ("orbit.gridel", &[], true),
-        ("orbit.gridel", &eye, true),
-    ] {
-        let render = |output: &str, time: &[&str]| {
-            folder.json(&[&["render", input, "-o", output], options, time].concat())
-        };
-        let report = render("own.ppm", &[]);
-        assert_eq!(report["warnings"], json!([]), "{input}");
-        for time in [
-            &["--time", "1"][..],
-            &["--time", "1", "--shutter", "0.1"],
-            &["--frames", "0..2"],
-        ] {
-            let output = if time[0] == "--time" {
-                "at.ppm"
-            } else {
-                "at.apng"
-            };
-            let warnings = render(output, time)["warnings"].to_string();
-            let words = ["nothing moves", "[[track]]"];
-            assert_eq!(
-                words.map(|it| warnings.contains(it)),
-                [is_warned; 2],
-                "{input} {warnings}"
-            );
-        }
-        assert!(folder.read("at.ppm") == folder.read("own.ppm"), "{input}");
-    }
-    folder.done(&[
-        "render",
-        "orbit.toml",
-        "-o",
-        "file.ppm",
-        "--eye",
-        "3,3,3",
-        "--time",
-        "1",
-    ]);
-    folder.done(&[
-        "render",
-        "orbit.gridel",
-        "-o",
-        "blob.ppm",
-        "--time",
-        "1",
-        "--accel",
-        "list",
-    ]);
-    assert!(folder.read("file.ppm") == folder.read("blob.ppm"));
-}
-
 #[test]
 fn outputs_and_scenes_that_frames_cannot_have_are_rejected() {
     let folder = folder();
+    folder.write(
+        "still.toml",
+        b"[[object]]\nkind = 'sphere'\ncenter = [0, 0, 0]\nradius = 1\n",
+    );
     let fails = |arguments: &[&str], words: &[&str]| {
         folder.fails(2, &[&["render"], arguments].concat(), words);
     };
@@ -282,6 +219,14 @@ fn outputs_and_scenes_that_frames_cannot_have_are_rejected() {
     ] {
         fails(&[&["a.toml", "-o", output], &some[..]].concat(), &[word]);
     }
+    fails(
+        &[&["still.toml", "-o", "x.apng"], &some[..]].concat(),
+        &["has no tracks"],
+    );
+    fails(
+        &["still.toml", "--time", "1", "-o", "x.png"],
+        &["has no tracks", "[[track]]"],
+    );
     fails(&["a.toml", "--frames", "2..2", "-o", "x.apng"], &["empty"]);
     fails(&["a.toml", "--fps", "5", "-o", "x.png"], &["--frames"]);
     let at = ["a.toml", "--fps", "5", "--time", "1", "-o", "x.png"];

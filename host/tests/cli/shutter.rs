@@ -128,6 +128,10 @@ fn rows_of_a_blurred_picture_are_joined() {
 #[test]
 fn shutters_without_a_time_or_without_samples_are_rejected() {
     let folder = folder();
+    folder.write(
+        "still.toml",
+        b"[[object]]\nkind = 'sphere'\ncenter = [0, 0, 0]\nradius = 1\n",
+    );
     for (options, words) in [
         (&["a.toml", "--shutter", "0.1"][..], &["--time"][..]),
         (
@@ -153,6 +157,10 @@ fn shutters_without_a_time_or_without_samples_are_rejected() {
         (
             &["a.toml", "--time", "0", "--shutter", "1", "--moments", "0"],
             &["1..=256"],
+        ),
+        (
+            &["still.toml", "--time", "0", "--shutter", "1"],
+            &["nothing in still.toml moves"],
         ),
     ] {
         let command = ["render", "-o", "x.png"];

@@ -235,7 +235,6 @@ pub fn run(shot: Shot<'_>, frames: Range<u32>, output: &Output) -> Result<(), Fa
     let per_second = shot.options.per_second();
     check_times(&tracks, &frames, per_second)?;
     let mut warnings = shot.source.warnings.clone();
-    warnings.extend(shot.source.warn_of_stillness());
     let shutter = &shot.options.shutter;
     let exposure = shutter.exposure(&tracks, job.settings.samples, &mut warnings)?;
     let progress = Progress::steps("rendering", frames.len() as u64);

@@ -31,7 +31,7 @@ impl Source {
         }
     }
 
-    /// Returns the tracks of a scene; none where nothing moves.
+    /// Returns the tracks of a scene that moves; none where all of the scene file's do nothing.
     pub fn tracks(&self) -> Result<Tracks<'_>, Failure> {
         let tracks = Tracks::from_bytes(self.blob.bytes()).map_err(|error| self.invalid(error))?;
         if !tracks.is_empty() || !self.tracked.is_empty() {
@@ -39,7 +39,13 @@ impl Source {
         }
         let file = self.input.path().display();
         Err(match self.posed {
-            None | Some(Posed::Always) => return Ok(tracks),
+            None | Some(Posed::Always) => Failure::usage(
+                format!(
+                    "nothing in {file} moves: it has no tracks, or none that Gridel can follow"
+                ),
+                "leave the time out; a `[[track]]` of a TOML file moves a scene (see `gridel help scene`), and so does an \
+                 animation of a glTF file",
+            ),
             Some(Posed::AtTime) => Failure::usage(
                 format!("instances alone move in {file}, and copies of them are not blurred"),
                 "leave out `--instances flatten` or `--shutter`",
@@ -61,20 +67,6 @@ impl Source {
             warn_of_file(self.input.path(), vec![sentence.into()], &mut warnings);
         }
         warnings
-    }
-
-    /// Warns, where a time is asked for, that all times show the same picture, and returns the warning. Options that
-    /// replace a scene file's tracks are no reason for one: but of their blob it is not known that there were tracks.
-    pub fn warn_of_stillness(&self) -> Option<String> {
-        let is_still = || Some(self.tracks().ok()?.is_empty());
-        if !self.tracked.is_empty() || self.posed.is_some() || !is_still()? {
-            return None;
-        }
-        let mut warnings = Vec::new();
-        let sentence = "nothing moves, so all times show the same picture: it has no tracks, or none that Gridel can follow; \
-             a `[[track]]` of a TOML file moves a scene (see `gridel help scene`), and so does an animation of a glTF file";
-        warn_of_file(self.input.path(), vec![sentence.into()], &mut warnings);
-        warnings.pop()
     }
 
     /// Returns what a saved camera says about the scene besides.
