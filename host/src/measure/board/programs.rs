@@ -3,7 +3,7 @@
 //!
 //! The board tests write `programs.json`. Code is not a sum: the size of a part depends on the compiler's work on the
 //! rest, by some percent of the program. So a program that was built is reported exactly. One that was not has
-//! [`bounds`].
+//! upper bounds.
 
 use super::Board;
 use super::bounds::{self, Parts};
