@@ -52,8 +52,8 @@ pub fn track<const N: usize>(
     }
 }
 
-/// Returns tracks of everything that moves in a scene whose last material is a checkerboard. The camera turns by a
-/// rotation, or looks at a target and orbits it.
+/// Returns tracks of everything that moves in a scene whose last material without alpha is a checkerboard. The camera
+/// turns by a rotation, or looks at a target and orbits it.
 pub fn moving(scene: &Scene, by_rotation: bool) -> Vec<Track> {
     use Interpolation::{Cubic, Linear, Step};
     let mut tracks = vec![
@@ -118,7 +118,8 @@ pub fn moving(scene: &Scene, by_rotation: bool) -> Vec<Track> {
             &colors,
         ));
     }
-    let material = scene.materials.len() - 1;
+    let opaque = |it: &Material| it.alpha.is_none();
+    let material = scene.materials.iter().rposition(opaque).unwrap_or(0);
     for target in [
         TrackTarget::MaterialDiffuse,
         TrackTarget::MaterialOdd,
