@@ -61,7 +61,7 @@ fn along_u(corners: [[i32; 3]; 3], coordinates: [[i32; 2]; 3]) -> Option<([i64; 
     } else {
         along.map(|it| it >> 6)
     };
-    (area != 0 && along != [0; 3]).then_some((along, area > 0))
+    (area != 0 && all != 0).then_some((along, area > 0))
 }
 
 impl<N: Number> Hit<N> {

@@ -23,7 +23,7 @@ pub(crate) struct FarHit<N: Number> {
 /// Returns the nearest hit in the interval that the caller gave. Ties go to the hit that comes first in the scene file.
 #[cold]
 #[inline(never)]
-pub(super) fn nearest<N: Number, C: Observer>(
+pub(crate) fn nearest<N: Number, C: Observer>(
     scene: &Scene<'_>,
     ray: &Ray<N>,
     count: &mut C,

@@ -164,20 +164,6 @@ impl<N: Arithmetic> Ray<N> {
         }
     }
 
-    /// [`from_inside`](Self::from_inside) for a place that can lie far outside the scene's box, on a shape without
-    /// bounds.
-    #[cold]
-    pub(crate) fn from_anywhere(
-        bounds: &UnitBox,
-        origin: [N::Wide; 3],
-        direction: [N::Wide; 3],
-        tmax: Option<N::Wide>,
-    ) -> Option<Self> {
-        let beside = N::step_beside(N::ZERO).widen();
-        let tmax = tmax.unwrap_or(N::far(i64::MAX));
-        Self::new(bounds, origin, direction, beside, tmax).ok()
-    }
-
     inline_on_hosts!(
         /// Returns a ray given in double precision, rounded to this format only after its origin was moved to the
         /// scene. For hosts and tests.

@@ -24,13 +24,14 @@ use crate::render::start::Start;
 use crate::render::workspace::{Pending, State, WorkspaceView};
 use crate::scene::Scene;
 use crate::scene::textures::Footprint;
-use crate::shade::departure::{FarHit, FarPlace, Origin, depart_later, secondary_ray};
+use crate::shade::departure::{Far, FarPlace, Origin, depart, secondary_ray};
 use crate::shade::effect::{EffectList, Tracer};
 use crate::shade::sampler::Sampler;
 use crate::shade::surface::{Aim, Arrival, Bounce, Filter, Lighting, Reach, Secondary, Surface};
 use crate::shade::{All, Color};
 use crate::target::{WIDE, inline_on_boards};
 use core::marker::PhantomData;
+use heapless::VecView;
 
 /// The parts of the scene and the renderer that the ray loop uses.
 pub(super) struct Loop<'s, 'a> {
@@ -64,7 +65,6 @@ impl Loop<'_, '_> {
                 sampler,
                 spread: self.spread,
                 state: State::<N>::default(),
-                far: FarHit::of(None),
                 space,
                 count,
                 structure: PhantomData,
@@ -152,7 +152,6 @@ impl Loop<'_, '_> {
                 sampler: Sampler::new([0; 2], 0),
                 spread: self.spread,
                 state: State::<N>::default(),
-                far: FarHit::of(None),
                 space,
                 count,
                 structure: PhantomData,
@@ -175,11 +174,26 @@ struct Tracing<'t, 'w, 's, N: Number, A, C, const EFFECTS: u32> {
     sampler: Sampler,
     spread: Spread,
     state: State<N>,
-    /// The place of the ray's hit.
-    far: FarHit<N>,
     space: &'t mut WorkspaceView<'w, N>,
     count: &'t mut C,
     structure: PhantomData<A>,
+}
+
+/// Starts the rays that a hit beyond lengths sent, those behind others that wait, where they come to the scene.
+///
+/// At once for all, because a call for each took a kilobyte of small code.
+#[cold]
+#[inline(never)]
+fn leave_far<N: Number>(
+    scene: &Scene<'_>,
+    far: &FarPlace<N>,
+    hit: &Hit<N>,
+    work: &mut VecView<Pending<N>>,
+    others: usize,
+) {
+    for sent in work.get_mut(others..).unwrap_or_default() {
+        far.depart(scene, hit, sent.direction, &mut sent.origin);
+    }
 }
 
 impl<N: Number, A: Accel, C: Observer, const EFFECTS: u32> Tracing<'_, '_, '_, N, A, C, EFFECTS> {
@@ -195,9 +209,10 @@ impl<N: Number, A: Accel, C: Observer, const EFFECTS: u32> Tracing<'_, '_, '_, N
             self.bring(Source::Background, brought.times(weight), radiance);
             return;
         };
-        if UNBOUNDED && let Some(far) = FarPlace::of(ray, &hit) {
-            self.far = FarHit::of(Some(far));
-        }
+        let far = match UNBOUNDED {
+            true => FarPlace::of(ray, &hit),
+            false => None,
+        };
         let required = All::required_by_material(material);
         let mut arrival = Arrival {
             hit: &hit,
@@ -214,6 +229,7 @@ impl<N: Number, A: Accel, C: Observer, const EFFECTS: u32> Tracing<'_, '_, '_, N
         };
         let mut surface = Surface {
             hit: &hit,
+            far: Far::of(far.as_ref()),
             material,
             required,
             shading_normal,
@@ -241,6 +257,7 @@ impl<N: Number, A: Accel, C: Observer, const EFFECTS: u32> Tracing<'_, '_, '_, N
             }
             return;
         }
+        let waiting = self.space.work.len();
         if const { EFFECTS & All::PASSING != 0 } && surface.passing != Color::BLACK {
             let secondary = Secondary {
                 kind: RayKind::Refracted,
@@ -268,6 +285,11 @@ impl<N: Number, A: Accel, C: Observer, const EFFECTS: u32> Tracing<'_, '_, '_, N
                 weight: surface.weight.times(mirrored),
             };
             self.send(&hit, bounce.leaving(&hit, secondary));
+        }
+        if const { UNBOUNDED && EFFECTS & (All::CASTING | All::PASSING) != 0 }
+            && let Some(far) = &far
+        {
+            leave_far(self.scene, far, &hit, self.space.work, waiting);
         }
     }
 
@@ -321,7 +343,7 @@ impl<N: Number, A: Accel, C: Observer, const EFFECTS: u32> Tracing<'_, '_, '_, N
     #[inline(always)]
     fn lit(&mut self, number: u32, light: &Light, surface: &Surface<'_, N>) -> Color<N> {
         let mut state = self.state;
-        let origin = Origin::to_lights(self.scene, surface.hit, &self.far);
+        let origin = Origin::to_lights(self.scene, surface.hit, surface.far);
         let (way, distance) = light.seen_from(&origin);
         let mut aim = Aim {
             way,
@@ -464,7 +486,7 @@ impl<'s, N: Number, A: Accel, C: Observer, const EFFECTS: u32> Tracer<'s, N>
         } = secondary;
         let peak = weight.peak();
         if peak > N::ZERO && peak * N::radiance(1 << 20) > N::radiance(self.scene.view.cutoff) {
-            let origin = depart_later(self.scene, hit, &self.far, outward, direction);
+            let origin = depart(self.scene, hit, outward, false);
             // The list is as long as the depth requires, so there is a place.
             let _ = self.space.work.push(Pending {
                 origin,

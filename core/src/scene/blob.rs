@@ -146,7 +146,7 @@ impl<'a> Scene<'a> {
             if medium == number {
                 // A program can have replaced it with a material that is not glass.
                 let material = self.materials.get(number as usize)?;
-                return (material.transmit != [0; 3]).then_some(place);
+                return material.is_glass().then_some(place);
             }
             place = place.wrapping_add(1);
         }

@@ -195,7 +195,7 @@ fn check_media(scene: &Scene<'_>) -> Result<Effects, BlobError> {
         let most = scene.materials.len() as i64 - 1;
         at.within(Field::Material, number.into(), 0, most)?;
         let material = scene.materials.get(number as usize);
-        let is_glass = material.is_some_and(|material| material.transmit != [0; 3]);
+        let is_glass = material.is_some_and(Material::is_glass);
         at.ensure(is_glass, Reason::OpaqueMedium)?;
         let is_new = !media.iter().take(index).any(|&other| other == number);
         at.ensure(is_new, Reason::RepeatedMedium)?;

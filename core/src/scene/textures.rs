@@ -10,7 +10,7 @@ use crate::format::record::{Material, NormalMap, SurfaceMaps, Texture};
 use crate::format::{BlobError, Effects, Field, SectionKind, Sections};
 use crate::geometry::attributes::{COORDINATE_BITS, linear};
 use crate::number::log2::LOG2_BITS;
-use crate::target::{NormalMapOnly, TEXTURE_LEVELS, inline_on_boards};
+use crate::target::{NormalMapOnly, TEXTURE_LEVELS, inline_on_boards, inline_unless_small};
 use levels::Level;
 
 pub use levels::Footprint;
@@ -324,40 +324,41 @@ enum Taps {
     Mixed([u32; 4], [u32; 4], [u32; 2]),
 }
 
-#[inline(always)]
-fn taps(texture: &Texture, level: &Level, [u, v]: [i32; 2]) -> Taps {
-    let [width, height] = level.size;
-    let u = wrapped(u, texture.wrap[0]);
-    let v = wrapped(v, texture.wrap[1]);
-    if texture.filter & Texture::BILINEAR == 0 {
-        // At most 2^20 - 1 times 4096.
-        let x = u.wrapping_mul(width) >> COORDINATE_BITS;
-        let y = v.wrapping_mul(height) >> COORDINATE_BITS;
-        let row = level.first.wrapping_add(y.wrapping_mul(width));
-        return Taps::Nearest(row.wrapping_add(x), [x, y]);
+inline_unless_small!(
+    fn taps(texture: &Texture, level: &Level, [u, v]: [i32; 2]) -> Taps {
+        let [width, height] = level.size;
+        let u = wrapped(u, texture.wrap[0]);
+        let v = wrapped(v, texture.wrap[1]);
+        if texture.filter & Texture::BILINEAR == 0 {
+            // At most 2^20 - 1 times 4096.
+            let x = u.wrapping_mul(width) >> COORDINATE_BITS;
+            let y = v.wrapping_mul(height) >> COORDINATE_BITS;
+            let row = level.first.wrapping_add(y.wrapping_mul(width));
+            return Taps::Nearest(row.wrapping_add(x), [x, y]);
+        }
+        let ([left, right], across) = neighbors(u, width, texture.wrap[0] == 0);
+        let ([upper, lower], down) = neighbors(v, height, texture.wrap[1] == 0);
+        let row = |y: u32| level.first.wrapping_add(y.wrapping_mul(width));
+        let (above, below) = (row(upper), row(lower));
+        let both = across.wrapping_mul(down);
+        // Their sum is 1.
+        let weights = [
+            (1_u32 << 16)
+                .wrapping_add(both)
+                .wrapping_sub(across.wrapping_add(down) << 8),
+            (across << 8).wrapping_sub(both),
+            (down << 8).wrapping_sub(both),
+            both,
+        ];
+        let places = [
+            above.wrapping_add(left),
+            above.wrapping_add(right),
+            below.wrapping_add(left),
+            below.wrapping_add(right),
+        ];
+        Taps::Mixed(places, weights, [left, upper])
     }
-    let ([left, right], across) = neighbors(u, width, texture.wrap[0] == 0);
-    let ([upper, lower], down) = neighbors(v, height, texture.wrap[1] == 0);
-    let row = |y: u32| level.first.wrapping_add(y.wrapping_mul(width));
-    let (above, below) = (row(upper), row(lower));
-    let both = across.wrapping_mul(down);
-    // Their sum is 1.
-    let weights = [
-        (1_u32 << 16)
-            .wrapping_add(both)
-            .wrapping_sub(across.wrapping_add(down) << 8),
-        (across << 8).wrapping_sub(both),
-        (down << 8).wrapping_sub(both),
-        both,
-    ];
-    let places = [
-        above.wrapping_add(left),
-        above.wrapping_add(right),
-        below.wrapping_add(left),
-        below.wrapping_add(right),
-    ];
-    Taps::Mixed(places, weights, [left, upper])
-}
+);
 
 /// Returns a ratio with 30 fraction bits from a number of 8 bits, of which 255 means 1, with 16 fraction bits.
 #[inline(always)]

@@ -13,7 +13,7 @@ use crate::ray::Ray;
 use crate::scene::Scene;
 use crate::shade::Color;
 use crate::shade::effect::{Effect, Tracer};
-use crate::shade::glass::Glass;
+use crate::shade::material::is_any;
 use crate::shade::surface::{Arrival, Filter, Reach, Secondary};
 use crate::target::AbsorptionOnly;
 
@@ -27,7 +27,7 @@ impl Effect for Absorption {
 
     #[inline(always)]
     fn is_required_by_material(material: &Material) -> bool {
-        Glass::is_required_by_material(material) && material.absorption != [0; 3]
+        material.is_glass() && is_any(bytemuck::cast_ref(&material.absorption))
     }
 
     #[inline(always)]
@@ -130,7 +130,7 @@ impl Within {
         hit: &Hit<N>,
         material: &'s Material,
     ) -> Option<&'s Material> {
-        if Glass::is_required_by_material(material) && !hit.front {
+        if material.is_glass() && !hit.front {
             Some(material)
         } else {
             self.medium(scene)
@@ -140,9 +140,7 @@ impl Within {
     /// The glass behind a face that a ray crosses.
     #[inline(never)]
     fn beyond(self, scene: &Scene<'_>, object: u32, enters: bool) -> Self {
-        let is_glass = scene
-            .material(object)
-            .is_some_and(Glass::is_required_by_material);
+        let is_glass = scene.material(object).is_some_and(Material::is_glass);
         if !is_glass || scene.place_among_media(object).is_some() {
             return self;
         }

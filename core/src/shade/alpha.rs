@@ -27,7 +27,7 @@ impl Effect for Alpha {
 
     #[inline(always)]
     fn is_required_by_material(material: &Material) -> bool {
-        material.maps & Material::MAPS_ALPHA != 0 && material.transmit == [0; 3]
+        material.maps & Material::MAPS_ALPHA != 0 && !material.is_glass()
     }
 
     #[inline(always)]

@@ -14,41 +14,38 @@ use crate::target::InSomeBuilds;
 
 /// The start of a ray that leaves a hit.
 #[derive(Clone, Copy)]
-pub(crate) struct Origin<N: Number> {
-    point: [N; 3],
-    /// The place, if it is beyond lengths.
-    far: InSomeBuilds<Option<[N::Wide; 3]>, { UNBOUNDED as usize }>,
+pub(crate) struct Origin<'f, N: Number> {
+    /// A point of the surface.
+    pub(crate) point: [N; 3],
+    /// The place itself, if it is beyond lengths.
+    far: Far<'f, N>,
 }
 
-impl<N: Number> Origin<N> {
+/// The place of a hit beyond lengths, if it is one. It is absent in builds without shapes that can be hit there.
+pub(crate) type Far<'f, N> = InSomeBuilds<Option<&'f FarPlace<N>>, { UNBOUNDED as usize }>;
+
+impl<'f, N: Number> Origin<'f, N> {
     #[inline(always)]
     pub(crate) fn of(point: [N; 3]) -> Self {
         Self {
             point,
-            far: InSomeBuilds::of(None),
+            far: Far::of(None),
         }
     }
 
     /// The start of rays from a hit to lights.
     #[inline(always)]
-    pub(crate) fn to_lights(scene: &Scene<'_>, hit: &Hit<N>, far: &FarHit<N>) -> Self {
-        let far = far.get().copied().flatten();
+    pub(crate) fn to_lights(scene: &Scene<'_>, hit: &Hit<N>, far: Far<'f, N>) -> Self {
         Self {
             point: depart(scene, hit, hit.front, true),
-            far: InSomeBuilds::new(|| Some(far?.place)),
+            far,
         }
-    }
-
-    /// The start as lengths. For one beyond them it is another point of the surface.
-    #[inline(always)]
-    pub(crate) fn point(&self) -> [N; 3] {
-        self.point
     }
 
     #[inline(always)]
     pub(crate) fn place(&self) -> [N::Wide; 3] {
         match self.far.get() {
-            Some(Some(place)) => *place,
+            Some(Some(FarPlace(place))) => *place,
             _ => self.point.map(N::widen),
         }
     }
@@ -72,49 +69,43 @@ pub(crate) fn depart<N: Number>(
     }
 }
 
-/// Returns the start of a ray that waits until it is traced.
-#[inline(always)]
-pub(crate) fn depart_later<N: Number>(
-    scene: &Scene<'_>,
-    hit: &Hit<N>,
-    far: &FarHit<N>,
-    outward: bool,
-    direction: [N; 3],
-) -> [N; 3] {
-    let far = far.get().and_then(|far| far.as_ref());
-    match far.and_then(|far| far.depart(scene, direction.map(N::widen))) {
-        Some(origin) => origin,
-        None => depart(scene, hit, outward, false),
-    }
-}
-
 /// Returns a ray from a hit, with all `t` up to an end, or without one. Only in scenes with shapes without bounds it
 /// can start, and end, far from the scene's box.
 #[inline(always)]
 pub(crate) fn secondary_ray<N: Number>(
     scene: &Scene<'_>,
-    origin: &Origin<N>,
+    origin: &Origin<'_, N>,
     way: [N::Wide; 3],
     end: Option<N::Wide>,
 ) -> Option<Ray<N>> {
     if UNBOUNDED && scene.has_unbounded {
-        return Ray::from_anywhere(scene.bounds(), origin.place(), way, end);
+        return from_anywhere(scene, origin, way, end);
     }
     let end = end.unwrap_or(N::FAR.widen());
     Ray::from_inside(scene.bounds(), origin.point, way, end)
 }
 
-/// The place of a hit beyond lengths. It is absent in builds without shapes that can be hit there.
-pub(crate) type FarHit<N> = InSomeBuilds<Option<FarPlace<N>>, { UNBOUNDED as usize }>;
-
-/// A place beyond lengths at which a plane was hit.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct FarPlace<N: Number> {
-    /// Outside of the plane, on the side that the ray came from.
-    place: [N::Wide; 3],
-    /// The plane.
-    primitive: u32,
+#[cold]
+#[inline(never)]
+fn from_anywhere<N: Number>(
+    scene: &Scene<'_>,
+    origin: &Origin<'_, N>,
+    way: [N::Wide; 3],
+    end: Option<N::Wide>,
+) -> Option<Ray<N>> {
+    let (start, end) = (
+        N::step_beside(N::ZERO).widen(),
+        end.unwrap_or(N::far(i64::MAX)),
+    );
+    Ray::new(scene.bounds(), origin.place(), way, start, end).ok()
 }
+
+/// A place beyond lengths at which a plane was hit, outside of the plane on the side that the ray came from.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct FarPlace<N: Number>([N::Wide; 3]);
+
+/// A share of a place's distance with 30 fraction bits. The place has an error of some 2^-29 of it.
+const BESIDE: i32 = 1 << 4;
 
 impl<N: Number> FarPlace<N> {
     /// Returns the place of a hit if it is beyond the lengths of the format.
@@ -137,52 +128,61 @@ impl<N: Number> FarPlace<N> {
     #[inline(never)]
     fn beyond(ray: &Ray<N>, hit: &Hit<N>) -> Option<Self> {
         let place = ray.far_point(hit.t)?;
-        if lengths::<N>(place).is_some() {
+        if is_length::<N>(&place) {
             return None;
         }
-        // It has an error of some 2^-29 of its distance. Without products, each coordinate moves on its own.
-        let off = N::wide_scale(far_extent::<N>(place), N::ratio(1 << 4));
-        let normal = hit.facing_normal();
-        let axis = |k: usize| match normal[k] {
-            up if up > N::ZERO => place[k] + off,
-            down if down < N::ZERO => place[k] - off,
-            _ => place[k],
-        };
-        Some(Self {
-            place: [axis(0), axis(1), axis(2)],
-            primitive: hit.primitive,
-        })
+        Some(Self(place).beside(hit, BESIDE))
     }
 
-    /// Returns the start of a ray that waits: where it comes to the scene's box along its major axis. `None` for a ray
-    /// that does not come there, crosses another plane before, or is beyond lengths there. From a nearer point of the
-    /// plane most of them pass the box, too.
-    #[cold]
+    /// The place moved to the side that the ray came from, by a share of its distance.
     #[inline(never)]
-    fn depart(&self, scene: &Scene<'_>, way: [N::Wide; 3]) -> Option<[N; 3]> {
+    fn beside(self, hit: &Hit<N>, share: i32) -> Self {
+        let (Self(place), normal) = (self, hit.facing_normal());
+        let by = N::wide_scale(far_extent::<N>(place), N::ratio(share));
+        let axis = |k: usize| place[k] + N::wide_scale(by, normal[k]);
+        Self([axis(0), axis(1), axis(2)])
+    }
+
+    /// Moves the start of a ray that waits to where it comes to the scene's box along its major axis. It stays where the
+    /// ray does not come there, crosses another plane before, or is beyond lengths there. From a nearer point of the
+    /// plane most of them pass the box, too.
+    #[inline(never)]
+    pub(crate) fn depart(
+        self,
+        scene: &Scene<'_>,
+        hit: &Hit<N>,
+        direction: [N; 3],
+        origin: &mut [N; 3],
+    ) {
         let zero = N::Wide::default();
-        let ray = Ray::new(scene.bounds(), self.place, way, zero, N::far(i64::MAX)).ok()?;
+        let goes_through = N::dot(direction, hit.facing_normal()) < zero;
+        let place = if goes_through {
+            self.beside(hit, -2 * BESIDE)
+        } else {
+            self
+        };
+        let start = Origin {
+            point: *origin,
+            far: Far::of(Some(&place)),
+        };
+        let Some(ray) = from_anywhere(scene, &start, direction.map(N::widen), None) else {
+            return;
+        };
         if ray.start_t <= zero {
-            return None;
+            return;
         }
-        let mut is_free = true;
-        unbounded::each(scene, &ray, &mut NoCount, |plane| {
-            // A ray that goes through its own plane crosses it at once.
-            is_free &= plane.t > ray.start_t || scene.primitive_at(plane.place) == self.primitive;
-            false
-        });
-        if !is_free {
-            return None;
+        let other = unbounded::nearest(scene, &ray, &mut NoCount);
+        if other.is_some_and(|other| other.t <= ray.start_t) {
+            return;
         }
-        if ray.holds_start() {
-            return Some(ray.origin);
+        if let Some(start) = ray.far_point(ray.start_t).filter(is_length::<N>) {
+            *origin = start.map(N::narrow);
         }
-        lengths::<N>(ray.far_point(ray.start_t)?)
     }
 }
 
-/// Returns a place as lengths, if it is within them.
-fn lengths<N: Number>(place: [N::Wide; 3]) -> Option<[N; 3]> {
-    let lengths = place.map(N::narrow);
-    (lengths.map(N::widen) == place).then_some(lengths)
+/// Returns whether lengths hold a place.
+fn is_length<N: Number>(place: &[N::Wide; 3]) -> bool {
+    let extent = far_extent::<N>(*place);
+    N::narrow(extent).widen() == extent
 }

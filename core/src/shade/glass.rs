@@ -24,7 +24,7 @@ impl Effect for Glass {
 
     #[inline(always)]
     fn is_required_by_material(material: &Material) -> bool {
-        material.transmit != [0; 3]
+        material.is_glass()
     }
 
     #[inline(always)]

@@ -135,7 +135,7 @@ fn mirrored<N: Number>(alpha: i32, surface: &Surface<'_, N>, to_light: [N; 3]) -
     let facets = Facets::new(alpha, normal, cos_in);
     let (ratio, power) = facets.reflect(cos_out, halfway);
     let mut color = Color::ratios(material.mirror);
-    if material.transmit != [0; 3] {
+    if material.is_glass() {
         let cos = -N::from_wide(N::dot(direction, halfway));
         let cos = cos.max(N::ZERO).min(N::ONE);
         let split = split(surface.interface(), direction, halfway, cos);

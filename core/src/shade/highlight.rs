@@ -5,6 +5,7 @@ use crate::format::Effects;
 use crate::format::record::Material;
 use crate::shade::Color;
 use crate::shade::effect::{Effect, Tracer};
+use crate::shade::material::is_any;
 use crate::shade::surface::{Gleam, Lighting, Surface};
 
 pub(crate) struct Highlight;
@@ -17,7 +18,7 @@ impl Effect for Highlight {
 
     #[inline(always)]
     fn is_required_by_material(material: &Material) -> bool {
-        material.highlight != [0; 3]
+        is_any(&material.highlight)
     }
 
     #[inline(always)]

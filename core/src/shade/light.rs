@@ -14,7 +14,7 @@ impl Light {
     #[inline(always)]
     pub(crate) fn seen_from<N: Number>(
         &self,
-        origin: &Origin<N>,
+        origin: &Origin<'_, N>,
     ) -> ([N::Wide; 3], Option<N::Wide>) {
         if self.directional == 1 {
             return (self.vector.map(N::far), None);

@@ -11,6 +11,12 @@ impl Material {
         All::required_by_material(self)
     }
 
+    /// Returns true if light comes through the material.
+    #[inline(always)]
+    pub const fn is_glass(&self) -> bool {
+        is_any(&self.transmit)
+    }
+
     /// Returns the exponent of the highlight.
     pub const fn exponent(&self) -> u16 {
         self.shininess & 0xfff
@@ -20,6 +26,13 @@ impl Material {
     pub const fn absorption_shift(&self) -> u32 {
         (self.shininess >> 12) as u32
     }
+}
+
+/// Returns true if a number is not 0. For `!= [0; 3]` builds for size have a function that compares memory.
+#[cfg_attr(feature = "small", inline(never))]
+#[cfg_attr(not(feature = "small"), inline(always))]
+pub(crate) const fn is_any(numbers: &[i32; 3]) -> bool {
+    numbers[0] | numbers[1] | numbers[2] != 0
 }
 
 impl Light {

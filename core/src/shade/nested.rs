@@ -135,7 +135,7 @@ fn passed<'s>(
 #[inline(always)]
 fn around(scene: &Scene<'_>, inside: Inside, object: u32, enters: bool) -> Option<u8> {
     let material = scene.material(object);
-    let is_glass = material.is_some_and(|material| material.transmit != [0; 3]);
+    let is_glass = material.is_some_and(Material::is_glass);
     if is_glass && !enters {
         return None;
     }

@@ -60,7 +60,7 @@ fn through<'s, N: Number, X: Tracer<'s, N>>(
     for _ in 0..=MAX_SHADOW_SURFACES {
         // The light itself, and objects that touch it, cast no shadow.
         let end = distance.map(|distance| {
-            let magnitude = extent(origin.point()).max(N::narrow(distance));
+            let magnitude = extent(origin.point).max(N::narrow(distance));
             distance - N::error_bound(magnitude).widen()
         });
         let Some(ray) = secondary_ray(scene, &origin, way, end) else {

@@ -149,7 +149,7 @@ fn lift<'s, N: Number, X: Tracer<'s, N>>(
     if N::from_wide(N::dot(way, facing)) <= hit.error {
         return false;
     }
-    lighting.origin = Origin::of(moved(lighting.origin.point(), way));
+    lighting.origin = Origin::of(moved(lighting.origin.point, way));
     // Only a point light has another direction from there: of the others one was drawn, or they are far away.
     if lighting.light.is_point() {
         (lighting.way, lighting.distance) = lighting.light.seen_from(&lighting.origin);

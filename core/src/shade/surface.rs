@@ -7,13 +7,14 @@ use crate::observe::event::RayKind;
 use crate::query::Hit;
 use crate::scene::textures::Footprint;
 use crate::shade::Color;
-use crate::shade::departure::Origin;
+use crate::shade::departure::{Far, Origin};
 use crate::shade::facets::Facets;
 use crate::shade::light::Distance;
 
 /// A surface that a ray has hit.
 pub(crate) struct Surface<'h, N: Number> {
     pub(crate) hit: &'h Hit<N>,
+    pub(crate) far: Far<'h, N>,
     pub(crate) material: &'h Material,
     /// The effects that the material requires, looked up once per hit.
     pub(crate) required: Effects,
@@ -76,7 +77,7 @@ impl<N: Number> Interface<N> {
 pub(crate) struct Lighting<'l, N: Number> {
     pub(crate) light: &'l Light,
     /// The start of the way to the light.
-    pub(crate) origin: Origin<N>,
+    pub(crate) origin: Origin<'l, N>,
     /// The way to the light, of any length.
     pub(crate) way: [N::Wide; 3],
     /// The distance of the light along the largest component of `way`; `None` for infinitely far.

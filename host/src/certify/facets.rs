@@ -171,7 +171,7 @@ pub fn mirrored<N: Enclosure>(
     let ratio = facets.reflect(cos_out.at_most(N::one()), halfway)?;
     let material = seen.material;
     let mut color = material.mirror.map(ratio_of);
-    if material.transmit != [0; 3] {
+    if material.is_glass() {
         let cos = limited(-dot(seen.direction, halfway));
         let split = shade::split(&seen.interface, seen.direction, halfway, cos)?;
         let part = shade::mirrored(material, split.reflected);

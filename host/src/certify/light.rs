@@ -198,7 +198,7 @@ impl Tracer<'_, '_> {
             }
             let mut part = white;
             if boundary.is_none_or(|it| it.is_there()) {
-                part = if material.transmit == [0; 3] {
+                part = if !material.is_glass() {
                     let alpha = paint::alpha(self.world, &hit, material, None);
                     let alpha = self.narrow(alpha, depth, &hit)?;
                     let passing = N::one() - alpha.part;

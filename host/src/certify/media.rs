@@ -68,9 +68,7 @@ impl Inside {
             return boundary.beyond;
         }
         let Crossed { object, enters } = hit;
-        let is_glass = scene
-            .material(object)
-            .is_some_and(|it| it.transmit != [0; 3]);
+        let is_glass = scene.material(object).is_some_and(Material::is_glass);
         let own = Some(scene.material_number(object));
         let plain = match enters {
             _ if !is_glass => self.plain,
@@ -155,7 +153,7 @@ pub fn passed<'s>(
     enters: bool,
 ) -> Option<&'s Material> {
     let own = scene.material(object)?;
-    let is_behind = own.transmit != [0; 3] && !enters;
+    let is_behind = own.is_glass() && !enters;
     let known = match boundary {
         Some(boundary) => medium(scene, boundary.from),
         None if is_behind => None,

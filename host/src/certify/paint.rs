@@ -79,7 +79,7 @@ pub fn alpha<N: Enclosure>(
         part: N::one(),
         is_open: false,
     };
-    let is_used = material.maps & Material::MAPS_ALPHA != 0 && material.transmit == [0; 3];
+    let is_used = material.maps & Material::MAPS_ALPHA != 0 && !material.is_glass();
     let solid = &world.space(hit.instance).solids[hit.solid as usize];
     let (
         true,

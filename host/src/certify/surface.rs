@@ -100,7 +100,7 @@ impl Tracer<'_, '_> {
         depth: u8,
     ) -> Result<Three<N>, Stop> {
         // A mirror or glass does not show its back.
-        let turns = material.transmit != [0; 3] || material.mirror != [0; 3];
+        let turns = material.is_glass() || material.mirror != [0; 3];
         let turned = |normal| match turns {
             true => self.narrow(shade::turned_to_ray(normal, direction), depth, hit),
             false => Ok(normal),

@@ -172,7 +172,7 @@ impl Tracer<'_, '_> {
             facets = Some(all);
         }
         let mut mirrored = material.mirror.map(ratio_of);
-        if material.transmit != [0; 3] {
+        if material.is_glass() {
             let transmit = material.transmit.map(ratio_of);
             let split = shade::split(&seen.interface, direction, normal, cos_in);
             let split = self.narrow(split, path.depth, hit)?;

@@ -238,7 +238,7 @@ impl<'s> World<'s> {
 
 /// Returns whether light may pass a material.
 pub fn passes(material: &Material) -> bool {
-    material.transmit != [0; 3] || material.maps & Material::MAPS_ALPHA != 0
+    material.is_glass() || material.maps & Material::MAPS_ALPHA != 0
 }
 
 impl Space {

@@ -154,7 +154,7 @@ pub fn lost<N: Number>(scene: &Scene<'_>, ray: &Ray<N>) -> Tested {
             }
             let is_opaque = |other: &Hit<f64>| {
                 let material = scene.material(other.object);
-                material.is_some_and(|material| material.transmit == [0; 3])
+                material.is_some_and(|material| !material.is_glass())
             };
             let nearest = blocker::<f64>(scene, light, place).filter(is_opaque)?;
             let offset = from - place;

@@ -251,8 +251,15 @@ impl Products for Fixed {
     }
 
     fn remainder(wide: Product, period: Self) -> Self {
-        let rest = wide.0.checked_rem_euclid(period.0.into());
-        Fixed(rest.unwrap_or(0) as i32)
+        // Without signs, because a signed division of 64 bits is used for nothing else.
+        let period = period.0.unsigned_abs();
+        let rest = wide.0.unsigned_abs().checked_rem(period.into());
+        let rest = rest.unwrap_or(0) as u32;
+        let rest = match wide.0 < 0 && rest != 0 {
+            true => period.wrapping_sub(rest),
+            false => rest,
+        };
+        Fixed(rest as i32)
     }
 
     fn root(square: Product) -> Self {
