@@ -1,7 +1,7 @@
 //! Rays and hits in scene coordinates, as range finders use them.
 
 use glam::DVec3;
-use gridel_core::{List, NoCount, Number, Position, RayError, Scene, Stack, closest_hit};
+use gridel_core::{List, NoCount, Number, Position, Ray, RayError, Scene, Stack, closest_hit};
 use gridel_host::compile::{Options, compile};
 use gridel_host::shape::{Shape, Sphere};
 use gridel_tests::every_format;
@@ -208,6 +208,24 @@ fn hit_along_an_axis<N: Number>() {
             met[axis] = -sign * unit;
             assert_eq!(scene.hit_position(&ray, &hit).0, met);
         }
+    }
+}
+
+/// A step of 2 sub-steps: what a place of 0.26 steps away is rounded to must not be rounded again.
+#[test]
+fn distances_in_floats_are_rounded_once() {
+    let file =
+        "[[object]]\nkind = 'box'\nmin = [-1, -1, -1]\nmax = [1, 1, 1]\n[camera]\neye = [0, 0, 5]";
+    let imported = gridel_host::scene::read("box.toml".as_ref(), file.into(), &Default::default());
+    let compiled = compile(&imported.expect("a box").scene, &Options::default()).expect("a box");
+    let scene = compiled.blob.scene().expect("the compiler's own blob");
+    let shift = scene.header().coordinate_shift;
+    assert!(shift > 0);
+    let ray =
+        Ray::<f64>::from_f64(scene.bounds(), [0.0; 3], [0.0, 0.0, -1.0], 0.0, 1e9).expect("a ray");
+    let step = f64::powi(2.0, i32::from(shift) - 13);
+    for (steps, rounded) in [(0.26, 0), (0.49, 0), (0.51, 1), (2.26, 2), (7.49, 7)] {
+        assert_eq!(scene.distance_at(&ray, steps * step), rounded, "{steps}");
     }
 }
 

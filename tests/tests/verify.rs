@@ -87,6 +87,25 @@ fn every_shape_keeps_its_promises() {
     assert_eq!(report.broken(), 0, "{report:#?}");
 }
 
+/// The corners of this card are not level on the lattice, so that it has an inside thinner than a step. In `f32` no place
+/// in it is a number.
+#[test]
+fn card_with_two_sides_lets_nothing_leave() {
+    let corners = [
+        [0.0, 0.0, 0.0],
+        [1.0, 0.1, 0.3],
+        [1.2, 1.3, 0.45],
+        [0.2, 1.2, 0.15],
+    ];
+    let file = format!(
+        "[[object]]\nkind = 'mesh'\nvertices = {corners:?}\nfaces = [[0, 1, 2, 3], [3, 2, 1, 0]]"
+    );
+    let imported = gridel_host::scene::read("card.toml".as_ref(), file.into(), &Default::default());
+    let blob = scenes::blob(&imported.expect("a card").scene, 24);
+    let report = verify(&blob.scene().expect("a scene"), 3000, &|| ());
+    assert_eq!(report.broken(), 0, "{report:#?}");
+}
+
 /// Among them was a ray down a cylinder whose other slope vanished when it was squared.
 #[test]
 fn fixtures_keep_their_promises() {

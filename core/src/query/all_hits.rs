@@ -106,7 +106,10 @@ impl<N: Number, const SIZE: usize> HitList<N, SIZE> {
 /// [`closest_hit`](crate::closest_hit) follows the closed rule instead. It can report an edge that the ray only
 /// touches, at a silhouette or the border of an open mesh, where this function lists nothing. A hit that both report
 /// has the same bits. Only `closest_hit` can miss a hit in the plane where the scene's box begins, because of rounding.
-/// A ray that lies in the plane of a triangle does not hit it, in either rule.
+/// A ray that lies in the plane of a triangle does not hit it in the closed rule. Where rounding turns the ray out of the
+/// plane, this function can list the triangle, at a t within its box that can be far off: the number of hits of a closed
+/// mesh stays even with it. Of two hits of one instance at the same t, the primitive that comes first counts here, and
+/// for `closest_hit` the one that is nearer in the part.
 ///
 /// `stack` needs [`stack_depth`](Scene::stack_depth) entries. Each call walks through the structure once, so each list
 /// costs as much as a ray without end. Clear a list before it serves another ray.

@@ -5,6 +5,7 @@
 
 use crate::accel::Number;
 use crate::format::limits::MAX_COORDINATE_SHIFT;
+use crate::number::Format;
 use crate::query::Hit;
 use crate::ray::{Ray, RayError};
 use crate::scene::{Position, Scene};
@@ -122,10 +123,14 @@ impl Scene<'_> {
     /// ```
     pub fn distance_at<N: Number>(&self, ray: &Ray<N>, t: N::Wide) -> u64 {
         let (_, norm) = N::normalize(ray.slope());
-        let q13 = N::far_to_q13(N::wide_scale(t, norm)).unsigned_abs();
-        let shift = self.step_bits();
+        let (distance, shift) = (N::wide_scale(t, norm), self.step_bits());
+        if N::FORMAT != Format::Fixed {
+            // Rounded once: a float over a power of two is exact.
+            let steps = N::wide_over(distance, 1 << shift);
+            return N::far_to_q13(steps).unsigned_abs();
+        }
         let half = (1_u64 << shift) >> 1;
-        q13.saturating_add(half) >> shift
+        N::far_to_q13(distance).unsigned_abs().saturating_add(half) >> shift
     }
 
     /// Returns the place of a hit in scene coordinates, rounded to a step: that of [`Hit::point`], or on a plane far from

@@ -13,7 +13,7 @@ use crate::scene::Scene;
 use crate::target::{InstancesOnly, inline_on_hosts};
 
 /// The first primitive that a ray hits, and its t: a hit without its surface.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug)]
 pub struct PrimitiveHit<N: Number> {
     /// The place on the ray: a length in units along the ray's major axis (see [`Ray`]).
     pub t: N::Wide,
@@ -30,6 +30,15 @@ pub(super) struct InInstance<N> {
     pub(super) index: u32,
     /// The t on the scene's ray, counted from its start.
     pub(super) t: N,
+}
+
+/// Hits are equal if they are the same crossing at the same t. What a structure keeps beside that for later does not
+/// count.
+impl<N: Number> PartialEq for PrimitiveHit<N> {
+    fn eq(&self, other: &Self) -> bool {
+        let crossing = |hit: &Self| (hit.t, hit.primitive, hit.best.t, hit.best.part);
+        crossing(self) == crossing(other) && self.placed == other.placed
+    }
 }
 
 impl<N: Number> PrimitiveHit<N> {

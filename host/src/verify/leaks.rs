@@ -8,24 +8,48 @@ use super::rounded::RoundedRay;
 use crate::random::Random;
 use crate::shape::rounding::step;
 use glam::DVec3;
-use gridel_core::{Accel, List, Number, Ray, Scene};
+use gridel_core::{Accel, Format, List, Number, Ray, Scene};
+
+/// A place inside of a closed mesh, in units.
+#[derive(Clone, Copy)]
+pub(super) struct Inside {
+    place: [f64; 3],
+    /// Distance from the faces before and behind it.
+    clearance: f64,
+}
 
 /// A ray from the inside of a closed mesh, in units.
 pub(super) struct Aim<'m> {
     pub(super) mesh: &'m ClosedMesh,
     pub(super) origin: [f64; 3],
     pub(super) direction: [f64; 3],
+    clearance: f64,
+}
+
+impl Aim<'_> {
+    /// Returns whether the ray starts inside in a format, too. Where a mesh is thinner than the bound of its faces, the
+    /// format has no place inside to start from.
+    pub(super) fn is_inside(&self, format: Format) -> bool {
+        let magnitude = DVec3::from_array(self.origin).abs().max_element();
+        self.clearance > 16.0 * step(format, magnitude)
+    }
 }
 
 /// Returns a ray at a vertex, along an edge or at a face of one of the meshes, from the point inside of it. All
 /// triangles take their turn, then all again with other targets.
 pub(super) fn aim<'m>(
-    inside: &[(&'m ClosedMesh, [f64; 3])],
+    inside: &[(&'m ClosedMesh, Inside)],
     number: u64,
     random: &mut Random,
 ) -> Option<Aim<'m>> {
     let number = number as usize;
-    let &(mesh, origin) = inside.get(number.checked_rem(inside.len())?)?;
+    let &(
+        mesh,
+        Inside {
+            place: origin,
+            clearance,
+        },
+    ) = inside.get(number.checked_rem(inside.len())?)?;
     let turn = number / inside.len();
     let [a, b, c] = mesh.triangle(turn % mesh.count());
     let mix = |a: [f64; 3], b: [f64; 3], part: f64| {
@@ -42,11 +66,12 @@ pub(super) fn aim<'m>(
         mesh,
         origin,
         direction,
+        clearance,
     })
 }
 
-/// Returns a point inside of a closed mesh, in units: halfway from a face to the opposite one.
-pub(super) fn inside(scene: &Scene<'_>, mesh: &ClosedMesh) -> Option<[f64; 3]> {
+/// Returns a place inside of a closed mesh: halfway from a face to the opposite one.
+pub(super) fn inside(scene: &Scene<'_>, mesh: &ClosedMesh) -> Option<Inside> {
     const TRIED: usize = 64;
     let step = mesh.count().div_ceil(TRIED);
     let places = (0..mesh.count()).step_by(step).filter_map(|index| {
@@ -68,7 +93,11 @@ pub(super) fn inside(scene: &Scene<'_>, mesh: &ClosedMesh) -> Option<[f64; 3]> {
             let hit = ask::<f64, List>(scene, &ray(tmin).ok()?).hit?;
             if mesh.holds(&hit) {
                 let depth = 0.5 * hit.t / inward.abs().max_element();
-                return (!hit.front).then(|| (hit.t, (middle + inward * depth).to_array()));
+                let found = Inside {
+                    place: (middle + inward * depth).to_array(),
+                    clearance: (inward * depth).length(),
+                };
+                return (!hit.front).then_some((hit.t, found));
             }
             tmin = hit.t + 1.0 / 1024.0;
         }
@@ -76,7 +105,7 @@ pub(super) fn inside(scene: &Scene<'_>, mesh: &ClosedMesh) -> Option<[f64; 3]> {
     });
     places
         .max_by(|(a, _), (b, _)| a.total_cmp(b))
-        .map(|(_, place)| place)
+        .map(|(_, found)| found)
 }
 
 /// Follows a ray that starts inside of a closed mesh until it hits the mesh. A ray that never does is a fault.

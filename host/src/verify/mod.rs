@@ -183,6 +183,9 @@ impl Work<'_> {
 
     /// Follows a ray from inside of a closed mesh through every structure.
     fn leak<N: Number>(&self, aim: &Aim<'_>, tally: &mut Tally) {
+        if !aim.is_inside(N::FORMAT) {
+            return;
+        }
         let (origin, direction) = (aim.origin, aim.direction);
         for structure in Structure::ALL {
             let Some(scene) = self.scene.choose(structure) else {

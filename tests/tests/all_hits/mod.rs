@@ -8,8 +8,8 @@ use glam::DVec3;
 use gridel_core::accel::DynAccel;
 use gridel_core::format::limits::MAX_STACK_DEPTH;
 use gridel_core::{
-    Fixed, Format, HitList, Kind, Number, PrimitiveHit, Ray, Scene, Solid, Stack, Structure,
-    containment_ray, every_hit,
+    Fixed, Format, HitList, Kind, NoCount, Number, PrimitiveHit, Ray, Scene, Solid, Stack,
+    Structure, closest_primitive, containment_ray, every_hit,
 };
 use gridel_host::scene::{self, Shape};
 use gridel_host::shape::{Cuboid, Disc, Plane, Sphere, Torus};
@@ -175,7 +175,20 @@ fn the_first_of_all_hits_is_the_closest_one() {
             let closest = scene.closest_hit(&ray, stack.as_view());
             let mut first = HitList::<N, 1>::new();
             scene.all_hits(&ray, stack.as_view(), &mut first);
-            let first = first.iter().next().and_then(|hit| hit.hit(scene, &ray));
+            let listed = first.iter().next();
+            let first = listed.and_then(|hit| hit.hit(scene, &ray));
+            if closest.as_ref().map(HitBits::of) == first.as_ref().map(HitBits::of) {
+                // Whatever else a structure keeps with it.
+                for scene in Structure::ALL.into_iter().filter_map(|it| scene.choose(it)) {
+                    let found = closest_primitive::<N, DynAccel, _>(
+                        &scene,
+                        &ray,
+                        stack.as_view(),
+                        &mut NoCount,
+                    );
+                    assert!(found.as_ref() == listed, "{found:?}, {listed:?}");
+                }
+            }
             met += usize::from(closest.is_some());
             touched +=
                 usize::from(closest.as_ref().map(HitBits::of) != first.as_ref().map(HitBits::of));

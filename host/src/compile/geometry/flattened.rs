@@ -27,7 +27,7 @@ pub fn is_flattened(vertices: (&[DVec3], &[Point]), triangles: &[[u32; 3]]) -> b
     let is_flat = kept.all(|corners| corners.into_iter().all(|corner| height(corner) == 0));
     is_flat
         && is_closed(triangles.iter().map(corners))
-        && has_thickness(given, triangles, normal.map(|x| x as f64).into())
+        && has_thickness(given, &without_backs(given, triangles))
 }
 
 /// Normal to a triangle, exactly.
@@ -54,15 +54,48 @@ fn is_closed(triangles: impl Iterator<Item = [Point; 3]>) -> bool {
     odd.into_values().all(|is_odd| !is_odd)
 }
 
+/// Returns the triangles without pairs of the same corners: between the sides of a sheet there is no inside.
+fn without_backs(vertices: &[DVec3], triangles: &[[u32; 3]]) -> Vec<[u32; 3]> {
+    let mut alone: HashMap<[[u64; 3]; 3], [u32; 3]> = HashMap::new();
+    for triangle in triangles {
+        // Without the sign of a zero.
+        let bits = |vertex: u32| {
+            (vertices[vertex as usize] + 0.0)
+                .to_array()
+                .map(f64::to_bits)
+        };
+        let mut corners = triangle.map(bits);
+        corners.sort_unstable();
+        if alone.remove(&corners).is_none() {
+            alone.insert(corners, *triangle);
+        }
+    }
+    alone.into_values().collect()
+}
+
 /// Returns whether the given vertices of triangles do not lie in one plane, within the rounding of an `f64`.
-fn has_thickness(vertices: &[DVec3], triangles: &[[u32; 3]], normal: DVec3) -> bool {
-    /// Relative to the largest coordinate.
-    const ROUNDED: f64 = 16.0 * f64::EPSILON;
+fn has_thickness(vertices: &[DVec3], triangles: &[[u32; 3]]) -> bool {
+    /// Relative to the largest coordinate: what a few turns and moves of a vertex round.
+    const ROUNDED: f64 = 32.0 * f64::EPSILON;
     let used = || triangles.iter().flatten().map(|&it| vertices[it as usize]);
     let size = used().fold(0.0, |size: f64, it| size.max(it.abs().max_element()));
-    // Scaled, so that products stay in range.
-    let normal = (normal / normal.abs().max_element()).normalize();
-    let heights = used().map(|it| normal.dot(it / size));
+    // Scaled, so that products stay in range. The normal is that of a wide triangle between vertices, because the
+    // corners of a small one would turn it by their rounding.
+    let place = |it: DVec3| it / size;
+    let farthest = |far: &dyn Fn(DVec3) -> f64| {
+        let places = used().map(place);
+        places.max_by(|&a, &b| far(a).total_cmp(&far(b)))
+    };
+    let Some(first) = used().next().map(place) else {
+        return false;
+    };
+    let second = farthest(&|it| it.distance_squared(first)).unwrap_or(first);
+    let along = second - first;
+    let third = farthest(&|it| along.cross(it - first).length_squared()).unwrap_or(first);
+    let Some(normal) = along.cross(third - first).try_normalize() else {
+        return false;
+    };
+    let heights = used().map(|it| normal.dot(place(it) - first));
     let (low, high) = heights.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), it| {
         (low.min(it), high.max(it))
     });
@@ -77,4 +110,45 @@ pub fn is_degenerate([a, b, c]: [[i32; 3]; 3]) -> bool {
         let (i, j) = ((k + 1) % 3, (k + 2) % 3);
         p[i] * q[j] == p[j] * q[i]
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::compile::{CompileError, Options, compile};
+    use crate::scene::read;
+
+    fn is_rejected(file: String) -> bool {
+        let imported = read("sheet.toml".as_ref(), file.into(), &Default::default());
+        let found = compile(&imported.unwrap().scene, &Options::default());
+        matches!(found, Err(CompileError::Flattened { .. }))
+    }
+
+    #[test]
+    fn sheets_with_two_sides_never_had_an_inside() {
+        let mut random = crate::random::Random(7);
+        for _ in 0..20 {
+            let [x, y, z] = [0; 3].map(|_| 360.0 * random.unit());
+            let box_ = "kind = 'box'\nmin = [0, 0, 0]\nmax = [1, 0, 1]";
+            let turned = format!("[[object]]\n{box_}\nrotate = [{x}, {y}, {z}]");
+            assert!(!is_rejected(turned), "a box turned by {x}, {y}, {z}");
+
+            // A sheet that is not level, either: all its faces have backs.
+            let corners = [0; 4].map(|_| [0; 3].map(|_| random.unit()));
+            let card = format!(
+                "[[object]]\nkind = 'mesh'\nvertices = {corners:?}\nfaces = [[0, 1, 2], [2, 1, 0], [1, 2, 3], [3, 2, 1]]"
+            );
+            assert!(!is_rejected(card), "{corners:?}");
+        }
+    }
+
+    #[test]
+    fn slabs_thinner_than_a_step_are_rejected() {
+        for thickness in [1e-12, 1e-10, 1e-8] {
+            let slab = format!(
+                "[[object]]\nkind = 'mesh'\nvertices = [[0, 0, 0], [1, 0, 0], [0, 1, 0], [0.3, 0.3, {thickness}]]
+                faces = [[0, 2, 1], [0, 1, 3], [1, 2, 3], [2, 0, 3]]"
+            );
+            assert!(is_rejected(slab), "{thickness}");
+        }
+    }
 }

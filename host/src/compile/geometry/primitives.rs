@@ -239,7 +239,7 @@ impl Primitives {
         let targets = &scene.morph_targets;
         all.motions = self.motions.of(object, triangles, lattice, targets)?;
         let all = all;
-        let mut is_smooth = false;
+        let (mut is_smooth, mut is_colored) = (false, false);
         let name_of = |number: usize| {
             let name = printable(&object.name);
             format!("{name} ({}, triangle {number})", object.place)
@@ -276,6 +276,7 @@ impl Primitives {
                 })
             } else {
                 is_smooth |= found[0].normal.is_some();
+                is_colored |= found[0].color.is_some();
                 [0, 1, 2].map(|k: usize| distinct.number(corners[k], found[k]))
             };
             self.triangles.push(triangle);
@@ -283,7 +284,7 @@ impl Primitives {
         }
         for (effect, is_required) in [
             (Effects::SMOOTH, is_smooth),
-            (Effects::VERTEX_COLORS, all.is_colored()),
+            (Effects::VERTEX_COLORS, is_colored),
         ] {
             if is_required {
                 let name = format!("mesh {}", printable(&object.name));
@@ -384,5 +385,36 @@ fn rounded_up(x: f64) -> f32 {
         nearest.next_up()
     } else {
         nearest
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::compile::{Options, compile};
+    use crate::scene::read;
+    use gridel_core::Effects;
+
+    #[test]
+    fn what_the_lattice_leaves_out_requires_nothing() {
+        let speck = "vertices = [[0, 0, 0], [1e-9, 0, 0], [0, 1e-9, 0]]";
+        let ball = "[[object]]\nkind = 'sphere'\ncenter = [0, 0, 0]\nradius = 9";
+        let colored = format!(
+            "[[object]]\nkind = 'triangle'\n{speck}\ncolors = ['red', 'red', 'red']\n{ball}"
+        );
+        let point = "vertices = [[0, 0, 0], [0, 0, 0], [0, 0, 0]]";
+        let part = format!(
+            "[[part]]\nname = 'p'\n[[part.object]]\nkind = 'triangle'\n{point}\n[[instance]]\npart = 'p'\n{ball}"
+        );
+        for file in [colored, part] {
+            let imported = read(
+                "speck.toml".as_ref(),
+                file.as_str().into(),
+                &Default::default(),
+            );
+            let compiled = compile(&imported.unwrap().scene, &Options::default());
+            let compiled = compiled.unwrap_or_else(|error| panic!("{error}: {file}"));
+            let effects = compiled.blob.scene().unwrap().header().effects;
+            assert!(!Effects(effects).contains(Effects::VERTEX_COLORS), "{file}");
+        }
     }
 }

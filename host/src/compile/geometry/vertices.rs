@@ -131,11 +131,6 @@ impl Corners {
         is_plain && self.coordinates.is_empty() && self.motions.is_empty()
     }
 
-    /// Returns whether vertices have colors.
-    pub fn is_colored(&self) -> bool {
-        !self.colors.is_empty()
-    }
-
     /// Returns the corners of a triangle, given its number and vertices.
     pub fn of_triangle(&self, number: usize, vertices: [u32; 3]) -> [Corner; 3] {
         let normals = self.normals.get(number).copied().flatten();

@@ -167,6 +167,9 @@ impl Parts {
             };
             records.push(record);
             boxes.push(bounds);
+            if self.is_point(instance.part) {
+                continue;
+            }
             let reach = part.unit() * instance.placement.scale * exp2(16);
             let rounded = lattice.unit() / 256.0 + reach * exp2(2 - MATRIX_BITS as i32);
             let moved = self.displacements[instance.part] * instance.placement.scale;
@@ -189,6 +192,12 @@ impl Parts {
         }))
     }
 
+    /// Returns true if the lattice has left everything of a part out, so that no scale of it counts.
+    fn is_point(&self, part: usize) -> bool {
+        let UnitBox(bounds) = self.bounds[part];
+        bounds.iter().all(|[low, high]| low == high)
+    }
+
     /// The map of an instance without its number, given its least and its greatest scale relative to that at rest.
     fn map(
         &self,
@@ -205,7 +214,10 @@ impl Parts {
                 least: LEAST_SCALE,
             });
         }
-        let stretch = lattice.unit() / (placement.scale * part.unit());
+        let stretch = match self.is_point(instance.part) {
+            true => 1.0,
+            false => lattice.unit() / (placement.scale * part.unit()),
+        };
         let exponent = libm::ceil(libm::log2(stretch)) as i64;
         let [least, most] = INSTANCE_EXPONENT;
         let [smallest, largest] = scales.map(libm::log2);
