@@ -220,16 +220,10 @@ impl Importer<'_> {
                 self.warn(sentence);
             }
         }
-        let known = [
-            "KHR_lights_punctual",
-            "KHR_materials_emissive_strength",
-            "KHR_materials_ior",
-            "KHR_materials_transmission",
-            "KHR_materials_volume",
-            "KHR_texture_transform",
-        ];
         let used = document.extensions_used();
-        let others: Vec<_> = used.filter(|name| !known.contains(name)).collect();
+        let others: Vec<_> = used
+            .filter(|name| !document::EXTENSIONS.contains(name))
+            .collect();
         if !others.is_empty() {
             self.warn(format!("extensions are ignored: {}", others.join(", ")));
         }

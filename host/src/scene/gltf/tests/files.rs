@@ -58,7 +58,11 @@ fn faults_of_the_container_are_named() {
         ),
         (cut(12), "the file has no chunk"),
         (twice, "a second one of the type BIN"),
-        (with(20, b"["), "the JSON is broken"),
+        (
+            with(20, b"["),
+            "the JSON is broken: invalid type: string \"accessors\"",
+        ),
+        (with(20, b"["), "(line 1, column 12 of the JSON chunk)"),
     ] {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("thing.glb");

@@ -62,6 +62,10 @@ fn broken_documents() {
             "mesh 0 uses accessor 7",
         ),
         (
+            |d| d["meshes"][0]["primitives"][0]["attributes"]["WHATEVER"] = json!(0),
+            "meshes[0].primitives[0].attributes: the name of an attribute is unknown",
+        ),
+        (
             |d| d["cameras"][0]["type"] = json!("orthographic"),
             "camera 0 lacks",
         ),
@@ -71,6 +75,28 @@ fn broken_documents() {
     }
     let error = read(b"{\n \"asset\": {\"version\": 2.0}\n}").unwrap_err();
     assert_eq!(error.line, Some(2));
+    assert!(error.cause.ends_with("(column 25)"), "{error}");
+}
+
+#[test]
+fn required_extensions_must_be_read() {
+    let mut document = document();
+    document["extensionsRequired"] = document["extensionsUsed"].clone();
+    assert_eq!(warnings(&document), [] as [&str; 0]);
+    for name in [
+        "KHR_texture_basisu",
+        "EXT_texture_webp",
+        "MSFT_texture_dds",
+        "KHR_materials_unlit",
+        "KHR_mesh_quantization",
+    ] {
+        document["extensionsUsed"] = json!([name]);
+        assert!(warnings(&document).concat().contains(name));
+        document["extensionsRequired"] = json!(["KHR_materials_ior", name]);
+        let expected = format!("`extensionsRequired` names an extension that is not read: {name}");
+        assert_eq!(cause(&document), expected);
+        document["extensionsRequired"] = json!([]);
+    }
 }
 
 /// Instances count against the limit of a blob before they are made.
