@@ -75,6 +75,34 @@ fn faults_of_the_container_are_named() {
 
 #[test]
 fn buffers_outside_of_the_folder_are_rejected() {
+#[test]
+fn data_uris_are_read_in_capital_letters_and_with_escapes() {
+    let mut document = document();
+    let escaped = STANDARD.encode(square()).replace('A', "%41");
+    let whole = document["buffers"][0]["uri"].as_str().unwrap().to_owned();
+    for uri in [
+        format!("data:application/octet-stream;base64,{escaped}"),
+        whole.replace("data:", "DATA:"),
+        whole.replace("base64", "BASE64"),
+        whole.replace("application/octet-stream", ""),
+    ] {
+        document["buffers"][0]["uri"] = json!(uri);
+        assert_eq!(scene(&document).objects.len(), 1, "{uri}");
+    }
+    // Signs that are often escaped.
+    let path = Path::new("a.gltf");
+    let uri = "Data:;base64,%2B%2F%2f%2B%2Fw%3D%3D";
+    let found = buffers::fetch(path, "buffer 0", uri, &Access::of(path, false));
+    assert_eq!(found.unwrap(), [0xfb, 0xff, 0xfe, 0xff]);
+    document["buffers"][0]["uri"] = json!(format!("data:x;base64,{}", "=".repeat(1000)));
+    let cause = cause(&document);
+    assert!(
+        cause.contains("not in base 64: \"data:x;base64,==="),
+        "{cause}"
+    );
+    assert!(cause.len() < 200, "{cause}");
+}
+
     let outer = tempfile::tempdir().unwrap();
     let folder = outer.path().join("scene");
     std::fs::create_dir(&folder).unwrap();
