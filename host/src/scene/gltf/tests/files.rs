@@ -30,6 +30,8 @@ fn faults_of_the_container_are_named() {
             b"glTF".to_vec(),
             "the file ends inside its header: it has 4 of 12 bytes",
         ),
+        (Vec::new(), "the file is empty"),
+        (b"\xef\xbb\xbf \n".to_vec(), "the file is empty"),
         (
             with(0, b"glTG"),
             "begins with the bytes 67 6c 54 47, not with `glTF`",
