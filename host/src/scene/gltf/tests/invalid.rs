@@ -199,6 +199,29 @@ fn a_projective_matrix_is_rejected() {
     }
 }
 
+#[test]
+fn nodes_with_two_transforms_are_warned_of() {
+    let mut document = document();
+    document["nodes"][0]["matrix"] = json!([2, 0, 0, 0, 0, 2, 0, 0, 0, 0, 2, 0, 0, 0, 0, 1]);
+    document["nodes"][0]["translation"] = json!([7, 7, 7]);
+    let warnings = warnings(&document);
+    assert_eq!(warnings.len(), 1, "{warnings:?}");
+    assert!(warnings[0].starts_with("node 0 has a matrix, and a translation"));
+    let scene = scene(&document);
+    let (vertices, _) = mesh(&scene.objects[0]);
+    assert_eq!(vertices[2], DVec3::new(2.0, 2.0, 0.0));
+}
+
+#[test]
+fn scenes_that_list_an_inner_node_are_rejected() {
+    let mut document = document();
+    document["nodes"][0]["children"] = json!([2]);
+    push(&mut document, "nodes", json!({"mesh": 0}));
+    assert_eq!(scene(&document).objects.len(), 2);
+    push(&mut document, "scenes", json!({"nodes": [1, 2]}));
+    assert!(cause(&document).contains("scene 1 lists node 2, which is inside of node 0"));
+}
+
 /// Nodes and meshes that no scene shows must be valid all the same.
 #[test]
 fn meshes_that_are_not_shown_are_checked() {
