@@ -95,6 +95,7 @@ fn read(input: Input<'_>) -> Result<Imported, SceneError> {
         buffers: Buffers::read(path, &document, blob, access)?,
         access,
         images: HashMap::new(),
+        turned: HashMap::new(),
         image_means: ImageMeans::default(),
         scene: Scene::default(),
         materials: HashMap::new(),
@@ -164,6 +165,8 @@ struct Importer<'a> {
     access: &'a Access,
     /// Images by their path or URI; for those that are not there, the cause.
     images: HashMap<String, Result<Arc<Image>, String>>,
+    /// Images of normal maps that are turned, by their number.
+    turned: HashMap<usize, Arc<Image>>,
     image_means: ImageMeans,
     scene: Scene,
     /// Materials in use, by their number in the file; the default has none.
