@@ -7,7 +7,7 @@
 //! Every `o`, `g` and change of `usemtl` starts a new mesh, in file order, which holds only the vertices that it uses.
 //! Faces are cut into triangles in file order. A face whose corners all have normals is smooth. Smoothing groups are
 //! ignored, with a warning. Colors of vertices are in sRGB. Zero-area triangles are kept for the compiler to report. A
-//! backslash at the end of a line continues it on the next one, also within names.
+//! backslash at the end of a line continues it on the next one, also within names and in MTL files.
 
 mod lines;
 mod mtl;
