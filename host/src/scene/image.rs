@@ -120,6 +120,16 @@ impl Image {
         sum as f64 / (255.0 * self.pixels.len() as f64)
     }
 
+    /// Returns the image of normals that has the other sign along u and v: 0 is -1 there, and 255 is 1.
+    pub(super) fn turned(&self) -> Self {
+        let turn = |&[red, green, blue, alpha]: &[u8; 4]| [255 - red, 255 - green, blue, alpha];
+        Self {
+            pixels: self.pixels.iter().map(turn).collect(),
+            name: self.name.clone(),
+            ..*self
+        }
+    }
+
     /// Returns whether every pixel is opaque.
     ///
     /// ```

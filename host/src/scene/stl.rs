@@ -218,6 +218,10 @@ fn text(source: &Source) -> Result<Imported, SceneError> {
                     None => Err(misplaced("this vertex has fewer than three coordinates")),
                 };
                 corners.push(DVec3::new(coordinate()?, coordinate()?, coordinate()?));
+                if words.next().is_some() {
+                    let sentence = "what follows the three coordinates of a vertex is ignored";
+                    warnings.add(source, number, sentence);
+                }
             }
             "endfacet" => match facet.take().as_deref() {
                 Some(&[a, b, c]) => {

@@ -223,18 +223,41 @@ impl Importer<'_> {
             return Ok(None);
         }
         let scale = f64::from(info.scale());
-        let taken = scale.clamp(0.0, NormalMap::STEEPEST);
+        let taken = scale.clamp(-NormalMap::STEEPEST, NormalMap::STEEPEST);
         if scale != taken {
             self.warn(format!(
                 "the normal map of material {name:?} has the scale {scale}; it is drawn with {taken}", name = shortened(name)));
         }
-        let Some(image) = self.image(&source, "the normal map is not drawn")? else {
+        let Some(mut image) = self.image(&source, "the normal map is not drawn")? else {
             return Ok(None);
         };
+        if taken < 0.0 {
+            image = self.turned(&source, &image)?;
+        }
         Ok(Some(NormalMap {
             texture: sampled(image, &info.texture(), placed.transform),
-            scale: taken,
+            scale: taken.abs(),
         }))
+    }
+
+    /// The image of a normal map whose scale is negative: its components along u and v have the other sign.
+    fn turned(
+        &mut self,
+        source: &gltf::Image<'_>,
+        image: &Arc<Image>,
+    ) -> Result<Arc<Image>, SceneError> {
+        let number = source.index();
+        if let Some(known) = self.turned.get(&number) {
+            return Ok(Arc::clone(known));
+        }
+        let [width, height] = image.size().map(|side| side as usize);
+        let counted = self.access.texels.add(width, height);
+        counted.map_err(|[cause, remedy]| {
+            self.error(format!("image {number}, turned, {cause}"), &remedy)
+        })?;
+        let turned = Arc::new(image.turned());
+        self.turned.insert(number, Arc::clone(&turned));
+        Ok(turned)
     }
 
     /// Reads an image, each once. `None` for a file that is not there, with a warning that says what happens `instead`.

@@ -11,6 +11,7 @@ use gltf::Document;
 use gltf::accessor::sparse::IndexType;
 use gltf::accessor::{Accessor, DataType, Dimensions};
 use gltf::buffer::{Source, View};
+use std::borrow::Cow;
 use std::collections::HashMap;
 use std::path::Path;
 use std::rc::Rc;
@@ -328,6 +329,21 @@ fn narrow<const N: usize>(bytes: &[u8]) -> u32 {
     bytes.fold(0, |number, &byte| number << 8 | u32::from(byte))
 }
 
+/// Returns the rest of a text that begins with a word, in small or capital letters.
+fn without_start<'t>(text: &'t str, word: &str) -> Option<&'t str> {
+    let (start, rest) = text.split_at_checked(word.len())?;
+    start.eq_ignore_ascii_case(word).then_some(rest)
+}
+
+/// The bytes of a data URI behind its scheme, in base 64. Characters may be escaped as `%2B`, as in any URI.
+fn decoded(data: &str) -> Option<Vec<u8>> {
+    let (kind, encoded) = data.split_once(',')?;
+    let (_, encoding) = kind.rsplit_once(';')?;
+    let encoded = Cow::from(percent_encoding::percent_decode_str(encoded));
+    let is_base64 = encoding.eq_ignore_ascii_case("base64");
+    is_base64.then(|| STANDARD.decode(encoded).ok())?
+}
+
 /// Reads a URI: bytes in base 64, or a file in the scene's folder.
 pub(super) fn fetch(
     path: &Path,
@@ -338,16 +354,14 @@ pub(super) fn fetch(
     let error =
         |cause: String, remedy: &str| SceneError::new(path, format!("{what} {cause}"), remedy);
     let wrong = |cause, remedy: &str| FileError::Unusable(error(cause, remedy));
-    if let Some(data) = uri.strip_prefix("data:") {
-        let encoded = data.split_once(";base64,").map(|(_, encoded)| encoded);
-        return encoded
-            .and_then(|encoded| STANDARD.decode(encoded).ok())
-            .ok_or_else(|| {
-                wrong(
-                    String::from("is a data URI that is not in base 64"),
-                    "export the file again, or as .glb",
-                )
-            });
+    if let Some(data) = without_start(uri, "data:") {
+        return decoded(data).ok_or_else(|| {
+            let uri = shortened(uri);
+            wrong(
+                format!("is a data URI that is not in base 64: {uri:?}"),
+                "export the file again, or as .glb",
+            )
+        });
     }
     let local = uri.strip_prefix("file:").map(|file| {
         let file = file.strip_prefix("//localhost").unwrap_or(file);

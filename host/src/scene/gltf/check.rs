@@ -44,6 +44,20 @@ impl Importer<'_> {
                 "give every node one parent at most, and no circle",
             ));
         }
+        for scene in document.scenes() {
+            let above = |node: &Node<'_>| parent[node.index()];
+            if let Some((node, above)) =
+                scene.nodes().find_map(|it| Some((it.index(), above(&it)?)))
+            {
+                return Err(self.error(
+                    format!(
+                        "scene {} lists node {node}, which is inside of node {above}",
+                        scene.index()
+                    ),
+                    "list only nodes that have no parent",
+                ));
+            }
+        }
         // Accessors may share their bytes, so that a short file can cause any amount of work.
         let stored = |it: &Accessor<'_>| it.view().is_some() || it.sparse().is_some();
         let elements = document
@@ -77,6 +91,7 @@ impl Importer<'_> {
                 }
             }
         }
+        self.check_transforms(document);
         self.check_targets(document);
         self.check_triangles(document);
         let parts = document.meshes().flat_map(|mesh| mesh.primitives());
@@ -106,6 +121,22 @@ impl Importer<'_> {
             }
         }
         Ok(())
+    }
+
+    /// Warns of nodes with two transforms.
+    fn check_transforms(&mut self, document: &Document) {
+        let nodes = || document.as_json().nodes.iter();
+        let has_two = |node: &&gltf::json::Node| {
+            let other =
+                node.translation.is_some() || node.rotation.is_some() || node.scale.is_some();
+            node.matrix.is_some() && other
+        };
+        if let Some(first) = nodes().position(|node| has_two(&node)) {
+            let sentence = format!(
+                "node {first} has a matrix, and a translation, a rotation or a scale, too; the matrix is used"
+            );
+            self.warn_of(nodes().filter(has_two).count(), sentence);
+        }
     }
 
     /// Warns of corners that do not make whole triangles, which glTF does not allow.

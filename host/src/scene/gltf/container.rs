@@ -39,6 +39,13 @@ pub(super) fn split<'b>(
         warnings.add_times(SourceSpan::of(path), 1, sentence);
     }
     let text = text.unwrap_or(bytes);
+    if text.trim_ascii().is_empty() {
+        return Err(SceneError::new(
+            path,
+            "the file is empty",
+            "copy the file again, as binary, or export it again",
+        ));
+    }
     let named_binary = extension(path).is_some_and(|it| it == "glb");
     if named_binary && !text.trim_ascii_start().starts_with(b"{") {
         let magic: Vec<String> = bytes.iter().take(4).map(|b| format!("{b:02x}")).collect();

@@ -5,7 +5,7 @@ use super::normal_transforms::{self, NormalTransforms};
 use super::text::Counts;
 use crate::scene::text::Warnings;
 use crate::scene::{SceneError, SourceSpan};
-use crate::table::shortened;
+use crate::table::{printable, shortened};
 use gltf::Document;
 use gltf::json::camera::Type;
 use gltf::json::image::MimeType;
@@ -14,6 +14,16 @@ use gltf::json::{Index, Root, Value};
 use std::path::Path;
 
 const AGAIN: &str = "export the file again, as glTF 2.0";
+
+/// The extensions that are read.
+pub(super) const EXTENSIONS: [&str; 6] = [
+    "KHR_lights_punctual",
+    "KHR_materials_emissive_strength",
+    "KHR_materials_ior",
+    "KHR_materials_transmission",
+    "KHR_materials_volume",
+    "KHR_texture_transform",
+];
 
 /// Reads the document, the buffer that the file itself holds, and how its normal maps lie.
 ///
@@ -42,6 +52,7 @@ pub(super) fn read(
         ));
     }
     warn_of_unlisted(path, &counts, &root, warnings);
+    check_required(path, &root)?;
     leave_out_shapeless(path, &mut root, warnings);
     complete_images(path, &mut root, warnings);
     check_indices(path, &root)?;
@@ -51,6 +62,29 @@ pub(super) fn read(
     let transforms = normal_transforms::read(path, container.text)?;
     warn_of_targets(path, container.text, warnings);
     Ok((document, blob, transforms))
+}
+
+/// Rejects a file that cannot be shown without an extension that is not read. The crate compares with a list of its own,
+/// which has others.
+fn check_required(path: &Path, root: &Root) -> Result<(), SceneError> {
+    let required = root.extensions_required.iter();
+    let mut unread = required.filter(|name| !EXTENSIONS.contains(&name.as_str()));
+    let Some(name) = unread.next() else {
+        return Ok(());
+    };
+    let more = match unread.count() {
+        0 => String::new(),
+        more => format!(" (and {more} more)"),
+    };
+    let cause = format!(
+        "`extensionsRequired` names an extension that is not read: {}{more}",
+        printable(name)
+    );
+    let remedy = format!(
+        "export without it; Gridel reads {}, and no compressed or quantized meshes",
+        EXTENSIONS.join(", ")
+    );
+    Err(SceneError::new(path, cause, remedy))
 }
 
 /// Warns of extensions that elements have and the file does not list.
@@ -124,8 +158,15 @@ fn parse(
         let cause = cause
             .rsplit_once(" at line ")
             .map_or(cause.as_str(), |(cause, _)| cause);
-        let wrong = SceneError::new(path, format!("the JSON is broken: {cause}"), AGAIN);
-        Err(match error.line() {
+        // Many files have a single line.
+        let (line, column) = (error.line(), error.column());
+        let place = match line {
+            0 => String::new(),
+            _ if container.has_lines => format!(" (column {column})"),
+            _ => format!(" (line {line}, column {column} of the JSON chunk)"),
+        };
+        let wrong = SceneError::new(path, format!("the JSON is broken: {cause}{place}"), AGAIN);
+        Err(match line {
             line if line > 0 && container.has_lines => wrong.at_line(line),
             _ => wrong,
         })
@@ -293,23 +334,24 @@ fn validate(path: &Path, root: &Root) -> Result<(), SceneError> {
         let place = place().to_string();
         let optional = place.starts_with("textures[") && place.ends_with("].source")
             || place.starts_with("accessors[") && place.ends_with("].bufferView");
-        if !(optional && matches!(error, Error::Missing)) && first.is_none() {
+        let is_allowed = match error {
+            Error::Missing => optional,
+            // `check_required` decides.
+            Error::Unsupported => true,
+            _ => false,
+        };
+        if !is_allowed && first.is_none() {
             first = Some((place, error));
         }
     });
-    match first {
-        None => Ok(()),
-        Some((place, Error::Unsupported)) => Err(SceneError::new(
-            path,
-            format!(
-                "an extension that the file requires is not understood: {}",
-                shortened(&place)
+    first.map_or(Ok(()), |(place, error)| {
+        // The crate keeps no name that it does not know.
+        let cause = match place.split_once("[\"<invalid semantic name>\"]") {
+            Some((attributes, _)) => format!(
+                "{attributes}: the name of an attribute is unknown; own names begin with an underscore"
             ),
-            "export without it; compressed and quantized meshes are not read",
-        )),
-        Some((place, error)) => {
-            let cause = error.to_string().to_lowercase();
-            Err(SceneError::new(path, format!("{place}: {cause}"), AGAIN))
-        }
-    }
+            None => format!("{place}: {}", error.to_string().to_lowercase()),
+        };
+        Err(SceneError::new(path, cause, AGAIN))
+    })
 }

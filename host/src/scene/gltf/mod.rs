@@ -95,6 +95,7 @@ fn read(input: Input<'_>) -> Result<Imported, SceneError> {
         buffers: Buffers::read(path, &document, blob, access)?,
         access,
         images: HashMap::new(),
+        turned: HashMap::new(),
         image_means: ImageMeans::default(),
         scene: Scene::default(),
         materials: HashMap::new(),
@@ -164,6 +165,8 @@ struct Importer<'a> {
     access: &'a Access,
     /// Images by their path or URI; for those that are not there, the cause.
     images: HashMap<String, Result<Arc<Image>, String>>,
+    /// Images of normal maps that are turned, by their number.
+    turned: HashMap<usize, Arc<Image>>,
     image_means: ImageMeans,
     scene: Scene,
     /// Materials in use, by their number in the file; the default has none.
@@ -220,16 +223,10 @@ impl Importer<'_> {
                 self.warn(sentence);
             }
         }
-        let known = [
-            "KHR_lights_punctual",
-            "KHR_materials_emissive_strength",
-            "KHR_materials_ior",
-            "KHR_materials_transmission",
-            "KHR_materials_volume",
-            "KHR_texture_transform",
-        ];
         let used = document.extensions_used();
-        let others: Vec<_> = used.filter(|name| !known.contains(name)).collect();
+        let others: Vec<_> = used
+            .filter(|name| !document::EXTENSIONS.contains(name))
+            .collect();
         if !others.is_empty() {
             self.warn(format!("extensions are ignored: {}", others.join(", ")));
         }

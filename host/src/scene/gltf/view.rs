@@ -39,6 +39,7 @@ pub(super) struct View {
     has_broken: bool,
     has_moving_spots: bool,
     has_narrow_spots: bool,
+    has_flat_picture: bool,
 }
 
 /// A light of the file.
@@ -87,7 +88,9 @@ impl View {
             self.has_blind = true;
             return;
         };
-        self.aspect = perspective.aspect_ratio().map(f64::from);
+        let aspect = perspective.aspect_ratio().map(f64::from);
+        self.aspect = aspect.filter(|aspect| *aspect > 0.0);
+        self.has_flat_picture = self.aspect != aspect;
         self.camera_fit = fit;
         self.camera_node = node.index();
         self.camera = Some(Camera {
@@ -246,6 +249,10 @@ impl View {
                 "spot lights narrower than 0.3 degrees are widened to 0.3, so that `f32` holds their light",
             ),
             (
+                self.has_flat_picture,
+                "the aspect ratio of the camera is not above 0, and is ignored",
+            ),
+            (
                 self.has_broken,
                 "lights without a direction or a strength are left out",
             ),
@@ -255,7 +262,7 @@ impl View {
             }
         }
         scene.camera = self.camera;
-        if let Some(aspect) = self.aspect.filter(|aspect| *aspect > 0.0) {
+        if let Some(aspect) = self.aspect {
             let height = scene.render.height;
             let width = (f64::from(height) * aspect).round();
             let widest = f64::from(RenderSettings::MAX_ASPECT * height);

@@ -110,7 +110,9 @@ impl<'a> Tokens<'a> {
         };
         let token = self.take(end + 2);
         self.line += token.bytes().filter(|&byte| byte == b'\n').count();
-        Ok(Token::Value(&token[1..end]))
+        let text = &token[1..end];
+        // The last line ends before the semicolon, also where lines end as on Windows.
+        Ok(Token::Value(text.strip_suffix('\r').unwrap_or(text)))
     }
 
     /// A value in quotes; a quote inside it that no space follows does not end it.
@@ -175,6 +177,20 @@ mod tests {
             (8, Value(";c")),
         ];
         assert_eq!(found, expected);
+    }
+
+    #[test]
+    fn text_fields_hold_no_part_of_their_last_line_end() {
+        for (text, expected) in [
+            (";N\r\n;\r\n", "N"),
+            (";\r\n;\r\n", ""),
+            (";a\r\nb\r\n;\r\n", "a\r\nb"),
+            (";N\n;\n", "N"),
+        ] {
+            let source = Source::from_bytes(Path::new("t.cif"), text.into());
+            let token = Tokens::new(&source).next().unwrap();
+            assert_eq!(token, Some(Token::Value(expected)), "{text:?}");
+        }
     }
 
     #[test]

@@ -20,8 +20,8 @@ use bonds::BondColumns;
 use cif::{Token, Tokens};
 use glam::DVec3;
 use gridel_core::Up;
-use std::collections::HashMap;
 use std::collections::hash_map::Entry;
+use std::collections::{HashMap, HashSet};
 use table::{Column, Table, category};
 
 pub(super) const IMPORTER: Importer = Importer {
@@ -155,8 +155,15 @@ impl<'a> Parser<'a, '_> {
     /// Reads a loop and returns the token after it.
     fn table(&mut self, tokens: &mut Tokens<'a>) -> Result<Option<Token<'a>>, SceneError> {
         let mut table = Table::default();
+        // Small and capital letters mean the same.
+        let mut names = HashSet::new();
         let mut token = tokens.next()?;
         while let Some(Token::Tag(tag)) = token {
+            if !names.insert(tag.to_ascii_lowercase()) {
+                let cause = format!("a loop has the column _{} twice", shortened(tag));
+                let error = self.source.error(cause, "remove one, with its values");
+                return Err(error.at_line(tokens.line));
+            }
             table.add_column(self.source, tag, tokens.line)?;
             token = tokens.next()?;
         }

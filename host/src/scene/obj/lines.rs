@@ -1,10 +1,25 @@
-//! Lines of an OBJ file that continue on further ones.
+//! Lines of OBJ and MTL files that continue on further ones.
 
 use crate::scene::size::MOST_PRIMITIVES;
 use crate::scene::text::Source;
 
 /// The most words of a line, or parts that it is continued by: those of a face with as many triangles as a scene holds.
 pub(super) const MOST_WORDS: usize = MOST_PRIMITIVES as usize + 3;
+
+/// The statements of numbers.
+pub(super) const NUMBERS: [&str; 4] = ["v", "vt", "vn", "f"];
+
+/// Returns a file in which no line continues on further ones. Each such line is joined, and blank lines follow it, so
+/// that the others keep their numbers.
+pub(super) fn joined(source: Source) -> Source {
+    let whole = || WholeLines(source.lines());
+    if !whole().any(|(_, _, parts)| parts.len() > 1) {
+        return source;
+    }
+    let lines = whole().map(|(_, _, parts)| parts.join(" ") + &"\n".repeat(parts.len()));
+    let text = lines.collect();
+    Source { text, ..source }
+}
 
 /// Returns the statements other than vertices and faces that continue on further lines, each as one line. The parser
 /// takes names from them.
@@ -20,7 +35,7 @@ pub(super) fn continued(source: &Source) -> Vec<String> {
 /// Returns whether a line is read by the parser word by word, so that it needs not be joined.
 fn is_of_numbers(line: &str) -> bool {
     let keyword = line.split_whitespace().next();
-    keyword.is_some_and(|word| ["v", "vt", "vn", "f"].contains(&word))
+    keyword.is_some_and(|word| NUMBERS.contains(&word))
 }
 
 /// The lines of a file, of which a backslash at the end continues one on the next, unless a comment ends so: number, the

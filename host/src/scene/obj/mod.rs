@@ -7,7 +7,7 @@
 //! Every `o`, `g` and change of `usemtl` starts a new mesh, in file order, which holds only the vertices that it uses.
 //! Faces are cut into triangles in file order. A face whose corners all have normals is smooth. Smoothing groups are
 //! ignored, with a warning. Colors of vertices are in sRGB. Zero-area triangles are kept for the compiler to report. A
-//! backslash at the end of a line continues it on the next one, also within names.
+//! backslash at the end of a line continues it on the next one, also within names and in MTL files.
 
 mod lines;
 mod mtl;
@@ -180,6 +180,7 @@ fn read_libraries(
                             .error(cause, "leave materials out that no face uses")
                             .at_line(line)
                     })?;
+                    let file = lines::joined(file);
                     library.extend(mtl::read(&file, &mut images, warnings)?);
                 }
                 Err(error) => {
@@ -204,15 +205,24 @@ struct Materials<'a> {
 }
 
 impl<'a> Materials<'a> {
+    /// The name of a material without a comment behind it, if there is such a material and none of the whole name:
+    /// names may have number signs.
+    fn without_comment(&self, name: &'a str) -> &'a str {
+        let mut signs = name.match_indices('#').map(|(at, _)| &name[..at]);
+        let before = signs.find(|it| it.ends_with(char::is_whitespace));
+        let before = before.map(str::trim_end);
+        let is_known = |name: &&str| self.library.contains_key(*name);
+        let before = before.filter(|it| is_known(it) && !is_known(&name));
+        before.unwrap_or(name)
+    }
+
     fn resolve(&mut self, part: &Part<'a>, source: &Source, warnings: &mut Warnings) -> usize {
-        if let Some(&index) = self.index.get(&part.material) {
+        let material = part.material.map(|name| self.without_comment(name));
+        if let Some(&index) = self.index.get(&material) {
             return index;
         }
-        let known = part
-            .material
-            .and_then(|name| self.library.get(name))
-            .cloned();
-        if let (Some(name), None) = (part.material, &known) {
+        let known = material.and_then(|name| self.library.get(name)).cloned();
+        if let (Some(name), None) = (material, &known) {
             let sentence = format!(
                 "the material {name:?} is defined nowhere; the default is used",
                 name = shortened(name)
@@ -221,7 +231,7 @@ impl<'a> Materials<'a> {
         }
         let index = self.used.len();
         self.used.push(known.unwrap_or_default());
-        self.index.insert(part.material, index);
+        self.index.insert(material, index);
         index
     }
 }

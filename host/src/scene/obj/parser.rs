@@ -1,6 +1,6 @@
 //! The lines of an OBJ file: vertices, and parts of faces that share a name and a material.
 
-use super::lines::{MOST_WORDS, WholeLines};
+use super::lines::{MOST_WORDS, NUMBERS, WholeLines};
 use crate::scene::size::{Size, lists_fit};
 use crate::scene::text::{Source, Warnings};
 use crate::scene::{Color, SceneError};
@@ -100,16 +100,24 @@ pub(super) fn parse<'a>(
             let remedy = "split it, or export a part of the scene";
             return Err(source.error(cause, remedy).at_line(number));
         }
-        // A comment may follow numbers; in names a number sign is common.
-        let end = words
-            .iter()
-            .position(|word| word.starts_with('#'))
-            .unwrap_or(words.len());
+        // A comment may follow numbers, also without a space; in names a number sign is common.
+        let is_of_numbers = words.first().is_some_and(|word| NUMBERS.contains(word));
+        if is_of_numbers && parts.iter().any(|part| part.contains('#')) {
+            // `1.#IND` and the like are what old programs write in place of NaN.
+            let is_comment = |word: &&str| {
+                let parts = word.split_once('#');
+                parts.is_some_and(|(number, _)| !number.ends_with('.'))
+            };
+            let end = words.iter().position(is_comment);
+            let last = end.and_then(|end| words[end].split('#').next());
+            words.truncate(end.unwrap_or(words.len()));
+            words.extend(last.filter(|it| !it.is_empty()));
+        }
         match words.first() {
-            Some(&"v") => parser.vertex(number, line, &words[1..end], warnings)?,
-            Some(&"vt") => parser.texture_vertex(line, &words[1..end])?,
-            Some(&"vn") => parser.normal(number, line, &words[1..end], warnings)?,
-            Some(&"f") => parser.face(number, &words[1..end], warnings)?,
+            Some(&"v") => parser.vertex(number, line, &words[1..], warnings)?,
+            Some(&"vt") => parser.texture_vertex(line, &words[1..])?,
+            Some(&"vn") => parser.normal(number, line, &words[1..], warnings)?,
+            Some(&"f") => parser.face(number, &words[1..], warnings)?,
             _ if parts.len() > 1 => {
                 let whole = continued.next().map_or(line, |it| it.as_str());
                 parser.statement(number, whole.trim(), warnings);
@@ -290,6 +298,16 @@ impl<'a> Parser<'a> {
             };
             coordinates.push(next(self.parsed.coordinates.len(), "texture coordinate")?);
             normals.push(next(self.parsed.normals.len(), "normal")?);
+            if indices.next().is_some() {
+                return Err(self.source.error_at(
+                    word,
+                    format!(
+                        "a face has the vertex {quoted:?}, which has more than three indices",
+                        quoted = shortened(word)
+                    ),
+                    "write `f` and vertices as `position/texture/normal`",
+                ));
+            }
         }
         if corners.len() < 3 {
             let sentence = format!(

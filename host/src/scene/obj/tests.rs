@@ -101,6 +101,57 @@ fn names_of_material_files_continue_and_end_at_a_comment() {
 }
 
 #[test]
+fn comments_may_follow_numbers_and_names_of_materials() {
+    let text = format!(
+        "{CORNERS}v 0 0 5#x\nv 0 0 5 #a.#b\nvn 0 0 1#\nvt 0 0 # y\nf 1/1/1 2/1/1 3/1/1#c 4\n"
+    );
+    let imported = read(&text).unwrap();
+    assert_eq!(imported.warnings, [] as [&str; 0]);
+    assert_eq!(mesh(&imported.scene.objects[0]).1.len(), 1);
+    let folder = tempfile::tempdir().unwrap();
+    let materials = "newmtl b\nKd 0 1 0\nnewmtl b # 2\nKd 1 0 0\n";
+    std::fs::write(folder.path().join("a.mtl"), materials).unwrap();
+    let path = folder.path().join("t.obj");
+    let text = format!(
+        "mtllib a.mtl\n{CORNERS}usemtl b # 2\nf 1 2 3\nusemtl b\nf 1 2 3\nusemtl b # green\nf 1 2 3\nusemtl c #\nf 1 2 3\n"
+    );
+    std::fs::write(&path, text).unwrap();
+    let Imported {
+        scene, warnings, ..
+    } = load(&path).unwrap();
+    let materials: Vec<_> = scene.objects.iter().map(|it| it.material).collect();
+    assert_eq!(materials, [0, 1, 1, 2]);
+    let names = scene.materials[..2].iter().map(|it| it.name.as_str());
+    assert!(names.eq(["b # 2", "b"]));
+    let [warning] = &warnings[..] else {
+        panic!("{warnings:?}");
+    };
+    assert!(warning.contains("\"c #\" is defined nowhere"), "{warning}");
+}
+
+#[test]
+fn lines_of_material_files_continue() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("t.obj");
+    let text = format!("mtllib a.mtl\n{CORNERS}usemtl b c\nf 1 2 3\n");
+    std::fs::write(&path, text).unwrap();
+    let read = |materials: &str| {
+        std::fs::write(folder.path().join("a.mtl"), materials).unwrap();
+        load(&path)
+    };
+    let imported = read("# C:\\\nnewmtl b \\\n c\r\nKd 0 \\\r\n1 \\\n0\nillum 11\n").unwrap();
+    let diffuse = imported.scene.materials[0].diffuse;
+    assert_eq!(diffuse, Diffuse::Plain([0.0, 1.0, 0.0]));
+    let [warning] = &imported.warnings[..] else {
+        panic!("{:?}", imported.warnings);
+    };
+    assert!(warning.contains("a.mtl:7: illum 11"), "{warning}");
+    let error = read("newmtl b c\nKd 0 \\\n1 x\nNs 1\n").unwrap_err();
+    let expected = "a.mtl:2: a number of Kd is \"x\", which is not a number";
+    assert!(error.to_string().ends_with(expected), "{error}");
+}
+
+#[test]
 fn faces_may_come_before_their_vertices() {
     let scene = read(&format!("f 1 2 3\no later\n{CORNERS}")).unwrap().scene;
     assert_eq!(mesh(&scene.objects[0]).0.len(), 3);
@@ -139,6 +190,10 @@ fn faults_name_line_and_cause() {
         "t.obj:6: the file has no faces: points and lines have no surface and are skipped (and 2 times more); \
          line 9: a face of 1 vertices has no surface and is skipped; \
          line 10: the statement \"curv\" is unknown or about curves, and ignored"
+    );
+    assert_eq!(
+        fault(&format!("{CORNERS}f 1/1/1/1 2 3\n")),
+        "t.obj:5: a face has the vertex \"1/1/1/1\", which has more than three indices"
     );
     assert_eq!(fault("v 1 2\n"), "t.obj:1: a vertex has 2 of 3 coordinates");
     assert_eq!(

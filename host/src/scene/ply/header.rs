@@ -21,9 +21,33 @@ pub(super) fn read(
     let parser = Parser::<Skipped>::new();
     let header = parser.read_header(reader);
     let header = header.map_err(|error| fault(path, bytes, &error))?;
+    check_version(path, bytes)?;
     reject_doubled(path, bytes)?;
     ignored(path, bytes, warnings);
     Ok(header)
+}
+
+/// Rejects versions other than 1.0. The crate reads every version that is a number.
+fn check_version(path: &Path, bytes: &[u8]) -> Result<(), SceneError> {
+    for (number, line) in (1..).zip(lines(bytes)) {
+        let text = String::from_utf8_lossy(line);
+        let mut words = text.split_whitespace();
+        match words.next() {
+            Some("end_header") => break,
+            Some("format") if words.nth(1).and_then(|it| it.parse().ok()) != Some(1.0) => {
+                let cause = unknown_version(line);
+                return Err(SceneError::new(path, cause, WRITE_VERSION).at_line(number));
+            }
+            _ => {}
+        }
+    }
+    Ok(())
+}
+
+const WRITE_VERSION: &str = "write the version 1.0";
+
+fn unknown_version(line: &[u8]) -> String {
+    format!("{} has an unknown version", quoted(line))
 }
 
 /// Rejects elements of one name, and properties of one name in an element. The crate keeps the last of them only, and
@@ -141,10 +165,7 @@ fn fault_without_line(path: &Path, bytes: &[u8], error: &ParseError, again: &str
     let is_format = |line: &&[u8]| line.trim_ascii().starts_with(b"format");
     let [cause, remedy] = match lines(bytes).find(is_format) {
         _ if bytes.is_empty() => [String::from("the file is empty"), again.to_owned()],
-        Some(line) => [
-            format!("{} has an unknown version", quoted(line)),
-            String::from("write the version 1.0"),
-        ],
+        Some(line) => [unknown_version(line), String::from(WRITE_VERSION)],
         None => [
             String::from("the header has no format"),
             String::from("write `format ascii 1.0` below `ply`"),

@@ -212,6 +212,7 @@ fn headers_that_cannot_be_read_are_named_with_their_cause() {
         (String::from("ply\nformat ascii 1.0\n"), "thing.ply: the file ends before the end of its header"),
         (text("format ascii 1.0\n", ""), "thing.ply: the header has no format"),
         (text("ascii 1.0", "ascii 99999.0"), "thing.ply: `format ascii 99999.0` has an unknown version"),
+        (text("ascii 1.0", "ascii 7.3"), "thing.ply:2: `format ascii 7.3` has an unknown version"),
         (text("ascii", "asci"), "thing.ply:2: `format asci 1.0` is not a line of a PLY header"),
         (text("comment a square", "format binary_little_endian 1.0"), "thing.ply:3: `format binary_little_endian 1.0` differs from the format of a line above"),
         (text("comment a square", "ply"), "thing.ply:3: `ply` stands in the middle of the header"),

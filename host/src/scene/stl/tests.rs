@@ -262,6 +262,18 @@ fn text_that_ends_without_endsolid_is_warned_of() {
 }
 
 #[test]
+fn numbers_behind_the_coordinates_of_a_vertex_are_warned_of() {
+    let text = TWO_SOLIDS.replace("vertex 1 0 0", "vertex 1 0 0 7");
+    let imported = read(text.as_bytes()).unwrap();
+    let [warning] = &imported.warnings[..] else {
+        panic!("{:?}", imported.warnings);
+    };
+    let expected = ":5: what follows the three coordinates of a vertex is ignored";
+    assert!(warning.ends_with(expected), "{warning}");
+    assert_eq!(imported.scene.objects.len(), 2);
+}
+
+#[test]
 fn text_behind_a_comment_is_named() {
     let error = read(format!("; made by x\n\n{TWO_SOLIDS}").as_bytes()).unwrap_err();
     assert_eq!(

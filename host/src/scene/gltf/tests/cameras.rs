@@ -33,6 +33,18 @@ fn a_camera_is_known_by_its_node_first() {
 }
 
 #[test]
+fn aspect_ratios_that_are_not_above_0_are_ignored_with_a_warning() {
+    let mut document = document();
+    for (ratio, width, expected) in [(2.0, 480, 0), (0.0, 320, 1), (-2.0, 320, 1)] {
+        document["cameras"][0]["perspective"]["aspectRatio"] = json!(ratio);
+        assert_eq!(scene(&document).render.width, width, "{ratio}");
+        let warnings = warnings(&document);
+        assert_eq!(warnings.len(), expected, "{ratio}: {warnings:?}");
+        assert!(warnings.iter().all(|it| it.contains("the aspect ratio")));
+    }
+}
+
+#[test]
 fn a_camera_that_sees_nothing_is_named() {
     for yfov in [0.0, -1.0, 3.2] {
         let choice = Choice {

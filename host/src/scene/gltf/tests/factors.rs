@@ -93,3 +93,36 @@ fn times_beyond_the_limit_name_their_channel() {
         "animation 0, channel 0 of node 1: the time 1000000 is beyond 44739 seconds, the limit"
     );
 }
+
+/// The components along u and v change their sign, which the image can, but not the scale.
+#[test]
+fn normal_maps_of_negative_scale_are_turned() {
+    let mut document = document();
+    let pixels = [[0, 255, 200, 255], [128, 100, 255, 7]];
+    let image = STANDARD.encode(crate::scene::image::tests::png_of(2, 1, &pixels));
+    document["images"] = json!([{"uri": format!("data:image/png;base64,{image}")}]);
+    document["textures"] = json!([{"source": 0}]);
+    let mut part = document["meshes"][0]["primitives"][0].clone();
+    part["material"] = json!(1);
+    push(&mut document["meshes"][0], "primitives", part);
+    document["materials"] = json!([
+        {"normalTexture": {"index": 0, "scale": -2}},
+        {"normalTexture": {"index": 0, "scale": 0.5}},
+    ]);
+    // The square has no texture coordinates.
+    let others = |document: &Value| {
+        let mut found = warnings(document);
+        found.retain(|it| !it.contains("no TEXCOORD_0"));
+        found
+    };
+    assert_eq!(others(&document), [] as [&str; 0]);
+    let maps = scene(&document).materials.into_iter();
+    let maps = maps.map(|material| material.normal_map.unwrap());
+    let found: Vec<_> = maps
+        .map(|map| (map.scale, map.texture.image.pixels().to_vec()))
+        .collect();
+    let turned = vec![[255, 0, 200, 255], [127, 155, 255, 7]];
+    assert_eq!(found, [(2.0, turned), (0.5, pixels.to_vec())]);
+    document["materials"][0]["normalTexture"]["scale"] = json!(-20);
+    assert!(others(&document)[0].contains("has the scale -20; it is drawn with -16"));
+}

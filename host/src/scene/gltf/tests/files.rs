@@ -30,6 +30,8 @@ fn faults_of_the_container_are_named() {
             b"glTF".to_vec(),
             "the file ends inside its header: it has 4 of 12 bytes",
         ),
+        (Vec::new(), "the file is empty"),
+        (b"\xef\xbb\xbf \n".to_vec(), "the file is empty"),
         (
             with(0, b"glTG"),
             "begins with the bytes 67 6c 54 47, not with `glTF`",
@@ -58,7 +60,11 @@ fn faults_of_the_container_are_named() {
         ),
         (cut(12), "the file has no chunk"),
         (twice, "a second one of the type BIN"),
-        (with(20, b"["), "the JSON is broken"),
+        (
+            with(20, b"["),
+            "the JSON is broken: invalid type: string \"accessors\"",
+        ),
+        (with(20, b"["), "(line 1, column 12 of the JSON chunk)"),
     ] {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("thing.glb");
@@ -67,6 +73,34 @@ fn faults_of_the_container_are_named() {
         assert!(error.cause.contains(expected), "{expected}: {error}");
         assert!(!error.remedy.is_empty());
     }
+}
+
+#[test]
+fn data_uris_are_read_in_capital_letters_and_with_escapes() {
+    let mut document = document();
+    let escaped = STANDARD.encode(square()).replace('A', "%41");
+    let whole = document["buffers"][0]["uri"].as_str().unwrap().to_owned();
+    for uri in [
+        format!("data:application/octet-stream;base64,{escaped}"),
+        whole.replace("data:", "DATA:"),
+        whole.replace("base64", "BASE64"),
+        whole.replace("application/octet-stream", ""),
+    ] {
+        document["buffers"][0]["uri"] = json!(uri);
+        assert_eq!(scene(&document).objects.len(), 1, "{uri}");
+    }
+    // Signs that are often escaped.
+    let path = Path::new("a.gltf");
+    let uri = "Data:;base64,%2B%2F%2f%2B%2Fw%3D%3D";
+    let found = buffers::fetch(path, "buffer 0", uri, &Access::of(path, false));
+    assert_eq!(found.unwrap(), [0xfb, 0xff, 0xfe, 0xff]);
+    document["buffers"][0]["uri"] = json!(format!("data:x;base64,{}", "=".repeat(1000)));
+    let cause = cause(&document);
+    assert!(
+        cause.contains("not in base 64: \"data:x;base64,==="),
+        "{cause}"
+    );
+    assert!(cause.len() < 200, "{cause}");
 }
 
 #[test]

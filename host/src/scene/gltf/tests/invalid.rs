@@ -62,6 +62,10 @@ fn broken_documents() {
             "mesh 0 uses accessor 7",
         ),
         (
+            |d| d["meshes"][0]["primitives"][0]["attributes"]["WHATEVER"] = json!(0),
+            "meshes[0].primitives[0].attributes: the name of an attribute is unknown",
+        ),
+        (
             |d| d["cameras"][0]["type"] = json!("orthographic"),
             "camera 0 lacks",
         ),
@@ -71,6 +75,28 @@ fn broken_documents() {
     }
     let error = read(b"{\n \"asset\": {\"version\": 2.0}\n}").unwrap_err();
     assert_eq!(error.line, Some(2));
+    assert!(error.cause.ends_with("(column 25)"), "{error}");
+}
+
+#[test]
+fn required_extensions_must_be_read() {
+    let mut document = document();
+    document["extensionsRequired"] = document["extensionsUsed"].clone();
+    assert_eq!(warnings(&document), [] as [&str; 0]);
+    for name in [
+        "KHR_texture_basisu",
+        "EXT_texture_webp",
+        "MSFT_texture_dds",
+        "KHR_materials_unlit",
+        "KHR_mesh_quantization",
+    ] {
+        document["extensionsUsed"] = json!([name]);
+        assert!(warnings(&document).concat().contains(name));
+        document["extensionsRequired"] = json!(["KHR_materials_ior", name]);
+        let expected = format!("`extensionsRequired` names an extension that is not read: {name}");
+        assert_eq!(cause(&document), expected);
+        document["extensionsRequired"] = json!([]);
+    }
 }
 
 /// Instances count against the limit of a blob before they are made.
@@ -171,6 +197,29 @@ fn a_projective_matrix_is_rejected() {
         assert!(cause.contains(&expected), "{cause}");
         matrix[place] = kept;
     }
+}
+
+#[test]
+fn nodes_with_two_transforms_are_warned_of() {
+    let mut document = document();
+    document["nodes"][0]["matrix"] = json!([2, 0, 0, 0, 0, 2, 0, 0, 0, 0, 2, 0, 0, 0, 0, 1]);
+    document["nodes"][0]["translation"] = json!([7, 7, 7]);
+    let warnings = warnings(&document);
+    assert_eq!(warnings.len(), 1, "{warnings:?}");
+    assert!(warnings[0].starts_with("node 0 has a matrix, and a translation"));
+    let scene = scene(&document);
+    let (vertices, _) = mesh(&scene.objects[0]);
+    assert_eq!(vertices[2], DVec3::new(2.0, 2.0, 0.0));
+}
+
+#[test]
+fn scenes_that_list_an_inner_node_are_rejected() {
+    let mut document = document();
+    document["nodes"][0]["children"] = json!([2]);
+    push(&mut document, "nodes", json!({"mesh": 0}));
+    assert_eq!(scene(&document).objects.len(), 2);
+    push(&mut document, "scenes", json!({"nodes": [1, 2]}));
+    assert!(cause(&document).contains("scene 1 lists node 2, which is inside of node 0"));
 }
 
 /// Nodes and meshes that no scene shows must be valid all the same.

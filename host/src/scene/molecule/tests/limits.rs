@@ -68,11 +68,19 @@ fn bonds_and_assemblies_are_limited_as_atoms_are() {
 }
 
 #[test]
-fn tables_of_too_many_columns_are_rejected() {
-    let text = format!("data_t\nloop_\n{}1\n", "_a.b\n".repeat(10_001));
+fn tables_of_too_many_columns_and_of_equal_ones_are_rejected() {
+    let columns: String = (0..10_001)
+        .map(|number| format!("_a.b{number}\n"))
+        .collect();
+    let text = format!("data_t\nloop_\n{columns}1\n");
     assert_eq!(
         cif(&text).unwrap_err().to_string(),
         "t.cif:10003: a table has more than 10,000 columns"
+    );
+    let twice = "data_t\nloop_\n_atom_site.id\n_atom_site.Cartn_x\n_Atom_site.cartn_X\n1 2 3\n";
+    assert_eq!(
+        cif(twice).unwrap_err().to_string(),
+        "t.cif:5: a loop has the column _Atom_site.cartn_X twice"
     );
 }
 
