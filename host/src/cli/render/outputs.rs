@@ -18,7 +18,7 @@ use gridel_host::render::{
     render_moments,
 };
 use gridel_host::report::HeatMap;
-use serde::Serialize;
+use serde::{Serialize, Serializer};
 use std::path::{Path, PathBuf};
 
 /// The formats of pictures that this build writes, as messages list them.
@@ -87,9 +87,15 @@ enum Stored {
 pub struct AovFile {
     pub name: &'static str,
     /// The file of the layer: that of the picture itself, if it holds layers.
+    #[serde(serialize_with = "serialize_shown")]
     pub file: PathBuf,
     #[serde(skip)]
     aov: Aov,
+}
+
+/// Serializes a path as messages show it: JSON has no bytes beyond UTF-8.
+fn serialize_shown<S: Serializer>(path: &Path, serializer: S) -> Result<S::Ok, S::Error> {
+    serializer.collect_str(&path.display())
 }
 
 /// The file of a picture, and the other files of a run.
