@@ -127,7 +127,12 @@ fn what_does_not_go_together_is_rejected() {
     let fails = |options: &[&str], words: &[&str]| {
         folder.fails(2, &[&RENDER[..], options].concat(), words);
     };
-    for option in [&["--dither"][..], &["--stats"], &["--heat-map", "heat.png"]] {
+    for option in [
+        &["--dither"][..],
+        &["--stats"],
+        &["--heat-map", "heat.png"],
+        &["--tone-mapping", "aces"],
+    ] {
         let options = [&["-o", "a.npy"], option].concat();
         fails(&options, &[option[0], "linear radiance"]);
     }

@@ -123,12 +123,13 @@ impl Image {
 }
 
 impl<'a> Outputs<'a> {
-    /// Returns the requested files, or an error for names that cannot be written to.
-    pub fn of(input: &Path, options: &'a OutputOptions) -> Result<Self, Failure> {
+    /// Returns the requested files, or an error for names that cannot be written to. `is_mapped` is true if a curve of
+    /// tone mapping is given.
+    pub fn of(input: &Path, options: &'a OutputOptions, is_mapped: bool) -> Result<Self, Failure> {
         let picture = &*options.output;
         let stored = stored(picture)?;
         if let Stored::Linear(_) = stored {
-            reject_options_of_displays(options)?;
+            reject_options_of_displays(options, is_mapped)?;
         }
         let aovs = distinct(&options.aov).into_iter().map(|aov| {
             let file = match stored {
@@ -328,8 +329,9 @@ fn stored(output: &Path) -> Result<Stored, Failure> {
 }
 
 /// Rejects what only pictures for displays have.
-fn reject_options_of_displays(options: &OutputOptions) -> Result<(), Failure> {
+fn reject_options_of_displays(options: &OutputOptions, is_mapped: bool) -> Result<(), Failure> {
     let given = [
+        (is_mapped, "--tone-mapping"),
         (options.dither, "--dither"),
         (options.stats, "--stats"),
         (options.heat_map.is_some(), "--heat-map"),
