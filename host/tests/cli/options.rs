@@ -305,3 +305,24 @@ fn backgrounds_that_an_environment_hides_are_not_ignored_silently() {
     let warnings = report["warnings"].to_string();
     assert!(!warnings.contains("shown in place"), "{warnings}");
 }
+
+/// The advice to put `--` before a number below 0 would not help.
+#[test]
+fn numbers_below_0_are_rejected_with_their_range() {
+    let folder = Folder::with_quick();
+    let render = ["render", "quick.toml", "-o", "new.png"];
+    for (option, value, words) in [
+        ("--room", "-1", "write a length in scene units"),
+        ("--samples", "-1", "-1 is not in 1..=4096"),
+        ("--depth", "-2", "-2 is not in 0..=32"),
+        ("--light", "-1.color=1,1,1", "write a light's number"),
+    ] {
+        folder.fails(2, &[&render[..], &[option, value]].concat(), &[words]);
+    }
+    for (option, words) in [
+        ("--max-rays", "write a number above 0"),
+        ("--max-error", "write a number from 0 to 1"),
+    ] {
+        folder.fails(2, &["accuracy", "quick.toml", option, "-1"], &[words]);
+    }
+}
