@@ -17,6 +17,8 @@ use gridel_host::compare::{
     growth, growth_steps, is_chart,
 };
 use gridel_host::compile::{self, Builder};
+use gridel_host::picture_rays::MOST_RAYS;
+use gridel_host::render::too_many_pixels;
 use gridel_host::table::{Align, Table, counted, grouped};
 use peak_alloc::PeakAlloc;
 use serde::Serialize;
@@ -98,6 +100,10 @@ struct Report<'r> {
 pub fn run(arguments: &Arguments, memory: &PeakAlloc) -> Result<(), Failure> {
     let path = &arguments.scene;
     let options = options(arguments)?;
+    // Each pixel casts a ray at least.
+    if let Some(clause) = too_many_pixels(arguments.size, MOST_RAYS) {
+        return Err(Failure::usage(clause, "ask for a smaller `--size`"));
+    }
     let mut imported = import(
         path,
         &arguments

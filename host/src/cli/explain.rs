@@ -82,8 +82,13 @@ pub struct Arguments {
 
 /// Explains a pixel or a ray.
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
+    let scene_options = arguments.target_point.with_target(&arguments.scene_options);
+    let of_pixels = || {
+        let of_camera = || scene_options.view.given_for_camera();
+        arguments.picture.of_pixels().or_else(of_camera)
+    };
     if arguments.ray.is_some()
-        && let Some(option) = arguments.picture.of_pixels()
+        && let Some(option) = of_pixels()
     {
         return Err(Failure::usage(
             format!("{option} is for pixels, not for --ray"),
@@ -92,9 +97,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     }
     let source = Source::to_trace(
         &arguments.input,
-        &arguments
-            .target_point
-            .with_target(&arguments.scene_options)
+        &scene_options
             .sized(arguments.picture.size)
             .at(arguments.time),
         &arguments.with,

@@ -7,6 +7,7 @@ use super::failure::Failure;
 use gridel_host::blob::{self, Blob};
 use gridel_host::scene::{self, ImportOptions, Imported, MOST_INPUT, SceneError};
 use gridel_host::table::grouped;
+use std::fs::File;
 use std::io::{self, IsTerminal, Read};
 use std::path::{Path, PathBuf};
 
@@ -60,6 +61,21 @@ impl Input {
             Some(bytes) => Ok(blob::begins_as_blob(bytes)),
             None => blob::is_blob(&self.path).map_err(|error| Failure::reading(&self.path, &error)),
         }
+    }
+
+    /// Returns whether its content begins as that of a blob, whatever its name is.
+    pub fn begins_as_blob(&self) -> Result<bool, Failure> {
+        let mut start = Vec::new();
+        let start = match &self.bytes {
+            Some(bytes) => bytes,
+            None => {
+                let file = File::open(&self.path);
+                file.and_then(|it| it.take(8).read_to_end(&mut start))
+                    .map_err(|error| Failure::reading(&self.path, &error))?;
+                &start
+            }
+        };
+        Ok(blob::begins_as_blob(start))
     }
 
     /// Returns it as a blob, unchecked.

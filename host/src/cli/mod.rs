@@ -45,7 +45,7 @@ mod verify;
 mod view;
 mod web;
 
-use clap::{CommandFactory, Parser, Subcommand};
+use clap::{Arg, CommandFactory, FromArgMatches, Parser, Subcommand};
 use gridel_host::output::unfinished;
 use peak_alloc::PeakAlloc;
 use std::io::{self, IsTerminal, Write};
@@ -93,7 +93,7 @@ enum Command {
 /// `memory` is the program's allocator, which knows how much is in use.
 pub fn run(memory: &PeakAlloc) -> ExitCode {
     failure::break_lines_at_spaces();
-    let program = match Program::try_parse() {
+    let program = match parsed() {
         Ok(program) => program,
         Err(answer) => return answered(&answer),
     };
@@ -135,6 +135,23 @@ pub fn run(memory: &PeakAlloc) -> ExitCode {
     }
 }
 
+/// Reads the command line.
+fn parsed() -> Result<Program, clap::Error> {
+    let mut command = negative_numbers_as_values(Program::command());
+    let mut matches = command.try_get_matches_from_mut(std::env::args_os())?;
+    let program = Program::from_arg_matches_mut(&mut matches);
+    program.map_err(|error| error.format(&mut command))
+}
+
+/// Lets options take numbers below 0, so that `--room -1` is a value out of range and not an unknown option.
+fn negative_numbers_as_values(program: clap::Command) -> clap::Command {
+    let allow = |option: Arg| match option.is_positional() || !option.get_action().takes_values() {
+        true => option,
+        false => option.allow_negative_numbers(true),
+    };
+    program.mut_subcommands(|command| command.mut_args(allow))
+}
+
 /// Prints what clap answers by itself: the help, the version, or what is wrong with the command line.
 fn answered(answer: &clap::Error) -> ExitCode {
     let printed = answer.print().and_then(|()| io::stdout().flush());
@@ -151,6 +168,6 @@ mod tests {
 
     #[test]
     fn the_command_line_is_consistent() {
-        Program::command().debug_assert();
+        negative_numbers_as_values(Program::command()).debug_assert();
     }
 }

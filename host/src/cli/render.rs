@@ -134,6 +134,7 @@ impl<'a> Target<'a> {
             return Ok(Self::Picture(Outputs::of(
                 &arguments.input,
                 &arguments.files,
+                arguments.scene_options.tone_mapping.is_some(),
             )?));
         };
         let output = Output::of(

@@ -356,6 +356,15 @@ fn import_from(
 ) -> Result<(Imported, Vec<TrackTarget>), Failure> {
     let path = input.path();
     if input.is_blob()? {
+        if !input.begins_as_blob()? {
+            return Err(Failure::failed(
+                format!(
+                    "{} has the name of a blob, but its content is not that of a blob",
+                    path.display()
+                ),
+                "if it is a scene file, rename it to the extension of its format, such as .toml",
+            ));
+        }
         return Err(Failure::failed(
             format!("{} is a blob already, not a scene file", path.display()),
             "give the scene file that it was built from; `gridel inspect` and `gridel render` take \
@@ -394,6 +403,14 @@ fn import_from(
     imported.warnings.iter().for_each(warn);
     let lost = scene::leave_out(&mut imported.scene, &importing.without);
     warn_of_file(path, lost, &mut imported.warnings);
+    if imported.scene.background.is_some() && imported.scene.environment.is_some() {
+        let place = &imported.scene.places.environment;
+        let warning = format!(
+            "{place}: the environment is shown in place of the scene's background; remove one of the two"
+        );
+        warn(&warning);
+        imported.warnings.push(warning);
+    }
     if let Some(cutoff) = options.cutoff {
         imported.scene.render.cutoff = cutoff;
     }

@@ -76,7 +76,7 @@ pub enum CompileError {
     #[diagnostic(help("change the camera's `eye`, `target`, `up` or `fov`"))]
     Camera { source: CameraError },
     #[error(
-        "material {material}: a plane's checkerboard has cells larger than {most:.3e}, 4 times the scene"
+        "{material}: a plane's checkerboard has cells larger than {most:.3e}, 4 times the scene"
     )]
     #[diagnostic(help("make the cells smaller, or give the plane one color"))]
     CheckerSize { material: String, most: f64 },

@@ -91,10 +91,11 @@ fn too_many_rays_are_rejected() {
         "compare",
         "quick.toml",
         "--size",
-        "4096x4096",
+        "2048x2048",
         "--repeat",
         "0",
     ];
+    // The rays of the camera alone would not be too many.
     folder.fails(1, &large, &["more than", "rays", "--size"]);
 }
 
@@ -189,4 +190,13 @@ fn rays_that_surfaces_send_on_are_called_bounced() {
         !text.contains("mirrored") && !text.contains("refracted"),
         "{text}"
     );
+}
+
+/// The scene is not even read.
+#[test]
+fn compare_rejects_pictures_of_too_many_pixels_at_once() {
+    let folder = Folder::new();
+    let compare = ["compare", "missing.toml", "--size", "65535x65535"];
+    let words = ["4,294,836,225 pixels exceed", "4,194,304", "`--size`"];
+    folder.fails(2, &compare, &words);
 }

@@ -127,7 +127,12 @@ fn what_does_not_go_together_is_rejected() {
     let fails = |options: &[&str], words: &[&str]| {
         folder.fails(2, &[&RENDER[..], options].concat(), words);
     };
-    for option in [&["--dither"][..], &["--stats"], &["--heat-map", "heat.png"]] {
+    for option in [
+        &["--dither"][..],
+        &["--stats"],
+        &["--heat-map", "heat.png"],
+        &["--tone-mapping", "aces"],
+    ] {
         let options = [&["-o", "a.npy"], option].concat();
         fails(&options, &[option[0], "linear radiance"]);
     }
@@ -158,4 +163,22 @@ fn what_does_not_go_together_is_rejected() {
         folder.names(),
         ["a.depth.npy", "quick.gridel", "quick.toml"]
     );
+}
+
+/// Linux allows any bytes in names, and JSON does not.
+#[cfg(target_os = "linux")]
+#[test]
+fn names_that_are_not_utf_8_are_shown_with_replacements() {
+    use std::ffi::OsStr;
+    use std::os::unix::ffi::OsStrExt;
+    let folder = Folder::with_quick();
+    let mut command = folder.command(&[&RENDER[..], &["--aov", "depth", "--json", "-o"]].concat());
+    let output = command.arg(OsStr::from_bytes(b"a\xff.npy")).output();
+    let output = output.expect("a run");
+    let said = String::from_utf8_lossy(&output.stderr);
+    assert!(output.status.success(), "{said}");
+    let report: serde_json::Value = serde_json::from_slice(&output.stdout).expect("JSON");
+    assert_eq!(report["picture"], "a\u{fffd}.npy");
+    let files = json!([{ "name": "depth", "file": "a\u{fffd}.depth.npy" }]);
+    assert_eq!(report["aovs"], files);
 }

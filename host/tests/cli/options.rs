@@ -114,6 +114,18 @@ fn options_that_a_command_cannot_use_are_rejected() {
         &[&explain[..], &["--samples", "4"]].concat(),
         &["--samples is for pixels"],
     );
+    for (option, value) in [
+        ("--eye", "0,0,5"),
+        ("--target", "0,0,0"),
+        ("--up", "0,0,1"),
+        ("--fov", "20"),
+    ] {
+        let words = format!("{option} is for pixels, not for --ray");
+        let words = words.replace("--target", "--target X,Y,Z");
+        fails(&[&explain[..], &[option, value]].concat(), &[&words]);
+    }
+    // A ray that hits nothing shows it.
+    folder.done(&[&explain[..], &["--background", "1,0,0"]].concat());
     let help = folder.done(&["accuracy", "--help"]);
     assert!(!help.contains("--lattice-bits"), "{help}");
     // Verbs that want a scene file say so of a blob.
@@ -268,5 +280,49 @@ fn explained_colors_are_ratios_before_and_after_tone_mapping() {
             curve != "none",
             "{text}"
         );
+    }
+}
+
+/// An environment is shown in place of a background.
+#[test]
+fn backgrounds_that_an_environment_hides_are_not_ignored_silently() {
+    let folder = Folder::new();
+    let scene = "background = [0, 0, 1]\n[environment]\nzenith = 0.5\nhorizon = 0.5\nground = 0\n\
+        [[object]]\nkind = 'sphere'\ncenter = [0, 0, 0]\nradius = 1\n";
+    folder.write("a.toml", scene.as_bytes());
+    let report = folder.json(&["build", "a.toml", "-o", "a.gridel"]);
+    let warning = "a.toml:2: the environment is shown in place of the scene's background";
+    let warnings = report["warnings"].to_string();
+    assert!(warnings.contains(warning), "{warnings}");
+    let words = ["--background has no effect", "environment"];
+    for input in ["a.toml", "a.gridel"] {
+        let render = ["render", input, "-o", "a.png", "--background", "1,0,0"];
+        folder.fails(2, &render, &words);
+    }
+    let render = ["render", "a.toml", "-o", "a.png", "--background", "1,0,0"];
+    let without = ["--without", "environment", "--size", "8x6"];
+    let report = folder.json(&[&render[..], &without].concat());
+    let warnings = report["warnings"].to_string();
+    assert!(!warnings.contains("shown in place"), "{warnings}");
+}
+
+/// The advice to put `--` before a number below 0 would not help.
+#[test]
+fn numbers_below_0_are_rejected_with_their_range() {
+    let folder = Folder::with_quick();
+    let render = ["render", "quick.toml", "-o", "new.png"];
+    for (option, value, words) in [
+        ("--room", "-1", "write a length in scene units"),
+        ("--samples", "-1", "-1 is not in 1..=4096"),
+        ("--depth", "-2", "-2 is not in 0..=32"),
+        ("--light", "-1.color=1,1,1", "write a light's number"),
+    ] {
+        folder.fails(2, &[&render[..], &[option, value]].concat(), &[words]);
+    }
+    for (option, words) in [
+        ("--max-rays", "write a number above 0"),
+        ("--max-error", "write a number from 0 to 1"),
+    ] {
+        folder.fails(2, &["accuracy", "quick.toml", option, "-1"], &[words]);
     }
 }

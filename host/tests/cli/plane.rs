@@ -112,3 +112,18 @@ fn a_scene_without_objects_is_drawn_with_a_warning() {
     let warnings = report["warnings"].to_string();
     assert!(warnings.contains("the scene has no object"), "{report}");
 }
+
+#[test]
+fn large_checkerboards_of_planes_are_rejected_with_their_line() {
+    let folder = Folder::new();
+    let scene = "[[object]]\nkind = 'plane'\npoint = [0, 0, 0]\nnormal = [0, 1, 0]\nmaterial = 'm'\n\
+        [[object]]\nkind = 'sphere'\ncenter = [0, 1, 0]\nradius = 1\n\
+        [material.m]\nchecker = { even = 1, odd = 0, size = 100 }\n";
+    folder.write("a.toml", scene.as_bytes());
+    let build = ["build", "a.toml", "-o", "a.gridel"];
+    let words = [
+        "material m (a.toml:10): a plane's checkerboard",
+        "4 times the scene",
+    ];
+    folder.fails(1, &build, &words);
+}

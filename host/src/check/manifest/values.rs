@@ -8,7 +8,10 @@ use gridel_core::{Format, Structure};
 use std::collections::BTreeMap;
 
 pub(super) fn target(value: Value<'_>) -> Result<&'static Board, SceneError> {
-    value.one_of(BOARDS.each_ref(), |board| board.name)
+    match Board::named(value.text()?) {
+        Some(board) => Ok(board),
+        None => value.one_of(BOARDS.each_ref(), |board| board.name),
+    }
 }
 
 pub(super) fn format(value: Value<'_>) -> Result<Format, SceneError> {

@@ -168,3 +168,11 @@ fn target_is_held_to_the_structure_and_the_size_of_the_check() {
     let narrow = ram(&of_blob("accel = \"dual-split\"\nsize = [16, 12]\n"));
     assert_eq!(ram(&of_blob(wide)), narrow + 2 * (640 - 16));
 }
+
+/// As `--target` takes them.
+#[test]
+fn names_of_targets_can_have_capitals() {
+    let manifest = Folder::new().manifest(&on_discovery("").replace("stm32vld", "STM32VLD"));
+    let target = manifest.unwrap().checks[0].target;
+    assert_eq!(target.map(|board| board.name), Some("stm32vldiscovery"));
+}

@@ -52,7 +52,7 @@ pub struct SceneOptions {
     /// Change the position, direction or color of a light, counted from 0, such as 0.position=1,2.5,-3; may
     /// be repeated. Exposure multiplies the color of a scene file's light; to render a blob, give a color that
     /// includes it
-    #[arg(long = "light", value_name = "N.NAME=X,Y,Z", value_parser = light)]
+    #[arg(long = "light", value_name = "N.NAME=X,Y,Z", value_parser = light, allow_hyphen_values = true)]
     pub lights: Vec<LightChange>,
 
     #[command(flatten)]

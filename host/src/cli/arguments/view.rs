@@ -1,6 +1,6 @@
 //! Options for the camera of a scene.
 
-use super::values::{numbers, vector};
+use super::values::{first_given, numbers, vector};
 use crate::cli::failure::Failure;
 use clap::Args;
 use glam::DVec3;
@@ -62,8 +62,13 @@ impl ViewOptions {
     /// Changes the scene's camera and background, and the size of its picture.
     ///
     /// # Errors
-    /// If the camera would look nowhere, or along the direction that points up.
+    /// If the camera would look nowhere, or along the direction that points up; or if an environment is shown in place
+    /// of the background.
     pub fn apply(&self, scene: &mut Scene) -> Result<(), Failure> {
+        self.check_background(
+            scene.environment.is_some(),
+            "leave the option out, or the environment with `--without environment`",
+        )?;
         scene.background = self.background.or(scene.background);
         if let Some([width, height]) = self.size {
             (scene.render.width, scene.render.height) = (width.into(), height.into());
@@ -96,6 +101,7 @@ impl ViewOptions {
     /// # Errors
     /// As [`apply`](Self::apply), and if the camera is out of the blob's reach.
     pub fn in_blob(&self, scene: &gridel_core::Scene<'_>) -> Result<View, Failure> {
+        self.check_background(scene.environment().is_some(), "leave the option out")?;
         let mut view = *scene.view();
         if self.moves_camera() {
             let camera = self.moved(Camera::of_blob(scene))?;
@@ -121,9 +127,25 @@ impl ViewOptions {
         }
     }
 
-    fn moves_camera(&self) -> bool {
+    /// Returns the name of an option for the camera, if one was given.
+    pub fn given_for_camera(&self) -> Option<&'static str> {
         let [camera @ .., _] = self.given();
-        camera.iter().any(|(given, _)| *given)
+        first_given(camera)
+    }
+
+    /// Rejects a background that an environment hides.
+    fn check_background(&self, has_environment: bool, remedy: &str) -> Result<(), Failure> {
+        match self.background.filter(|_| has_environment) {
+            None => Ok(()),
+            Some(_) => Err(Failure::usage(
+                "--background has no effect: the scene's environment is shown in its place",
+                remedy,
+            )),
+        }
+    }
+
+    fn moves_camera(&self) -> bool {
+        self.given_for_camera().is_some()
     }
 
     /// Returns a camera with the given values in place of its own.

@@ -18,7 +18,7 @@ use gridel_host::render::{
     render_moments,
 };
 use gridel_host::report::HeatMap;
-use serde::Serialize;
+use serde::{Serialize, Serializer};
 use std::path::{Path, PathBuf};
 
 /// The formats of pictures that this build writes, as messages list them.
@@ -45,7 +45,8 @@ pub struct OutputOptions {
     /// depth is the distance from the eye; inf where nothing is hit. normal has length 1 and is that of
     /// shading, on the side of the eye; 0 where nothing is hit. albedo is the diffuse color; 0 on mirrors and
     /// glass. object, primitive and instance are numbers
-    /// as `gridel trace` prints them; 4294967295 for none. uv are texture coordinates; inf for none
+    /// as `gridel trace` prints them; 4294967295 for none. uv are texture coordinates after the
+    /// texture's scale, rotation and offset; inf for none
     #[arg(long, value_name = "NAMES", value_delimiter = ',', value_parser = arguments::aov(),
         conflicts_with = "frames")]
     aov: Vec<Aov>,
@@ -87,9 +88,15 @@ enum Stored {
 pub struct AovFile {
     pub name: &'static str,
     /// The file of the layer: that of the picture itself, if it holds layers.
+    #[serde(serialize_with = "serialize_shown")]
     pub file: PathBuf,
     #[serde(skip)]
     aov: Aov,
+}
+
+/// Serializes a path as messages show it: JSON has no bytes beyond UTF-8.
+fn serialize_shown<S: Serializer>(path: &Path, serializer: S) -> Result<S::Ok, S::Error> {
+    serializer.collect_str(&path.display())
 }
 
 /// The file of a picture, and the other files of a run.
@@ -117,12 +124,13 @@ impl Image {
 }
 
 impl<'a> Outputs<'a> {
-    /// Returns the requested files, or an error for names that cannot be written to.
-    pub fn of(input: &Path, options: &'a OutputOptions) -> Result<Self, Failure> {
+    /// Returns the requested files, or an error for names that cannot be written to. `is_mapped` is true if a curve of
+    /// tone mapping is given.
+    pub fn of(input: &Path, options: &'a OutputOptions, is_mapped: bool) -> Result<Self, Failure> {
         let picture = &*options.output;
         let stored = stored(picture)?;
         if let Stored::Linear(_) = stored {
-            reject_options_of_displays(options)?;
+            reject_options_of_displays(options, is_mapped)?;
         }
         let aovs = distinct(&options.aov).into_iter().map(|aov| {
             let file = match stored {
@@ -322,8 +330,9 @@ fn stored(output: &Path) -> Result<Stored, Failure> {
 }
 
 /// Rejects what only pictures for displays have.
-fn reject_options_of_displays(options: &OutputOptions) -> Result<(), Failure> {
+fn reject_options_of_displays(options: &OutputOptions, is_mapped: bool) -> Result<(), Failure> {
     let given = [
+        (is_mapped, "--tone-mapping"),
         (options.dither, "--dither"),
         (options.stats, "--stats"),
         (options.heat_map.is_some(), "--heat-map"),

@@ -317,7 +317,8 @@ impl Number {
                 );
             }
             (Self::Value, ValueKind::Turns) => {
-                let cause = "the angle is not within 128 turns, which are 46080 degrees";
+                let cause =
+                    "the angle is not above -46080 and below 46080 degrees, which are 128 turns";
                 return (String::from(cause), smaller);
             }
             (Self::Value, _) => {
@@ -326,7 +327,7 @@ impl Number {
             }
         };
         let cause = format!(
-            "the tangent is too large: multiplied by the time {side}, it must be at most {}",
+            "the tangent is too large: multiplied by the time {side}, it must be below {}",
             significant(limit)
         );
         (cause, "use a smaller tangent, or more keys")

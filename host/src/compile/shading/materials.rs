@@ -6,7 +6,7 @@ use super::media::media;
 use super::radiance::radiance;
 use super::textures::{TextureFigures, Textures};
 use crate::compile::CompileError;
-use crate::compile::requirements::Requirements;
+use crate::compile::requirements::{Requirements, RequiringPart};
 use crate::compile::section::{Section, indices, section};
 use crate::scene::{Color, Diffuse, Material, Scene, Sends};
 use crate::shape::Lattice;
@@ -52,8 +52,9 @@ impl MaterialData {
         for object in scene.all_objects() {
             let material = &scene.materials[object.material];
             if !object.shape.is_bounded() && has_large_cells(material, lattice) {
+                let part = RequiringPart::new(label(material), &material.place);
                 return Err(CompileError::CheckerSize {
-                    material: printable(&material.name),
+                    material: part.to_string(),
                     most: LARGEST_CELL * lattice.unit(),
                 });
             }

@@ -25,6 +25,14 @@ pub(super) const EXTENSIONS: [&str; 6] = [
     "KHR_texture_transform",
 ];
 
+/// Extensions of how surfaces look, which are ignored with a warning even where a file requires them: what it shows has
+/// the right shape without them.
+const DISPENSABLE: [&str; 3] = [
+    "KHR_materials_specular",
+    "KHR_materials_unlit",
+    "KHR_materials_variants",
+];
+
 /// Reads the document, the buffer that the file itself holds, and how its normal maps lie.
 ///
 /// # Errors
@@ -68,7 +76,8 @@ pub(super) fn read(
 /// which has others.
 fn check_required(path: &Path, root: &Root) -> Result<(), SceneError> {
     let required = root.extensions_required.iter();
-    let mut unread = required.filter(|name| !EXTENSIONS.contains(&name.as_str()));
+    let is_read = |name: &&str| EXTENSIONS.contains(name) || DISPENSABLE.contains(name);
+    let mut unread = required.map(String::as_str).filter(|name| !is_read(name));
     let Some(name) = unread.next() else {
         return Ok(());
     };

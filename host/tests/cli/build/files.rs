@@ -31,6 +31,9 @@ fn files_that_are_no_scene_are_rejected_with_the_reason() {
     // The content counts, and not the name.
     folder.write("blob.toml", &folder.read("quick.gridel"));
     fails("blob.toml", &["is a blob already"]);
+    folder.write("scene.gridel", &folder.read("quick.toml"));
+    let words = ["scene.gridel has the name of a blob", "rename it"];
+    fails("scene.gridel", &words);
     fails("absent.toml", &["absent.toml cannot be read"]);
     fails(".", &["not a file"]);
     folder.write("scene.fbx", b"");

@@ -84,17 +84,21 @@ fn numbers_that_are_too_large_are_named_with_their_limit() {
     for (track, words) in [
         (
             "target = 'camera.orbit'\ntimes = [0, 1]\nvalues = [0, 46080]",
-            "at 1 s the angle is not within 128 turns, which are 46080 degrees",
+            "at 1 s the angle is not above -46080 and below 46080 degrees, which are 128 turns",
+        ),
+        (
+            "target = 'camera.orbit'\ntimes = [0, 1]\nvalues = [0, -46080]",
+            "at 1 s the angle is not above -46080",
         ),
         (
             "target = 'camera.orbit'\ninterpolation = 'cubic'\ntimes = [0, 2]\nvalues = [0, 0]\n\
              tangents = [0, 30000]",
-            "at 2 s the tangent is too large: multiplied by the time since the key before, it must be at most 46080",
+            "at 2 s the tangent is too large: multiplied by the time since the key before, it must be below 46080",
         ),
         (
             "target = 'camera.orbit'\ninterpolation = 'cubic'\ntimes = [0, 2]\nvalues = [0, 0]\n\
              tangents = [-30000, 0]",
-            "at 0 s the tangent is too large: multiplied by the time to the next key, it must be at most 46080",
+            "at 0 s the tangent is too large: multiplied by the time to the next key, it must be below 46080",
         ),
     ] {
         let found = fault(track);

@@ -87,7 +87,6 @@ fn required_extensions_must_be_read() {
         "KHR_texture_basisu",
         "EXT_texture_webp",
         "MSFT_texture_dds",
-        "KHR_materials_unlit",
         "KHR_mesh_quantization",
     ] {
         document["extensionsUsed"] = json!([name]);
@@ -97,6 +96,9 @@ fn required_extensions_must_be_read() {
         assert_eq!(cause(&document), expected);
         document["extensionsRequired"] = json!([]);
     }
+    document["extensionsUsed"] = json!(["KHR_materials_unlit"]);
+    document["extensionsRequired"] = document["extensionsUsed"].clone();
+    assert!(warnings(&document).concat().contains("KHR_materials_unlit"));
 }
 
 /// Instances count against the limit of a blob before they are made.
