@@ -129,14 +129,21 @@ impl<'a> Value<'a> {
 
     /// Three numbers.
     pub(crate) fn vector(self) -> Result<DVec3, SceneError> {
-        let mistyped = || self.mistyped("three numbers", &format!("`{} = [0, 1, 0]`", self.key));
+        let example = format!("`{} = [0, 1, 0]`", self.key);
+        let mistyped = |value: Self| value.mistyped("three numbers", &example);
         let DeValue::Array(items) = self.node.get_ref() else {
-            return Err(mistyped());
+            return Err(mistyped(self));
         };
         let [x, y, z] = &items[..] else {
-            return Err(mistyped());
+            return Err(mistyped(self));
         };
-        let number = |node| Value { node, ..self }.number();
+        let number = |node: &'a Spanned<DeValue<'a>>| {
+            let value = Value { node, ..self };
+            match node.get_ref() {
+                DeValue::Float(_) | DeValue::Integer(_) => value.number(),
+                _ => Err(mistyped(value)),
+            }
+        };
         Ok(DVec3::new(number(x)?, number(y)?, number(z)?))
     }
 
