@@ -214,8 +214,7 @@ fn hit_along_an_axis<N: Number>() {
 /// A step of 2 sub-steps: what a place of 0.26 steps away is rounded to must not be rounded again.
 #[test]
 fn distances_in_floats_are_rounded_once() {
-    let file =
-        "[[object]]\nkind = 'box'\nmin = [-1, -1, -1]\nmax = [1, 1, 1]\n[camera]\neye = [0, 0, 5]";
+    let file = "[[object]]\nkind = 'box'\nmin = [-1, -1, -1]\nmax = [1, 1, 1]\n[camera]\neye = [0, 0, 5]\ntarget = [0, 0, 0]";
     let imported = gridel_host::scene::read("box.toml".as_ref(), file.into(), &Default::default());
     let compiled = compile(&imported.expect("a box").scene, &Options::default()).expect("a box");
     let scene = compiled.blob.scene().expect("the compiler's own blob");

@@ -399,7 +399,7 @@ mod tests {
         let speck = "vertices = [[0, 0, 0], [1e-9, 0, 0], [0, 1e-9, 0]]";
         let ball = "[[object]]\nkind = 'sphere'\ncenter = [0, 0, 0]\nradius = 9";
         let colored = format!(
-            "[[object]]\nkind = 'triangle'\n{speck}\ncolors = ['red', 'red', 'red']\n{ball}"
+            "[[object]]\nkind = 'triangle'\n{speck}\ncolors = ['#ff0000', '#ff0000', '#ff0000']\n{ball}"
         );
         let point = "vertices = [[0, 0, 0], [0, 0, 0], [0, 0, 0]]";
         let part = format!(
