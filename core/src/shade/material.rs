@@ -4,6 +4,7 @@ use crate::format::Effects;
 use crate::format::record::{Light, Material, View};
 use crate::shade::All;
 use crate::shade::effect::EffectList;
+use crate::target::SMALL;
 
 impl Material {
     /// Returns the effects that this material requires.
@@ -13,7 +14,7 @@ impl Material {
 
     /// Returns true if light comes through the material.
     #[inline(always)]
-    pub const fn is_glass(&self) -> bool {
+    pub fn is_glass(&self) -> bool {
         is_any(&self.transmit)
     }
 
@@ -28,11 +29,14 @@ impl Material {
     }
 }
 
-/// Returns true if a number is not 0. For `!= [0; 3]` builds for size have a function that compares memory.
+/// Returns true if a number is not 0. For the comparison builds for size would have a function that compares memory.
 #[cfg_attr(feature = "small", inline(never))]
 #[cfg_attr(not(feature = "small"), inline(always))]
-pub(crate) const fn is_any(numbers: &[i32; 3]) -> bool {
-    numbers[0] | numbers[1] | numbers[2] != 0
+pub(crate) fn is_any(numbers: &[i32; 3]) -> bool {
+    match SMALL {
+        true => numbers[0] | numbers[1] | numbers[2] != 0,
+        false => *numbers != [0; 3],
+    }
 }
 
 impl Light {
