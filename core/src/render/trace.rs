@@ -21,7 +21,7 @@ use crate::ray::Ray;
 use crate::render::headroom::Headroom;
 use crate::render::spread::Spread;
 use crate::render::start::Start;
-use crate::render::workspace::{Pending, State, WorkspaceView};
+use crate::render::workspace::{Pending, State, WorkspaceView, leave_far};
 use crate::scene::Scene;
 use crate::scene::textures::Footprint;
 use crate::shade::departure::{Far, FarPlace, Origin, depart, secondary_ray};
@@ -31,7 +31,6 @@ use crate::shade::surface::{Aim, Arrival, Bounce, Filter, Lighting, Reach, Secon
 use crate::shade::{All, Color};
 use crate::target::{WIDE, inline_on_boards};
 use core::marker::PhantomData;
-use heapless::VecView;
 
 /// The parts of the scene and the renderer that the ray loop uses.
 pub(super) struct Loop<'s, 'a> {
@@ -177,23 +176,6 @@ struct Tracing<'t, 'w, 's, N: Number, A, C, const EFFECTS: u32> {
     space: &'t mut WorkspaceView<'w, N>,
     count: &'t mut C,
     structure: PhantomData<A>,
-}
-
-/// Starts the rays that a hit beyond lengths sent, those behind others that wait, where they come to the scene.
-///
-/// At once for all, because a call for each took a kilobyte of small code.
-#[cold]
-#[inline(never)]
-fn leave_far<N: Number>(
-    scene: &Scene<'_>,
-    far: &FarPlace<N>,
-    hit: &Hit<N>,
-    work: &mut VecView<Pending<N>>,
-    others: usize,
-) {
-    for sent in work.get_mut(others..).unwrap_or_default() {
-        far.depart(scene, hit, sent.direction, &mut sent.origin);
-    }
 }
 
 impl<N: Number, A: Accel, C: Observer, const EFFECTS: u32> Tracing<'_, '_, '_, N, A, C, EFFECTS> {

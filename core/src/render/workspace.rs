@@ -4,6 +4,9 @@ use crate::accel::Number;
 use crate::accel::stack::{Stack, StackView};
 use crate::format::Effects;
 use crate::observe::event::RayKind;
+use crate::query::Hit;
+use crate::scene::Scene;
+use crate::shade::departure::FarPlace;
 use crate::shade::effect::EffectList;
 use crate::shade::{All, Color};
 use heapless::{Vec, VecView};
@@ -80,4 +83,21 @@ impl<N: Number, const STACK: usize, const WORK: usize> Default for Workspace<N, 
 pub struct WorkspaceView<'w, N: Number> {
     pub(super) stack: &'w mut StackView,
     pub(super) work: &'w mut VecView<Pending<N>>,
+}
+
+/// Starts the rays that a hit beyond lengths sent, those behind others that wait, where they come to the scene.
+///
+/// At once for all, because a call for each took a kilobyte of small code.
+#[cold]
+#[inline(never)]
+pub(super) fn leave_far<N: Number>(
+    scene: &Scene<'_>,
+    far: &FarPlace<N>,
+    hit: &Hit<N>,
+    work: &mut VecView<Pending<N>>,
+    others: usize,
+) {
+    for sent in work.get_mut(others..).unwrap_or_default() {
+        far.depart(scene, hit, sent.direction, &mut sent.origin);
+    }
 }
