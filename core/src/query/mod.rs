@@ -52,7 +52,9 @@ inline_on_hosts_hint_on_boards!(
     /// Returns the primitive that a ray hits first in its interval, found through the structure `A`.
     ///
     /// At the same t, the hit that comes first in the scene file counts, so the answer is the same for every structure.
-    /// Of an instance it is the nearest hit in the part, whose t can be finer than the scene's. The stack must be as deep as the blob states, and the blob must [hold](crate::Scene::holds) the structure:
+    /// Of an instance it is the nearest hit in the part, whose t can be finer than the scene's.
+    ///
+    /// The stack must be as deep as the blob states, and the blob must [hold](crate::Scene::holds) the structure:
     /// through another one the answer means nothing. A [`Renderer`](crate::Renderer) and modules of `--emit-rust` check
     /// both.
     ///

@@ -85,6 +85,7 @@ pub(crate) fn secondary_ray<N: Number>(
     Ray::from_inside(scene.bounds(), origin.point, way, end)
 }
 
+/// [`secondary_ray`] in scenes with shapes without bounds.
 #[cold]
 #[inline(never)]
 fn from_anywhere<N: Number>(

@@ -29,7 +29,7 @@ impl Material {
     }
 }
 
-/// Returns true if a number is not 0. For the comparison builds for size would have a function that compares memory.
+/// Returns true if a number is not 0. Builds for size would compare with `[0; 3]` by a function that compares memory.
 #[cfg_attr(feature = "small", inline(never))]
 #[cfg_attr(not(feature = "small"), inline(always))]
 pub(crate) fn is_any(numbers: &[i32; 3]) -> bool {

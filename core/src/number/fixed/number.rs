@@ -251,7 +251,7 @@ impl Products for Fixed {
     }
 
     fn remainder(wide: Product, period: Self) -> Self {
-        // Without signs, because a signed division of 64 bits is used for nothing else.
+        // Without signs: no other code needs a signed division of 64 bits, which would be linked for this alone.
         let period = period.0.unsigned_abs();
         let rest = wide.0.unsigned_abs().checked_rem(period.into());
         let rest = rest.unwrap_or(0) as u32;

@@ -410,7 +410,7 @@ mod tests {
         let mut part = scene(&format!(
             "[[part]]\nname = 'p'\n[[part.object]]\n{speck}\n[[instance]]\npart = 'p'\n{ball}"
         ));
-        // Importers let faces without area pass.
+        // As OBJ and glTF files can have it; TOML rejects faces without area.
         let Shape::Mesh { vertices, .. } = &mut part.parts[0].objects[0].shape else {
             panic!("a triangle is a mesh");
         };

@@ -25,8 +25,8 @@ pub(super) const EXTENSIONS: [&str; 6] = [
     "KHR_texture_transform",
 ];
 
-/// Extensions of how surfaces look, which are ignored with a warning even where a file requires them: what it shows has
-/// the right shape without them.
+/// Extensions of how surfaces look. They are ignored, with a warning, even where a file requires them: the shapes are
+/// still right.
 const DISPENSABLE: [&str; 3] = [
     "KHR_materials_specular",
     "KHR_materials_unlit",
