@@ -37,7 +37,7 @@ mod structures;
 mod waves;
 
 use figures::Figures;
-use firmware::{AARCH64, Build, Program, RV32IMC, S390X, WASM, board};
+use firmware::{AARCH64, Build, NATIVE, Program, RV32IMC, S390X, WASM, board};
 use gridel_core::{Format, Structure};
 use gridel_host::measure::board::{BOARDS, Board};
 use libtest_mimic::Arguments;
@@ -93,8 +93,9 @@ fn pictures(plan: &mut Plan) {
         let is_ordinary = format == board.format();
         let test = if is_ordinary { test } else { test.in_full() };
         test.run(move || picture_is_the_hosts(board, format, &scenes::quick()));
+        let is_one_of_its_sort = board.core != "Cortex-M7" && board.name != "stm32vldiscovery";
         plan.test_on("every_shape_on_every_board", board, format)
-            .in_full_if(is_ordinary)
+            .in_full_if(is_ordinary && is_one_of_its_sort)
             .run(move || {
                 compare_with_the_hosts(board, format, &parts::every_shape());
             });
@@ -109,7 +110,7 @@ fn pictures(plan: &mut Plan) {
 
     for board in ["mps2-an386", "mps2-an385"].map(board) {
         plan.test_on("limits_hold_without_indirect_light", board, board.format())
-            .in_full()
+            .in_full_if(board.core == "Cortex-M3")
             .run(move || {
                 compare_with_the_hosts(board, board.format(), &scenes::deep());
             });
@@ -190,7 +191,8 @@ fn other_processors(plan: &mut Plan) {
             .program_with("everywhere", &["everywhere"])
     }
     const NAME: &str = "every_structure_on_other_processors";
-    for board in [&WASM, &AARCH64] {
+    let native = cfg!(all(target_arch = "x86_64", target_os = "linux")).then_some(&NATIVE);
+    for board in [&WASM, &AARCH64].into_iter().chain(native) {
         let name = format!("{NAME}::{}", board.name);
         plan.test(name).on(board).in_full().run(move || {
             let scene = scenes::quick_through_everything();
@@ -320,7 +322,13 @@ fn linked(plan: &mut Plan) {
         let board = board(name);
         let size = if small { "small" } else { structure.name() };
         let test = format!("nothing_panics_with_overflow_checks::{size}");
-        let often = structure == Structure::DualSplit || structure == Structure::Bvh;
+        // Each of these cores once.
+        let often = structure == Structure::DualSplit
+            && match board.core {
+                "Cortex-M0" | "RV32IMAC" => small,
+                "Cortex-M3" | "Cortex-M4F" => !small,
+                _ => false,
+            };
         plan.test_on(&test, board, format)
             .in_full_if(often)
             .run(move || {
