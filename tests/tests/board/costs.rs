@@ -14,7 +14,7 @@ use std::collections::BTreeMap;
 pub fn plan(plan: &mut Plan) {
     let discovery = board("stm32vldiscovery");
     for (board, format) in measured_in_full() {
-        // Twenty builds on each kind of core. `shapes_and_effects_are_paid_for_one_by_one` runs more often.
+        // Twenty builds on each kind of core.
         plan.test_on("every_core_pays_for_parts_one_by_one", board, format)
             .at_length()
             .run(move || core_pays_for_parts_one_by_one(board, format));
@@ -38,10 +38,15 @@ pub fn plan(plan: &mut Plan) {
                 .run(move || everything_through_other_structures(board, format));
         }
     }
+    // Thirty builds.
     plan.test("shapes_and_effects_are_paid_for_one_by_one")
         .on(discovery)
-        .in_full()
+        .at_length()
         .run(shapes_and_effects_are_paid_for_one_by_one);
+    plan.test("code_that_nothing_requires_takes_no_time")
+        .on(discovery)
+        .in_full()
+        .run(code_that_nothing_requires_takes_no_time);
     plan.test("hits_and_lights_cost_what_is_recorded")
         .on(board("mps2-an386"))
         .in_full()
@@ -87,27 +92,30 @@ fn board_pays_for_few_parts(board: &'static Board, format: Format) {
 fn shapes_and_effects_are_paid_for_one_by_one() {
     let discovery = board("stm32vldiscovery");
     let mut figures = Figures::new();
-    let mut instructions = BTreeMap::new();
-    let scenes = parts::scenes();
-    for scene in scenes.iter().chain([&parts::sphere_and_triangle()]) {
+    for scene in parts::scenes()
+        .iter()
+        .chain([&parts::sphere_and_triangle()])
+    {
         let build = Build::new(discovery, Format::Fixed, Structure::DualSplit, scene);
         let run = build.program("picture").run();
-        let spent = run["picture-instructions"];
-        instructions.insert(scene.name, spent);
-        let report = [("picture-instructions".into(), spent)].into();
+        let report = [("picture-instructions".into(), run["picture-instructions"])].into();
         figures.add(&build.to_string(), &report);
     }
     figures.check();
-    // The code of effects that nothing requires is negligible. That of shapes and wider storage is not: leaves choose
-    // between them.
-    let base = &scenes[0];
+}
+
+/// The code of effects that nothing requires is negligible. That of shapes and wider storage is not: leaves choose
+/// between them.
+fn code_that_nothing_requires_takes_no_time() {
+    let discovery = board("stm32vldiscovery");
+    let base = &parts::scenes()[0];
     let build = Build::new(discovery, Format::Fixed, Structure::DualSplit, base);
     let effects = Effects::NAMED.map(|(_, name)| name);
     let spent = |features: &[&str]| {
         let run = build.program_with("picture", features).run();
         run["picture-instructions"]
     };
-    let alone = instructions[parts::BASE];
+    let alone = spent(&base.features());
     let with_effects = spent(&[&effects, &base.features()[..]].concat());
     let with_everything = spent(&["everything"]);
     println!("instructions: alone {alone}, effects {with_effects}, everything {with_everything}");

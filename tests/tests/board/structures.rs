@@ -9,22 +9,17 @@ use std::sync::LazyLock;
 
 pub fn plan(plan: &mut Plan) {
     for (name, format) in PAPER_BOARDS {
-        // Twenty-five builds on each, five of them for lists in the smaller crystal: structures and shapes that the
-        // chessboard and the larger crystal have, too.
+        // Twenty-five builds on each, sixteen of them for lists. Five of those have all that is special about lists.
         let often = format == Format::F32;
         plan.test_on("flagged_is_ahead_of_plain", board(name), format)
             .in_full_if(often)
             .run(move || flagged_is_ahead_of_plain(name, format));
         plan.test_on("lists_of_candidates", board(name), format)
             .in_full_if(often)
-            .run(move || lists_of_candidates(name, format, |scene| scene != SMALLER));
-        plan.test_on(
-            "lists_of_candidates_in_the_smaller_crystal",
-            board(name),
-            format,
-        )
-        .at_length()
-        .run(move || lists_of_candidates(name, format, |scene| scene == SMALLER));
+            .run(move || lists_of_candidates(name, format, |scene| scene == CHESS));
+        plan.test_on("lists_of_candidates_of_more", board(name), format)
+            .at_length()
+            .run(move || lists_of_candidates(name, format, |scene| scene != CHESS));
     }
 }
 
@@ -83,8 +78,8 @@ fn lists_of_candidates(name: &str, format: Format, is_measured: fn(&str) -> bool
     figures.check();
 }
 
-/// The smaller crystal.
-const SMALLER: &str = scenes::PAPERS[1];
+/// The chessboard.
+const CHESS: &str = scenes::PAPERS[0];
 
 /// The boards and number formats on which the paper's scenes are measured.
 const PAPER_BOARDS: [(&str, Format); 2] =
