@@ -5,6 +5,7 @@ use crate::figures::Figures;
 use crate::firmware::{Build, WASM, board};
 use crate::plan::Plan;
 use crate::programs::{Linked, footprint};
+use crate::scenes::Compiled;
 use crate::{boards, measured_in_full, parts};
 use gridel_core::{Effects, Format, Prevalidated, Settings, Structure};
 use gridel_host::measure::board::Board;
@@ -38,15 +39,21 @@ pub fn plan(plan: &mut Plan) {
                 .run(move || everything_through_other_structures(board, format));
         }
     }
-    // Thirty builds.
-    plan.test("shapes_and_effects_are_paid_for_one_by_one")
-        .on(discovery)
-        .at_length()
-        .run(shapes_and_effects_are_paid_for_one_by_one);
-    plan.test("code_that_nothing_requires_takes_no_time")
+    plan.test("shapes_cost_what_is_recorded")
         .on(discovery)
         .in_full()
-        .run(code_that_nothing_requires_takes_no_time);
+        .run(|| parts_cost_what_is_recorded(parts::shapes().into_iter()));
+    // Twenty builds. `hits_and_lights_cost_what_is_recorded` and pictures with all effects run more often.
+    plan.test("effects_cost_what_is_recorded")
+        .on(discovery)
+        .at_length()
+        .run(|| {
+            parts_cost_what_is_recorded(parts::effects().chain([parts::sphere_and_triangle()]))
+        });
+    plan.test("code_that_nothing_requires_takes_little_time")
+        .on(discovery)
+        .in_full()
+        .run(code_that_nothing_requires_takes_little_time);
     plan.test("hits_and_lights_cost_what_is_recorded")
         .on(board("mps2-an386"))
         .in_full()
@@ -88,15 +95,12 @@ fn board_pays_for_few_parts(board: &'static Board, format: Format) {
     linked.check();
 }
 
-/// Costs per ray of every shape and effect on the smallest board: the README's table.
-fn shapes_and_effects_are_paid_for_one_by_one() {
+/// Costs of shapes or effects on the smallest board: the README's table.
+fn parts_cost_what_is_recorded(scenes: impl Iterator<Item = Compiled>) {
     let discovery = board("stm32vldiscovery");
     let mut figures = Figures::new();
-    for scene in parts::scenes()
-        .iter()
-        .chain([&parts::sphere_and_triangle()])
-    {
-        let build = Build::new(discovery, Format::Fixed, Structure::DualSplit, scene);
+    for scene in scenes {
+        let build = Build::new(discovery, Format::Fixed, Structure::DualSplit, &scene);
         let run = build.program("picture").run();
         let report = [("picture-instructions".into(), run["picture-instructions"])].into();
         figures.add(&build.to_string(), &report);
@@ -106,9 +110,9 @@ fn shapes_and_effects_are_paid_for_one_by_one() {
 
 /// The code of effects that nothing requires is negligible. That of shapes and wider storage is not: leaves choose
 /// between them.
-fn code_that_nothing_requires_takes_no_time() {
+fn code_that_nothing_requires_takes_little_time() {
     let discovery = board("stm32vldiscovery");
-    let base = &parts::scenes()[0];
+    let base = &parts::shapes()[0];
     let build = Build::new(discovery, Format::Fixed, Structure::DualSplit, base);
     let effects = Effects::NAMED.map(|(_, name)| name);
     let spent = |features: &[&str]| {

@@ -33,14 +33,6 @@ pub const AARCH64: Board = Board {
     ..WASM
 };
 
-/// The processor that runs the tests, with all of its instructions, as a program of Linux.
-pub const NATIVE: Board = Board {
-    name: "linux-x86_64-native",
-    core: "x86-64",
-    target: "x86_64-unknown-linux-gnu",
-    ..AARCH64
-};
-
 /// The core of an ESP32-C3, without atomic instructions, in the memory of a board whose core has them.
 pub const RV32IMC: Board = Board {
     name: "sifive_e",
@@ -65,14 +57,13 @@ pub fn board(name: &str) -> &'static Board {
     Board::named(name).unwrap_or(&WASM)
 }
 
-/// The program that runs a board's programs; `env` runs those of this machine.
+/// The program that runs a board's programs.
 fn emulator(board: &Board) -> &'static str {
     match board.target.split_once('-') {
         Some(("wasm32", _)) => "node",
         Some(("riscv32imac" | "riscv32imc", _)) => "qemu-system-riscv32",
         Some(("aarch64", _)) => "qemu-aarch64",
         Some(("s390x", _)) => "qemu-s390x",
-        Some(("x86_64", _)) => "env",
         _ => "qemu-system-arm",
     }
 }
@@ -249,9 +240,6 @@ impl<'b> Build<'b> {
         if self.board.core == "Cortex-M7" {
             // The target's own baseline is a Cortex-M4F, without double precision.
             flags += " -C target-cpu=cortex-m7";
-        }
-        if self.board.core == NATIVE.core {
-            flags += " -C target-cpu=native";
         }
         // The core is the same in every number format and with a module of any sort.
         let mut parts = [&[self.structure.name()], features].concat();

@@ -32,7 +32,7 @@ pub fn plan(plan: &mut Plan) {
     ] {
         let board = firmware::board(board);
         plan.test_on("a_camera_orbits::torus", board, format)
-            .in_full_if(board.core != "Cortex-M4F")
+            .in_full()
             .run(move || a_camera_orbits(board, format, &scenes::torus_mesh_in_few_pixels()));
     }
     for (board, format) in [
@@ -43,7 +43,7 @@ pub fn plan(plan: &mut Plan) {
     ] {
         let board = firmware::board(board);
         plan.test_on("motion_is_blurred", board, format)
-            .in_full_if(["Cortex-M4F", "RV32IMAC"].contains(&board.core))
+            .in_full()
             .run(move || motion_is_blurred(board, format, &scenes::torus_mesh_in_few_pixels()));
     }
     for (board, format) in [
@@ -53,7 +53,7 @@ pub fn plan(plan: &mut Plan) {
     ] {
         let board = firmware::board(board);
         plan.test_on("an_arm_bends", board, format)
-            .in_full_if(board.core != "Cortex-M3")
+            .in_full()
             .run(move || an_arm_bends(board, format, &scenes::arm()));
     }
     for (board, format, most) in [

@@ -37,7 +37,7 @@ mod structures;
 mod waves;
 
 use figures::Figures;
-use firmware::{AARCH64, Build, NATIVE, Program, RV32IMC, S390X, WASM, board};
+use firmware::{AARCH64, Build, Program, RV32IMC, S390X, WASM, board};
 use gridel_core::{Format, Structure};
 use gridel_host::measure::board::{BOARDS, Board};
 use libtest_mimic::Arguments;
@@ -93,9 +93,10 @@ fn pictures(plan: &mut Plan) {
         let is_ordinary = format == board.format();
         let test = if is_ordinary { test } else { test.in_full() };
         test.run(move || picture_is_the_hosts(board, format, &scenes::quick()));
-        let is_one_of_its_sort = board.core != "Cortex-M7" && board.name != "stm32vldiscovery";
+        // The cores of these two have the instructions of others here.
+        let is_like_another = ["mps2-an500", "stm32vldiscovery"].contains(&board.name);
         plan.test_on("every_shape_on_every_board", board, format)
-            .in_full_if(is_ordinary && is_one_of_its_sort)
+            .in_full_if(is_ordinary && !is_like_another)
             .run(move || {
                 compare_with_the_hosts(board, format, &parts::every_shape());
             });
@@ -110,7 +111,7 @@ fn pictures(plan: &mut Plan) {
 
     for board in ["mps2-an386", "mps2-an385"].map(board) {
         plan.test_on("limits_hold_without_indirect_light", board, board.format())
-            .in_full_if(board.core == "Cortex-M3")
+            .in_full()
             .run(move || {
                 compare_with_the_hosts(board, board.format(), &scenes::deep());
             });
@@ -191,8 +192,7 @@ fn other_processors(plan: &mut Plan) {
             .program_with("everywhere", &["everywhere"])
     }
     const NAME: &str = "every_structure_on_other_processors";
-    let native = cfg!(all(target_arch = "x86_64", target_os = "linux")).then_some(&NATIVE);
-    for board in [&WASM, &AARCH64].into_iter().chain(native) {
+    for board in [&WASM, &AARCH64] {
         let name = format!("{NAME}::{}", board.name);
         plan.test(name).on(board).in_full().run(move || {
             let scene = scenes::quick_through_everything();
@@ -322,13 +322,12 @@ fn linked(plan: &mut Plan) {
         let board = board(name);
         let size = if small { "small" } else { structure.name() };
         let test = format!("nothing_panics_with_overflow_checks::{size}");
-        // Each of these cores once.
-        let often = structure == Structure::DualSplit
-            && match board.core {
-                "Cortex-M0" | "RV32IMAC" => small,
-                "Cortex-M3" | "Cortex-M4F" => !small,
-                _ => false,
-            };
+        // Each core once, and a structure without flags.
+        let often = match (board.core, structure) {
+            ("Cortex-M0" | "RV32IMAC", Structure::DualSplit) => small,
+            (_, Structure::DualSplit | Structure::Bvh) => !small,
+            _ => false,
+        };
         plan.test_on(&test, board, format)
             .in_full_if(often)
             .run(move || {

@@ -179,21 +179,31 @@ fn gradients(alpha: fn(u8) -> u8) -> Texture {
     Texture::of(image.expect("as many pixels").into())
 }
 
-/// The base, and a scene for every shape and effect. Scenes for shapes have no effects, and those for effects no other
-/// shapes; absorption comes with its glass.
+/// The base, and a scene for every shape and effect.
 pub fn scenes() -> Vec<Compiled> {
+    let mut all = shapes();
+    all.extend(effects());
+    all
+}
+
+/// The base, and a scene for every other shape, without effects.
+pub fn shapes() -> Vec<Compiled> {
     let mut all = vec![compile(BASE, base())];
     for (name, shape) in beside_triangles() {
         let mut scene = base();
         scene.objects.push(object(shape));
         all.push(compile(name, scene));
     }
-    for (name, call_for) in EFFECTS {
+    all
+}
+
+/// A scene for every effect, with the base's shapes; absorption comes with its glass.
+pub fn effects() -> impl Iterator<Item = Compiled> {
+    EFFECTS.into_iter().map(|(name, call_for)| {
         let mut scene = base();
         call_for(&mut scene);
-        all.push(compile(name, scene));
-    }
-    all
+        compile(name, scene)
+    })
 }
 
 /// A shape of every kind, with shadows and a mirror.

@@ -9,7 +9,8 @@ use std::sync::LazyLock;
 
 pub fn plan(plan: &mut Plan) {
     for (name, format) in PAPER_BOARDS {
-        // Twenty-five builds on each, sixteen of them for lists. Five of those have all that is special about lists.
+        // Twenty-five builds on each, sixteen of them for lists. The chessboard has every kind of list and shape that the
+        // other scenes have.
         let often = format == Format::F32;
         plan.test_on("flagged_is_ahead_of_plain", board(name), format)
             .in_full_if(often)
