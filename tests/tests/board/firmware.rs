@@ -278,13 +278,13 @@ impl<'b> Build<'b> {
 
     /// Returns the folder of a program, of its inputs and of its outputs.
     pub fn folder(&self, name: &str) -> PathBuf {
-        let tmp = Path::new(env!("CARGO_TARGET_TMPDIR"));
-        // Scenes of one name differ, and tests run at the same time.
+        let programs = folders::of_this_thread();
+        // Scenes of one name differ.
         let mut hasher = DefaultHasher::new();
         self.scene.blob.bytes().hash(&mut hasher);
         self.board.target.hash(&mut hasher);
         let folder = format!("{name} {self} {:016x}", hasher.finish());
-        let folder = tmp.join(folder.replace([' ', ','], "-"));
+        let folder = programs.join(folder.replace([' ', ','], "-"));
         fs::create_dir_all(&folder).expect("the target folder can be written to");
         folder
     }

@@ -1,4 +1,4 @@
-//! Target folders for the firmware: where each build of the core lies, and how many are kept.
+//! Folders for the firmware: of programs, and of builds of the core.
 //!
 //! Compiling the core takes two thirds of a program's build, and many programs share one build of it. So a program
 //! goes where its core is. A build of the core takes 15 MB, and the tests make more than a hundred.
@@ -6,7 +6,17 @@
 use std::collections::VecDeque;
 use std::fs;
 use std::path::{Path, PathBuf};
+use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Condvar, Mutex, MutexGuard, PoisonError};
+
+/// Returns the folder of this thread's programs, of their inputs and outputs. Tests that run at the same time may build
+/// the same program, and neither may write what the other reads.
+pub fn of_this_thread() -> PathBuf {
+    static THREADS: AtomicUsize = AtomicUsize::new(0);
+    thread_local!(static NUMBER: usize = THREADS.fetch_add(1, Ordering::Relaxed));
+    let folder = format!("programs-{}", NUMBER.with(|&number| number));
+    Path::new(env!("CARGO_TARGET_TMPDIR")).join(folder)
+}
 
 /// Target folders, each for one program at a time: building takes one processor.
 pub const FOLDERS: usize = 2;
