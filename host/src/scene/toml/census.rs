@@ -2,7 +2,7 @@
 
 use super::item::{Content, Group, Item, PartItem};
 use super::material::Materials;
-use super::source::{Name, Source, Span, nearest};
+use super::source::{Name, Source, Span, key, nearest};
 use crate::scene::size::{Keys, MOST_PRIMITIVES, Size, primitives};
 use crate::scene::{Object, Scene, SceneError};
 use crate::table::shortened;
@@ -225,12 +225,12 @@ pub(super) fn find<'g>(
         let remedy = match nearest(&name.text, groups.keys().map(String::as_str)) {
             Some(near) => format!(
                 "did you mean {near:?}? Or define `[group.{}]`",
-                shortened(&name.text),
+                key(&name.text),
                 near = shortened(near)
             ),
             None => format!(
                 "define it: `[[group.{}.object]]` above each of its objects",
-                shortened(&name.text)
+                key(&name.text)
             ),
         };
         source.error(

@@ -1,13 +1,16 @@
 //! The `[material.NAME]` tables, and looking materials up by name.
 
 use super::shape::pair;
-use super::source::{Name, Source, nearest};
+use super::source::{Name, Source, key, nearest};
 use super::value::{Fields, Value};
 use crate::scene::texture::{Images, texture_transform};
-use crate::scene::{Alpha, Color, Diffuse, Image, Material, NormalMap, SceneError, Texture, Wrap};
+use crate::scene::{
+    Alpha, Color, Diffuse, Image, Interpolation, Key, Material, NormalMap, Scene, SceneError,
+    Texture, TrackTarget, Wrap,
+};
 use crate::table::shortened;
 use glam::{DAffine2, DVec2, DVec3};
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, HashMap};
 use std::sync::Arc;
 
 const KEYS: &[&str] = &[
@@ -34,7 +37,23 @@ const KEYS: &[&str] = &[
 #[derive(Default)]
 pub(super) struct Materials {
     materials: Vec<Material>,
+    /// The motions of those with tracks of imports.
+    motions: HashMap<usize, Vec<Motion>>,
     indices: BTreeMap<String, usize>,
+}
+
+/// A track of a material, apart from its place.
+pub(super) type Motion = (TrackTarget, Interpolation, Vec<Key>);
+
+/// The motions of those materials of an import that have tracks.
+pub(super) fn motions(import: &Scene) -> HashMap<usize, Vec<Motion>> {
+    let mut motions: HashMap<_, Vec<_>> = HashMap::new();
+    let tracks = import.tracks.iter();
+    for track in tracks.filter(|it| it.target.is_of_material()) {
+        let motion = (track.target, track.interpolation, track.keys.clone());
+        motions.entry(track.index).or_default().push(motion);
+    }
+    motions
 }
 
 impl Materials {
@@ -53,8 +72,13 @@ impl Materials {
     }
 
     /// Adds a material of an import. One whose name is taken is renamed after the import, unless it is identical apart
-    /// from its place. The name of the [fallback](Self::fallback) is taken from the beginning.
-    pub(super) fn adopt(&mut self, material: &Material, import: &str) -> usize {
+    /// from its place, and moves alike. The name of the [fallback](Self::fallback) is taken from the beginning.
+    pub(super) fn adopt(
+        &mut self,
+        material: &Material,
+        motions: Vec<Motion>,
+        import: &str,
+    ) -> usize {
         let mut material = material.clone();
         let fallback = Material::default();
         loop {
@@ -62,10 +86,18 @@ impl Materials {
             let known = match index {
                 Some(index) => &self.materials[index],
                 None if material.name == fallback.name => &fallback,
-                None => return self.push(material),
+                None => {
+                    let index = self.push(material);
+                    if !motions.is_empty() {
+                        self.motions.insert(index, motions);
+                    }
+                    return index;
+                }
             };
+            let known_motions = index.and_then(|index| self.motions.get(&index));
+            let moves_alike = known_motions.map_or(&[][..], Vec::as_slice) == motions;
             let place = std::mem::replace(&mut material.place, known.place.clone());
-            if *known == material {
+            if moves_alike && *known == material {
                 return index.unwrap_or_else(|| self.push(material));
             }
             material.place = place;
@@ -86,10 +118,10 @@ impl Materials {
             let remedy = match nearest(&name.text, known()) {
                 Some(near) => format!(
                     "did you mean {near:?}? Or define `[material.{}]`",
-                    shortened(&name.text),
+                    key(&name.text),
                     near = shortened(near)
                 ),
-                None => format!("define `[material.{}]`", shortened(&name.text)),
+                None => format!("define `[material.{}]`", key(&name.text)),
             };
             source.error(
                 &name.span,

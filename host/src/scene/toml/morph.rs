@@ -1,6 +1,6 @@
 //! The `[morph.NAME]` tables, and the displacements that meshes have by them.
 
-use super::source::nearest;
+use super::source::{key, nearest};
 use super::value::Value;
 use crate::scene::{
     Attributes, Displacements, LARGEST_WEIGHT, MorphTarget, Scene, SceneError, Shape, Track,
@@ -105,7 +105,7 @@ impl Morphs {
                     "did you mean {near:?}? Or define `[morph.NAME]` of this name",
                     near = shortened(near)
                 ),
-                None => format!("define it: `[morph.{name}]`", name = shortened(name)),
+                None => format!("define it: `[morph.{}]`", key(name)),
             },
         )
     }

@@ -3,7 +3,7 @@
 use super::census::{MAX_NESTING, too_deep};
 use super::import::{Done, Imports, Molecules};
 use super::item::{Content, Group, Item};
-use super::material::Materials;
+use super::material::{self, Materials};
 use super::morph::Morphs;
 use super::source::Source;
 use super::value::{Fields, Value};
@@ -12,7 +12,7 @@ use crate::scene::importer::stem;
 use crate::scene::{
     Attributes, MoleculeOptions, MoleculeStyle, Scene, SceneError, Shape, Track, TrackTarget,
 };
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, HashMap};
 use std::path::Path;
 use std::rc::Rc;
 
@@ -136,11 +136,25 @@ impl Reader<'_> {
                         scene = Rc::new(lit);
                     }
                 }
+                if self.inside == 0 {
+                    let place = self.source.place(&fields.span);
+                    let lost = lost_tracks(&scene, material.is_some());
+                    let warnings = lost.map(|lost| format!("{place}: {lost}"));
+                    self.imports.warnings.extend(warnings);
+                }
+                // Those of imports inside of groups and parts stay as they are.
+                let mut motions = match self.inside {
+                    0 => material::motions(&scene),
+                    _ => HashMap::new(),
+                };
                 // Objects that all get another material do not need their own.
-                let adopt = |own| self.materials.adopt(own, &name);
+                let adopt = |(number, own)| {
+                    let motions = motions.remove(&number).unwrap_or_default();
+                    self.materials.adopt(own, motions, &name)
+                };
                 let materials = match material {
                     Some(_) => Vec::new(),
-                    None => scene.materials.iter().map(adopt).collect(),
+                    None => scene.materials.iter().enumerate().map(adopt).collect(),
                 };
                 let morphs = self.morphs.adopt(&scene);
                 Content::Import {
@@ -188,6 +202,22 @@ impl Reader<'_> {
         kinds.check(fields, &file)?;
         Ok(scene)
     }
+}
+
+/// Says which tracks of an import do not come along. Its objects may all have another material.
+fn lost_tracks(scene: &Scene, has_other: bool) -> impl Iterator<Item = &'static str> {
+    let any = |is_such: fn(TrackTarget) -> bool| scene.tracks.iter().any(|it| is_such(it.target));
+    let all = [
+        (
+            has_other && any(TrackTarget::is_of_material),
+            "the tracks of this import's materials move nothing, because its objects have another material",
+        ),
+        (
+            scene.camera.is_none() && any(TrackTarget::is_of_camera),
+            "the tracks of this import's camera do not come along, because it has none; write them in this file",
+        ),
+    ];
+    all.into_iter().filter(|it| it.0).map(|it| it.1)
 }
 
 /// What a scene has besides objects and lights that are visible as such, in words.

@@ -97,10 +97,39 @@ impl Source {
     }
 }
 
+/// A name as a key of a table for messages: in quotes where it needs them.
+pub(super) fn key(name: &str) -> String {
+    let is_plain = |c: char| c.is_ascii_alphanumeric() || c == '-' || c == '_';
+    match !name.is_empty() && name.chars().all(is_plain) {
+        true => shortened(name).into_owned(),
+        false => format!("{:?}", shortened(name)),
+    }
+}
+
 /// Returns the name among `known` that is most similar to `wanted`.
 pub(crate) fn nearest<'k>(wanted: &str, known: impl Iterator<Item = &'k str>) -> Option<&'k str> {
     // Of long names, the beginning: the time is the product of the lengths.
     let wanted = shortened(wanted);
     let likeness = |name: &str| strsim::jaro_winkler(&wanted, &shortened(name));
     known.max_by(|a, b| likeness(a).total_cmp(&likeness(b)))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::key;
+
+    #[test]
+    fn names_are_keys_that_can_be_written() {
+        for (name, expected) in [
+            ("gold", "gold"),
+            ("gold-2_b", "gold-2_b"),
+            ("I/rise", "\"I/rise\""),
+            ("", "\"\""),
+            ("a\"b", "\"a\\\"b\""),
+        ] {
+            assert_eq!(key(name), expected);
+            let text = format!("[morph.{}]", key(name));
+            assert!(toml::de::DeTable::parse(&text).is_ok(), "{text}");
+        }
+    }
 }

@@ -3,6 +3,7 @@
 mod errors;
 mod fixtures;
 mod hostile;
+mod imported_tracks;
 mod imports;
 mod joints;
 mod keys;
