@@ -40,9 +40,12 @@ pub enum CompileError {
     Flattened { object: String, step: f64 },
     #[error(
         "{collapsed} triangles collapse on the lattice; cutting their neighbors, so that meshes stay \
-         closed, makes {pieces} primitives; a blob holds at most {most}"
+         closed, makes {pieces} primitives, more than the {most} that the file has"
     )]
-    #[diagnostic(help("use more `--lattice-bits`, or scale the mesh less unevenly"))]
+    #[diagnostic(help(
+        "use more `--lattice-bits`, of which there are at most 24, scale the mesh less unevenly, or leave out what is too \
+         small to be seen"
+    ))]
     Slivers {
         collapsed: usize,
         pieces: usize,

@@ -31,6 +31,9 @@ pub struct Report {
     pub collapsed: LeftOut,
     /// Triangles that have no area in the scene file already; they keep their numbers, too.
     pub without_area: LeftOut,
+    /// Triangles that lie on a line at rest, and not at all times; left out at all times.
+    #[serde(skip)]
+    pub flat_at_rest: LeftOut,
     /// Cost of the hierarchy that structures share by the surface area heuristic, the root's area
     /// being 1; `None` where none is built.
     pub sah_cost: Option<f64>,
@@ -95,6 +98,7 @@ impl Report {
             far_moved: primitives.far_moved.clone(),
             collapsed: primitives.collapsed.clone(),
             without_area: primitives.without_area.clone(),
+            flat_at_rest: primitives.flat_at_rest.clone(),
             sah_cost: context.root.map(sah_cost),
             bytes: 0,
             longest_list: longest_lists.max().unwrap_or(0),
@@ -122,6 +126,7 @@ impl Report {
             (&mut self.far_moved, &part.far_moved),
             (&mut self.collapsed, &part.collapsed),
             (&mut self.without_area, &part.without_area),
+            (&mut self.flat_at_rest, &part.flat_at_rest),
         ] {
             all.add_all(of_part);
         }

@@ -123,6 +123,20 @@ impl Report {
                     remedy("make them larger, or the scene smaller")
                 )
             }),
+            (self.flat_at_rest.count() > 0).then(|| {
+                let count = self.flat_at_rest.count();
+                let [it, its] = if count == 1 {
+                    ["it", "its"]
+                } else {
+                    ["them", "their"]
+                };
+                format!(
+                    "{} whose corners lie on a line at rest, left out at all times: {}; a morph target would open {it}, \
+                     so move {its} corners apart, or state another `weight` at rest",
+                    counted(count, "triangle"),
+                    self.flat_at_rest.names(NAMED).join(", ")
+                )
+            }),
             (self.far_moved.count() > 0).then(|| {
                 format!(
                     "the lattice moves the surfaces of some solids by several steps, {}; {}",
@@ -214,6 +228,57 @@ mod tests {
                     .iter()
                     .all(|it| it.contains("flag") && it.contains("glows"))
             );
+        }
+    }
+
+    #[test]
+    fn triangles_that_a_morph_target_would_open_are_named() {
+        // The third corner of the first triangle is on the line of the others, or above it.
+        let lines = |third: &str, way: &str| {
+            let file = format!(
+                "[morph.up]\n[[object]]\nkind = 'mesh'\nname = 'lid'\n\
+                 vertices = [[0, 0, 0], [2, 0, 0], {third}, [0, 0, 3]]\nfaces = [[0, 1, 2], [0, 1, 3]]\n\
+                 morph = {{ up = [[0, 0, 0], [0, 0, 0], {way}, [0, 0, 0]] }}\n"
+            );
+            let imported = scene::read("s.toml".as_ref(), file.into(), &Default::default());
+            let options = Options {
+                structures: vec![gridel_core::Structure::Bvh],
+                ..Options::default()
+            };
+            let report = compile(&imported.unwrap().scene, &options).unwrap().report;
+            report.warnings(24)
+        };
+        for (third, way, expected) in [
+            (
+                "[1, 0, 0]",
+                "[0, 1, 0]",
+                "1 triangle whose corners lie on a line at rest, left out at all times: lid (s.toml:2, triangle 0)",
+            ),
+            (
+                "[1, 1e-9, 0]",
+                "[0, 1, 0]",
+                "1 triangle whose corners lie on a line",
+            ),
+            (
+                "[1, 0, 0]",
+                "[0.5, 0, 0]",
+                "1 primitive without area, left out",
+            ),
+            (
+                "[1, 1e-9, 0]",
+                "[0.5, 0, 0]",
+                "1 primitive too small for the lattice",
+            ),
+        ] {
+            let lines = lines(third, way);
+            assert!(
+                lines.len() == 1 && lines[0].starts_with(expected),
+                "{third} {way}: {lines:?}"
+            );
+        }
+        // What opens from a point is drawn as soon as it does.
+        for third in ["[1, 1, 0]", "[2, 1e-9, 0]"] {
+            assert_eq!(lines(third, "[0, 1, 0]"), Vec::<String>::new(), "{third}");
         }
     }
 

@@ -49,6 +49,8 @@ pub struct Primitives {
     pub collapsed: LeftOut,
     /// Triangles without area.
     pub without_area: LeftOut,
+    /// Triangles whose corners lie on a line at rest, and leave it by a morph target.
+    pub flat_at_rest: LeftOut,
     /// For each primitive in scene-file order, the largest distance between the given and the snapped surface, in 1/256
     /// unit. 0 for those that are left out.
     pub displacements: Vec<f32>,
@@ -249,14 +251,13 @@ impl Primitives {
             let corners = triangle.map(|vertex| snapped[vertex as usize]);
             let found = all.of_triangle(number, *triangle);
             let has_area = (given[1] - given[0]).cross(given[2] - given[0]) != DVec3::ZERO;
-            let collapses = is_degenerate(corners);
-            if collapses && has_area {
-                self.collapsed.add(name_of(number));
-            }
-            if collapses && !self.opens(corners, found) {
-                if !has_area {
-                    self.without_area.add(name_of(number));
-                }
+            if is_degenerate(corners) && !self.opens(corners, found) {
+                let left_out = match has_area {
+                    _ if self.unfolds(corners, found) => &mut self.flat_at_rest,
+                    true => &mut self.collapsed,
+                    false => &mut self.without_area,
+                };
+                left_out.add(name_of(number));
                 self.slivers.push(corners);
                 let moving = corners.into_iter().zip(found).filter(|it| it.1.motion > 0);
                 self.sliver_motions
@@ -342,6 +343,21 @@ impl Primitives {
         pairs.any(|(one, other)| {
             let [motion, other_motion] = [one, other].map(|corner| corners[corner].motion);
             places[one] == places[other] && !self.motions.stay_together(motion, other_motion)
+        })
+    }
+
+    /// Returns true if corners of a triangle that lie on a line at rest leave it by a morph target.
+    fn unfolds(&self, places: [[i32; 3]; 3], corners: [Corner; 3]) -> bool {
+        let side = |k: usize| {
+            DVec3::from_array(std::array::from_fn(|axis| {
+                f64::from(places[k][axis]) - f64::from(places[0][axis])
+            }))
+        };
+        let motions = corners.map(|corner| corner.motion);
+        self.motions.differences(motions).any(|[second, third]| {
+            // What each weight adds to twice the area, and what its square does.
+            let linear = side(1).cross(third) + second.cross(side(2));
+            linear != DVec3::ZERO || second.cross(third) != DVec3::ZERO
         })
     }
 

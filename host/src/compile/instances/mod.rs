@@ -170,9 +170,11 @@ impl Parts {
             if self.is_point(instance.part) {
                 continue;
             }
-            let reach = part.unit() * instance.placement.scale * exp2(16);
+            // At rest or at a time of its tracks.
+            let greatest = instance.placement.scale * scales[1].max(1.0);
+            let reach = part.unit() * greatest * exp2(16);
             let rounded = lattice.unit() / 256.0 + reach * exp2(2 - MATRIX_BITS as i32);
-            let moved = self.displacements[instance.part] * instance.placement.scale;
+            let moved = self.displacements[instance.part] * greatest;
             displacement = displacement.max(rounded + moved);
         }
         let tree = build(&boxes);
@@ -414,6 +416,37 @@ mod tests {
         assert!(with_scale(0.9 * least).is_err(), "{least:e}");
         let help = miette::Diagnostic::help(&error).unwrap().to_string();
         assert!(help.contains(&format!("at least {least:.1e}")), "{help}");
+    }
+
+    #[test]
+    fn displacements_are_those_of_the_largest_scale_of_a_track() {
+        let displacement = |rest: f64, values: &str| {
+            // The same lattice for all.
+            let far = "[[object]]\nkind = 'sphere'\ncenter = [0, 0, 0]\nradius = 1000\n";
+            let part = "[[part]]\nname = 'p'\nobject = [{ kind = 'sphere', center = [0.1237, 0.0571, 0.0893], \
+                        radius = 0.3337 }]\n";
+            let scaled = format!(
+                "{far}{part}[[instance]]\npart = 'p'\njoint = 'j'\nscale = {rest}\n[[joint]]\nname = 'j'\n\
+                 [[track]]\ntarget = 'joint.j.scale'\ntimes = [0, 1]\nvalues = {values}\n"
+            );
+            let options = Options {
+                lattice_bits: 12,
+                ..Options::default()
+            };
+            compile(&scene(&scaled), &options)
+                .unwrap()
+                .report
+                .largest_displacement
+        };
+        let still = displacement(1.0, "[1, 1]");
+        let growing = displacement(1.0, "[1, 60]");
+        assert!(growing > 10.0 * still, "{still:e} {growing:e}");
+        let large = displacement(60.0, "[1, 1]");
+        assert!(
+            (growing - large).abs() < 0.1 * large,
+            "{growing:e} {large:e}"
+        );
+        assert_eq!(displacement(1.0, "[1, 0.5]"), still);
     }
 
     #[test]

@@ -187,6 +187,25 @@ impl Motions {
         one.eq(other)
     }
 
+    /// Returns for each morph target how a weight of 1 moves the second and the third of three vertices more than the
+    /// first, in steps of the storage.
+    pub fn differences(&self, motions: [u32; 3]) -> impl Iterator<Item = [DVec3; 2]> {
+        let steps = motions.map(|motion| &self.all[motion as usize]);
+        let mut targets: Vec<u32> = steps
+            .iter()
+            .flat_map(|it| it.iter().map(|step| step.0))
+            .collect();
+        targets.sort_unstable();
+        targets.dedup();
+        targets.into_iter().map(move |target| {
+            let [first, second, third] = steps.map(|steps| {
+                let step = steps.iter().find(|step| step.0 == target);
+                step.map_or(DVec3::ZERO, |step| step.1.map(f64::from).into())
+            });
+            [second - first, third - first]
+        })
+    }
+
     /// The number of a motion.
     fn number(&mut self, steps: Vec<Step>) -> u32 {
         let next = self.all.len() as u32;
