@@ -47,6 +47,12 @@ impl Model {
         warn(py, &warning)
     }
 
+    /// Returns whether all that the scene has is meshes of its own.
+    pub fn is_meshes(&self) -> bool {
+        let mut objects = self.scene.objects.iter();
+        self.scene.instances.is_empty() && objects.all(|it| matches!(it.shape, Shape::Mesh { .. }))
+    }
+
     /// The lowest and the highest corner of a scene that consists of meshes, of the vertices that faces use.
     pub fn bounds(&self) -> Option<[DVec3; 2]> {
         let scene = &self.scene;

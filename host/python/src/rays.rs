@@ -115,8 +115,7 @@ pub enum Rays<'a> {
     Rows {
         values: Values<'a>,
         width: usize,
-        /// How far beyond its limits a ray is searched, in scene units.
-        slack: f64,
+        slack: Slack,
     },
     Two {
         origins: Values<'a>,
@@ -126,7 +125,7 @@ pub enum Rays<'a> {
 
 impl<'a> Rays<'a> {
     /// Rays in rows of six or eight numbers.
-    pub fn rows((values, width): (Values<'a>, usize), slack: f64) -> PyResult<Self> {
+    pub fn rows((values, width): (Values<'a>, usize), slack: Slack) -> PyResult<Self> {
         match width {
             6 | 8 => Ok(Self::Rows {
                 values,
@@ -240,11 +239,20 @@ impl<'a> Rays<'a> {
     }
 }
 
-/// A ray with limits farther apart by a length in scene units. Its own origin, at 0, is no limit: a ray that is searched
-/// from before it takes longer.
-fn widened(ray: SceneRay, slack: f64) -> SceneRay {
-    let least = slack / ray.direction.length();
-    if slack == 0.0 || !least.is_finite() || ray.tmin.is_nan() || ray.tmin > ray.tmax {
+/// How far beyond its limits a ray is searched.
+#[derive(Clone, Copy)]
+pub struct Slack {
+    /// In scene units.
+    pub length: f64,
+    /// True where all t are computed anew from triangles. A ray that is searched from behind its origin has other t than
+    /// one from there: their rounding depends on where it enters the scene's box.
+    pub from_behind: bool,
+}
+
+/// A ray with limits farther apart. Its own origin, at 0, is no limit: a ray that is searched from before it takes longer.
+fn widened(ray: SceneRay, slack: Slack) -> SceneRay {
+    let least = slack.length / ray.direction.length();
+    if !least.is_finite() || ray.tmin.is_nan() || ray.tmin > ray.tmax {
         return ray;
     }
     let by = |limit: f64| {
@@ -256,6 +264,7 @@ fn widened(ray: SceneRay, slack: f64) -> SceneRay {
     };
     let tmin = match ray.tmin {
         0.0 => 0.0,
+        tmin if tmin > 0.0 && !slack.from_behind => (tmin - by(tmin)).max(0.0),
         tmin => tmin - by(tmin),
     };
     SceneRay {

@@ -205,3 +205,61 @@ def test_intervals_limit_hits(cube):
     assert hits.t.tolist() == [np.inf, 3.0]
     assert cube.any(rays).tolist() == [False, True]
     assert cube.count(rays).tolist() == [0, 1]
+
+
+SOLIDS = """
+[[object]]
+kind = "sphere"
+center = [0, 0, 0]
+radius = 1
+[[object]]
+kind = "cone"
+base = [3, 0, 0]
+apex = [3, 0, 1]
+radius = 1
+[[object]]
+kind = "box"
+min = [5, -1, -1]
+max = [6, 1, 1]
+[[object]]
+kind = "torus"
+center = [-4, 0, 0]
+axis = [0, 0, 1]
+major_radius = 1
+minor_radius = 0.3
+[[part]]
+name = "ball"
+object = [{ kind = "sphere", center = [0, 0, 0], radius = 1 }]
+[[instance]]
+part = "ball"
+translate = [0, 4, 0]
+"""
+
+
+@pytest.mark.parametrize("of_blob", [False, True])
+@FORMATS
+def test_solids_and_instances_are_hit_from_near_at_the_t_that_is_returned(tmp_path, of_blob, format):
+    (tmp_path / "solids.toml").write_text(SOLIDS)
+    scene = gridel.Scene.load(tmp_path / "solids.toml")
+    displacement = scene.displacement
+    if of_blob:
+        scene = gridel.Scene.from_blob(scene.to_blob())
+    rng = np.random.default_rng(3)
+    origins = rng.uniform([-6, -1.2, -1.2], [7, 5.2, 1.2], size=(40000, 3))
+    directions = rng.normal(size=origins.shape)
+    hits = scene.cast(np.hstack([origins, directions]))
+    hit = np.isfinite(hits.t)
+    origins, directions, t = origins[hit], directions[hit], hits.t[hit]
+    lengths = np.linalg.norm(directions, axis=1)
+    for distance in (1e-6, 1e-5, 1e-4, 1e-3):
+        starts = origins + directions * (t - distance / lengths)[:, None]
+        near = scene.cast(np.hstack([starts, directions]), format=format)
+        # Neither within the displacement of the origin, nor at less than a degree.
+        sines = abs((near.normal * directions).sum(axis=1)) / lengths
+        found = np.isfinite(near.t) & (near.t * lengths * sines > 3 * displacement) & (sines > 0.0175)
+        starts_found, ways, at = starts[found], directions[found], near.t[found]
+        assert len(at) > 5000
+        for least in (at, 0.99 * at):
+            exactly = np.column_stack([starts_found, least, ways, at])
+            assert (scene.cast(exactly, format=format).t == at).all()
+            assert scene.any(exactly, format=format).all()

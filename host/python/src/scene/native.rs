@@ -4,7 +4,7 @@ use crate::arguments::{format, invalid, not_held, structure};
 use crate::closed::closed;
 use crate::model::Model;
 use crate::query::How;
-use crate::rays::{Array, Middle, Rays};
+use crate::rays::{Array, Middle, Rays, Slack};
 use glam::DVec3;
 use gridel_core::{BlobError, Scene};
 use gridel_host::blob::Blob;
@@ -43,8 +43,7 @@ pub struct NativeScene {
     /// The number of the first primitive of each object of `model`.
     pub(super) firsts: Vec<u32>,
     pub(super) displacement: f64,
-    /// How far beyond their limits rays are searched, in scene units.
-    slack: f64,
+    slack: Slack,
     /// How far from a triangle as it was given its hits are, in scene units: the lattice moved it.
     pub(super) moved: f64,
     pub(super) middle: Middle,
@@ -76,12 +75,16 @@ impl NativeScene {
             ),
             None => (0.0, 0.0),
         };
+        let from_behind = model.as_ref().is_some_and(Model::is_meshes);
         Ok(Self {
             blob,
             model,
             firsts,
             displacement,
-            slack,
+            slack: Slack {
+                length: slack,
+                from_behind,
+            },
             moved,
             bounds: OnceLock::new(),
             middle,
@@ -92,7 +95,7 @@ impl NativeScene {
     pub(super) fn compiled(py: Python<'_>, model: Model) -> PyResult<Self> {
         let Compiled { blob, report } = model.compile(py)?;
         model.warn_of(py, &report)?;
-        let collapsed = match report.collapsed.count() {
+        let collapsed = match report.collapsed.count() + report.flat_at_rest.count() {
             0 => 0.0,
             _ => report.step,
         };
