@@ -89,7 +89,9 @@ class RayMeshIntersector:
             raise TypeError("RayMeshIntersector takes one mesh, as geometry or as mesh")
         what = "mesh" if geometry is None else "geometry"
         given = mesh if geometry is None else geometry
-        if not (hasattr(given, "vertices") and hasattr(given, "faces")):
+        # By its class alone: trimesh makes ray objects of primitives before these can compute vertices.
+        base = sys.modules.get("trimesh.base")
+        if base is None or not isinstance(given, base.Trimesh):
             raise TypeError(f"{what} is a {type(given).__name__}; it must be a trimesh.Trimesh")
         self.mesh = given
         self.threads = checked_threads(threads)
