@@ -14,8 +14,9 @@ silhouette, may pass beside it. Invalid rays, as of :class:`gridel.Scene`, hit n
 of the lattice is met as a flat one.
 
 A face that a mesh has more than once counts once: faces with corners in exactly the same three places, in the same
-winding, whether or not they share vertices. The first of them has the hits. Two faces in the same places with opposite
-windings are two surfaces, as the walls of solids that touch are; a ray crosses both.
+winding, whether or not they share vertices. The first of them has the hits. Only ``contains_points`` leaves such a face
+out where this closes the mesh: see there. Two faces in the same places with opposite windings are two surfaces, as the
+walls of solids that touch are; a ray crosses both.
 """
 
 from __future__ import annotations
@@ -27,34 +28,10 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ._arguments import far_place, finite_faces, indexed, integer, numeric, threads as checked_threads
+from ._duplicates import bounding, firsts_of_equal
 from ._scene import Scene
 
 __all__ = ["RayMeshIntersector"]
-
-
-def _firsts_of_equal(vertices: NDArray[np.float64], faces: NDArray[np.int64]) -> Optional[NDArray[np.int64]]:
-    """The numbers of faces without those that an earlier face equals in places and winding; None if all differ."""
-    # A hash of each place, so that most meshes need one sort of numbers; -0.0 is where 0.0 is.
-    bits = (vertices + 0.0).view(np.uint64)
-    factors = np.array([0x9E3779B97F4A7C15, 0xC2B2AE3D27D4EB4F, 0x165667B19E3779F9], dtype=np.uint64)
-    places = ((bits ^ (bits >> np.uint64(29))) * factors).sum(axis=1, dtype=np.uint64)
-    places = (places ^ (places >> np.uint64(32))) * factors[0]
-    hashes = places[faces].sum(axis=1, dtype=np.uint64)
-    order = np.argsort(hashes, kind="stable")
-    is_same = hashes[order[1:]] == hashes[order[:-1]]
-    if not is_same.any():
-        return None
-    suspects = np.sort(order[np.append(is_same, False) | np.append(False, is_same)])
-    # Compared exactly, each from its first place in order, so that the winding stays.
-    corners = vertices[faces[suspects]] + 0.0
-    _, ranks = np.unique(corners.reshape(-1, 3), axis=0, return_inverse=True)
-    ranks = ranks.reshape(-1, 3)
-    turns = (ranks.argmin(axis=1)[:, None] + np.arange(3)) % 3
-    _, kept = np.unique(np.take_along_axis(ranks, turns, axis=1), axis=0, return_index=True)
-    is_kept = np.ones(len(faces), dtype=bool)
-    is_kept[suspects] = False
-    is_kept[suspects[kept]] = True
-    return None if is_kept.all() else np.flatnonzero(is_kept)
 
 
 class _Compiled(NamedTuple):
@@ -68,6 +45,8 @@ class _Compiled(NamedTuple):
     kept: Optional[NDArray[np.int64]]
     #: The place from which coordinates count; None for the origin.
     place: Optional[NDArray[np.float64]]
+    #: Of a mesh with faces twice: vertices, the faces that are compiled, and how often each is there.
+    repeated: Optional[Tuple[NDArray[np.float64], NDArray[np.int64], NDArray[np.int64]]]
 
     def moved(self, places: NDArray) -> NDArray:
         """Places (n, 3) as the scene has them."""
@@ -80,7 +59,7 @@ class RayMeshIntersector:
     ``scale_to_box`` is taken for its place among the arguments and changes nothing: coordinates are always centered and
     scaled. trimesh's two classes name the mesh ``geometry`` and ``mesh``; both names are right. ``threads`` is the number of
     threads, at most 1024, and 0 for one per core. A mesh that changes is compiled anew when it is asked next. A face that
-    the mesh has more than once, in the same winding, counts once. Faces with a vertex that is not finite are left out, with
+    the mesh has more than once, in the same winding, has one hit per ray. Faces with a vertex that is not finite are left out, with
     a warning; the others keep their numbers. A mesh may lie far from the origin: it is compiled about a place near it.
     """
 
@@ -97,6 +76,8 @@ class RayMeshIntersector:
         self.threads = checked_threads(threads)
         self._scale_to_box = scale_to_box
         self._compiled: Optional[_Compiled] = None
+        # The faces that bound the inside, and the mesh for which they were found.
+        self._inside: Optional[Tuple[_Compiled, Optional[Scene]]] = None
 
     def _compile(self) -> _Compiled:
         key = hash(self.mesh)
@@ -108,16 +89,34 @@ class RayMeshIntersector:
             kept = finite_faces(vertices, faces, "vertices") if len(faces) else None
             if kept is not None:
                 faces = faces[kept]
-            firsts = _firsts_of_equal(vertices, faces) if len(faces) else None
-            if firsts is not None:
+            equal = firsts_of_equal(vertices, faces) if len(faces) else None
+            repeated = None
+            if equal is not None:
+                firsts, copies = equal
                 faces = faces[firsts]
                 kept = firsts if kept is None else kept[firsts]
             place = far_place([(vertices, faces)])
             if place is not None:
                 vertices = vertices - place
+            if equal is not None and (copies % 2 == 0).any():
+                repeated = vertices, faces, copies
             scene = Scene.from_arrays(vertices, faces) if len(faces) else None
-            self._compiled = _Compiled(key, scene, kept, place)
+            self._compiled = _Compiled(key, scene, kept, place, repeated)
         return self._compiled
+
+    def _compile_inside(self, compiled: _Compiled) -> Optional[Scene]:
+        """The faces that bound the inside of the mesh; None if there are none."""
+        if compiled.repeated is None:
+            return compiled.scene
+        inside = self._inside
+        if inside is None or inside[0] is not compiled:
+            vertices, faces, copies = compiled.repeated
+            is_counted = bounding(vertices, faces, copies)
+            scene = compiled.scene
+            if is_counted is not None:
+                scene = Scene.from_arrays(vertices, faces[is_counted]) if is_counted.any() else None
+            inside = self._inside = compiled, scene
+        return inside[1]
 
     @property
     def scene(self) -> Optional[Scene]:
@@ -255,9 +254,12 @@ class RayMeshIntersector:
     def contains_points(self, points: ArrayLike) -> NDArray[np.bool_]:
         """Returns whether the mesh contains each point: points (n, 3), the result (n,) bool.
 
-        Right for every closed mesh, also where it has faces twice; of an open one it says how often one ray leaves it. A
-        point nearer to the surface than ``scene.displacement`` may be on either side. Points with nan or infinity are in
-        no mesh.
+        A closed mesh contains the points from which a ray crosses its faces an odd number of times. A face that is there an
+        even number of times counts once, or not at all, such that every edge has an even number of faces. So a box with a
+        face twice contains what it does without it, and of two bodies that stand on the same face, each with a copy of it,
+        a point in one of them alone is inside. Where both ways close the mesh, such faces count once. Of an open mesh the
+        result says whether one ray leaves it an odd number of times. A point nearer to the surface than
+        ``scene.displacement`` may be on either side. Points with nan or infinity are in no mesh.
         """
         points = numeric(points, "points")
         # An empty list.
@@ -266,9 +268,10 @@ class RayMeshIntersector:
         if points.ndim != 2 or points.shape[1] != 3:
             raise ValueError(f"points have the shape {points.shape}; it must be (n, 3)")
         compiled = self._compile()
-        if compiled.scene is None:
+        scene = self._compile_inside(compiled)
+        if scene is None:
             return np.zeros(len(points), dtype=bool)
-        return compiled.scene.contains(compiled.moved(points), closed_only=False, threads=self.threads)
+        return scene.contains(compiled.moved(points), closed_only=False, threads=self.threads)
 
     def _locations(
         self, origins: NDArray, directions: NDArray, multiple_hits: bool, max_hits: Optional[int]
@@ -287,7 +290,7 @@ class RayMeshIntersector:
         return places, rays, triangles if compiled.kept is None else compiled.kept[triangles]
 
     def __getstate__(self) -> dict:
-        return {**self.__dict__, "_compiled": None}
+        return {**self.__dict__, "_compiled": None, "_inside": None}
 
     def __copy__(self, *_: Any) -> "RayMeshIntersector":
         other = type(self).__new__(type(self))
