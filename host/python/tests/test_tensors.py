@@ -206,3 +206,67 @@ def test_attributes_that_are_missing_are_missing_to_type_checkers():
     assert "__getattr__" not in [getattr(it, "name", None) for it in scene.body]
     with pytest.raises(AttributeError, match="use open3d"):
         RaycastingScene().compute_distance
+
+
+@pytest.mark.parametrize("name", ["sum", "mean", "prod", "min", "max"])
+def test_reductions_take_keepdim_by_position(name):
+    plain = np.array([[5, 2, 3], [4, 1, 6]], dtype=np.float32)
+    reduced = getattr(np, name)
+    for dims, axis in (([0], 0), ([1], 1), ([-1], -1), (0, 0), ((0, 1), (0, 1)), ([1, 0], None), (None, None)):
+        for keep in (True, False, 1, np.False_):
+            found = getattr(array(plain), name)(dims, keep)
+            expected = reduced(plain, axis=axis, keepdims=bool(keep))
+            assert type(found) is Array and found.shape == expected.shape and np.array_equal(found, expected)
+    is_large = array(plain > 2, bool)
+    assert is_large.any([0], True).tolist() == [[True, False, True]] == is_large.all([0], True).tolist()
+    # NumPy's own arguments are taken as before.
+    assert array(plain).sum(0, np.float64).dtype == np.float64
+    out = np.zeros(3, dtype=np.float32)
+    assert array(plain).min(0, out).tolist() == [4, 1, 3] == out.tolist()
+
+
+def test_places_of_extremes_are_found_in_one_dimension_or_all():
+    mine = array([[5, 2, 3], [4, 1, 6]])
+    for dims, least, greatest in [
+        ([0], [1, 1, 0], [0, 0, 1]),
+        ([-1], [1, 1], [0, 2]),
+        (1, [1, 1], [0, 2]),
+        ([0, 1], 4, 5),
+        ((1, 0), 4, 5),
+        ([-2, -1], 4, 5),
+        (None, 4, 5),
+    ]:
+        assert mine.argmin(dims).tolist() == mine.argmin(dim=dims).tolist() == least
+        assert mine.argmax(dims).tolist() == greatest
+    for dims in ([], [0, 0], [0, 1]):
+        with pytest.raises(ValueError, match="argmin takes one dimension or all"):
+            array(np.zeros((2, 3, 4))).argmin(dims)
+
+
+def test_quotients_of_integers_are_truncated():
+    plain = np.array([7, -7, 2, -1], dtype=np.int32)
+    for other in (2, -2, True, np.int32(3), np.array([2, 2, -3, 5], dtype=np.int32)):
+        found = array(plain, np.int32).div(other)
+        assert found.dtype == np.int32 and found.tolist() == np.trunc(plain / other).tolist()
+    large = array([2**62 + 1, -(2**62) - 3], np.int64).div(2)
+    assert large.tolist() == [2**61, -(2**61) - 1]
+    assert array([200, 7], np.uint8).div(3).tolist() == [66, 2]
+    for whole in (array([3, 4]), array([True, False], bool)):
+        assert whole.div(2).dtype.kind == "f" and whole.div(2).tolist() == (whole / 2).tolist()
+    assert array([3, 4], np.int32).div(2.5).tolist() == [3 / 2.5, 4 / 2.5]
+
+
+def test_reductions_and_quotients_are_those_of_open3d(o3d):
+    plain, whole = np.array([[5, 2, 3], [4, 1, 6]], dtype=np.float32), np.array([7, -7, 2, -1], dtype=np.int32)
+    for name in ("sum", "mean", "prod", "min", "max", "argmin", "argmax"):
+        for dims in ([0], [1], [-1], [1, 0], (0, 1), None):
+            for keep in ([], [True]) if not name.startswith("arg") else ([],):
+                found = getattr(array(plain), name)(dims, *keep)
+                expected = getattr(o3d.core.Tensor(plain), name)(dims, *keep).numpy()
+                assert found.dtype == expected.dtype and found.shape == expected.shape, (name, dims, keep)
+                assert np.allclose(found, expected, rtol=1e-6), (name, dims, keep)
+    for other in (2, -2, np.array([2, 2, -3, 5], dtype=np.int32)):
+        value = o3d.core.Tensor(other) if isinstance(other, np.ndarray) else other
+        expected = o3d.core.Tensor(whole).div(value).numpy()
+        found = array(whole, np.int32).div(value)
+        assert found.dtype == expected.dtype and np.array_equal(found, expected)

@@ -89,6 +89,15 @@ def _of_elements(function: Any, says: str) -> Any:
     return method
 
 
+def _quotients(one: "Array", other: Any) -> Any:
+    """Quotients; those of integers are integers, rounded towards 0, as Open3D has them."""
+    numbers, other = one.numpy(), _plain(other)
+    if numbers.dtype.kind not in "iu" or np.result_type(numbers, other).kind not in "iu":
+        return np.divide(numbers, other)
+    below = np.floor_divide(numbers, other)
+    return below + ((np.remainder(numbers, other) != 0) & ((numbers < 0) != (np.asarray(other) < 0)))
+
+
 def _with_others(name: str) -> Any:
     """A method of NumPy's whose arguments may be tensors."""
     inner = getattr(np.ndarray, name)
@@ -109,9 +118,18 @@ def _over_dimensions(name: str, says: str) -> Any:
         self: "Array", axis: Any = None, *args: Any, dim: Any = None, keepdim: bool = False, **kwargs: Any
     ) -> "Array":
         axis = axis if dim is None else dim
-        if axis is not None:
-            axis = axis if np.ndim(axis) == 0 or name.startswith("arg") else tuple(axis)
-            axis = axis[0] if isinstance(axis, (list, tuple)) and len(axis) == 1 else axis
+        if axis is not None and np.ndim(axis) == 1:
+            axis = tuple(axis)
+            if name.startswith("arg") and len(axis) != 1:
+                # NumPy searches one dimension, or all of them.
+                if sorted(each % self.ndim for each in axis) != list(range(self.ndim)):
+                    raise ValueError(f"dim is {axis}; {name} takes one dimension or all")
+                axis = None
+            elif len(axis) == 1:
+                axis = axis[0]
+        # Behind the dimensions Open3D has `keepdim`, and NumPy a type or an array.
+        if args and isinstance(args[0], (int, np.bool_)):
+            keepdim, args = bool(args[0]), args[1:]
         if keepdim:
             kwargs["keepdims"] = True
         return _wrapped(np.asarray(inner(self.numpy(), axis, *_plain(args), **_plain(kwargs))))
@@ -147,7 +165,7 @@ class Array(np.ndarray):
     add = _of_elements(np.add, "sums")
     sub = _of_elements(np.subtract, "differences")
     mul = _of_elements(np.multiply, "products")
-    div = _of_elements(np.divide, "quotients")
+    div = _of_elements(_quotients, "quotients; those of integers are rounded towards 0")
     eq = _of_elements(np.equal, "where numbers are equal")
     ne = _of_elements(np.not_equal, "where numbers differ")
     lt = _of_elements(np.less, "where numbers are less")
