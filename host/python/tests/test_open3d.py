@@ -332,6 +332,22 @@ def test_nothing_is_met_beyond_single_precision():
         assert scene.test_occlusions(rays, tfar=tfar).tolist() == (counts > 0).tolist()
 
 
+def test_limits_beyond_single_precision_leave_out_what_cast_rays_does():
+    scene = RaycastingScene()
+    scene.add_triangles(TETRAHEDRON, SIDES)
+    # One hit each, the last two beyond the greatest number: the first of them is rounded to it.
+    rays = np.array([[0.1, 0.2, 0.1, 0, 0, -0.1 / t] for t in (1.0, 3.4e38, 3.40282351e38, 3.40282358e38, 1e39, 1e300)])
+    found = scene.cast_rays(rays)["t_hit"]
+    is_met = [True, True, True, False, False, False]
+    assert np.isfinite(found).tolist() == is_met and found[2] == np.finfo(np.float32).max
+    assert scene.count_intersections(rays).tolist() == is_met
+    assert scene.list_intersections(rays)["t_hit"].tolist() == found[is_met].tolist()
+    for tfar in (3.40282347e38, 3.4028236e38, 1e39, 1e300, float("inf")):
+        assert scene.test_occlusions(rays, tfar=tfar).tolist() == is_met
+        assert scene.test_occlusions(rays, 2.0, tfar).tolist() == [False] + is_met[1:]
+        assert not scene.test_occlusions(rays, 1e39, tfar).any()
+
+
 def test_copies_of_subclasses_keep_their_class_and_attributes():
     class Named(RaycastingScene):
         pass

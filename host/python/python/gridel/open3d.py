@@ -7,6 +7,7 @@ need not be changed.
 
 from __future__ import annotations
 
+import math
 import sys
 from typing import TYPE_CHECKING, Any, Optional, Tuple
 
@@ -18,6 +19,10 @@ from ._scene import MISS, Scene
 from ._tensors import Array, array_of, is_device, like
 
 __all__ = ["Array", "RaycastingScene"]
+
+
+#: The greatest t that is finite in single precision, to which it is rounded.
+_FARTHEST = float(np.nextafter(2.0**128 - 2.0**103, 0.0))
 
 
 def _nthreads(value: Any) -> int:
@@ -32,7 +37,9 @@ def _between(limit: float, toward: float) -> float:
         beyond = np.nextafter(single, np.float32(toward))
     if not np.isfinite(single) or single == 0.0:
         return float(single)
-    return float(single) + 0.5 * (float(beyond) - float(single)) if np.isfinite(beyond) else float(single)
+    if not np.isfinite(beyond):
+        return math.copysign(_FARTHEST, limit)
+    return float(single) + 0.5 * (float(beyond) - float(single))
 
 
 def _limited(rays: np.ndarray, tmin: float, tmax: float) -> np.ndarray:
@@ -203,11 +210,12 @@ class RaycastingScene:
         threads = _nthreads(nthreads)
         if self.scene is None:
             return like(rays, np.zeros(array.shape[:-1], dtype=bool))
-        if tfar == float("inf") and self._may_leave_single_precision(array):
+        far = _between(tfar, np.inf)
+        if far == np.inf and self._may_leave_single_precision(array):
             # Beyond it nothing is met.
-            tfar = float(np.finfo(np.float32).max)
-        if tnear != 0.0 or tfar != float("inf"):
-            array = _limited(array, _between(tnear, -np.inf), _between(tfar, np.inf))
+            far = _FARTHEST
+        if tnear != 0.0 or far != np.inf:
+            array = _limited(array, _between(tnear, -np.inf), far)
         return like(rays, self.scene.any(array, threads=threads))
 
     def count_intersections(self, rays: Any, nthreads: int = 0) -> Any:
@@ -217,7 +225,7 @@ class RaycastingScene:
             return like(rays, np.zeros(array.shape[:-1], dtype=np.int32))
         if self._may_leave_single_precision(array):
             # Beyond it nothing is met.
-            array = _limited(array, 0.0, float(np.finfo(np.float32).max))
+            array = _limited(array, 0.0, _FARTHEST)
         counts = self.scene.count(array, format="f32", threads=threads)
         return like(rays, counts.astype(np.int32))
 
@@ -236,7 +244,7 @@ class RaycastingScene:
         else:
             found = self.scene.all(array, format="f32", threads=threads)
             # Beyond single precision nothing is met.
-            kept = found.t <= np.finfo(np.float32).max
+            kept = found.t <= _FARTHEST
             ray, objects, primitives, t, uv = (
                 column if kept.all() else column[kept]
                 for column in (found.ray, found.object, found.primitive, found.t, found.uv)
