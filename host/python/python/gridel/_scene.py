@@ -11,6 +11,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from ._arguments import LARGEST, Accel, bits, character, flag, integer, mesh, names, query, rows, seconds, structures, text
 from ._gridel import NativeScene
+from ._slots import slots_of, state_of
 
 if sys.version_info >= (3, 11):
     from typing import Self
@@ -369,7 +370,7 @@ class Scene:
     def __reduce__(self) -> Tuple[Any, ...]:
         given = self._native.given()
         # What a subclass has of its own.
-        state = getattr(self, "__dict__", None) or None
+        state = state_of(getattr(self, "__dict__", {}), slots_of(self, Scene))
         if given is None:
             return type(self).from_blob, (self.to_blob(),), state
         return type(self)._from_meshes, given, state

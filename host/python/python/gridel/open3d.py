@@ -16,6 +16,7 @@ import numpy as np
 from ._arguments import far_place, finite_faces, indexed, integer, mesh as checked_mesh, number, rows
 from ._cameras import pinhole
 from ._scene import MISS, Scene
+from ._slots import restore, slots_of, state_of
 from ._tensors import Array, array_of, is_device, like
 
 __all__ = ["Array", "RaycastingScene"]
@@ -277,13 +278,14 @@ class RaycastingScene:
         inside = self.scene._native.contains(self._moved(points), "scene", "f64", None, threads)
         return like(query_points, inside.reshape(points.shape[:-1]).astype(np.float32))
 
-    def __getstate__(self) -> dict:
-        return {**self.__dict__, "_scene": None, "_place": None}
+    def __getstate__(self) -> Any:
+        return state_of({**self.__dict__, "_scene": None, "_place": None}, slots_of(self, RaycastingScene))
 
     def __copy__(self) -> "RaycastingScene":
         other = type(self).__new__(type(self))
         # Meshes do not change, nor does what was compiled of them; the list does.
-        other.__dict__.update(self.__dict__, _meshes=list(self._meshes), _kept=list(self._kept))
+        own = {**self.__dict__, "_meshes": list(self._meshes), "_kept": list(self._kept)}
+        restore(other, state_of(own, slots_of(self, RaycastingScene)))
         return other
 
     # Type checkers would believe that every attribute is there.

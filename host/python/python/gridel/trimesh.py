@@ -30,6 +30,7 @@ from numpy.typing import ArrayLike, NDArray
 from ._arguments import far_place, finite_faces, indexed, integer, numeric, threads as checked_threads
 from ._duplicates import bounding, firsts_of_equal
 from ._scene import Scene
+from ._slots import restore, slots_of, state_of
 
 __all__ = ["RayMeshIntersector"]
 
@@ -289,12 +290,12 @@ class RayMeshIntersector:
             places += compiled.place
         return places, rays, triangles if compiled.kept is None else compiled.kept[triangles]
 
-    def __getstate__(self) -> dict:
-        return {**self.__dict__, "_compiled": None, "_inside": None}
+    def __getstate__(self) -> Any:
+        return state_of({**self.__dict__, "_compiled": None, "_inside": None}, slots_of(self, RayMeshIntersector))
 
     def __copy__(self, *_: Any) -> "RayMeshIntersector":
         other = type(self).__new__(type(self))
-        other.__dict__.update(self.__getstate__())
+        restore(other, self.__getstate__())
         return other
 
     __deepcopy__ = __copy__
