@@ -1,4 +1,4 @@
-//! Hits as arrays of NumPy's.
+//! Hits as arrays of NumPy's, and blobs as bytes of Python's.
 
 use crate::arguments::invalid;
 use crate::query::{self, Columns, Hit, How, Placed, Rows};
@@ -8,6 +8,7 @@ use gridel_host::trace::SceneRay;
 use numpy::{IntoPyArray, PyArray1, PyArray2, PyArrayMethods};
 use pyo3::exceptions::PyMemoryError;
 use pyo3::prelude::*;
+use pyo3::types::PyBytes;
 use std::collections::TryReserveError;
 
 pub type Arrays<'py, T> = Bound<'py, PyArray1<T>>;
@@ -47,6 +48,14 @@ pub fn zeros<T: numpy::Element>(py: Python<'_>, length: usize) -> PyResult<Array
         .import("numpy")?
         .call_method1("zeros", (length, T::get_dtype(py)))?;
     Ok(zeros.cast_into()?)
+}
+
+/// A copy as Python has it; a MemoryError where memory is short, of which `PyBytes::new` panics.
+pub fn bytes<'py>(py: Python<'py>, from: &[u8]) -> PyResult<Bound<'py, PyBytes>> {
+    PyBytes::new_with(py, from.len(), |to| {
+        to.copy_from_slice(from);
+        Ok(())
+    })
 }
 
 /// The error of work that needs more memory than there is.

@@ -7,7 +7,8 @@ pub use native::NativeScene;
 
 use crate::arguments::{check_file, in_file, in_python, invalid, options, rejected};
 use crate::hit_arrays::{
-    Arrays, Cast, HitArrays, MeshHitArrays, append, collected, column, rows, too_large, zeros,
+    Arrays, Cast, HitArrays, MeshHitArrays, append, bytes, collected, column, rows, too_large,
+    zeros,
 };
 use crate::load_options::LoadOptions;
 use crate::meshes::{self, GivenMesh, Mesh};
@@ -436,7 +437,7 @@ impl NativeScene {
         lattice_bits: Option<u8>,
     ) -> PyResult<Bound<'py, PyBytes>> {
         if accel.is_none() && lattice_bits.is_none() {
-            return Ok(PyBytes::new(py, self.blob.borrow_owner().bytes()));
+            return bytes(py, self.blob.borrow_owner().bytes());
         }
         let Some(model) = &self.model else {
             return Err(invalid(
@@ -450,7 +451,7 @@ impl NativeScene {
             ..options(&accel, lattice_bits.unwrap_or(own.lattice_bits))?
         };
         let compiled = in_pool(py, 0, || compile(&model.scene, &options))?;
-        Ok(PyBytes::new(py, compiled.map_err(rejected)?.blob.bytes()))
+        bytes(py, compiled.map_err(rejected)?.blob.bytes())
     }
 
     /// The names of the structures, the best first.
