@@ -64,12 +64,6 @@ impl LoadOptions {
     /// The options of importers.
     pub fn for_import(&self) -> PyResult<ImportOptions> {
         let instances = self.instances.as_deref().map(instances).transpose()?;
-        let instances = instances.unwrap_or_default();
-        if self.time.is_some() && instances != Instances::Flatten {
-            return Err(invalid(
-                "`time` says where copies of instances stand; add `instances=\"flatten\"`, or leave `time` out",
-            ));
-        }
         let default = MoleculeOptions::default();
         let style = self.style.as_deref().map(style).transpose()?;
         let normals = self.normals.as_deref().map(normals).transpose()?;
@@ -84,7 +78,7 @@ impl LoadOptions {
                 camera: self.camera.clone(),
                 animation: self.animation.clone(),
             },
-            instances,
+            instances: instances.unwrap_or_default(),
             at: self.time,
             normals: normals.unwrap_or_default(),
             allow_outside: self.allow_outside,
@@ -130,7 +124,7 @@ impl LoadOptions {
     }
 
     /// Rejects options that do not apply to the file that was read.
-    pub fn check(&self, path: &Path, imported: &Imported) -> PyResult<()> {
+    pub fn check(&self, path: &Path, imported: &Imported, instances: Instances) -> PyResult<()> {
         let molecules = "molecules (PDB, mmCIF and XYZ files)";
         let assemblies = "PDB and mmCIF files";
         let gltf = "glTF files";
@@ -165,12 +159,26 @@ impl LoadOptions {
                 )));
             }
         }
-        if self.time.is_some() && imported.posed.is_none() {
-            return Err(invalid(format!(
-                "{path}: no instance moves, so `time` has no effect; leave `time` out"
-            )));
+        if self.time.is_none() {
+            return Ok(());
         }
-        Ok(())
+        let scene = &imported.scene;
+        let is_flat = instances == Instances::Flatten;
+        let moves = if is_flat {
+            imported.posed.is_some()
+        } else {
+            scene.instances.iter().any(|it| it.joint.is_some())
+                || scene.tracks.iter().any(|it| it.target.is_of_joint())
+        };
+        match (moves, is_flat) {
+            (true, true) => Ok(()),
+            (true, false) => Err(invalid(format!(
+                "{path}: `time` says where copies of instances stand; add `instances=\"flatten\"`, or leave `time` out"
+            ))),
+            (false, _) => Err(invalid(format!(
+                "{path}: no instance moves, so `time` has no effect; leave `time` out"
+            ))),
+        }
     }
 
     /// The importer's warnings, and what a scene keeps at rest although a time was given.

@@ -39,15 +39,16 @@ impl NativeScene {
     #[staticmethod]
     fn load(py: Python<'_>, path: PathBuf, given: LoadOptions) -> PyResult<Self> {
         check_file(&path)?;
-        let (options, importing) = (given.for_compiler()?, given.for_import()?);
-        let without = given.without()?;
+        // A blob takes no options, whatever they are.
         if gridel_host::blob::is_blob(&path)? {
             given.reject_for_blob(&path)?;
             return py.detach(|| Self::of_blob(Blob::read(&path)?, None, f64::NAN));
         }
+        let (options, importing) = (given.for_compiler()?, given.for_import()?);
+        let without = given.without()?;
         let imported = in_pool(py, 0, || scene::load_with(&path, &importing))?;
         let mut imported = imported.map_err(rejected)?;
-        given.check(&path, &imported)?;
+        given.check(&path, &imported, importing.instances)?;
         let mut warnings = given.warnings(&path, &imported);
         for lost in scene::leave_out(&mut imported.scene, &without) {
             warnings.push(format!("{}: {lost}", path.display()));

@@ -4,12 +4,14 @@ import base64
 import json
 import struct
 import zlib
+from pathlib import Path
 
 import numpy as np
 import pytest
 
 import gridel
 
+PAGE = Path(__file__).parents[2] / "docs" / "PYTHON.md"
 BALL = "[[object]]\nkind = 'sphere'\ncenter = [0, 0, 0]\nradius = 1\n"
 #: A ball that moves along x, by 4 per second.
 MOVING = (
@@ -106,11 +108,8 @@ def test_scene_files_have_the_structure_wide_and_24_bits(ball):
 @pytest.mark.parametrize("option", OPTIONS)
 def test_blob_rejects_each_option(blob, option):
     assert gridel.Scene.load(blob).accels[0] == "dual-split"
-    given = {option: OPTIONS[option]}
-    if option == "time":
-        given = {"time": 0.0, "instances": "flatten"}
     with pytest.raises(ValueError) as caught:
-        gridel.Scene.load(blob, **given)
+        gridel.Scene.load(blob, **{option: OPTIONS[option]})
     sentence = str(caught.value)
     assert sentence.startswith(f"{blob}: `{option}` is for scene files: a blob ")
     assert sentence.endswith(
@@ -197,9 +196,14 @@ def test_time_without_copies_or_motion_is_rejected(tmp_path):
     for instances in (None, "keep"):
         with pytest.raises(ValueError, match="`time` says where copies of instances stand; add `instances="):
             gridel.Scene.load(path, time=1, instances=instances)
+        # What the error says to do works.
+        assert gridel.Scene.load(path, instances=instances).primitives == 1
+    assert gridel.Scene.load(path, time=1, instances="flatten").primitives == 1
     path = write(tmp_path, "still.toml", STILL)
-    with pytest.raises(ValueError, match="still.toml: no instance moves, so `time` has no effect; leave `time` out"):
-        gridel.Scene.load(path, time=1, instances="flatten")
+    for instances in (None, "keep", "flatten"):
+        with pytest.raises(ValueError, match="still.toml: no instance moves, so `time` has no effect; leave `time` out"):
+            gridel.Scene.load(path, time=1, instances=instances)
+        gridel.Scene.load(path, instances=instances)
     with pytest.raises(ValueError, match="time is nan; it must be finite"):
         gridel.Scene.load(path, time=float("nan"), instances="flatten")
 
@@ -312,6 +316,25 @@ def test_options_that_do_not_apply_to_the_file_are_rejected(ball, option, kind):
     sentence = str(caught.value)
     assert sentence.startswith(f"{ball}: `{option}` is for {kind}")
     assert sentence.endswith(f", and the scene has none; leave `{option}` out")
+
+
+@pytest.mark.parametrize("option", OPTIONS)
+def test_page_says_which_options_are_checked(tmp_path, option):
+    checked = {"camera", "animation", "assembly", "style", "model", "altloc", "time", "quality"}
+    given = {"accel": "bvh", option: OPTIONS[option]}
+    path = write(tmp_path, "ball.toml", BALL + "[[light]]\nkind = 'point'\nposition = [0, 9, 0]\n")
+    if option in checked:
+        with pytest.raises(ValueError, match=f"`{option}`"):
+            gridel.Scene.load(path, **given)
+    elif option == "without":
+        with pytest.warns(UserWarning, match="without shadow"):
+            gridel.Scene.load(path, **given)
+    else:
+        assert gridel.Scene.load(path, **given).primitives == 1
+    page = PAGE.read_text(encoding="utf-8").partition("they do not apply:\n")[2]
+    says, _, others = page.partition("\nEvery scene file takes the other options")
+    assert (f"`{option}`" in says) == (option in checked or option == "instances")
+    assert f"| `{option}` |" in others
 
 
 @pytest.mark.parametrize(

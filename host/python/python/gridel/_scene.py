@@ -112,7 +112,7 @@ class Scene:
     ) -> Self:
         """Reads a scene file of any format that ``gridel`` reads, or a scene blob.
 
-        A scene file is compiled. The options are those of the command line; for a blob, each of them is an error.
+        A scene file is compiled. The options are those of the command line; for a blob, each of them is a ValueError.
 
         :param accel: the structures to build, one name or several. Default: ``"wide"``.
         :param lattice_bits: bits of the lattice for coordinates, 10 to 24. Default: 24.
@@ -139,7 +139,9 @@ class Scene:
 
         Warns (UserWarning) of what the file's importer leaves out, and of primitives that are too small for the lattice.
         Raises FileNotFoundError, IsADirectoryError and other OSErrors with ``errno`` and ``filename``, and ValueError with
-        file, place, cause and remedy. An option that does not apply to the file is a ValueError as well.
+        file, place, cause and remedy. ``camera``, ``animation``, ``assembly``, ``style``, ``model`` and ``altloc`` are a
+        ValueError as well if they do not apply to the file; so are ``time`` if no instance moves, and ``quality`` without
+        the structure ``wide``. Every scene file takes the other options, also if they change nothing.
         """
         given = {
             "accel": structures(accel),
