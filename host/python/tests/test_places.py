@@ -76,3 +76,34 @@ def test_bounds_are_those_of_the_vertices_as_given(tmp_path):
     box = "[[object]]\nkind = 'box'\nmin = [0, 0, 0]\nmax = [3, 1, 1]\n"
     (tmp_path / "box.toml").write_text(box)
     assert np.allclose(gridel.Scene.load(tmp_path / "box.toml").bounds, [[0, 0, 0], [3, 1, 1]], atol=3 * 2.0**-15)
+
+
+def narrow_triangles(rng, height):
+    """Triangles of about a length of 1, as narrow as a height."""
+    corners = rng.normal(size=(1000, 3, 3))
+    along = rng.uniform(size=(1000, 1))
+    corners[:, 2] = corners[:, 0] * along + corners[:, 1] * (1 - along) + height * rng.normal(size=(1000, 3))
+    return corners
+
+
+@pytest.mark.filterwarnings("ignore:.*left out")
+@pytest.mark.parametrize("format", ["f32", "f64", "fixed"])
+@pytest.mark.parametrize("bits", [12, 24])
+def test_uv_of_narrow_triangles_are_those_of_the_hit(bits, format):
+    rng = np.random.default_rng(bits)
+    corners = narrow_triangles(rng, 2.0 ** (2 - bits))
+    scene = gridel.Scene.from_arrays(corners.reshape(-1, 3), np.arange(3000).reshape(-1, 3), lattice_bits=bits)
+    aimed = corners[rng.integers(1000, size=30_000)]
+    targets = (aimed * rng.dirichlet([0.5] * 3, len(aimed))[:, :, None]).sum(axis=1)
+    origins = rng.normal(size=targets.shape)
+    origins *= 9 / np.linalg.norm(origins, axis=1, keepdims=True)
+    rays = np.hstack([origins, targets + scene.displacement * rng.normal(size=targets.shape) - origins])
+    for found, of in ((scene.cast(rays, format=format), rays), (scene.all(rays, format=format), None)):
+        of = rays[found.ray] if of is None else of
+        hit = found.primitive != gridel.MISS
+        assert hit.sum() > 3000
+        places = of[hit, :3] + found.t[hit, None] * of[hit, 3:]
+        u, v = found.uv[hit].astype(float).T
+        assert u.min() >= 0 and v.min() >= 0 and (u + v).max() < 1 + 1e-6
+        named = (corners[found.primitive[hit]] * np.stack([1 - u - v, u, v], axis=1)[:, :, None]).sum(axis=1)
+        assert np.linalg.norm(named - places, axis=1).max() < 4 * scene.displacement

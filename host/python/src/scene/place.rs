@@ -191,6 +191,10 @@ fn meet(corners: [DVec3; 3], ray: &SceneRay, (own, moved): (f64, f64)) -> Meetin
         t = ray.within(meet_near(corners, (normal, approach), ray, (own, margin)));
         place = ray.origin + ray.direction * t;
         weights = weights_at(place);
+        let [of_b, of_c] = weights;
+        if of_b.min(of_c).min(1.0 - of_b - of_c) < -BESIDE {
+            weights = nearest(corners, place);
+        }
     }
     let of_b = weights[0].clamp(0.0, 1.0);
     let of_c = weights[1].clamp(0.0, 1.0).min(1.0 - of_b);
@@ -209,6 +213,34 @@ fn meet(corners: [DVec3; 3], ray: &SceneRay, (own, moved): (f64, f64)) -> Meetin
             across().try_normalize()
         },
     }
+}
+
+/// The weights of the second and third corner at the point of a triangle's sides that is nearest to a place. Weights that
+/// are cut off one by one are those of a point far away, if the triangle is narrow.
+#[cold]
+#[inline(never)]
+fn nearest(corners: [DVec3; 3], place: DVec3) -> [f64; 2] {
+    let mut least = f64::INFINITY;
+    let mut weights = [0.0; 3];
+    for side in 0..3 {
+        let next = (side + 1) % 3;
+        let along = corners[next] - corners[side];
+        let from = place - corners[side];
+        let part = from.dot(along) / along.length_squared();
+        // Not a number where two corners are in one place.
+        let part = if part.is_nan() {
+            0.0
+        } else {
+            part.clamp(0.0, 1.0)
+        };
+        let distance = (from - along * part).length_squared();
+        if distance < least {
+            least = distance;
+            weights = [0.0; 3];
+            (weights[side], weights[next]) = (1.0 - part, part);
+        }
+    }
+    [weights[1], weights[2]]
 }
 
 /// The t at which a ray meets the plane of a triangle, or the nearest t at which it is above or below the triangle made
