@@ -263,3 +263,32 @@ def test_solids_and_instances_are_hit_from_near_at_the_t_that_is_returned(tmp_pa
             exactly = np.column_stack([starts_found, least, ways, at])
             assert (scene.cast(exactly, format=format).t == at).all()
             assert scene.any(exactly, format=format).all()
+
+
+@FORMATS
+def test_limits_are_compared_with_t_before_all_raises_it(format):
+    # Boxes around each other, nearer than the lattice moves them.
+    sizes = np.linspace(1, 1 + 1e-6, 12)
+    corners = np.array([[x, y, z] for x in (-0.5, 0.5) for y in (-0.5, 0.5) for z in (-0.5, 0.5)])
+    sides = [[0, 1, 3], [0, 3, 2], [4, 6, 7], [4, 7, 5], [0, 4, 5], [0, 5, 1], [2, 3, 7], [2, 7, 6]]
+    sides = np.array(sides + [[0, 2, 6], [0, 6, 4], [1, 5, 7], [1, 7, 3]])
+    vertices = np.vstack([corners * size for size in sizes])
+    faces = np.vstack([sides + 8 * k for k in range(len(sizes))])
+    scene = gridel.Scene.from_arrays(vertices, faces)
+    origin = np.array([3.0, 0.1, 0.2])
+    fewer = 0
+    for direction in np.random.default_rng(5).uniform(-0.4, 0.4, (40, 3)) - origin:
+        every = scene.all([[*origin, *direction]], format=format)
+        at = vertices[faces[every.primitive]]
+        normal = np.cross(at[:, 1] - at[:, 0], at[:, 2] - at[:, 0])
+        own = (normal * (at[:, 0] - origin)).sum(axis=1) / (normal @ direction)
+        raised = np.maximum.accumulate(own)
+        assert np.allclose(every.t, raised, rtol=1e-15) and (np.diff(every.t) >= 0).all()
+        # Away from the last digits of t.
+        for limit in every.t[:12:5] + 3e-9:
+            for low, high in ((limit, np.inf), (0, limit), (limit - 2e-8, limit)):
+                ray = [[*origin, low, *direction, high]]
+                count = scene.count(ray, format=format)[0]
+                assert count == len(scene.all(ray, format=format).t) == ((own >= low) & (own <= high)).sum()
+                fewer += count < ((every.t >= low) & (every.t <= high)).sum()
+    assert fewer > 0

@@ -254,7 +254,9 @@ class Scene:
         Nothing is listed twice, capped or lost: a ray through an edge or a vertex of a closed mesh crosses as many
         triangles as a ray beside it. Where a ray only touches a silhouette, or the border of an open mesh, it has no
         crossing, or two, or one at a border; :meth:`cast` may report a hit there. Surfaces nearer to each other than
-        :attr:`displacement` come in the order in which the lattice has them, and may have the same t.
+        :attr:`displacement` come in the order in which the lattice has them. A t that is less than the one before it is
+        raised to that. tmin and tmax are compared with the t of each surface before it is raised, so limits at such a t can
+        leave out hits that are listed with it without limits.
         """
         rays = rows(rays, (6, 8), "rays")
         ray, hits, leaves = self._native.all(rays, *query(format, accel, threads))
@@ -263,7 +265,10 @@ class Scene:
     def count(
         self, rays: ArrayLike, *, format: str = "f64", accel: Optional[str] = None, threads: int = 0
     ) -> NDArray[np.uint32]:
-        """Returns the number of crossings of each ray, as :meth:`all` lists them: (...) uint32."""
+        """Returns the number of crossings of each ray, as :meth:`all` lists them: (...) uint32.
+
+        tmin and tmax are compared with the t of each surface, as in :meth:`all`: before a t is raised to the one before it.
+        """
         rays = rows(rays, (6, 8), "rays")
         return self._native.count(rays, *query(format, accel, threads)).reshape(rays.shape[:-1])
 
