@@ -292,3 +292,22 @@ def test_limits_are_compared_with_t_before_all_raises_it(format):
                 assert count == len(scene.all(ray, format=format).t) == ((own >= low) & (own <= high)).sum()
                 fewer += count < ((every.t >= low) & (every.t <= high)).sum()
     assert fewer > 0
+
+
+def test_edges_have_the_triangle_with_the_least_t_of_the_format():
+    # A double cone with coordinates of integers, and a ray exactly through an edge of it, between faces 22 and 23.
+    angles = np.linspace(0, 2 * np.pi, 64, endpoint=False)
+    rim = np.round(np.column_stack([1000 * np.cos(angles), 1000 * np.sin(angles), 0 * angles]))
+    vertices = np.vstack([[[0, 0, 300]], rim, [[0, 0, -300]]])
+    around, next_one = 1 + np.arange(64), 1 + (np.arange(64) + 1) % 64
+    faces = np.vstack([np.column_stack([0 * around, around, next_one]), np.column_stack([0 * around + 65, next_one, around])])
+    scene = gridel.Scene.from_arrays(vertices, faces)
+    assert scene.displacement == 0
+    ray = [[-652, 737, 9, 2, 4, -1]]
+    for format in ("f32", "f64", "fixed"):
+        hits = scene.cast(ray, format=format)
+        assert hits.t.tolist() == [9] and hits.primitive[0] in (22, 23)
+        # The ray touches a silhouette.
+        assert scene.count(ray, format=format)[0] in (0, 2)
+    # In integers the two are equal.
+    assert scene.cast(ray, format="fixed").primitive.tolist() == [22]

@@ -211,9 +211,12 @@ class Scene:
 
         A ray that touches an edge or a vertex hits it. This holds for rays and vertices as the query has them: it
         rounds directions to the number format, and vertices to the lattice. So a ray that is aimed at a silhouette, or at
-        the border of an open mesh, may pass beside it. At the same t the primitive that comes first counts. ``t``,
-        ``uv`` and ``normal`` of triangles are computed from the vertices as they were given, in float64; those of
-        instances and of blobs are computed from the lattice. ``t`` is never outside of tmin and tmax.
+        the border of an open mesh, may pass beside it. At an edge it hits the triangle with the least t, as the number
+        format rounds it, and of equal t the primitive that comes first: number formats can name different neighbors.
+
+        ``t``, ``uv`` and ``normal`` of triangles are computed from the vertices as they were given, in float64; those of
+        instances and of blobs are computed from the lattice. ``t`` is never outside of tmin and tmax. A hit lies within a
+        few times :attr:`displacement` of its triangle, except for rays almost in the triangle's plane.
 
         tmin and tmax are compared with the ``t`` that is returned. A hit at a limit counts, so a ray whose tmax is the t of
         its hit still hits. There are two exceptions, in which a ray may hit or miss:
