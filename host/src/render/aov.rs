@@ -14,7 +14,7 @@ pub enum Aov {
     Depth,
     /// The shading normal of length 1, with normal maps, in the scene's axes, on the side of the eye; 0 where nothing is hit.
     Normal,
-    /// Diffuse reflectance, linear, with textures and vertex colors; 0 where nothing is hit, and on mirrors and glass.
+    /// Diffuse reflectance, linear, with textures and vertex colors, also of mirrors and glass; 0 where nothing is hit.
     Albedo,
     /// The object's number in scene-file order, `u32::MAX` where nothing is hit. Objects of parts follow the scene's
     /// own.

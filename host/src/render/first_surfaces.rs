@@ -12,7 +12,7 @@ use rayon::prelude::*;
 /// A surface as shading sees it.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Shaded {
-    /// The diffuse reflectance, linear: 0 where nothing is hit, and on mirrors and glass.
+    /// The diffuse reflectance, linear: 0 where nothing is hit. That of mirrors and glass is what their material states.
     pub albedo: [f32; 3],
     /// The normal of a normal map, of length 1, on the side of the eye; `None` without one.
     pub mapped_normal: Option<[f32; 3]>,

@@ -43,10 +43,10 @@ pub struct OutputOptions {
     /// an .exr, else to NumPy files named after the picture, such as out.depth.npy
     ///
     /// depth is the distance from the eye; inf where nothing is hit. normal has length 1 and is that of
-    /// shading, on the side of the eye; 0 where nothing is hit. albedo is the diffuse color; 0 on mirrors and
-    /// glass. object, primitive and instance are numbers
-    /// as `gridel trace` prints them; 4294967295 for none. uv are texture coordinates after the
-    /// texture's scale, rotation and offset; inf for none
+    /// shading, on the side of the eye; 0 where nothing is hit. albedo is the diffuse color of the material,
+    /// also of mirrors and glass; 0 where nothing is hit. object, primitive and instance are numbers as
+    /// `gridel trace` prints them; 4294967295 for none. uv are texture coordinates after the texture's scale,
+    /// rotation and offset; inf for none
     #[arg(long, value_name = "NAMES", value_delimiter = ',', value_parser = arguments::aov(),
         conflicts_with = "frames")]
     aov: Vec<Aov>,
