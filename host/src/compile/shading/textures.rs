@@ -108,10 +108,7 @@ impl Textures {
             (maps.cutoff, maps.opacity) = match alpha {
                 None => (0, 0),
                 Some(Alpha::Blend(factor)) => (0, of_255(factor)),
-                // Alpha of 8 bits that is as large or larger.
-                Some(Alpha::CutOut(least)) => {
-                    ((least.clamp(0.0, 1.0) * 255.0).ceil().max(1.0) as u8, 255)
-                }
+                Some(Alpha::CutOut(least)) => (least_alpha(least), 255),
             };
             if alpha.is_some() {
                 flags |= record::Material::MAPS_ALPHA;
@@ -252,8 +249,34 @@ impl Textures {
     }
 }
 
+/// The part of a cutoff that rounding may add: glTF files bring it in `f32`, and as a quotient of two of those.
+const ROUNDED: f64 = 1.0 / (1 << 22) as f64;
+
+/// Returns the least alpha of 8 bits that is as large as a cutoff.
+fn least_alpha(cutoff: f64) -> u8 {
+    let least = cutoff.clamp(0.0, 1.0) * 255.0;
+    (least * (1.0 - ROUNDED)).ceil().max(1.0) as u8
+}
+
 #[cfg(test)]
 mod tests {
+    #[test]
+    fn alpha_that_equals_the_cutoff_is_kept_whatever_rounded_it() {
+        use super::least_alpha;
+        for alpha in 1..=255_u8 {
+            let exact = f64::from(alpha) / 255.0;
+            assert_eq!(least_alpha(exact), alpha);
+            assert_eq!(least_alpha((exact as f32).into()), alpha);
+            for factor in [0.1_f32, 0.3, 0.7, 0.9] {
+                let cutoff = f64::from((exact * f64::from(factor)) as f32);
+                assert_eq!(least_alpha(cutoff / f64::from(factor)), alpha);
+            }
+            assert_eq!(least_alpha(exact * 1.000_001), alpha.saturating_add(1));
+        }
+        assert_eq!(least_alpha(0.2_f32.into()), 51);
+        assert_eq!([0.0, 0.5, 1.0].map(least_alpha), [1, 128, 255]);
+    }
+
     use super::*;
     use crate::scene::Image;
     use std::sync::Arc;
