@@ -91,17 +91,27 @@ pub(super) fn shrink_areas(scene: &mut Scene) {
     }
 }
 
+/// Returns the sphere that has the surface of a light.
+fn sphere_of_light(scene: &Scene, number: usize) -> Option<usize> {
+    let form = scene.light_forms.get(number).copied().flatten()?;
+    let is_sphere = matches!(form.shape, LightShape::Sphere { .. });
+    scene.object_of_light(number).filter(|_| is_sphere)
+}
+
 /// Removes the spheres that have the surface of a light.
 fn remove_spheres_of_lights(scene: &mut Scene) {
-    let is_sphere = |form: &LightForm| matches!(form.shape, LightShape::Sphere { .. });
     for number in 0..scene.lights.len() {
-        let form = scene.light_forms.get(number).copied().flatten();
-        if form.is_some_and(|form| is_sphere(&form))
-            && let Some(object) = scene.object_of_light(number)
-        {
+        if let Some(object) = sphere_of_light(scene, number) {
             scene.objects.remove(object);
         }
     }
+}
+
+/// Returns true if [`shrink_areas`] removes a sphere.
+pub(super) fn shows_spheres(scene: &Scene) -> bool {
+    let expanded = scene.with_emitters();
+    let mut numbers = 0..expanded.lights.len();
+    scene.render.shadows && numbers.any(|number| sphere_of_light(&expanded, number).is_some())
 }
 
 /// Makes points that shine equally in all directions and at all distances, as bright as at the point where the camera
@@ -273,6 +283,28 @@ mod tests {
             let mut scene = scene(&format!("{lights}{FLOOR}"));
             for effect in [Effects::FALLOFF, Effects::AREA_LIGHT] {
                 assert_eq!(leave_one_out(&mut scene, effect), None, "{lights}");
+            }
+        }
+    }
+
+    #[test]
+    fn only_spheres_that_are_lost_are_said_not_to_be_seen() {
+        const DISC: &str = "[[light]]\nkind = 'disc'\ncenter = [0, 2, 0]\nradius = 1\nnormal = [0, -1, 0]\n\
+            radiance = 1\nvisible = true\n";
+        let hidden = VISIBLE.replace("visible = true\n", "");
+        let shadowless = format!("render.shadows = false\n{GLOWING}");
+        for (lamp, is_lost) in [
+            (GLOWING, true),
+            (VISIBLE, true),
+            (DISC, false),
+            (&hidden, false),
+            (&shadowless, false),
+        ] {
+            for effect in [Effects::AREA_LIGHT, Effects::FALLOFF] {
+                let mut scene = scene(&format!("{lamp}{FLOOR}"));
+                let sentences = crate::scene::leave_out(&mut scene, &[effect]);
+                let says = sentences[0].ends_with("; spheres that shine are not seen");
+                assert_eq!(says, is_lost, "{sentences:?}");
             }
         }
     }

@@ -115,12 +115,12 @@ const REMOVALS: [(Effects, &str, Removal); Effects::NAMED.len()] = [
     ),
     (
         Effects::FALLOFF,
-        "lights are as bright everywhere as where the camera looks, and spheres that shine are not seen",
+        "lights are as bright everywhere as where the camera looks",
         remove_falloff,
     ),
     (
         Effects::AREA_LIGHT,
-        "lights shine from their middles, shadows have hard edges, and spheres that shine are not seen",
+        "lights shine from their middles, and shadows have hard edges",
         shrink_areas,
     ),
     (
@@ -218,19 +218,24 @@ pub fn leave_out(scene: &mut Scene, effects: &[Effects]) -> Vec<String> {
         let whole = whole.clone();
         whole.is_some_and(|mut scene| leave_one_out(&mut scene, effect).is_some())
     };
-    let sentences = effects
-        .iter()
-        .filter_map(|&effect| match leave_one_out(scene, effect) {
+    let sentences = effects.iter().filter_map(|&effect| {
+        let shrinks = [Effects::AREA_LIGHT, Effects::FALLOFF].contains(&effect);
+        let spheres = match shrinks && lights::shows_spheres(scene) {
+            true => "; spheres that shine are not seen",
+            false => "",
+        };
+        match leave_one_out(scene, effect) {
             None if was_called_for(effect) => None,
             None => Some(format!(
                 "the scene does not call for {effect}, so nothing is left out"
             )),
             Some(names) => Some(format!(
-                "without {effect}{}: {}",
+                "without {effect}{}: {}{spheres}",
                 in_parentheses(&names),
                 shown_without(effect)
             )),
-        });
+        }
+    });
     sentences.collect()
 }
 
