@@ -84,7 +84,7 @@ pub(super) fn decode(
                 "has the resolution {resolution:?}; expected one such as \"-Y 512 +X 1024\"",
                 resolution = shortened(&resolution)
             ),
-            "save the picture again with its upper row first",
+            order_remedy(&resolution),
         )
     })?;
     check(width, height)?;
@@ -96,6 +96,19 @@ pub(super) fn decode(
         pixels.extend(line.iter().map(linear));
     }
     Ok((width, height, pixels))
+}
+
+/// Returns what to do about a picture with this line of its size.
+fn order_remedy(line: &str) -> &'static str {
+    let mut axes = line.split_ascii_whitespace().step_by(2);
+    match [axes.next(), axes.next()] {
+        [Some("-Y"), Some("-X")] => "save the picture again with its left column first",
+        [Some("+Y"), Some("+X")] => "save the picture again with its upper row first",
+        [Some("+Y"), Some("-X")] => {
+            "save the picture again with its upper row and its left column first"
+        }
+        _ => "save the picture again row by row, with its upper row first",
+    }
 }
 
 /// Width and height from a line like `-Y 512 +X 1024`.
@@ -229,6 +242,19 @@ mod tests {
         }
         let old = file("-Y 1 +X 4", &[128, 64, 0, 129, 1, 1, 1, 3]);
         assert_eq!(decode(&old, check).unwrap().2, [[1.0, 0.5, 0.0]; 4]);
+    }
+
+    #[test]
+    fn pictures_in_another_order_are_rejected_with_what_to_save_first() {
+        for (line, words) in [
+            ("-Y 1 -X 8", "its left column first"),
+            ("+Y 1 +X 8", "its upper row first"),
+            ("+Y 1 -X 8", "its upper row and its left column first"),
+            ("+X 8 -Y 1", "row by row, with its upper row first"),
+        ] {
+            let [cause, remedy] = decode(&file(line, &RUNS), check).unwrap_err();
+            assert!(cause.contains(line) && remedy.ends_with(words), "{remedy}");
+        }
     }
 
     #[test]
