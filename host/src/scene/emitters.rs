@@ -164,7 +164,7 @@ impl Scene {
     }
 
     /// Returns the object with the surface of a light.
-    pub(super) fn object_of_light(&self, number: usize) -> Option<usize> {
+    pub(crate) fn object_of_light(&self, number: usize) -> Option<usize> {
         let form = self.light_forms.get(number).copied().flatten()?;
         let Light::Point { position, .. } = *self.lights.get(number)? else {
             return None;

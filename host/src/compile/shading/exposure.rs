@@ -98,6 +98,22 @@ mod tests {
         assert!(error.to_string().contains("light 0 at 1 s"), "{error}");
     }
 
+    #[test]
+    fn visible_lights_that_exposure_makes_too_bright_are_named_as_lights() {
+        for (name, expected) in [
+            ("", "the light 0 has"),
+            ("name = 'bulb'", "the light 0 (bulb) has"),
+        ] {
+            let file = format!(
+                "render.exposure = 12\n[[light]]\nkind = 'sphere'\ncenter = [0, 4, 0]\nradius = 1\nradiance = 1\n\
+                 visible = true\n{name}\n[[object]]\nkind = 'sphere'\ncenter = [0, 0, 0]\nradius = 1\n"
+            );
+            let imported = read("lamp.toml".as_ref(), file.into(), &Default::default()).unwrap();
+            let error = compile(&imported.scene, &Options::default()).unwrap_err();
+            assert!(error.to_string().starts_with(expected), "{error}");
+        }
+    }
+
     /// An import that is scaled multiplies the colors of its light.
     #[test]
     fn colors_of_imported_tracks_that_are_too_bright_are_rejected() {

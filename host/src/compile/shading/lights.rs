@@ -95,7 +95,7 @@ impl LightData {
         let formed = FormedLight {
             form,
             color,
-            label: &label(scene, number),
+            label: &light_label(scene, number),
             distances: [nearest.length(), farthest.length()],
             scene_size: space.size(),
             has_color_track,
@@ -135,7 +135,7 @@ fn check_stays(scene: &Scene, number: usize) -> Result<(), CompileError> {
             target: scene.target_of(track),
             cause: format!(
                 "{} is visible, and the object that shows it cannot change with time",
-                label(scene, number)
+                light_label(scene, number)
             ),
             remedy: String::from("set the light's `visible = false`, or leave the track out"),
         }),
@@ -172,7 +172,7 @@ pub fn on_lattice(
 }
 
 /// A light for messages: its number, and its name if it has one.
-fn label(scene: &Scene, number: usize) -> String {
+pub fn light_label(scene: &Scene, number: usize) -> String {
     match scene.light_names.get(number) {
         Some(name) if !name.is_empty() => format!("light {number} ({})", printable(name)),
         _ => format!("light {number}"),

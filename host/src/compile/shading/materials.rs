@@ -2,6 +2,7 @@
 
 use super::checkerboard::{LARGEST_CELL, checker_origin, has_large_cells};
 use super::exposure::Exposure;
+use super::lights::light_label;
 use super::media::media;
 use super::radiance::radiance;
 use super::textures::{TextureFigures, Textures};
@@ -77,12 +78,16 @@ impl MaterialData {
         (data.textures, data.texture_figures) =
             textures.sections(scene.display_values, texture_bytes)?;
         let materials = scene.materials.iter().zip(sends);
-        for ((material, sends), number) in materials.zip(&data.numbers) {
+        for (index, ((material, sends), number)) in materials.zip(&data.numbers).enumerate() {
             let Some(number) = *number else {
                 continue;
             };
             if material.emission != [0.0; 3] {
-                let color = exposure.of_color(material.emission, || label(material))?;
+                let color =
+                    exposure.of_color(material.emission, || match shown_light(scene, index) {
+                        Some(light) => light_label(scene, light),
+                        None => label(material),
+                    })?;
                 let emission = record::Emission {
                     radiance: radiance(color),
                     lights: material.is_sampled.into(),
@@ -148,6 +153,16 @@ fn put<T: Clone + Default>(values: &mut Vec<T>, number: u32, value: T) {
 /// A material for messages.
 fn label(material: &Material) -> String {
     format!("material {}", printable(&material.name))
+}
+
+/// Returns the light that a material shows, if no file states the material.
+fn shown_light(scene: &Scene, material: usize) -> Option<usize> {
+    let place = &scene.materials[material].place;
+    (0..scene.lights.len()).find(|&number| {
+        let object = scene.object_of_light(number);
+        object.is_some_and(|it| scene.objects[it].material == material)
+            && scene.places.light(number) == *place
+    })
 }
 
 fn material_record(material: &Material, sends: Sends, lattice: &Lattice) -> record::Material {

@@ -13,7 +13,7 @@ mod setting;
 mod textures;
 
 pub use environment::EnvironmentFigures;
-pub use lights::light_record;
+pub use lights::{light_label, light_record};
 pub use materials::with_coordinates;
 pub use radiance::radiance;
 pub use textures::{TextureFigures, root};
