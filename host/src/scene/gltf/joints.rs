@@ -134,6 +134,9 @@ impl Own {
                 let mapped = curve.map(|value| (outer * DQuat::from_array(value) * inner).to_array());
                 own.add(TrackTarget::JointRotation, mapped, DVec4::W);
             }
+            (Some(_), _, None) => own
+                .warnings
+                .push("has a sheared matrix; it does not turn"),
             _ => own.warnings.push(
                 "turns below a node that is scaled unevenly or sheared, where most turns would bend it; it does not turn",
             ),

@@ -292,6 +292,19 @@ const QUARTER: [&[f64]; 2] = [
 ];
 
 #[test]
+fn a_node_that_is_sheared_itself_does_not_turn_and_is_named() {
+    let matrix = json!({"matrix": [1, 0, 0, 0, 0.5, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1]});
+    let imported = below(matrix, &[two_keys(0, "rotation", QUARTER)]);
+    let [warning] = &imported.warnings[..] else {
+        panic!("{:?}", imported.warnings)
+    };
+    assert!(
+        warning.contains("node 0") && warning.ends_with("has a sheared matrix; it does not turn"),
+        "{warning}"
+    );
+}
+
+#[test]
 fn what_would_bend_or_shear_stays_and_is_named() {
     for (outer, channel, words) in [
         (
