@@ -227,6 +227,9 @@ impl View {
 
     /// Puts camera and lights into a scene whose objects are all there.
     pub(super) fn finish(self, scene: &mut Scene, warn: &mut dyn FnMut(&str)) {
+        // Those without a perspective cannot be chosen.
+        let is_first = self.names.len() > 1 && self.camera.is_some() && self.wanted.is_none();
+        let has_names = self.names.iter().any(|name| !name.is_empty());
         for (there, sentence) in [
             (
                 self.has_blind,
@@ -237,8 +240,17 @@ impl View {
                 "no camera of the file has a perspective; one is made to see all",
             ),
             (
-                self.cameras > 1 && self.camera.is_some() && self.wanted.is_none(),
+                self.cameras > self.names.len() && self.camera.is_some() && self.wanted.is_none(),
+                "cameras without a perspective are left out",
+            ),
+            (
+                is_first && has_names,
                 "the file has several cameras, of which the first is used; choose one with `--camera`",
+            ),
+            (
+                is_first && !has_names,
+                "the file has several cameras, of which the first is used; name their nodes to choose one with \
+                 `--camera`",
             ),
             (
                 self.has_moving_spots,

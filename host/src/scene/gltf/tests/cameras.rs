@@ -33,6 +33,32 @@ fn a_camera_is_known_by_its_node_first() {
 }
 
 #[test]
+fn several_cameras_are_said_where_one_can_be_chosen() {
+    let said = |document: &Value| {
+        let mut all = warnings(document);
+        all.retain(|it| it.contains("several cameras"));
+        all.join("")
+    };
+    let mut document = crossed(1.0);
+    assert!(said(&document).ends_with("is used; choose one with `--camera`"));
+    for number in 0..2 {
+        for list in ["cameras", "nodes"] {
+            let number = number + usize::from(list == "nodes");
+            document[list][number]
+                .as_object_mut()
+                .unwrap()
+                .remove("name");
+        }
+    }
+    assert!(said(&document).ends_with("name their nodes to choose one with `--camera`"));
+    document["cameras"][0] = json!({
+        "type": "orthographic",
+        "orthographic": {"xmag": 2, "ymag": 2, "znear": 0.1, "zfar": 100},
+    });
+    assert_eq!(said(&document), "");
+}
+
+#[test]
 fn aspect_ratios_that_are_not_above_0_are_ignored_with_a_warning() {
     let mut document = document();
     for (ratio, width, expected) in [(2.0, 480, 0), (0.0, 320, 1), (-2.0, 320, 1)] {
