@@ -9,6 +9,7 @@ use crate::scene::{Attributes, Image, Material, NormalMap, SceneError, Texture, 
 use crate::table::shortened;
 use glam::{DAffine2, DVec2};
 use gltf::image::Source;
+use gltf::material::AlphaMode;
 use gltf::texture::{MagFilter, MinFilter, WrappingMode};
 use gltf::{Primitive, Semantic};
 use std::borrow::Cow;
@@ -99,12 +100,14 @@ impl Importer<'_> {
         if let Some(accessor) = part.get(&Semantic::Colors(0)) {
             let colors = self.buffers.colors(&accessor)?;
             check_count(colors.len(), "colors")?;
-            let clear = colors.iter().filter(|it| it[3] < 1.0).count();
+            // What is opaque has no alpha.
+            let uses_alpha = part.material().alpha_mode() != AlphaMode::Opaque;
+            let is_clear = uses_alpha && colors.iter().any(|it| it[3] < 1.0);
             let solid = colors
                 .iter()
                 .map(|&[r, g, b, _]| [r, g, b].map(|it| it.clamp(0.0, 1.0)));
             attributes.colors = solid.collect();
-            self.warn_of(usize::from(clear > 0), "the alpha of COLOR_0 is ignored");
+            self.warn_of(usize::from(is_clear), "the alpha of COLOR_0 is ignored");
         }
         let material = part.material();
         let Some(set) = Placed::of(&material, &self.normal_transforms).map(|it| it.set) else {

@@ -349,7 +349,16 @@ fn colors_of_vertices_are_linear() {
         [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]]
     );
     assert_eq!(colors[3], [0.2; 3]);
-    assert_eq!(warnings(&document), ["the alpha of COLOR_0 is ignored"]);
+    // What is opaque has no alpha.
+    assert_eq!(warnings(&document), Vec::<String>::new());
+    for mode in ["MASK", "BLEND"] {
+        document["materials"][0]["alphaMode"] = json!(mode);
+        assert_eq!(
+            warnings(&document),
+            ["the alpha of COLOR_0 is ignored"],
+            "{mode}"
+        );
+    }
     document["accessors"][3]["count"] = json!(3);
     assert!(cause(&document).contains("4 vertices and 3 colors"));
     document["accessors"][3] =
