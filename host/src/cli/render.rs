@@ -120,6 +120,11 @@ enum Target<'a> {
 }
 
 impl<'a> Target<'a> {
+    /// Whether the picture is linear radiance.
+    fn is_linear(&self) -> bool {
+        matches!(self, Self::Picture(outputs) if outputs.is_linear())
+    }
+
     /// All files that are written; `output` is the requested one.
     fn files(&self, output: &Path) -> Vec<PathBuf> {
         match self {
@@ -178,7 +183,10 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         Structure::Wide,
     )?;
     source.reject_lost(target.files(&arguments.files.output))?;
-    source.warn_of_dim_reflections(Some(arguments.with.format));
+    // Pictures for displays have their own limit, in every format.
+    if target.is_linear() {
+        source.warn_of_dim_reflections(Some(arguments.with.format));
+    }
     let scene = source.scene()?;
     let unresolved = source.warn_of_unresolved(&scene, Some(arguments.with.format));
     let job = job(arguments, (&source, &scene), target.most_pixels())?;

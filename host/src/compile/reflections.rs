@@ -1,8 +1,20 @@
-//! Lights that rough mirrors and rough glass reflect by their random points, brighter than `fixed` holds.
+//! Lights of which rough mirrors and rough glass show too little in `fixed`, because single samples are brighter than
+//! it holds.
+//!
+//! A sample is the light that arrives times π D G / (4 cos) of the facets: `reflect` of `gridel-core`. That is
+//! 1 / (4 α²) at most where a surface is seen from above, and below 1 / (2 α² s) at every angle. There s, the root of
+//! α² + (1 - α²) cos², is that of the angle at which it is seen.
+//!
+//! Only pictures in linear radiance lose light. In others a sample counts up to 16 times white in every format.
+
+mod arriving;
 
 use super::requirements::RequiringPart;
-use crate::scene::{Light, LightShape, Material, Scene};
+use super::shading::light_label;
+use crate::scene::{Color, Light, LightForm, LightShape, Material, Scene};
 use crate::table::printable;
+use arriving::{Surfaces, arriving};
+use gridel_core::format::track::TrackTarget;
 
 /// The largest radiance of a sample in `fixed`.
 const MOST: f64 = 2048.0;
@@ -10,103 +22,189 @@ const MOST: f64 = 2048.0;
 /// The roughness from which on lights that rays could hit are reflected by their random points, too.
 const FOR_ALL: f64 = 0.3;
 
-/// Returns a sentence for each rough material that in `fixed` shows too little of a light with an area. `scene` has
-/// its [emitters](Scene::with_emitters).
+/// The cosine of the most grazing angle that counts: below 2 degrees a surface takes few pixels.
+const GRAZING: f64 = 0.03;
+
+/// The color of the light that the compiler supplies, or brighter.
+const SUPPLIED: Color = [1.0; 3];
+
+/// Returns a sentence for each rough material that in `fixed` may show too little of a light. `scene` has its
+/// [emitters](Scene::with_emitters).
 pub(super) fn dim_reflections(scene: &Scene) -> Vec<String> {
     let mut is_used = vec![false; scene.materials.len()];
     for object in scene.all_objects() {
         is_used[object.material] = true;
     }
-    let materials = scene.materials.iter().zip(is_used);
-    let used = materials.filter(|(material, is_used)| *is_used && material.is_rough());
-    used.filter_map(|(material, _)| dim_reflection(scene, material))
-        .collect()
-}
-
-fn dim_reflection(scene: &Scene, material: &Material) -> Option<String> {
-    let roughness = material.roughness.max(Material::LEAST_ROUGHNESS);
-    let forms = scene.light_forms.iter();
-    let lights = scene.lights.iter().zip(forms).filter_map(|(light, form)| {
-        let (form, Light::Point { color, .. }) = (form.as_ref()?, light) else {
-            return None;
-        };
-        let has_area = !matches!(form.shape, LightShape::Point | LightShape::Facet { .. });
-        let is_drawn = !form.is_surface || roughness >= FOR_ALL;
-        (has_area && is_drawn).then(|| largest(*color))
+    let rough = scene.materials.iter().zip(scene.sends());
+    let rough = rough.map(|(material, sends)| material.roughness > 0.0 && sends.any());
+    let numbers = (0..scene.materials.len()).zip(rough.zip(is_used));
+    let numbers = numbers.filter(|(_, (is_rough, is_used))| *is_rough && *is_used);
+    let sentences = numbers.filter_map(|(number, _)| {
+        let reflector = Reflector::of(scene, number);
+        reflector.sentence(&lamps(scene, &reflector.surfaces))
     });
-    let radiance = lights.reduce(f64::max)? * libm::exp2(scene.render.exposure);
-    let part = match material.transmit == [0.0; 3] {
-        true => largest(material.mirror),
-        false => 1.0,
-    };
-    // The brightest facets, seen from above: 1 / (4 α^2).
-    let brightness = part * radiance / 4.0;
-    let alpha = roughness * roughness;
-    if brightness / (alpha * alpha) <= MOST {
-        return None;
-    }
-    let least = libm::sqrt(libm::sqrt(brightness / MOST));
-    let remedy = match least {
-        ..=1.0 => format!(
-            "a roughness of {:.2} or more",
-            (100.0 * least).ceil() / 100.0
-        ),
-        _ => String::from("a darker light"),
-    };
-    let label = format!("material {}", printable(&material.name));
-    let label = RequiringPart::new(label, &material.place);
-    Some(format!(
-        "in `fixed` {label} shows too little of lights with an area: single samples are brighter than {MOST}, the \
-         largest radiance; use `f32`, or {remedy}"
-    ))
+    sentences.collect()
 }
 
-fn largest([red, green, blue]: [f64; 3]) -> f64 {
+/// A light, and what arrives of it where it is brightest.
+struct Lamp {
+    label: String,
+    color: Color,
+    /// The brightest sample that arrives, over the color.
+    arriving: f64,
+    /// Whether rays bring it below a roughness of 0.3, and facets do not mirror it.
+    is_met: bool,
+    /// Whether as much arrives everywhere.
+    is_even: bool,
+}
+
+/// Returns the lights of a scene that light surfaces.
+fn lamps(scene: &Scene, surfaces: &Surfaces) -> Vec<Lamp> {
+    let factor = libm::exp2(scene.render.exposure);
+    let mut lamps = Vec::new();
+    for (number, light) in scene.lights.iter().enumerate() {
+        let (Light::Point { color, .. } | Light::Directional { color, .. }) = *light;
+        let form = scene.light_forms.get(number).copied().flatten();
+        let color = most_by_tracks(scene, TrackTarget::LightColor, number, color);
+        let is_even = |form: &LightForm| form.shape == LightShape::Point && !form.falls_off;
+        lamps.push(Lamp {
+            label: light_label(scene, number),
+            color: color.map(|channel| channel * factor),
+            arriving: arriving(scene, number, surfaces),
+            is_met: form.is_some_and(|it| it.is_surface),
+            is_even: form.is_none_or(|it| is_even(&it)),
+        });
+    }
+    let distant = |label: &str, color: Color| Lamp {
+        label: label.to_owned(),
+        color: color.map(|channel| channel * factor),
+        arriving: 1.0,
+        is_met: false,
+        is_even: true,
+    };
+    if let Some(sun) = scene.environment.as_ref().and_then(|it| it.sun) {
+        let lamp = distant("the sun", sun.light());
+        // Facets mirror a sun that is brighter than rays bring.
+        let is_met = largest(lamp.color) / sun.solid_angle_over_pi() < MOST;
+        lamps.push(Lamp { is_met, ..lamp });
+    }
+    if !scene.is_lit() && !scene.is_dark {
+        lamps.push(distant("the supplied light", SUPPLIED));
+    }
+    lamps
+}
+
+/// Returns the largest channels of a color at rest and by its tracks.
+fn most_by_tracks(scene: &Scene, target: TrackTarget, index: usize, at_rest: Color) -> Color {
+    let tracks = scene.tracks.iter();
+    let tracks = tracks.filter(|it| (it.target, it.index) == (target, index));
+    let points = tracks.flat_map(|track| track.control_points());
+    points.fold(at_rest, |[red, green, blue], it| {
+        [red.max(it.x), green.max(it.y), blue.max(it.z)]
+    })
+}
+
+fn largest([red, green, blue]: Color) -> f64 {
     red.max(green).max(blue)
 }
 
-#[cfg(test)]
-mod tests {
-    use super::*;
+/// A rough material, and where its surfaces are.
+struct Reflector<'s> {
+    material: &'s Material,
+    mirror: Color,
+    transmit: f64,
+    surfaces: Surfaces,
+}
 
-    /// Sentences about a mirror under a rectangular light.
-    fn sentences(roughness: f64, mirror: f64, light: &str) -> Vec<String> {
-        let file = format!(
-            "[[object]]\nkind = 'disc'\ncenter = [0, 0, 0]\nnormal = [0, 1, 0]\nradius = 3\nmaterial = 'm'\n\
-             [material.m]\ndiffuse = 0\nmirror = {mirror}\nroughness = {roughness}\n\
-             [[light]]\nkind = 'rectangle'\ncorner = [-3, 1, -3]\nedges = [[6, 0, 0], [0, 0, 6]]\n{light}"
-        );
-        let imported = crate::scene::read("a.toml".as_ref(), file.into(), &Default::default());
-        dim_reflections(&imported.unwrap().scene.with_emitters())
+impl<'s> Reflector<'s> {
+    fn of(scene: &'s Scene, number: usize) -> Self {
+        use TrackTarget::{MaterialMirror, MaterialTransmit};
+        let material = &scene.materials[number];
+        let most = |target, color| most_by_tracks(scene, target, number, color);
+        Self {
+            material,
+            mirror: most(MaterialMirror, material.mirror),
+            transmit: largest(most(MaterialTransmit, material.transmit)),
+            surfaces: Surfaces::of(scene, number),
+        }
     }
 
-    #[test]
-    fn lights_that_facets_mirror_too_brightly_for_fixed_have_a_sentence() {
-        let found = sentences(0.05, 1.0, "radiance = 1");
-        assert!(
-            found.len() == 1 && found[0].starts_with("in `fixed` material m (a.toml:7) shows"),
-            "{found:?}"
-        );
-        assert!(
-            found[0].ends_with("a roughness of 0.11 or more"),
-            "{found:?}"
-        );
-        for (roughness, mirror, light) in [
-            (0.15, 1.0, "radiance = 1"),
-            (0.05, 0.05, "radiance = 1"),
-            (0.05, 1.0, "radiance = 0.05"),
-            // Rays hit what is seen, if the material is smooth enough.
-            (0.05, 1.0, "radiance = 1\nvisible = true"),
-            (0.05, 0.0, "radiance = 1"),
-        ] {
-            let found = sentences(roughness, mirror, light);
-            assert!(found.is_empty(), "{found:?}");
+    /// Returns the brightest sample of a light that facets mirror, where the surface is seen from above, or else at any
+    /// angle.
+    fn brightest(&self, lamp: &Lamp, roughness: f64, is_above: bool) -> f64 {
+        if lamp.is_met && roughness < FOR_ALL {
+            return 0.0;
         }
-        assert_eq!(
-            sentences(0.3, 1.0, "radiance = 100\nvisible = true").len(),
-            1
-        );
-        let brightest = sentences(1.0, 1.0, "radiance = 10000");
-        assert!(brightest[0].ends_with("a darker light"), "{brightest:?}");
+        let square = roughness.powi(4);
+        let slant = (square + (1.0 - square) * GRAZING * GRAZING).sqrt();
+        let (cos, part) = match is_above {
+            true => (1.0, 0.25),
+            false => (GRAZING, 0.5 / slant),
+        };
+        let glass = self.transmit * fresnel(self.material.ior, cos);
+        let channels = self.mirror.iter().zip(lamp.color);
+        let reflected = channels.map(|(mirror, light)| (mirror + glass).min(1.0) * light);
+        let reflected = reflected.fold(0.0, f64::max);
+        match reflected > 0.0 {
+            true => part * reflected * lamp.arriving / square,
+            false => 0.0,
+        }
+    }
+
+    fn sentence(&self, lamps: &[Lamp]) -> Option<String> {
+        let roughness = self.material.roughness.max(Material::LEAST_ROUGHNESS);
+        let beyond = |is_above: bool| {
+            let bright = lamps.iter();
+            let bright = bright.filter(move |it| self.brightest(it, roughness, is_above) > MOST);
+            bright.collect::<Vec<_>>()
+        };
+        let grazing = beyond(false);
+        let first = grazing.first()?;
+        let above = beyond(true);
+        let (verb, shown, angles) = match above.iter().find(|it| it.is_even) {
+            Some(even) => ("shows", even, ""),
+            None => match above.first() {
+                Some(first) => ("may show", first, ""),
+                None => ("may show", first, " at grazing angles"),
+            },
+        };
+        let named = if above.is_empty() { &grazing } else { &above };
+        let others = match named.len() - 1 {
+            0 => String::new(),
+            1 => String::from(" and another light"),
+            more => format!(" and {more} other lights"),
+        };
+        let hundredths = (1..=100).map(|it| f64::from(it) / 100.0);
+        let mut rougher = hundredths.filter(|it| *it > roughness);
+        let enough = rougher.find(|it| {
+            let mut all = lamps.iter();
+            all.all(|lamp| self.brightest(lamp, *it, false) <= MOST)
+        });
+        let remedy = match enough {
+            Some(enough) => format!("a roughness of {enough:.2} or more, "),
+            None => String::new(),
+        };
+        let label = format!("material {}", printable(&self.material.name));
+        let label = RequiringPart::new(label, &self.material.place);
+        let light = &shown.label;
+        Some(format!(
+            "in `fixed` and linear radiance, {label} {verb} too little of {light}{others}{angles}: its facets mirror single samples that \
+             are brighter than {MOST}, the largest radiance; use `f32` or `f64`, {remedy}a darker light or less \
+             `exposure`"
+        ))
     }
 }
+
+/// Returns the part of light that smooth glass reflects, seen from outside.
+fn fresnel(ior: f64, cos: f64) -> f64 {
+    if ior <= 1.0 {
+        return 0.0;
+    }
+    let inner = (1.0 - (1.0 - cos * cos) / (ior * ior)).sqrt();
+    let across = (cos - ior * inner) / (cos + ior * inner);
+    let along = (ior * cos - inner) / (ior * cos + inner);
+    (across * across + along * along) / 2.0
+}
+
+#[cfg(test)]
+mod tests;

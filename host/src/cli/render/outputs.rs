@@ -124,6 +124,11 @@ impl Image {
 }
 
 impl<'a> Outputs<'a> {
+    /// Whether the picture is linear radiance.
+    pub fn is_linear(&self) -> bool {
+        matches!(self.stored, Stored::Linear(_))
+    }
+
     /// Returns the requested files, or an error for names that cannot be written to. `is_mapped` is true if a curve of
     /// tone mapping is given.
     pub fn of(input: &Path, options: &'a OutputOptions, is_mapped: bool) -> Result<Self, Failure> {
