@@ -68,12 +68,10 @@ impl NativeScene {
                 first
             });
         let firsts = firsts.collect();
-        let (slack, moved) = match model {
-            Some(_) => (
-                SLACK * displacement.max(size * ROUNDING),
-                displacement.max(size * STEP),
-            ),
-            None => (0.0, 0.0),
+        let slack = SLACK * displacement.max(size * ROUNDING);
+        let moved = match model {
+            Some(_) => displacement.max(size * STEP),
+            None => 0.0,
         };
         let from_behind = model.as_ref().is_some_and(Model::is_meshes);
         Ok(Self {
