@@ -446,7 +446,8 @@ mod tests {
             (growing - large).abs() < 0.1 * large,
             "{growing:e} {large:e}"
         );
-        assert_eq!(displacement(1.0, "[1, 0.5]"), still);
+        let shrinking = displacement(1.0, "[1, 0.5]");
+        assert!(shrinking < 1.1 * still, "{still:e} {shrinking:e}");
     }
 
     #[test]

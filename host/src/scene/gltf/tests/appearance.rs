@@ -205,7 +205,7 @@ fn textures_without_a_source_are_read() {
 }
 
 /// The square with texture coordinates 0, 1/2, 1 in 16 bits, colors in 8 bits, and a texture of two by one texels.
-fn textured() -> Value {
+pub(super) fn textured() -> Value {
     let mut document = document();
     let pixels = [[255, 0, 0, 255], [0, 0, 255, 255]];
     let image = STANDARD.encode(crate::scene::image::tests::png_of(2, 1, &pixels));
@@ -336,34 +336,6 @@ fn normal_textures_lie_as_that_of_the_base_color_does() {
     assert_eq!(scene(&document).materials[0].normal_map, None);
     let all = warnings(&document);
     assert!(all[0].contains("does not lie as the texture"), "{all:?}");
-}
-
-#[test]
-fn colors_of_vertices_are_linear() {
-    let mut document = textured();
-    document["meshes"][0]["primitives"][0]["attributes"]["COLOR_0"] = json!(3);
-    let made = scene(&document);
-    let colors = &made.objects[0].attributes.colors;
-    assert_eq!(
-        colors[..3],
-        [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]]
-    );
-    assert_eq!(colors[3], [0.2; 3]);
-    // What is opaque has no alpha.
-    assert_eq!(warnings(&document), Vec::<String>::new());
-    for mode in ["MASK", "BLEND"] {
-        document["materials"][0]["alphaMode"] = json!(mode);
-        assert_eq!(
-            warnings(&document),
-            ["the alpha of COLOR_0 is ignored"],
-            "{mode}"
-        );
-    }
-    document["accessors"][3]["count"] = json!(3);
-    assert!(cause(&document).contains("4 vertices and 3 colors"));
-    document["accessors"][3] =
-        json!({"bufferView": 3, "componentType": 5121, "count": 4, "type": "SCALAR"});
-    assert!(cause(&document).contains("is to hold colors"));
 }
 
 #[test]

@@ -1,6 +1,7 @@
 //! Numbers and extensions of materials, and colors of vertices, that are not taken as they are.
 
 use super::animation::animated;
+use super::appearance::textured;
 use super::*;
 
 #[test]
@@ -125,4 +126,32 @@ fn normal_maps_of_negative_scale_are_turned() {
     assert_eq!(found, [(2.0, turned), (0.5, pixels.to_vec())]);
     document["materials"][0]["normalTexture"]["scale"] = json!(-20);
     assert!(others(&document)[0].contains("has the scale -20; it is drawn with -16"));
+}
+
+#[test]
+fn colors_of_vertices_are_linear() {
+    let mut document = textured();
+    document["meshes"][0]["primitives"][0]["attributes"]["COLOR_0"] = json!(3);
+    let made = scene(&document);
+    let colors = &made.objects[0].attributes.colors;
+    assert_eq!(
+        colors[..3],
+        [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]]
+    );
+    assert_eq!(colors[3], [0.2; 3]);
+    // What is opaque has no alpha.
+    assert_eq!(warnings(&document), Vec::<String>::new());
+    for mode in ["MASK", "BLEND"] {
+        document["materials"][0]["alphaMode"] = json!(mode);
+        assert_eq!(
+            warnings(&document),
+            ["the alpha of COLOR_0 is ignored"],
+            "{mode}"
+        );
+    }
+    document["accessors"][3]["count"] = json!(3);
+    assert!(cause(&document).contains("4 vertices and 3 colors"));
+    document["accessors"][3] =
+        json!({"bufferView": 3, "componentType": 5121, "count": 4, "type": "SCALAR"});
+    assert!(cause(&document).contains("is to hold colors"));
 }
