@@ -11,10 +11,11 @@ mod arriving;
 
 use super::requirements::RequiringPart;
 use super::shading::light_label;
-use crate::scene::{Color, Light, LightForm, LightShape, Material, Scene};
+use crate::scene::{Color, Light, LightForm, LightShape, Material, Scene, Track};
 use crate::table::printable;
 use arriving::{Surfaces, arriving};
 use gridel_core::format::track::TrackTarget;
+use std::collections::HashMap;
 
 /// The largest radiance of a sample in `fixed`.
 const MOST: f64 = 2048.0;
@@ -28,77 +29,135 @@ const GRAZING: f64 = 0.03;
 /// The color of the light that the compiler supplies, or brighter.
 const SUPPLIED: Color = [1.0; 3];
 
+/// The most boxes of surfaces that are compared with a light.
+const MOST_BOXES: usize = 4096;
+
+/// The most comparisons of lights with boxes, for all materials.
+const MOST_COMPARISONS: usize = 1 << 26;
+
+/// The tracks of a scene by what they change; of each property there is one.
+type Tracks<'s> = HashMap<(TrackTarget, usize), &'s Track>;
+
 /// Returns a sentence for each rough material that in `fixed` may show too little of a light. `scene` has its
 /// [emitters](Scene::with_emitters).
 pub(super) fn dim_reflections(scene: &Scene) -> Vec<String> {
-    let mut is_used = vec![false; scene.materials.len()];
-    for object in scene.all_objects() {
-        is_used[object.material] = true;
-    }
     let rough = scene.materials.iter().zip(scene.sends());
     let rough = rough.map(|(material, sends)| material.roughness > 0.0 && sends.any());
-    let numbers = (0..scene.materials.len()).zip(rough.zip(is_used));
-    let numbers = numbers.filter(|(_, (is_rough, is_used))| *is_rough && *is_used);
-    let sentences = numbers.filter_map(|(number, _)| {
-        let reflector = Reflector::of(scene, number);
-        reflector.sentence(&lamps(scene, &reflector.surfaces))
+    let is_rough: Vec<bool> = rough.collect();
+    let materials = is_rough.iter().filter(|it| **it).count();
+    if materials == 0 {
+        return Vec::new();
+    }
+    let tracks = scene.tracks.iter();
+    let tracks: Tracks<'_> = tracks.map(|it| ((it.target, it.index), it)).collect();
+    let lamps = lamps(scene, &tracks);
+    let most = MOST_COMPARISONS / (materials * lamps.len()).max(1);
+    let surfaces = Surfaces::of_all(scene, &is_rough, most.clamp(1, MOST_BOXES));
+    let sentences = surfaces.iter().filter_map(|(&number, surfaces)| {
+        let reflector = Reflector::of(scene, &tracks, number);
+        let lamps = lamps.iter().map(|lamp| lamp.arriving_at(scene, surfaces));
+        reflector.sentence(scene, &lamps.collect::<Vec<_>>())
     });
     sentences.collect()
 }
 
+/// What sends light.
+#[derive(Clone, Copy)]
+enum Source {
+    /// A light of the scene, by its number.
+    Light(usize),
+    Sun,
+    /// The light that the compiler supplies.
+    Supplied,
+}
+
+impl Source {
+    fn label(self, scene: &Scene) -> String {
+        match self {
+            Self::Light(number) => light_label(scene, number),
+            Self::Sun => String::from("the sun"),
+            Self::Supplied => String::from("the supplied light"),
+        }
+    }
+}
+
 /// A light, and what arrives of it where it is brightest.
+#[derive(Clone, Copy)]
 struct Lamp {
-    label: String,
+    source: Source,
     color: Color,
     /// The brightest sample that arrives, over the color.
     arriving: f64,
+    /// Whether its place changes with time.
+    moves: bool,
     /// Whether rays bring it below a roughness of 0.3, and facets do not mirror it.
     is_met: bool,
     /// Whether as much arrives everywhere.
     is_even: bool,
 }
 
+impl Lamp {
+    fn distant(source: Source, color: Color) -> Self {
+        Self {
+            source,
+            color,
+            arriving: 1.0,
+            moves: false,
+            is_met: false,
+            is_even: true,
+        }
+    }
+
+    /// The lamp with what arrives of it at surfaces.
+    fn arriving_at(&self, scene: &Scene, surfaces: &Surfaces) -> Self {
+        let Source::Light(number) = self.source else {
+            return *self;
+        };
+        let form = scene.light_forms.get(number).and_then(Option::as_ref);
+        let (Some(form), Light::Point { position, .. }) = (form, scene.lights[number]) else {
+            return *self;
+        };
+        let position = (!self.moves).then_some(position);
+        Self {
+            arriving: arriving(form, position, surfaces),
+            ..*self
+        }
+    }
+}
+
 /// Returns the lights of a scene that light surfaces.
-fn lamps(scene: &Scene, surfaces: &Surfaces) -> Vec<Lamp> {
+fn lamps(scene: &Scene, tracks: &Tracks<'_>) -> Vec<Lamp> {
     let factor = libm::exp2(scene.render.exposure);
+    let exposed = |color: Color| color.map(|channel| channel * factor);
     let mut lamps = Vec::new();
     for (number, light) in scene.lights.iter().enumerate() {
         let (Light::Point { color, .. } | Light::Directional { color, .. }) = *light;
         let form = scene.light_forms.get(number).copied().flatten();
-        let color = most_by_tracks(scene, TrackTarget::LightColor, number, color);
-        let is_even = |form: &LightForm| form.shape == LightShape::Point && !form.falls_off;
+        let color = most_by_tracks(tracks, TrackTarget::LightColor, number, color);
+        let is_even = |form: LightForm| form.shape == LightShape::Point && !form.falls_off;
         lamps.push(Lamp {
-            label: light_label(scene, number),
-            color: color.map(|channel| channel * factor),
-            arriving: arriving(scene, number, surfaces),
+            moves: tracks.contains_key(&(TrackTarget::LightPosition, number)),
             is_met: form.is_some_and(|it| it.is_surface),
-            is_even: form.is_none_or(|it| is_even(&it)),
+            is_even: form.is_none_or(is_even),
+            ..Lamp::distant(Source::Light(number), exposed(color))
         });
     }
-    let distant = |label: &str, color: Color| Lamp {
-        label: label.to_owned(),
-        color: color.map(|channel| channel * factor),
-        arriving: 1.0,
-        is_met: false,
-        is_even: true,
-    };
     if let Some(sun) = scene.environment.as_ref().and_then(|it| it.sun) {
-        let lamp = distant("the sun", sun.light());
+        let lamp = Lamp::distant(Source::Sun, exposed(sun.light()));
         // Facets mirror a sun that is brighter than rays bring.
         let is_met = largest(lamp.color) / sun.solid_angle_over_pi() < MOST;
         lamps.push(Lamp { is_met, ..lamp });
     }
     if !scene.is_lit() && !scene.is_dark {
-        lamps.push(distant("the supplied light", SUPPLIED));
+        lamps.push(Lamp::distant(Source::Supplied, exposed(SUPPLIED)));
     }
     lamps
 }
 
-/// Returns the largest channels of a color at rest and by its tracks.
-fn most_by_tracks(scene: &Scene, target: TrackTarget, index: usize, at_rest: Color) -> Color {
-    let tracks = scene.tracks.iter();
-    let tracks = tracks.filter(|it| (it.target, it.index) == (target, index));
-    let points = tracks.flat_map(|track| track.control_points());
+/// Returns the largest channels of a color at rest and by its track.
+fn most_by_tracks(tracks: &Tracks<'_>, target: TrackTarget, index: usize, at_rest: Color) -> Color {
+    let points = tracks.get(&(target, index)).into_iter();
+    let points = points.flat_map(|track| track.control_points());
     points.fold(at_rest, |[red, green, blue], it| {
         [red.max(it.x), green.max(it.y), blue.max(it.z)]
     })
@@ -108,24 +167,22 @@ fn largest([red, green, blue]: Color) -> f64 {
     red.max(green).max(blue)
 }
 
-/// A rough material, and where its surfaces are.
+/// A rough material.
 struct Reflector<'s> {
     material: &'s Material,
     mirror: Color,
     transmit: f64,
-    surfaces: Surfaces,
 }
 
 impl<'s> Reflector<'s> {
-    fn of(scene: &'s Scene, number: usize) -> Self {
+    fn of(scene: &'s Scene, tracks: &Tracks<'_>, number: usize) -> Self {
         use TrackTarget::{MaterialMirror, MaterialTransmit};
         let material = &scene.materials[number];
-        let most = |target, color| most_by_tracks(scene, target, number, color);
+        let most = |target, color| most_by_tracks(tracks, target, number, color);
         Self {
             material,
             mirror: most(MaterialMirror, material.mirror),
             transmit: largest(most(MaterialTransmit, material.transmit)),
-            surfaces: Surfaces::of(scene, number),
         }
     }
 
@@ -151,7 +208,7 @@ impl<'s> Reflector<'s> {
         }
     }
 
-    fn sentence(&self, lamps: &[Lamp]) -> Option<String> {
+    fn sentence(&self, scene: &Scene, lamps: &[Lamp]) -> Option<String> {
         let roughness = self.material.roughness.max(Material::LEAST_ROUGHNESS);
         let beyond = |is_above: bool| {
             let bright = lamps.iter();
@@ -174,11 +231,17 @@ impl<'s> Reflector<'s> {
             1 => String::from(" and another light"),
             more => format!(" and {more} other lights"),
         };
+        // Of those that are met and of the others the brightest is the same at every roughness.
+        let brightest = [false, true].map(|is_met| {
+            let such = lamps.iter().filter(|it| it.is_met == is_met);
+            let at_one = |lamp: &&Lamp| self.brightest(lamp, 1.0, false);
+            such.max_by(|a, b| at_one(a).total_cmp(&at_one(b)))
+        });
         let hundredths = (1..=100).map(|it| f64::from(it) / 100.0);
         let mut rougher = hundredths.filter(|it| *it > roughness);
         let enough = rougher.find(|it| {
-            let mut all = lamps.iter();
-            all.all(|lamp| self.brightest(lamp, *it, false) <= MOST)
+            let mut brightest = brightest.iter().flatten();
+            brightest.all(|lamp| self.brightest(lamp, *it, false) <= MOST)
         });
         let remedy = match enough {
             Some(enough) => format!("a roughness of {enough:.2} or more, "),
@@ -186,7 +249,7 @@ impl<'s> Reflector<'s> {
         };
         let label = format!("material {}", printable(&self.material.name));
         let label = RequiringPart::new(label, &self.material.place);
-        let light = &shown.label;
+        let light = shown.source.label(scene);
         Some(format!(
             "in `fixed` and linear radiance, {label} {verb} too little of {light}{others}{angles}: its facets mirror single samples that \
              are brighter than {MOST}, the largest radiance; use `f32` or `f64`, {remedy}a darker light or less \

@@ -260,23 +260,6 @@ fn least_alpha(cutoff: f64) -> u8 {
 
 #[cfg(test)]
 mod tests {
-    #[test]
-    fn alpha_that_equals_the_cutoff_is_kept_whatever_rounded_it() {
-        use super::least_alpha;
-        for alpha in 1..=255_u8 {
-            let exact = f64::from(alpha) / 255.0;
-            assert_eq!(least_alpha(exact), alpha);
-            assert_eq!(least_alpha((exact as f32).into()), alpha);
-            for factor in [0.1_f32, 0.3, 0.7, 0.9] {
-                let cutoff = f64::from((exact * f64::from(factor)) as f32);
-                assert_eq!(least_alpha(cutoff / f64::from(factor)), alpha);
-            }
-            assert_eq!(least_alpha(exact * 1.000_001), alpha.saturating_add(1));
-        }
-        assert_eq!(least_alpha(0.2_f32.into()), 51);
-        assert_eq!([0.0, 0.5, 1.0].map(least_alpha), [1, 128, 255]);
-    }
-
     use super::*;
     use crate::scene::Image;
     use std::sync::Arc;
@@ -296,6 +279,22 @@ mod tests {
         assert_eq!(textures.maps(&material), 1 | record::Material::MAPS_TEXTURE);
         let (_, mut figures) = textures.sections(false, budget)?;
         Ok(figures.remove(0))
+    }
+
+    #[test]
+    fn alpha_that_equals_the_cutoff_is_kept_whatever_rounded_it() {
+        for alpha in 1..=255_u8 {
+            let exact = f64::from(alpha) / 255.0;
+            assert_eq!(least_alpha(exact), alpha);
+            assert_eq!(least_alpha((exact as f32).into()), alpha);
+            for factor in [0.1_f32, 0.3, 0.7, 0.9] {
+                let cutoff = f64::from((exact * f64::from(factor)) as f32);
+                assert_eq!(least_alpha(cutoff / f64::from(factor)), alpha);
+            }
+            assert_eq!(least_alpha(exact * 1.000_001), alpha.saturating_add(1));
+        }
+        assert_eq!(least_alpha(0.2_f32.into()), 51);
+        assert_eq!([0.0, 0.5, 1.0].map(least_alpha), [1, 128, 255]);
     }
 
     #[test]

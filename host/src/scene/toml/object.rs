@@ -116,6 +116,7 @@ impl Reader<'_> {
             "instance" => Content::Instance(fields.require("group")?.name()?),
             "import" => {
                 let mut scene = self.import(&fields)?;
+                let mut motions = HashMap::new();
                 let seen = |track: &Track| {
                     !track.target.is_of_joint() && track.target != TrackTarget::MorphWeight
                 };
@@ -135,18 +136,13 @@ impl Reader<'_> {
                     if let Some(lit) = scene.with_lamps() {
                         scene = Rc::new(lit);
                     }
-                }
-                if self.inside == 0 {
+                } else {
                     let place = self.source.place(&fields.span);
                     let lost = lost_tracks(&scene, material.is_some());
                     let warnings = lost.map(|lost| format!("{place}: {lost}"));
                     self.imports.warnings.extend(warnings);
+                    motions = material::motions(&scene);
                 }
-                // Those of imports inside of groups and parts stay as they are.
-                let mut motions = match self.inside {
-                    0 => material::motions(&scene),
-                    _ => HashMap::new(),
-                };
                 // Objects that all get another material do not need their own.
                 let adopt = |(number, own)| {
                     let motions = motions.remove(&number).unwrap_or_default();
