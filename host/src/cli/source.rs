@@ -29,6 +29,8 @@ pub struct Source {
     pub report: Option<compile::Report>,
     /// The importer's warnings, and those about objects that the lattice moves far.
     pub warnings: Vec<String>,
+    /// Sentences about rough materials of a scene file that show too little of a light in `fixed`.
+    dim_in_fixed: Vec<String>,
     /// The changes to a blob.
     changes: Option<Changes>,
     /// The options for a blob's pictures, if some were given.
@@ -144,6 +146,7 @@ impl Source {
             input,
             report: None,
             warnings: Vec::new(),
+            dim_in_fixed: Vec::new(),
             changes: None,
             for_pictures: None,
             names: None,
@@ -206,6 +209,7 @@ impl Source {
             blob,
             report: Some(report),
             warnings,
+            dim_in_fixed: compile::dim_reflections(&imported.scene),
             files: imported.files,
             changes: None,
             for_pictures: None,
@@ -293,9 +297,10 @@ const NAMED: usize = 5;
 impl Source {
     /// Warns of rough materials that show too little of a light in `fixed`, unless another format is chosen.
     pub fn warn_of_dim_reflections(&mut self, format: Option<Format>) {
-        let report = self.report.as_ref();
-        let report = report.filter(|_| format.is_none_or(|it| it == Format::Fixed));
-        let sentences = report.map_or(Vec::new(), |report| report.dim_in_fixed.clone());
+        if format.is_some_and(|it| it != Format::Fixed) {
+            return;
+        }
+        let sentences = std::mem::take(&mut self.dim_in_fixed);
         warn_of_file(self.input.path(), sentences, &mut self.warnings);
     }
 

@@ -46,6 +46,7 @@ pub use hierarchy::builder::Builder;
 pub use motion::morph::at_rest;
 pub use names::{KeptNames, Names};
 pub use options::{LARGEST_LEAF, OnProgress, Options};
+pub use reflections::dim_reflections;
 pub use report::Report;
 pub use requirements::RequiringPart;
 pub(crate) use shading::light_record;
@@ -143,7 +144,6 @@ pub fn compile_with_progress(
     check(scene, options)?;
     let scene_warnings = warnings::scene_warnings(scene);
     let scene = &*scene.with_emitters();
-    let dim_in_fixed = reflections::dim_reflections(scene);
     let has_targets = !scene.morph_targets.is_empty();
     let still = (has_targets && !morph::can_move(&options.structures)).then(|| at_rest(scene));
     let scene = still.as_deref().unwrap_or(scene);
@@ -154,7 +154,6 @@ pub fn compile_with_progress(
         .for_each(|part| compiled.report.add_part(part));
     compiled.report.keeps_rest = still.is_some();
     compiled.report.scene_warnings = scene_warnings;
-    compiled.report.dim_in_fixed = dim_in_fixed;
     Ok(compiled)
 }
 

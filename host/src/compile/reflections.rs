@@ -38,9 +38,20 @@ const MOST_COMPARISONS: usize = 1 << 26;
 /// The tracks of a scene by what they change; of each property there is one.
 type Tracks<'s> = HashMap<(TrackTarget, usize), &'s Track>;
 
-/// Returns a sentence for each rough material that in `fixed` may show too little of a light. `scene` has its
-/// [emitters](Scene::with_emitters).
-pub(super) fn dim_reflections(scene: &Scene) -> Vec<String> {
+/// Returns a sentence for each rough material that in `fixed` may show too little of a light, in pictures of linear
+/// radiance. They are no warnings of the [report](super::Report), because they concern no other format.
+///
+/// ```
+/// let file = "[[light]]\nkind = 'directional'\ndirection = [0, -1, 0]\n\
+///     [material.m]\nmirror = 1\nroughness = 0.05\n\
+///     [[object]]\nkind = 'sphere'\ncenter = [0, 0, 0]\nradius = 1\nmaterial = 'm'\n";
+/// let imported = gridel_host::scene::read("s.toml".as_ref(), file.into(), &Default::default())?;
+/// let sentences = gridel_host::compile::dim_reflections(&imported.scene);
+/// assert!(sentences[0].contains("material m (s.toml:4) shows too little of light 0"));
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+pub fn dim_reflections(scene: &Scene) -> Vec<String> {
+    let scene = &*scene.with_emitters();
     let rough = scene.materials.iter().zip(scene.sends());
     let rough = rough.map(|(material, sends)| material.roughness > 0.0 && sends.any());
     let is_rough: Vec<bool> = rough.collect();

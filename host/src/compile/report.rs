@@ -61,10 +61,6 @@ pub struct Report {
     pub still_lights: Option<String>,
     /// True if meshes have morph targets and stay as they are at rest, because a structure cannot be refitted.
     pub keeps_rest: bool,
-    /// Sentences about rough materials that in `fixed` show too little of a light. [`warnings`](Self::warnings) does not
-    /// repeat them, because they concern no other format.
-    #[serde(skip)]
-    pub dim_in_fixed: Vec<String>,
     /// Warnings about the scene itself, which [`warnings`](Self::warnings) repeats.
     #[serde(skip)]
     pub(super) scene_warnings: Vec<String>,
@@ -111,7 +107,6 @@ impl Report {
             tables: layouts.iter().filter_map(Layout::table_stats).collect(),
             still_lights: still_lights(scene, context.options.room),
             keeps_rest: false,
-            dim_in_fixed: Vec::new(),
             scene_warnings: Vec::new(),
             names: None,
         }

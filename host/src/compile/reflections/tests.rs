@@ -10,7 +10,7 @@ fn sentences(material: &str, light: &str) -> Vec<String> {
          [material.m]\ndiffuse = 0\n{material}\n[[light]]\n{light}"
     );
     let imported = crate::scene::read("a.toml".as_ref(), file.into(), &Default::default());
-    dim_reflections(&imported.unwrap().scene.with_emitters())
+    dim_reflections(&imported.unwrap().scene)
 }
 
 fn of_mirror(roughness: f64, light: &str) -> Vec<String> {
