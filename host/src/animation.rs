@@ -4,6 +4,7 @@
 //! pictures give the same bytes, wherever they were rendered.
 
 use crate::palette::{distance, median_cut, nearest};
+use crate::picture::png_error;
 use gif::{Encoder, Frame, Repeat};
 use std::io::{self, Write};
 use std::path::Path;
@@ -87,22 +88,19 @@ impl Animation {
     }
 
     fn write_apng(&self, out: &mut dyn Write, next: NextPicture<'_>) -> io::Result<()> {
-        let plain = |error: png::EncodingError| match error {
-            // As it is, so that a full disk is still known as one.
-            png::EncodingError::IoError(error) => error,
-            error => error.into(),
-        };
         let [width, height] = self.size;
         let mut encoder = png::Encoder::new(out, width, height);
         encoder.set_color(png::ColorType::Rgb);
         encoder.set_source_srgb(png::SrgbRenderingIntent::RelativeColorimetric);
-        encoder.set_animated(self.pictures, 0).map_err(plain)?;
-        encoder.set_frame_delay(1, self.per_second).map_err(plain)?;
-        let mut writer = encoder.write_header().map_err(plain)?;
+        encoder.set_animated(self.pictures, 0).map_err(png_error)?;
+        encoder
+            .set_frame_delay(1, self.per_second)
+            .map_err(png_error)?;
+        let mut writer = encoder.write_header().map_err(png_error)?;
         for number in 0..self.pictures {
-            writer.write_image_data(&next(number)?).map_err(plain)?;
+            writer.write_image_data(&next(number)?).map_err(png_error)?;
         }
-        writer.finish().map_err(plain)
+        writer.finish().map_err(png_error)
     }
 
     fn write_gif(&self, out: &mut dyn Write, next: NextPicture<'_>) -> io::Result<()> {

@@ -72,6 +72,19 @@ impl Buffer {
     }
 }
 
+/// Returns what to do about a file that is no valid blob.
+pub fn remedy_of(error: &BlobError) -> &'static str {
+    match error {
+        BlobError::Truncated { .. } | BlobError::Checksum { .. } => {
+            "copy the file again, as binary, or build it again with `gridel build`"
+        }
+        BlobError::Magic => {
+            "blobs are made by `gridel build`; a scene file must have the extension of its format"
+        }
+        _ => "build it again with `gridel build`",
+    }
+}
+
 impl Blob {
     /// Copies bytes into aligned memory.
     pub fn new(bytes: &[u8]) -> Self {
@@ -81,6 +94,9 @@ impl Blob {
     }
 
     /// Reads a blob file, unchecked.
+    ///
+    /// # Errors
+    /// If the file cannot be read.
     pub fn read(path: &Path) -> io::Result<Self> {
         std::fs::read(path).map(|bytes| Self::new(&bytes))
     }
@@ -96,7 +112,10 @@ impl Blob {
     }
 
     /// Returns the checked view, for queries with [these instructions](crate::simd::level).
-    pub fn scene(&self) -> Result<Scene<'_>, gridel_core::BlobError> {
+    ///
+    /// # Errors
+    /// If the bytes are no valid blob of this version.
+    pub fn scene(&self) -> Result<Scene<'_>, BlobError> {
         // The scene's own faults come first: without a header that is read no part is.
         match self.0.borrow_dependent() {
             Ok(parts) => Ok(Scene::with_parts(self.bytes(), parts)?.with_simd(simd::level())),

@@ -152,11 +152,15 @@ pub fn write_png(
         writer.write_image_data(pixels)?;
         writer.finish()
     };
-    write().map_err(|error| match error {
-        // As it is, so that a full disk is still known as one.
+    write().map_err(png_error)
+}
+
+/// The error of a file that cannot be written as PNG; that of the system as it is, so that a full disk is known as one.
+pub(crate) fn png_error(error: png::EncodingError) -> io::Error {
+    match error {
         png::EncodingError::IoError(error) => error,
         error => error.into(),
-    })
+    }
 }
 
 #[cfg(test)]

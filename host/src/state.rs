@@ -23,7 +23,7 @@ use gridel_core::{BlobError, Motion, PosesView, Scene, Tracks};
 /// let scene = blob.scene()?;
 /// let tracks = Tracks::from_bytes(blob.bytes())?;
 /// // Seen from the side, after a quarter of a turn.
-/// let state = State::at(&blob, &scene, &tracks, ticks(&tracks, 1.0))?;
+/// let state = State::at(&blob, &scene, &tracks, ticks(&tracks, 1.0)?)?;
 /// let seen = state.apply(&scene)?;
 /// assert!(seen.view().eye[0] > 0 && seen.view().eye[2] == 0);
 /// # Ok::<(), Box<dyn std::error::Error>>(())
@@ -228,10 +228,29 @@ pub fn raised_materials(scene: &Scene<'_>, blob: &[u8]) -> Vec<Material> {
     materials
 }
 
-/// Returns the nearest tick to a time in seconds; one out of range is the first or the last.
-pub fn ticks(tracks: &Tracks<'_>, seconds: f64) -> i32 {
-    // The cast saturates.
-    (seconds * f64::from(tracks.ticks_per_second())).round() as i32
+/// A time before the first tick or after the last one.
+#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+#[error(
+    "the time {seconds} s is beyond the end of time; the times of this scene are from -{end} to {end}"
+)]
+pub struct TimeError {
+    pub seconds: f64,
+    /// The last whole second; the first is as long before 0.
+    pub end: u32,
+}
+
+/// Returns the nearest tick to a time in seconds.
+///
+/// # Errors
+/// If the time is beyond the first or the last tick, whose picture it would show.
+pub fn ticks(tracks: &Tracks<'_>, seconds: f64) -> Result<i32, TimeError> {
+    let rate = tracks.ticks_per_second();
+    let tick = (seconds * f64::from(rate)).round();
+    if tick.abs() <= i32::MAX.into() {
+        return Ok(tick as i32);
+    }
+    let end = i32::MAX as u32 / rate;
+    Err(TimeError { seconds, end })
 }
 
 /// Returns the moments while a shutter is open for some ticks from a time on: the middles of equal parts, in ticks. One

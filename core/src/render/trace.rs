@@ -89,12 +89,7 @@ impl Loop<'_, '_> {
             if let Some(mut ray) = ray {
                 if self.from_camera && kind == RayKind::Primary {
                     let mut state = tracing.state;
-                    All::camera::<EFFECTS, N, _>(
-                        &mut tracing,
-                        &mut state,
-                        sampler.sample(),
-                        &mut ray,
-                    );
+                    All::camera::<EFFECTS, N, _>(&mut tracing, &mut state, &mut ray);
                     tracing.state = state;
                 }
                 tracing.count.ray(kind, &ray);

@@ -29,7 +29,6 @@ impl Effect for DepthOfField {
     fn camera<'s, N: Number, X: Tracer<'s, N>>(
         tracer: &mut X,
         (): &mut (),
-        _: u16,
         ray: &mut Ray<N>,
     ) {
         let Some(lens) = tracer.scene().lens() else {

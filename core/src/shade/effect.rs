@@ -249,7 +249,7 @@ macro_rules! places {
 
 places! {
     /// A ray leaves the camera for a sample, counted from 0 in its pixel.
-    fn camera(sample: u16, ray: &mut Ray<N>);
+    fn camera(ray: &mut Ray<N>);
 
     /// A ray has come to a hit: the ratio of the light from there that arrives at the eye may change.
     fn arrive(ray: &Ray<N>, arrival: &mut Arrival<'s, '_, N>);

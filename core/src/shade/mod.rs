@@ -1,25 +1,25 @@
 //! Shading: one file for each effect, and the code that they share.
 //!
 //! An effect implements the trait of `effect.rs` at one or more places of the ray loop, and is named
-//! in the table of `format/effects.rs`.
+//! in the table of `format/effects.rs`. `CONTRIBUTING.md` lists the effects at each place.
 //!
-//! | place | when | effects |
-//! |---|---|---|
-//! | `camera` | a ray leaves the camera | depth of field |
-//! | `arrive` | a ray has come to a hit | nested, absorption |
-//! | `surface` | a ray hits a surface | checker, smooth, texture levels, normal map, vertex colors, texture, alpha |
-//! | `emit` | a surface sends out light of its own | emission |
-//! | `aim` | a surface looks for a light | area light, environment |
-//! | `face` | a surface faces a light | smooth, normal map, falloff |
-//! | `reflect` | a surface reflects a light | highlight, glossy |
-//! | `light` | light arrives at a surface | environment, shadow, falloff |
-//! | `filter` | a surface is in the way of light | glass, nested, absorption, alpha |
-//! | `reach` | nothing else is in the way of light | absorption |
-//! | `miss` | a ray hits nothing | environment |
-//! | `bounce` | a surface sends rays on | glossy, mirror, glass, alpha, indirect |
-//! | `leave` | a ray leaves a hit | smooth, normal map, glossy, nested, absorption, indirect |
-//! | `pixel` | all rays of a sample were traced | |
-//! | `develop` | the mean of a pixel's samples is known | tone mapping |
+//! | place | when |
+//! |---|---|
+//! | `camera` | a ray leaves the camera |
+//! | `arrive` | a ray has come to a hit |
+//! | `surface` | a ray hits a surface |
+//! | `emit` | a surface sends out light of its own |
+//! | `aim` | a surface looks for a light |
+//! | `face` | a surface faces a light |
+//! | `reflect` | a surface reflects a light |
+//! | `light` | light arrives at a surface |
+//! | `filter` | a surface is in the way of light |
+//! | `reach` | nothing else is in the way of light |
+//! | `miss` | a ray hits nothing |
+//! | `bounce` | a surface sends rays on |
+//! | `leave` | a ray leaves a hit |
+//! | `pixel` | all rays of a sample were traced |
+//! | `develop` | the mean of a pixel's samples is known |
 
 mod basis;
 mod color;

@@ -45,12 +45,6 @@ impl Sampler {
         Self { pixel, sample }
     }
 
-    /// The number of the sample.
-    #[inline(always)]
-    pub(crate) fn sample(self) -> u16 {
-        self.sample
-    }
-
     /// Returns a point of the unit square, with 32 fraction bits.
     ///
     /// `bounce` separates the rays of a sample. `dimension` separates the draws of one ray: two effects, or two lights,

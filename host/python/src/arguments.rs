@@ -113,13 +113,6 @@ pub fn format(name: &str) -> PyResult<Format> {
     })
 }
 
-pub fn options(accel: &[String], lattice_bits: u8) -> PyResult<Options> {
-    Ok(Options {
-        structures: accel
-            .iter()
-            .map(|name| structure(name))
-            .collect::<PyResult<_>>()?,
-        lattice_bits,
-        ..Options::default()
-    })
+pub fn structures(names: &[String]) -> PyResult<Vec<Structure>> {
+    names.iter().map(|name| structure(name)).collect()
 }

@@ -1,6 +1,6 @@
 //! The options of `Scene.load`.
 
-use crate::arguments::{invalid, options};
+use crate::arguments::{invalid, structures};
 use gridel_core::{Effects, Structure};
 use gridel_host::compile::{LATTICE_BITS, Options, Quality};
 use gridel_host::scene::{
@@ -39,20 +39,19 @@ impl LoadOptions {
     /// The options of the compiler.
     pub fn for_compiler(&self) -> PyResult<Options> {
         let usual = || vec![STRUCTURE.to_owned()];
-        let options = options(
-            &self.accel.clone().unwrap_or_else(usual),
-            self.lattice_bits.unwrap_or(*LATTICE_BITS.end()),
-        )?;
+        let structures = structures(&self.accel.clone().unwrap_or_else(usual))?;
         let quality = self.quality.as_deref().map(quality).transpose()?;
-        if quality.is_some() && !options.structures.contains(&Structure::Wide) {
+        if quality.is_some() && !structures.contains(&Structure::Wide) {
             return Err(invalid(
                 "`quality` is for the structure wide, which is not built; add \"wide\" to `accel`, or leave `quality` out",
             ));
         }
         Ok(Options {
+            structures,
+            lattice_bits: self.lattice_bits.unwrap_or(*LATTICE_BITS.end()),
             quality: quality.unwrap_or_default(),
             texture_bytes: self.texture_bytes,
-            ..options
+            ..Options::default()
         })
     }
 

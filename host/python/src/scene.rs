@@ -5,7 +5,7 @@ mod place;
 
 pub use native::NativeScene;
 
-use crate::arguments::{check_file, in_file, in_python, invalid, options, rejected};
+use crate::arguments::{check_file, in_file, in_python, invalid, rejected, structures};
 use crate::hit_arrays::{
     Arrays, Cast, HitArrays, MeshHitArrays, append, bytes, collected, column, rows, too_large,
     zeros,
@@ -80,8 +80,10 @@ impl NativeScene {
         let model = Model {
             scene: meshes::model(&meshes)?,
             options: Options {
+                structures: structures(&accel)?,
+                lattice_bits,
                 flat_meshes: true,
-                ..options(&accel, lattice_bits)?
+                ..Options::default()
             },
             file: None,
         };
@@ -448,8 +450,9 @@ impl NativeScene {
         let own = &model.options;
         let accel = accel.unwrap_or_else(|| self.accels());
         let options = Options {
-            flat_meshes: own.flat_meshes,
-            ..options(&accel, lattice_bits.unwrap_or(own.lattice_bits))?
+            structures: structures(&accel)?,
+            lattice_bits: lattice_bits.unwrap_or(own.lattice_bits),
+            ..own.clone()
         };
         let compiled = in_pool(py, 0, || compile(&model.scene, &options))?;
         bytes(py, compiled.map_err(rejected)?.blob.bytes())

@@ -4,7 +4,7 @@ use super::plan::{HitsKey, Plan, hits_key, in_f64, with_all};
 use super::setting::{Key, Setting};
 use super::truth::{Truth, exact_pixels};
 use crate::blob::Blob;
-use crate::compile::{self, CompileError, Compiled, Quality};
+use crate::compile::{self, CompileError, Compiled, LATTICE_BITS, Quality};
 use crate::measure::board::instructions;
 use crate::measure::{
     Errors, FirstHit, InstanceCount, Rendered, board_memory, median, rmse_and_largest, time,
@@ -252,7 +252,7 @@ impl<'s> Bench<'s> {
         let stated = self.scene.render;
         Setting {
             format: Format::F32,
-            lattice_bits: 24,
+            lattice_bits: *LATTICE_BITS.end(),
             samples: stated.samples,
             depth: stated.depth,
             cutoff: stated.cutoff,

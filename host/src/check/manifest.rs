@@ -7,6 +7,7 @@ mod values;
 pub use board::{Board, Firmware, Program};
 pub use named::Named;
 
+use crate::compile::LATTICE_BITS;
 use crate::measure::board::{BOARDS, Board as Target};
 use crate::output::place;
 use crate::scene::toml::source::{Source, Span};
@@ -273,7 +274,9 @@ impl Check {
             },
             accel: fields.or("accel", None, |value| structure(value).map(Some))?,
             lattice_bits: fields.or("lattice_bits", None, |value| {
-                Ok(Some(value.integer_in(10..=24)? as u8))
+                let [fewest, most] =
+                    [LATTICE_BITS.start(), LATTICE_BITS.end()].map(|&it| it.into());
+                Ok(Some(value.integer_in(fewest..=most)? as u8))
             })?,
             allow_outside: fields.or("allow_outside", false, Value::boolean)?,
             instances: fields.or("instances", None, |value| instances(value).map(Some))?,

@@ -120,7 +120,8 @@ impl Run<'_> {
         if tracks.is_empty() {
             return Err(format!("{path}: nothing moves, so there is no `time`"));
         }
-        let state = State::at(blob, scene, &tracks, ticks(&tracks, seconds));
+        let time = ticks(&tracks, seconds).map_err(|error| format!("{path}: {error}"))?;
+        let state = State::at(blob, scene, &tracks, time);
         state.map(Some).map_err(|error| format!("{path}: {error}"))
     }
 

@@ -131,12 +131,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
 
     // Formats first: they reject settings that no picture has, in a moment.
     let formats = distinct_or(&arguments.format, &Format::ALL);
-    let pictures = pictures(&scene, structure, settings, &formats).map_err(|error| {
-        Failure::usage(
-            error.to_string(),
-            "change the option, or the scene file's `[render]`",
-        )
-    })?;
+    let pictures = pictures(&scene, structure, settings, &formats).map_err(Failure::rendering)?;
 
     let mut pixels = state.read(count)?;
     let progress = Progress::steps("certifying", settings.height.into());

@@ -126,8 +126,8 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     if let (true, Subject::Pixel(pixel)) = (arguments.interval, subject) {
         return intervals(arguments, &source, &scene, &settings, pixel);
     }
-    let explanation = explain(&scene, arguments.with.format, structure, settings, subject)
-        .map_err(|error| failure(&error))?;
+    let explanation =
+        explain(&scene, arguments.with.format, structure, settings, subject).map_err(failure)?;
     let names = source.names(&scene);
     if arguments.json {
         let objects = named(&explanation, &names);
@@ -304,12 +304,11 @@ fn named_instances(explanation: &Explanation, names: &Names) -> BTreeMap<u32, St
     named.collect()
 }
 
-fn failure(error: &ExplainError) -> Failure {
-    let remedy = match error {
-        ExplainError::Render(_) => "change the option, or the scene file's `[render]`",
-        ExplainError::Ray(why) => why.remedy(),
-    };
-    Failure::usage(error.to_string(), remedy)
+fn failure(error: ExplainError) -> Failure {
+    match error {
+        ExplainError::Render(error) => Failure::rendering(error),
+        ExplainError::Ray(why) => Failure::usage(error.to_string(), why.remedy()),
+    }
 }
 
 /// Reads a pixel, such as `200,150`.

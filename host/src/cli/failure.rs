@@ -132,6 +132,14 @@ impl Failure {
         }
     }
 
+    /// Returns the error of settings that nothing is rendered with.
+    pub fn rendering(error: impl Display) -> Self {
+        Self::usage(
+            error.to_string(),
+            "change the option, or the scene file's `[render]`",
+        )
+    }
+
     /// Prints what happened on standard error and returns the exit code.
     pub fn report(self) -> ExitCode {
         let (report, code) = match self {

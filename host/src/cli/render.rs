@@ -10,15 +10,14 @@ use super::changes::Changes;
 use super::failure::Failure;
 use super::output::{Warned, json, print_about};
 use super::progress::Progress;
-use super::source::Source;
+use super::source::{Source, tick};
 use super::threads;
 use clap::Args;
-use frames::{Output, Shot, TimeOptions, rejected};
+use frames::{Output, Shot, TimeOptions};
 use gridel_core::{Counters, Scene, Settings, Structure};
 use gridel_host::picture::{Exposure, Moment, RenderMetadata};
 use gridel_host::render::{Job, MOST_PIXELS, Picture};
 use gridel_host::resolution::Unresolved;
-use gridel_host::state::ticks;
 use gridel_host::table::{Align, Table, counted, grouped};
 use outputs::{AovFile, HeatMapFile, OutputOptions, Outputs};
 use serde::Serialize;
@@ -223,7 +222,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let rendered = pool.install(|| outputs.render(&moments, &job, &|| progress.step()));
     let taken = begun.elapsed();
     drop(progress);
-    let image = rendered.map_err(|error| rejected(&error))?;
+    let image = rendered.map_err(Failure::rendering)?;
 
     let shown = image.shown();
     let stats = shown.and_then(|picture| stats(arguments, picture, taken));
@@ -288,7 +287,7 @@ fn blurred(
     let Some(exposure) = exposure else {
         return Ok(None);
     };
-    let time = ticks(&tracks, *seconds);
+    let time = tick(&tracks, *seconds)?;
     let changes = shutter::changes(source, (scene, &tracks), time, Some(exposure))?;
     Ok(Some(Blurred {
         time,

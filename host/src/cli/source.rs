@@ -5,6 +5,8 @@ mod files;
 mod size;
 mod time;
 
+pub use time::tick;
+
 use super::arguments::{LightChange, SceneOptions, TraceOptions, check_quality, check_room};
 use super::changes::Changes;
 use super::failure::Failure;
@@ -12,7 +14,7 @@ use super::input::Input;
 use super::output::warn;
 use super::progress::Progress;
 use gridel_core::{BlobError, Effects, Format, Scene, Structure, Tracks};
-use gridel_host::blob::Blob;
+use gridel_host::blob::{Blob, remedy_of};
 use gridel_host::compile::{self, Compiled, Names};
 use gridel_host::measure::Deforming;
 use gridel_host::morphed::morph_targets;
@@ -224,15 +226,9 @@ impl Source {
 
     /// The error of a blob that is not valid.
     fn invalid(&self, error: BlobError) -> Failure {
-        let remedy = match (&self.report, error) {
-            (Some(_), _) => "this is a fault of gridel: report it with the scene file",
-            (None, BlobError::Truncated { .. } | BlobError::Checksum { .. }) => {
-                "copy the file again, as binary, or build it again with `gridel build`"
-            }
-            (None, BlobError::Magic) => {
-                "blobs are made by `gridel build`; a scene file must have the extension of its format"
-            }
-            (None, _) => "build it again with `gridel build`",
+        let remedy = match self.report {
+            Some(_) => "this is a fault of gridel: report it with the scene file",
+            None => remedy_of(&error),
         };
         Failure::failed(format!("{}: {error}", self.input.path().display()), remedy)
     }

@@ -6,7 +6,7 @@ use super::output::print;
 use super::source::Source;
 use clap::Args;
 use gridel_core::{Scene, Settings, Structure};
-use gridel_host::render::MOST_PIXELS;
+use gridel_host::render::{MOST_PIXELS, too_many_pixels};
 use gridel_host::view::terminal::{self, fitting_size};
 use gridel_host::view::{Refiner, State, key_help};
 use std::io::{self, IsTerminal};
@@ -68,11 +68,10 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
              repository; `--terminal` draws in the terminal without it",
         ));
     }
-    if let Some([width, height]) = arguments.picture.size
-        && usize::from(width) * usize::from(height) > MOST_PIXELS
-    {
+    let size = arguments.picture.size;
+    if let Some(cause) = size.and_then(|size| too_many_pixels(size, MOST_PIXELS)) {
         return Err(Failure::usage(
-            format!("{width} x {height} pixels are too many to view"),
+            cause,
             "give a smaller `--size`, or use `gridel render`",
         ));
     }
@@ -117,12 +116,7 @@ fn in_terminal(
     if !is_fixed {
         state.resize(fitting_size([width, height]));
     }
-    print(terminal::one_frame(&refiner, &state).map_err(|error| {
-        Failure::usage(
-            error.to_string(),
-            "change the option, or the scene file's `[render]`",
-        )
-    })?)
+    print(terminal::one_frame(&refiner, &state).map_err(Failure::rendering)?)
 }
 
 #[cfg(feature = "view")]

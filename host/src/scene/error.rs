@@ -5,6 +5,9 @@ use crate::table::clipped;
 use miette::{Diagnostic, LabeledSpan, SourceCode};
 use std::path::{Path, PathBuf};
 
+/// The remedy of a file that is cut short or damaged.
+pub(super) const COPY_AGAIN: &str = "copy the file again, as binary, or export it again";
+
 /// An error in a scene file (or in one that it imports), or in a manifest of checks.
 #[derive(Debug)]
 pub struct SceneError {

@@ -53,8 +53,8 @@ pub(crate) use joint::JointTracks;
 pub use joint::{LARGEST_SCALE, LEAST_SCALE};
 pub use light_form::{LightForm, LightShape, Spot};
 pub use model::{
-    Alpha, Camera, Color, Diffuse, Instance, Joint, Lens, Light, Material, MorphTarget, Object,
-    Part, RenderSettings, Scene, ToneMapping,
+    Alpha, BRIGHTEST, Camera, Color, Diffuse, Instance, Joint, Lens, Light, Material, MorphTarget,
+    Object, Part, RenderSettings, Scene, ToneMapping,
 };
 pub use morph::{Displacements, LARGEST_WEIGHT, NormalChanges};
 pub use normals::{Normals, NormalsChoice};
@@ -72,8 +72,10 @@ pub use track::{Interpolation, Key, TICKS_PER_SECOND, Track, TrackTarget};
 pub(crate) use track::{control_points, extremes, turning_points};
 pub use without::{effect_named, leave_out, shown_without};
 
+use crate::table::printable;
 use access::Access;
 use importer::{Choices, Importers};
+use std::borrow::Cow;
 use std::path::Path;
 
 importer::formats! {
@@ -161,47 +163,58 @@ fn finish(
         object.shade(options.normals);
     }
     if options.instances == Instances::Flatten {
-        let scene = &mut imported.scene;
-        let moving = scene.instances.iter().find(|it| it.joint.is_some());
-        let has_joints = scene.tracks.iter().any(|track| track.target.is_of_joint());
-        match (moving, options.at) {
-            (None, Some(_)) if has_joints => imported.posed = Some(Posed::Always),
-            (None, _) => {}
-            (Some(_), Some(seconds)) => {
-                scene.instances = scene.instances_at(seconds);
-                imported.posed = Some(Posed::AtTime);
-            }
-            (Some(instance), None) => {
-                imported.posed = Some(Posed::AtRest);
-                imported.warnings.push(format!(
-                    "{}: instances are copied where they are at rest, and do not move",
-                    instance.place
-                ));
-            }
-        }
-        imported.copied = scene.instances.len();
-        imported.scene = imported.scene.into_flattened()?;
+        imported = with_copies(imported, options.at)?;
     }
     // Where light is reflected between surfaces, they light others by that.
-    let bounces = imported.scene.render.bounces > 0;
-    let dark = imported.scene.emitters_without_light();
-    let dark: Vec<_> = dark.filter(|_| !bounces).collect();
-    if let [first, rest @ ..] = &dark[..] {
-        let more = match rest.len() {
-            0 => String::new(),
-            more => format!(" and {more} more"),
-        };
-        imported.warnings.push(format!(
-            "object {}{more} glows, and does not light other objects: spheres, discs, boxes and meshes of up to \
-             {MOST_FACES} triangles do that, outside of parts and without `alpha`; copy instances of parts with \
-             `--instances flatten`, add a `[[light]]`, or set the material's `lights = false`",
-            crate::table::printable(first)
-        ));
+    if imported.scene.render.bounces == 0 {
+        let warning = dark_emitters(&imported.scene);
+        imported.warnings.extend(warning);
     }
-    if let std::borrow::Cow::Owned(scene) = imported.scene.with_emitters() {
+    if let Cow::Owned(scene) = imported.scene.with_emitters() {
         imported.scene = scene;
     }
     Ok(imported)
+}
+
+/// Copies instances to where they stand at a time, or at rest without one.
+fn with_copies(mut imported: Imported, time: Option<f64>) -> Result<Imported, SceneError> {
+    let scene = &mut imported.scene;
+    let moving = scene.instances.iter().find(|it| it.joint.is_some());
+    let has_joints = scene.tracks.iter().any(|track| track.target.is_of_joint());
+    match (moving, time) {
+        (None, Some(_)) if has_joints => imported.posed = Some(Posed::Always),
+        (None, _) => {}
+        (Some(_), Some(seconds)) => {
+            scene.instances = scene.instances_at(seconds);
+            imported.posed = Some(Posed::AtTime);
+        }
+        (Some(instance), None) => {
+            imported.posed = Some(Posed::AtRest);
+            imported.warnings.push(format!(
+                "{}: instances are copied where they are at rest, and do not move",
+                instance.place
+            ));
+        }
+    }
+    imported.copied = scene.instances.len();
+    imported.scene = imported.scene.into_flattened()?;
+    Ok(imported)
+}
+
+/// The warning of objects that glow and do not light others, if there are any.
+fn dark_emitters(scene: &Scene) -> Option<String> {
+    let mut names = scene.emitters_without_light();
+    let first = names.next()?;
+    let more = match names.count() {
+        0 => String::new(),
+        more => format!(" and {more} more"),
+    };
+    Some(format!(
+        "object {}{more} glows, and does not light other objects: spheres, discs, boxes and meshes of up to \
+         {MOST_FACES} triangles do that, outside of parts and without `alpha`; copy instances of parts with \
+         `--instances flatten`, add a `[[light]]`, or set the material's `lights = false`",
+        printable(first)
+    ))
 }
 
 /// Reads a scene from bytes as [`load_with`] reads a file of this name, which need not exist. Files that the scene

@@ -16,6 +16,9 @@ use gridel_core::Up;
 /// A linear RGB color; components at or above 0, 1.0 being display white.
 pub type Color = [f64; 3];
 
+/// The brightest channel of a light, a background or an emission that a blob holds; 1 is display white.
+pub const BRIGHTEST: f64 = 2047.0;
+
 /// Everything a scene file says.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Scene {

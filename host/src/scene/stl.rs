@@ -11,6 +11,7 @@ use super::importer::{Importer, Input, stem};
 use super::size::Size;
 use super::text::{Source, Warnings, check_encoding};
 use super::{Imported, Material, Object, Scene, SceneError, Shape, SourceSpan};
+use crate::scene::error::COPY_AGAIN;
 use crate::table::shortened;
 use glam::DVec3;
 use gridel_core::Up;
@@ -97,7 +98,7 @@ fn read(input: Input<'_>) -> Result<Imported, SceneError> {
                 "the file announces {count} triangles, which take {} bytes, and has {found}",
                 length(count)
             ),
-            "copy the file again, as binary, or export it again",
+            COPY_AGAIN,
         )),
         None => Err(SceneError::new(
             path,

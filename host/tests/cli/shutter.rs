@@ -166,9 +166,12 @@ fn shutters_without_a_time_or_without_samples_are_rejected() {
         let command = ["render", "-o", "x.png"];
         folder.fails(2, &[&command[..], options].concat(), words);
     }
-    // A time far beyond the last tick shows that.
     let late = ["render", "a.toml", "--time", "1e300", "-o", "x.png"];
-    folder.done(&[&late[..], &["--shutter", "0.1"]].concat());
+    folder.fails(
+        2,
+        &[&late[..], &["--shutter", "0.1"]].concat(),
+        &["beyond the end of time"],
+    );
     for seconds in ["44740", "1e300"] {
         let command = [&late[..], &["--shutter", seconds]].concat();
         folder.fails(2, &command, &["longer than the 44739 s"]);

@@ -104,7 +104,7 @@ fn mistakes_are_rejected() {
     fails(
         2,
         &["quick.gridel", "--size", "65535x65535"],
-        &["too many to view"],
+        &["pixels exceed the largest size"],
     );
     fails(
         2,

@@ -5,7 +5,7 @@ use crate::request::{CameraOf, ShotOf};
 use gridel_core::format::limits::MAX_SAMPLES;
 use gridel_core::format::record::View;
 use gridel_core::{BlobError, Scene, Settings};
-use gridel_host::blob::Blob;
+use gridel_host::blob::{Blob, remedy_of};
 use gridel_host::compile::Names;
 use gridel_host::scene::Camera;
 use gridel_host::view::Shot;
@@ -98,15 +98,7 @@ impl Loaded {
 }
 
 fn invalid(error: &BlobError, name: Option<&str>) -> Problem {
-    let help = match error {
-        BlobError::Magic => {
-            "blobs are made by `gridel build`; a scene file must have the extension of its format"
-        }
-        BlobError::Truncated { .. } | BlobError::Checksum { .. } => {
-            "copy the file again, as binary, or build it again with `gridel build`"
-        }
-        _ => "build it again with `gridel build`",
-    };
+    let help = remedy_of(error);
     match name {
         Some(name) => Problem::new(format!("{name}: {error}"), help),
         None => Problem::new(error, help),

@@ -1,8 +1,8 @@
 //! Requests.
 
 use crate::problem::Problem;
-use gridel_core::{Format, Structure};
-use gridel_host::scene::Camera;
+use gridel_core::{Effects, Format, Structure};
+use gridel_host::scene::{Camera, effect_named};
 use serde::{Deserialize, Deserializer, de::Error};
 
 /// A request of a page; `bytes` is what comes with it.
@@ -53,7 +53,7 @@ pub struct Compile {
     pub lattice_bits: u8,
     /// Effects that are left out.
     #[serde(default)]
-    pub without: Vec<String>,
+    pub without: Vec<EffectName>,
 }
 
 /// A scene on a board.
@@ -132,6 +132,19 @@ impl<'de> Deserialize<'de> for FormatName {
         let name = String::deserialize(from)?;
         let found = Format::from_name(&name);
         let unknown = || D::Error::custom(format!("there is no number format `{name}`"));
+        found.map(Self).ok_or_else(unknown)
+    }
+}
+
+/// An effect by its name.
+#[derive(Clone, Copy)]
+pub struct EffectName(pub Effects);
+
+impl<'de> Deserialize<'de> for EffectName {
+    fn deserialize<D: Deserializer<'de>>(from: D) -> Result<Self, D::Error> {
+        let name = String::deserialize(from)?;
+        let found = effect_named(&name);
+        let unknown = || D::Error::custom(format!("there is no effect `{name}`"));
         found.map(Self).ok_or_else(unknown)
     }
 }

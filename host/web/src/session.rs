@@ -11,9 +11,7 @@ use gridel_host::blob::Blob;
 use gridel_host::compile::{Compiled, LATTICE_BITS, Names, Options, Supplied, compile};
 use gridel_host::explain::{Shown, Subject, explain};
 use gridel_host::measure::board::{BOARDS, Board, Fit, MemoryReport, Rendering, Target};
-use gridel_host::scene::{
-    self, Camera, Files, ImportOptions, Imported, Scene, effect_named, shown_without,
-};
+use gridel_host::scene::{self, Camera, Files, ImportOptions, Imported, Scene, shown_without};
 use gridel_host::view::{State, saved, summary};
 use serde_json::{Value, json};
 
@@ -89,8 +87,8 @@ impl Session {
     /// The scene of a file, without the effects that are left out.
     fn scene(&mut self, how: &Compile) -> Result<Scene, Problem> {
         let mut scene = self.imported(&how.name)?.scene.clone();
-        let without = how.without.iter().filter_map(|name| effect_named(name));
-        without.for_each(|effect| scene.remove_effects(effect));
+        let without = how.without.iter();
+        without.for_each(|effect| scene.remove_effects(effect.0));
         Ok(scene)
     }
 

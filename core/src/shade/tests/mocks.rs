@@ -16,12 +16,7 @@ impl Effect for Shift {
 
     const EFFECT: Effects = Effects(Self::BITS);
 
-    fn camera<'s, N: Number, X: Tracer<'s, N>>(
-        tracer: &mut X,
-        (): &mut (),
-        _: u16,
-        ray: &mut Ray<N>,
-    ) {
+    fn camera<'s, N: Number, X: Tracer<'s, N>>(tracer: &mut X, (): &mut (), ray: &mut Ray<N>) {
         let scene = tracer.scene();
         let [x, y, z] = scene.view.eye;
         // In 2^-13 units.
@@ -197,12 +192,7 @@ impl Effect for Trail {
 
     const EFFECT: Effects = Effects(Self::BITS);
 
-    fn camera<'s, N: Number, X: Tracer<'s, N>>(
-        _: &mut X,
-        surfaces: &mut i32,
-        _: u16,
-        _: &mut Ray<N>,
-    ) {
+    fn camera<'s, N: Number, X: Tracer<'s, N>>(_: &mut X, surfaces: &mut i32, _: &mut Ray<N>) {
         *surfaces = 1;
     }
 

@@ -127,16 +127,14 @@ pub struct Arguments {
 
 /// Reads an error bound.
 fn share(text: &str) -> Result<f64, String> {
-    let value = text.parse::<f64>().ok();
-    let value = value.filter(|value| (0.0..=1.0).contains(value));
-    value.ok_or_else(|| String::from("write a number from 0 to 1, such as 0.02"))
+    let is_valid = |it| (0.0..=1.0).contains(&it);
+    arguments::number(text, is_valid, "write a number from 0 to 1, such as 0.02")
 }
 
 /// Reads a limit of rays per pixel.
 fn rays(text: &str) -> Result<f64, String> {
-    let value = text.parse::<f64>().ok();
-    let value = value.filter(|value| value.is_finite() && *value > 0.0);
-    value.ok_or_else(|| String::from("write a number above 0, such as 12.5"))
+    let is_valid = |it: f64| it.is_finite() && it > 0.0;
+    arguments::number(text, is_valid, "write a number above 0, such as 12.5")
 }
 
 fn truth() -> impl TypedValueParser<Value = Truth> {

@@ -3,7 +3,7 @@
 use super::values::{numbers, vector};
 use crate::cli::failure::Failure;
 use glam::DVec3;
-use gridel_host::scene::{Color, Light, Scene, TrackTarget};
+use gridel_host::scene::{BRIGHTEST, Color, Light, Scene, TrackTarget};
 use gridel_host::table::counted;
 
 /// One number or vector of a light, and its new value.
@@ -121,7 +121,9 @@ pub fn light(text: &str) -> Result<LightChange, String> {
             "direction" => Property::Direction(vector.ok().filter(|it| *it != DVec3::ZERO)?),
             "color" => {
                 let color: Color = numbers(value)?;
-                let is_light = color.iter().all(|channel| (0.0..=2047.0).contains(channel));
+                let is_light = color
+                    .iter()
+                    .all(|channel| (0.0..=BRIGHTEST).contains(channel));
                 is_light.then_some(Property::Color(color))?
             }
             _ => return None,

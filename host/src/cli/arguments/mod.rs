@@ -23,8 +23,8 @@ pub use scene::{
 pub use structures::{StructureOptions, check_hierarchy, check_quality, check_room};
 pub use target::TargetOptions;
 pub use values::{
-    aov, builder, bytes, cutoff, distinct, distinct_or, format, open_seconds, quoted, rows,
-    seconds, size, structure, threads,
+    aov, builder, bytes, cutoff, distinct, distinct_or, format, frames, number, open_seconds,
+    quoted, rows, seconds, size, structure, threads,
 };
 
 use clap::Args;

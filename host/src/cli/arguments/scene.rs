@@ -74,7 +74,7 @@ pub struct SceneOptions {
 pub struct GeometryOptions {
     /// Bits of the lattice for coordinates, 10 to 24; 16 or fewer make the blob smaller [default:
     /// 24]
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u8).range(10..=24))]
+    #[arg(long, value_name = "N", value_parser = super::values::lattice_bits())]
     pub lattice_bits: Option<u8>,
 
     /// Scene units by which vertices can move along each axis, for meshes that a program deforms;

@@ -3,9 +3,11 @@
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 use glam::DVec3;
 use gridel_core::{Format, Structure};
-use gridel_host::compile::Builder;
+use gridel_host::compile::{Builder, LATTICE_BITS};
 use gridel_host::render::Aov;
+use std::fmt::Display;
 use std::ops::Range;
+use std::str::FromStr;
 
 /// The name of the first option that was given.
 pub fn first_given<const N: usize>(options: [(bool, &'static str); N]) -> Option<&'static str> {
@@ -23,18 +25,24 @@ pub fn quoted(word: &str) -> String {
     }
 }
 
+/// Reads a number that is valid; otherwise the error is what to write.
+pub fn number(text: &str, is_valid: impl Fn(f64) -> bool, advice: &str) -> Result<f64, String> {
+    let value = text.parse().ok();
+    value
+        .filter(|&it| is_valid(it))
+        .ok_or_else(|| advice.to_owned())
+}
+
 /// Reads a cutoff.
 pub fn cutoff(text: &str) -> Result<f64, String> {
-    let value = text.parse::<f64>().ok();
-    let value = value.filter(|value| (0.0..=1.0).contains(value));
-    value.ok_or_else(|| String::from("write a number from 0 to 1, such as 0.002"))
+    let is_valid = |it| (0.0..=1.0).contains(&it);
+    number(text, is_valid, "write a number from 0 to 1, such as 0.002")
 }
 
 /// Reads an exposure.
 pub fn exposure(text: &str) -> Result<f64, String> {
-    let value = text.parse::<f64>().ok();
-    let value = value.filter(|value| (-32.0..=32.0).contains(value));
-    value.ok_or_else(|| String::from("write a number from -32 to 32, such as 1.5"))
+    let is_valid = |it| (-32.0..=32.0).contains(&it);
+    number(text, is_valid, "write a number from -32 to 32, such as 1.5")
 }
 
 /// Reads numbers with commas between them.
@@ -143,40 +151,67 @@ pub fn size(text: &str) -> Result<[u16; 2], String> {
 
 /// Reads how far vertices can move.
 pub fn room(text: &str) -> Result<f64, String> {
-    let value = text.parse::<f64>().ok();
-    value
-        .filter(|it| it.is_finite() && *it >= 0.0)
-        .ok_or_else(|| String::from("write a length in scene units, such as 0.25"))
+    let is_valid = |it: f64| it.is_finite() && it >= 0.0;
+    number(
+        text,
+        is_valid,
+        "write a length in scene units, such as 0.25",
+    )
 }
 
 /// Reads a time in seconds.
 pub fn seconds(text: &str) -> Result<f64, String> {
-    let value = text.parse::<f64>().ok().filter(|it| it.is_finite());
-    value.ok_or_else(|| String::from("write a time in seconds, such as 1.5"))
+    let is_valid = |it: f64| it.is_finite();
+    number(text, is_valid, "write a time in seconds, such as 1.5")
 }
 
 /// Reads for how many seconds a shutter is open.
 pub fn open_seconds(text: &str) -> Result<f64, String> {
-    seconds(text)
-        .ok()
-        .filter(|it| *it > 0.0)
-        .ok_or_else(|| String::from("write a number of seconds above 0, such as 0.02"))
+    let is_valid = |it: f64| it.is_finite() && it > 0.0;
+    number(
+        text,
+        is_valid,
+        "write a number of seconds above 0, such as 0.02",
+    )
 }
 
-/// Reads a range of rows, such as `100..200`, whose end is not part of it.
-pub fn rows(text: &str) -> Result<Range<u16>, String> {
+/// Reads a range such as `100..200`, whose end is not part of it; otherwise the error is what to write.
+fn range<T>(text: &str, advice: &str) -> Result<Range<T>, String>
+where
+    T: FromStr + PartialOrd + Display,
+{
     let ends = text
         .split_once("..")
-        .map(|(first, end)| [first, end].map(|row| row.parse::<u16>()));
+        .map(|(first, end)| [first, end].map(str::parse));
     match ends {
         Some([Ok(first), Ok(end)]) if first < end => Ok(first..end),
         Some([Ok(first), Ok(end)]) => Err(format!(
             "the range from {first} to {end} (not included) is empty"
         )),
-        _ => Err(String::from(
-            "write the first row and the one behind the last, such as 100..200; rows count from 0",
-        )),
+        _ => Err(advice.to_owned()),
     }
+}
+
+/// Reads a range of rows.
+pub fn rows(text: &str) -> Result<Range<u16>, String> {
+    range(
+        text,
+        "write the first row and the one behind the last, such as 100..200; rows count from 0",
+    )
+}
+
+/// Reads a range of frames.
+pub fn frames(text: &str) -> Result<Range<u32>, String> {
+    range(
+        text,
+        "write the first frame and the one behind the last, such as 0..48",
+    )
+}
+
+/// A number of bits for the lattice.
+pub fn lattice_bits() -> impl TypedValueParser<Value = u8> {
+    let [fewest, most] = [LATTICE_BITS.start(), LATTICE_BITS.end()].map(|&it| i64::from(it));
+    clap::value_parser!(u8).range(fewest..=most)
 }
 
 #[cfg(test)]

@@ -1,13 +1,13 @@
 //! Options for the camera of a scene.
 
-use super::values::{first_given, numbers, vector};
+use super::values::{first_given, number, numbers, vector};
 use crate::cli::failure::Failure;
 use clap::Args;
 use glam::DVec3;
 use gridel_core::Up;
 use gridel_core::format::record::View;
 use gridel_host::compile;
-use gridel_host::scene::{Camera, Color, Scene, TrackTarget};
+use gridel_host::scene::{BRIGHTEST, Camera, Color, Scene, TrackTarget};
 
 /// Options for the view, in place of what a scene's file or blob states. Help lists these options last, in their order,
 /// with `--target` behind `--eye`.
@@ -173,13 +173,16 @@ impl ViewOptions {
 }
 
 fn degrees(text: &str) -> Result<f64, String> {
-    let value = text.parse::<f64>().ok();
-    let value = value.filter(|&value| value > 0.0 && value < 180.0);
-    value.ok_or_else(|| String::from("write an angle above 0 and below 180 degrees, such as 45"))
+    let is_valid = |it| it > 0.0 && it < 180.0;
+    number(
+        text,
+        is_valid,
+        "write an angle above 0 and below 180 degrees, such as 45",
+    )
 }
 
 fn color(text: &str) -> Result<Color, String> {
-    let is_radiance = |channel: &f64| (0.0..=2047.0).contains(channel);
+    let is_radiance = |channel: &f64| (0.0..=BRIGHTEST).contains(channel);
     let color = numbers(text).filter(|color| color.iter().all(is_radiance));
     color.ok_or_else(|| {
         String::from("write three numbers from 0 to 2047 with commas, such as 0.2,0.4,1")

@@ -11,7 +11,6 @@ use crate::cli::output::{
 use crate::cli::progress::Progress;
 use crate::cli::source::Source;
 use clap::Args;
-use gridel_core::render::RenderError;
 use gridel_core::{Scene, Tracks};
 use gridel_host::animation::{Animation, AnimationFormat, NumberedName};
 use gridel_host::picture::{Exposure, Frame, Moment, PictureFormat, RenderMetadata, srgb};
@@ -34,7 +33,7 @@ pub struct TimeOptions {
 
     /// Render frames A to B - 1 of a scene that moves: an animation, .apng or .gif (256 colors per frame), or
     /// numbered pictures, such as out-%03d.png. Frame N is at N / FPS seconds
-    #[arg(long, value_name = "A..B", value_parser = frames, allow_hyphen_values = true,
+    #[arg(long, value_name = "A..B", value_parser = arguments::frames, allow_hyphen_values = true,
         conflicts_with_all = ["time", "rows", "stats", "heat_map"])]
     pub frames: Option<Range<u32>>,
 
@@ -45,21 +44,6 @@ pub struct TimeOptions {
 
     #[command(flatten)]
     pub shutter: ShutterOptions,
-}
-
-fn frames(text: &str) -> Result<Range<u32>, String> {
-    let ends = text
-        .split_once("..")
-        .map(|(first, end)| [first, end].map(|frame| frame.parse::<u32>()));
-    match ends {
-        Some([Ok(first), Ok(end)]) if first < end => Ok(first..end),
-        Some([Ok(first), Ok(end)]) => Err(format!(
-            "the range from {first} to {end} (not included) is empty"
-        )),
-        _ => Err(String::from(
-            "write the first frame and the one behind the last, such as 0..48",
-        )),
-    }
 }
 
 /// The most numbered pictures of a run: more than an hour at 24 per second. All names are checked first.
@@ -82,14 +66,6 @@ fn check_times(tracks: &Tracks<'_>, frames: &Range<u32>, per_second: u16) -> Res
         ),
         format!("at {per_second} frames per second, ask for frames within 0..{most}"),
     ))
-}
-
-/// Returns the error of settings that nothing is rendered with.
-pub fn rejected(error: &RenderError) -> Failure {
-    Failure::usage(
-        error.to_string(),
-        "change the option, or the scene file's `[render]`",
-    )
 }
 
 /// The destination of frames.
@@ -313,7 +289,7 @@ impl Shot<'_> {
         let rendered = self
             .pool
             .install(|| render_moments(&moments, self.job, &|| ()));
-        let picture = rendered.map_err(|error| rejected(&error))?;
+        let picture = rendered.map_err(Failure::rendering)?;
         let moment = Moment::Frame(Frame { number, per_second });
         // Common to all frames: the scene at rest, and the options.
         let metadata = RenderMetadata::of(self.scene, self.job)

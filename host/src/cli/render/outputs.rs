@@ -1,6 +1,5 @@
 //! The files that `gridel render` writes of one picture.
 
-use super::frames::rejected;
 use crate::cli::arguments::{self, distinct};
 use crate::cli::failure::Failure;
 use crate::cli::input::is_standard;
@@ -302,7 +301,7 @@ fn layers(scene: &Scene<'_>, job: &Job, aovs: &[Aov]) -> Result<Vec<Layer>, Fail
     if aovs.is_empty() {
         return Ok(Vec::new());
     }
-    let values = render_aovs(scene, job, aovs).map_err(|error| rejected(&error))?;
+    let values = render_aovs(scene, job, aovs).map_err(Failure::rendering)?;
     let layers = aovs.iter().zip(values).map(|(aov, values)| Layer {
         name: Some(aov.name()),
         values,

@@ -9,7 +9,7 @@ use clap::Args;
 use gridel_core::format::limits::MAX_SAMPLES;
 use gridel_core::{Scene, Tracks};
 use gridel_host::picture::Exposure;
-use gridel_host::state::{exposed, ticks};
+use gridel_host::state::{TimeError, exposed, ticks};
 use gridel_host::table::{counted, grouped};
 
 /// Options for the time that the shutter is open.
@@ -85,22 +85,20 @@ impl ShutterOptions {
         let Some(seconds) = self.shutter.filter(|_| !tracks.is_empty()) else {
             return Ok(None);
         };
-        let open = u32::try_from(ticks(tracks, seconds)).unwrap_or(0);
+        let open = ticks(tracks, seconds).map_err(|TimeError { end, .. }| {
+            Failure::usage(
+                format!(
+                    "a shutter of {seconds} s is open for longer than the {end} s that there are"
+                ),
+                "let it be open for less time",
+            )
+        })?;
+        let open = open.unsigned_abs();
         if open == 0 {
             let most = tracks.ticks_per_second();
             return Err(Failure::usage(
                 format!("a shutter of {seconds} s is open for less than a tick, 1/{most} s"),
                 "leave it out, or let it be open for longer",
-            ));
-        }
-        let most = f64::from(i32::MAX) / f64::from(tracks.ticks_per_second());
-        if seconds > most {
-            return Err(Failure::usage(
-                format!(
-                    "a shutter of {seconds} s is open for longer than the {} s that there are",
-                    most.floor()
-                ),
-                "let it be open for less time",
             ));
         }
         let moments = self.moments.unwrap_or_else(|| usual(samples));

@@ -9,16 +9,9 @@ use gridel_host::scene::Posed;
 use gridel_host::state::{State, StateError, ticks};
 use gridel_host::view::Notes;
 
-/// Rejects a time beyond the first or the last tick, whose picture it would show.
-fn check(tracks: &Tracks<'_>, seconds: f64) -> Result<(), Failure> {
-    let end = f64::from(i32::MAX) / f64::from(tracks.ticks_per_second());
-    if seconds.abs() <= end {
-        return Ok(());
-    }
-    Err(Failure::usage(
-        format!("the time {seconds} s is beyond the end of time"),
-        format!("give a time from -{0} to {0}", end.floor()),
-    ))
+/// Returns the tick of a time in seconds.
+pub fn tick(tracks: &Tracks<'_>, seconds: f64) -> Result<i32, Failure> {
+    ticks(tracks, seconds).map_err(|error| Failure::usage(error.to_string(), "choose another time"))
 }
 
 impl Source {
@@ -96,8 +89,7 @@ impl Source {
     /// Returns the changes of the scene at a time in seconds.
     pub(super) fn changes_at_time(&self, seconds: f64) -> Result<Changes, Failure> {
         let tracks = self.tracks()?;
-        check(&tracks, seconds)?;
-        let time = ticks(&tracks, seconds);
+        let time = tick(&tracks, seconds)?;
         self.changes_at(&self.scene()?, &tracks, time)
     }
 

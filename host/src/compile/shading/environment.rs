@@ -6,7 +6,7 @@ use super::exposure::Exposure;
 use super::radiance::radiance;
 use crate::compile::CompileError;
 use crate::compile::section::{Section, section};
-use crate::scene::{Color, Environment, Panorama, Sky};
+use crate::scene::{BRIGHTEST, Color, Environment, Panorama, Sky};
 use crate::shape::unit;
 use crate::table::grouped;
 use glam::DVec3;
@@ -26,9 +26,6 @@ const POINTS_OF_PICTURE: usize = 16;
 
 /// 1 with 20 fraction bits.
 const WHITE: f64 = (1 << 20) as f64;
-
-/// The largest radiance of a record.
-const MOST: f64 = 2047.0;
 
 /// The map of a scene, and its lights.
 #[derive(Debug)]
@@ -205,11 +202,11 @@ fn check_brightness(texels: &[Texel], all: f64) -> Result<(), CompileError> {
         [red, green, blue].map(|channel| channel * most)
     });
     let value = samples.fold(0.0, f64::max);
-    if value > MOST {
+    if value > BRIGHTEST {
         return Err(CompileError::TooBright {
             what: String::from("environment, all of it together,"),
             value,
-            most: MOST,
+            most: BRIGHTEST,
         });
     }
     Ok(())

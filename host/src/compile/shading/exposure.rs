@@ -1,11 +1,8 @@
 //! Exposure. The compiler multiplies all light of a scene, so that pictures cost no more.
 
 use crate::compile::CompileError;
-use crate::scene::{Color, Light, Scene, Track};
+use crate::scene::{BRIGHTEST, Color, Light, Scene, Track};
 use gridel_core::format::track::TrackTarget;
-
-/// The largest radiance of a record.
-const MOST: f64 = 2047.0;
 
 /// The factor of all light.
 pub struct Exposure {
@@ -26,7 +23,7 @@ impl Exposure {
         what: impl FnOnce() -> String,
     ) -> Result<Color, CompileError> {
         let exposed = color.map(|channel| channel * self.factor);
-        // What a scene states itself is white all the same.
+        // Importers keep to what a record holds; only a factor can lead beyond it.
         if self.factor != 1.0 {
             check(exposed, what)?;
         }
@@ -61,11 +58,11 @@ impl Exposure {
 /// Rejects a color that records cannot hold.
 fn check(color: Color, what: impl FnOnce() -> String) -> Result<(), CompileError> {
     let largest = color.into_iter().fold(0.0, f64::max);
-    match largest > MOST {
+    match largest > BRIGHTEST {
         true => Err(CompileError::TooBright {
             what: what(),
             value: largest,
-            most: MOST,
+            most: BRIGHTEST,
         }),
         false => Ok(()),
     }

@@ -1,7 +1,7 @@
 //! The forms of lights as records.
 
 use crate::compile::CompileError;
-use crate::scene::{Color, LightForm, LightShape};
+use crate::scene::{BRIGHTEST, Color, LightForm, LightShape};
 use crate::shape::{Lattice, unit};
 use glam::DVec3;
 use gridel_core::format::light_form::LightForm as Record;
@@ -11,8 +11,6 @@ use std::f64::consts::PI;
 const LONGEST: f64 = (1 << 17) as f64;
 /// The longest component of an edge, in units: that of the lattice.
 const LONGEST_EDGE: f64 = (1 << 16) as f64;
-/// The brightest color of a record.
-const BRIGHTEST: f64 = 2047.0;
 /// Largest variation of light across the scene by a range that is too long for a record.
 const UNEVEN: f64 = 0.05;
 /// The longest range of a form, in units.

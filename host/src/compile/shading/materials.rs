@@ -253,7 +253,7 @@ mod tests {
         let still = compiled([1.0, 0.8], "").blob;
         let (scene, expected) = (moving.blob.scene().unwrap(), still.scene().unwrap());
         let tracks = Tracks::from_bytes(moving.blob.bytes()).unwrap();
-        let state = State::at(&moving.blob, &scene, &tracks, ticks(&tracks, 1.0)).unwrap();
+        let state = State::at(&moving.blob, &scene, &tracks, ticks(&tracks, 1.0).unwrap()).unwrap();
         assert_eq!(state.materials, expected.materials());
         let at_end = state.apply(&scene).unwrap();
         assert_eq!(at_end.roughness(1), expected.roughness(1));

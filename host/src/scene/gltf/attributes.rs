@@ -4,6 +4,7 @@ use super::buffers::fetch;
 use super::normal_transforms::NormalTransforms;
 use super::{Importer, material};
 use crate::scene::access::FileError;
+use crate::scene::error::COPY_AGAIN;
 use crate::scene::texture::texture_transform;
 use crate::scene::{Attributes, Image, Material, NormalMap, SceneError, Texture, Wrap};
 use crate::table::shortened;
@@ -284,8 +285,7 @@ impl Importer<'_> {
                     let number = view.index();
                     let cause =
                         format!("{what} reads buffer view {number}, which its buffer lacks");
-                    let remedy = "copy the file again, as binary, or export it again";
-                    return Err(self.error(cause, remedy));
+                    return Err(self.error(cause, COPY_AGAIN));
                 }
             },
             Source::Uri { uri, .. } => match fetch(self.path, &what, uri, self.access) {

@@ -4,6 +4,7 @@
 
 use crate::scene::SceneError;
 use crate::scene::access::{Access, FileError};
+use crate::scene::error::COPY_AGAIN;
 use crate::table::shortened;
 use base64::Engine as _;
 use base64::engine::general_purpose::STANDARD;
@@ -69,7 +70,7 @@ impl<'a> Buffers<'a> {
                             bytes.len(),
                             buffer.length()
                         ),
-                        "copy the file again, as binary, or export it again",
+                        COPY_AGAIN,
                     ));
                 }
                 Ok(bytes)

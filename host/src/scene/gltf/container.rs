@@ -2,6 +2,7 @@
 
 use crate::scene::SceneError;
 use crate::scene::SourceSpan;
+use crate::scene::error::COPY_AGAIN;
 use crate::scene::importer::extension;
 use crate::scene::text::{Warnings, check_encoding};
 use std::path::Path;
@@ -40,11 +41,7 @@ pub(super) fn split<'b>(
     }
     let text = text.unwrap_or(bytes);
     if text.trim_ascii().is_empty() {
-        return Err(SceneError::new(
-            path,
-            "the file is empty",
-            "copy the file again, as binary, or export it again",
-        ));
+        return Err(SceneError::new(path, "the file is empty", COPY_AGAIN));
     }
     let named_binary = extension(path).is_some_and(|it| it == "glb");
     if named_binary && !text.trim_ascii_start().starts_with(b"{") {
@@ -66,8 +63,7 @@ pub(super) fn split<'b>(
 }
 
 fn chunks<'b>(path: &Path, bytes: &'b [u8]) -> Result<Container<'b>, SceneError> {
-    let copy_again = "copy the file again, as binary, or export it again";
-    let cut = |cause: String| SceneError::new(path, cause, copy_again);
+    let cut = |cause: String| SceneError::new(path, cause, COPY_AGAIN);
     let word = |at: usize| {
         let bytes = bytes.get(at..)?.first_chunk()?;
         Some(u32::from_le_bytes(*bytes))

@@ -23,7 +23,7 @@
 //! Where the alpha mode is `BLEND`, alpha is the part of the material that is present, and the rest is a pane. Textures
 //! with alpha are the exception.
 
-use crate::scene::{Alpha, Color, Diffuse, Material};
+use crate::scene::{Alpha, BRIGHTEST, Color, Diffuse, Material};
 use crate::table::shortened;
 use gltf::material::AlphaMode;
 
@@ -185,9 +185,6 @@ pub(super) fn read(material: &gltf::Material<'_>, alpha_is_used: bool, means: &M
         ..Material::default()
     }
 }
-
-/// The largest radiance of a surface.
-const BRIGHTEST: f64 = 2047.0;
 
 /// The radiance of a material's surface.
 fn emission(material: &gltf::Material<'_>, means: &Means) -> Color {

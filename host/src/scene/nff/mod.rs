@@ -25,7 +25,7 @@ mod view;
 use super::importer::{Importer as Entry, Input};
 use super::size::Size;
 use super::text::{Source, Warnings};
-use super::{Color, Diffuse, Imported, Light, Material, Scene, SceneError};
+use super::{BRIGHTEST, Color, Diffuse, Imported, Light, Material, Scene, SceneError};
 use crate::table::shortened;
 use glam::DVec3;
 use gridel_core::Up;
@@ -37,8 +37,6 @@ const PHONG_TO_HALFWAY: f64 = 4.0;
 
 /// The largest exponent of Phong's cosine that a material holds.
 const MOST_SHINE: f64 = 1024.0 / PHONG_TO_HALFWAY;
-/// The brightest light that a blob holds.
-const BRIGHTEST: f64 = 2047.0;
 
 pub(super) const IMPORTER: Entry = Entry {
     name: "NFF",

@@ -13,7 +13,7 @@
 use crate::scene::access::FileError;
 use crate::scene::text::{Source, Warnings};
 use crate::scene::texture::Images;
-use crate::scene::{Color, Diffuse, Material, NormalMap, SceneError, Texture, Wrap};
+use crate::scene::{BRIGHTEST, Color, Diffuse, Material, NormalMap, SceneError, Texture, Wrap};
 use crate::table::shortened;
 use glam::{DAffine2, DVec2};
 use std::collections::HashSet;
@@ -103,7 +103,7 @@ pub(super) fn read(
             "illum" => material.illumination = reader.illumination(number, warnings)?,
             "Ke" => {
                 material.emission = reader
-                    .color_up_to(2047.0, number, warnings)?
+                    .color_up_to(BRIGHTEST, number, warnings)?
                     .unwrap_or_default()
             }
             "Pr" => material.roughness = Some(reader.number_in([0.0, 1.0], number, warnings)?),

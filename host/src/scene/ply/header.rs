@@ -4,6 +4,7 @@ use super::super::size::{MOST_BYTES, MOST_PRIMITIVES};
 use super::super::text::Warnings;
 use super::super::{SceneError, SourceSpan};
 use super::payload::{Skipped, TOO_LARGE, range};
+use crate::scene::error::COPY_AGAIN;
 use crate::table::{grouped, printable, shortened};
 use ply_rs_bw::parser::{ParseError, Parser, Reader};
 use ply_rs_bw::ply::{ElementDef, Header, PropertyType};
@@ -200,7 +201,7 @@ pub(super) fn check(path: &Path, element: &ElementDef, bytes: usize) -> Result<(
                 shortened(&element.name),
                 element.properties.len()
             ),
-            "copy the file again, as binary, or export it again",
+            COPY_AGAIN,
         ));
     }
     let most = match element.name.as_str() {
@@ -267,30 +268,14 @@ pub(super) fn check(path: &Path, element: &ElementDef, bytes: usize) -> Result<(
     Ok(())
 }
 
-/// Properties that change a picture: what they are, and what the picture lacks.
-const IGNORED: [(&[&str], &str, &str); 1] = [(
-    &[
-        "red",
-        "green",
-        "blue",
-        "diffuse_red",
-        "diffuse_green",
-        "diffuse_blue",
-        "r",
-        "g",
-        "b",
-    ],
-    "color",
-    "the surface has one color",
-)];
-
 /// Warns of announced parts that change the picture and are not drawn.
 fn ignored(path: &Path, bytes: &[u8], warnings: &mut Warnings) {
     let header = bytes
         .split(|&byte| byte == b'\n')
         .map(String::from_utf8_lossy);
-    // The element whose properties follow, its count, and the warnings that it got.
-    let (mut element, mut count, mut is_reported) = (String::new(), 0, [false; IGNORED.len()]);
+    // The element whose properties follow, and its count.
+    let (mut element, mut count) = (String::new(), 0);
+    let mut is_color_reported = false;
     for (number, line) in (1..).zip(header) {
         let words: Vec<&str> = line.split_whitespace().collect();
         let place = SourceSpan {
@@ -302,20 +287,16 @@ fn ignored(path: &Path, bytes: &[u8], warnings: &mut Warnings) {
             ["element", name, number] => {
                 element = name.to_owned();
                 count = number.parse().unwrap_or(0);
-                is_reported = [false; IGNORED.len()];
+                is_color_reported = false;
             }
             ["comment", "TextureFile", ..] => {
                 let sentence = "textures are not drawn; the plain colors are used";
                 warnings.add_times(place, 1, sentence);
             }
             ["property", .., name] if element == "face" && count > 0 => {
-                let is_it = |(names, ..): &(&[&str], _, _)| names.contains(&name);
-                let Some(kind) = IGNORED.iter().position(is_it) else {
-                    continue;
-                };
-                if !std::mem::replace(&mut is_reported[kind], true) {
-                    let (_, what, lacking) = IGNORED[kind];
-                    let sentence = format!("the {what} of a {element} is ignored; {lacking}");
+                let is_color = COLOR.iter().any(|names| names.contains(&name));
+                if is_color && !std::mem::replace(&mut is_color_reported, true) {
+                    let sentence = "the color of a face is ignored; the surface has one color";
                     warnings.add_times(place, count, sentence);
                 }
             }

@@ -3,6 +3,7 @@
 use super::super::size::{MOST_PRIMITIVES, Size};
 use super::super::text::Warnings;
 use super::super::{SceneError, SourceSpan};
+use crate::scene::error::COPY_AGAIN;
 use crate::table::{grouped, printable, shortened};
 use ply_rs_bw::parser::{Parser, Reader};
 use ply_rs_bw::ply::{
@@ -138,11 +139,7 @@ impl<'p> Payload<'p> {
             "a list of {} {number} (from 0) has a length that is not a whole number at or above 0",
             element.name
         );
-        SceneError::new(
-            self.path,
-            cause,
-            "copy the file again, as binary, or export it again",
-        )
+        SceneError::new(self.path, cause, COPY_AGAIN)
     }
 
     fn ends_early(&self, element: &ElementDef, number: usize) -> SceneError {
@@ -151,8 +148,7 @@ impl<'p> Payload<'p> {
             element.count,
             shortened(&element.name)
         );
-        let remedy = "copy the file again, as binary, or export it again";
-        SceneError::new(self.path, cause, remedy)
+        SceneError::new(self.path, cause, COPY_AGAIN)
     }
 
     fn text<E: PropertyAccess>(

@@ -4,7 +4,7 @@ use super::item::{Content, Group, Item, PartItem};
 use super::material::Materials;
 use super::source::{Name, Source, Span, key, nearest};
 use crate::scene::size::{Keys, MOST_PRIMITIVES, Size, primitives};
-use crate::scene::{Object, Scene, SceneError};
+use crate::scene::{Scene, SceneError};
 use crate::table::shortened;
 use std::collections::{BTreeMap, HashMap};
 
@@ -242,7 +242,7 @@ pub(super) fn find<'g>(
 }
 
 fn imported_size(scene: &Scene) -> Size {
-    let objects = objects_of(scene);
+    let objects = scene.all_objects();
     let objects = objects.map(|it| Size::of(&it.shape, it.name.len(), &it.attributes));
     let instances = scene.instances.iter().map(|it| Size {
         objects: 1,
@@ -255,7 +255,7 @@ fn imported_size(scene: &Scene) -> Size {
 /// Returns the primitives of an import. Instances, joints and keys count as well, so that they do not multiply at no
 /// cost.
 fn imported(scene: &Scene) -> u64 {
-    let objects = objects_of(scene).map(|object| primitives(&object.shape));
+    let objects = scene.all_objects().map(|object| primitives(&object.shape));
     let others = scene.instances.len() + scene.joints.len();
     objects.sum::<u64>() + others as u64 + joint_keys(scene)
 }
@@ -265,10 +265,4 @@ fn imported(scene: &Scene) -> u64 {
 fn joint_keys(scene: &Scene) -> u64 {
     let tracks = scene.tracks.iter().filter(|it| it.target.is_of_joint());
     tracks.map(|it| it.keys.len() as u64).sum()
-}
-
-/// A scene's own objects and those of its parts.
-fn objects_of(scene: &Scene) -> impl Iterator<Item = &Object> {
-    let of_parts = scene.parts.iter().flat_map(|part| &part.objects);
-    scene.objects.iter().chain(of_parts)
 }

@@ -252,9 +252,7 @@ fn add_lights(
 
 /// A warning for each track of a material that no object has.
 fn moving_nothing(scene: &Scene) -> Vec<String> {
-    let of_parts = scene.parts.iter().flat_map(|part| &part.objects);
-    let objects = scene.objects.iter().chain(of_parts);
-    let used: HashSet<usize> = objects.map(|it| it.material).collect();
+    let used: HashSet<usize> = scene.all_objects().map(|it| it.material).collect();
     let tracks = scene.tracks.iter();
     tracks
         .filter(|track| track.target.is_of_material() && !used.contains(&track.index))

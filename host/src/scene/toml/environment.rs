@@ -2,7 +2,7 @@
 
 use super::value::{Fields, Value};
 use crate::scene::access::Access;
-use crate::scene::{Environment, Panorama, SceneError, Sky, Sun};
+use crate::scene::{BRIGHTEST, Environment, Panorama, SceneError, Sky, Sun};
 
 /// The numbers of rows that a map can have.
 const SIZES: [u32; 5] = [16, 32, 64, 128, 256];
@@ -104,10 +104,10 @@ fn sun(table: Value<'_>) -> Result<Sun, SceneError> {
         }
     };
     let sun = Sun { color, ..sun };
-    if let Some(brightest) = sun.light().into_iter().find(|&it| it > 2047.0) {
+    if let Some(brightest) = sun.light().into_iter().find(|&it| it > BRIGHTEST) {
         return Err(value.error(
             format!(
-                "a sun as bright and as large needs a light of {brightest}; it must be at most 2047"
+                "a sun as bright and as large needs a light of {brightest}; it must be at most {BRIGHTEST}"
             ),
             "lower its brightness or its `angle`",
         ));

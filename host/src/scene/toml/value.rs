@@ -1,7 +1,7 @@
 //! Typed reads of TOML values whose errors point at the value.
 
 use super::source::{Name, Source, Span, nearest};
-use crate::scene::{Color, SceneError, SourceSpan};
+use crate::scene::{BRIGHTEST, Color, SceneError, SourceSpan};
 use crate::srgb::linear_of_srgb;
 use crate::table::shortened;
 use glam::DVec3;
@@ -180,13 +180,16 @@ impl<'a> Value<'a> {
 
     /// A color of light.
     pub(crate) fn radiance(self) -> Result<Color, SceneError> {
-        self.color_up_to(2047.0, "write numbers from 0 to 2047; 1 is display white")
+        self.color_up_to(
+            BRIGHTEST,
+            "write numbers from 0 to 2047; 1 is display white",
+        )
     }
 
     /// A color of a point or a spot without a falloff.
     pub(crate) fn radiance_of_points(self) -> Result<Color, SceneError> {
         self.color_up_to(
-            2047.0,
+            BRIGHTEST,
             "write numbers from 0 to 2047; with `falloff = \"square\"` a light may be brighter",
         )
     }
@@ -194,7 +197,7 @@ impl<'a> Value<'a> {
     /// The radiance of a light that is seen.
     pub(crate) fn radiance_of_visible(self) -> Result<Color, SceneError> {
         self.color_up_to(
-            2047.0,
+            BRIGHTEST,
             "write numbers from 0 to 2047; with `visible = false` a light may be brighter",
         )
     }

@@ -178,7 +178,7 @@ fn instances_that_coordinate_steps_take_off_stay_in_the_box() {
         let blob = compiled.blob;
         let tracks = gridel_core::Tracks::from_bytes(blob.bytes()).unwrap();
         for step in 0..=20 {
-            let time = crate::state::ticks(&tracks, f64::from(step) * 0.05);
+            let time = crate::state::ticks(&tracks, f64::from(step) * 0.05).unwrap();
             crate::state::Poses::at(&blob.scene().unwrap(), &tracks, time)
                 .unwrap_or_else(|error| panic!("{track}: {error}"));
         }
