@@ -6,18 +6,15 @@ mod absorption;
 mod accuracy;
 mod all_hits;
 mod apex;
-#[path = "blob/main.rs"]
 mod blob;
 mod boxes;
 mod c_header;
 mod camera_rays;
 mod certify;
 mod cylinder_cube;
-#[path = "deform/main.rs"]
 mod deform;
 mod depth_of_field;
 mod distances;
-#[path = "documents/main.rs"]
 mod documents;
 mod environment;
 mod explain;
@@ -28,7 +25,6 @@ mod grids;
 mod indirect;
 mod instances;
 mod large_scenes;
-#[path = "lattice/main.rs"]
 mod lattice;
 mod layers;
 mod lights;
@@ -40,7 +36,6 @@ mod origins;
 mod reference;
 mod render;
 mod shading;
-#[path = "shapes/main.rs"]
 mod shapes;
 mod spd;
 mod structures;

@@ -164,7 +164,7 @@ fn the_state_at_a_time_is_the_one_that_is_compiled() {
         (2.0, 1.0),
         (9.0, 1.0),
     ] {
-        let time = ticks(&tracks, seconds);
+        let time = ticks(&tracks, seconds).unwrap();
         let state = State::at(&blob, &scene, &tracks, time).expect("a state");
         let seen = state.apply(&scene).expect("in range");
         let other = built(&still(part));
@@ -282,9 +282,9 @@ fn a_camera_that_comes_to_see_nothing_is_an_error_with_its_time() {
     let blob = built(&file);
     let scene = blob.scene().expect("a scene");
     let tracks = Tracks::from_bytes(blob.bytes()).expect("tracks");
-    assert!(State::at(&blob, &scene, &tracks, ticks(&tracks, 0.9)).is_ok());
-    let error =
-        State::at(&blob, &scene, &tracks, ticks(&tracks, 1.0)).expect_err("inside of its target");
+    assert!(State::at(&blob, &scene, &tracks, ticks(&tracks, 0.9).unwrap()).is_ok());
+    let error = State::at(&blob, &scene, &tracks, ticks(&tracks, 1.0).unwrap())
+        .expect_err("inside of its target");
     assert!(matches!(
         error,
         StateError::Camera {
@@ -335,7 +335,8 @@ fn opposite_directions_of_light_cancel_out_to_the_earlier_one() {
     let scene = blob.scene().expect("a scene");
     let tracks = Tracks::from_bytes(blob.bytes()).expect("tracks");
     let direction = |seconds: f64| {
-        let state = State::at(&blob, &scene, &tracks, ticks(&tracks, seconds)).expect("a state");
+        let state =
+            State::at(&blob, &scene, &tracks, ticks(&tracks, seconds).unwrap()).expect("a state");
         state.apply(&scene).expect("in range").lights()[1].vector
     };
     let up = [0, 1 << 30, 0];
@@ -455,7 +456,7 @@ fn what_moves_has_room_at_every_time_in_scenes_of_every_width() {
         let scene = blob.scene().expect("a scene");
         let tracks = Tracks::from_bytes(blob.bytes()).expect("tracks");
         for time in [0.0, 0.5, 0.999, 1.0, 2.0] {
-            let state = State::at(&blob, &scene, &tracks, ticks(&tracks, time));
+            let state = State::at(&blob, &scene, &tracks, ticks(&tracks, time).unwrap());
             let applied = state.as_ref().map(|state| state.apply(&scene).map(drop));
             assert!(
                 matches!(applied, Ok(Ok(()))),

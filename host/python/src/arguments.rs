@@ -1,7 +1,7 @@
 //! Names and numbers that Python gives.
 
 use gridel_core::{Format, Scene, Structure};
-use gridel_host::compile::{CompileError, Options};
+use gridel_host::compile::CompileError;
 use gridel_host::explained;
 use pyo3::exceptions::{PyOSError, PyValueError};
 use pyo3::prelude::*;

@@ -5,7 +5,7 @@
 //! | `failure.rs` | why a command ends, and the exit code that says so |
 //! | `arguments/` | options that several commands have |
 //! | `input.rs` | a file or standard input |
-//! | `source.rs` | the blob or scene file that a command works on |
+//! | `source/` | the blob or scene file that a command works on |
 //! | `effects.rs` | what requires the effects of a scene |
 //! | `output.rs` | files and standard output |
 //! | `shell.rs` | completion scripts for shells, and man pages |

@@ -1,8 +1,8 @@
 //! Explains a ray or a pixel: the nodes that are visited, the hits, and the light that they bring.
 //!
 //! The renderer reports events through [`Observer::event`](gridel_core::Observer::event); this module only orders
-//! them. `recorder.rs` keeps them, `walk.rs` records a query's
-//! path through a structure, and `reader.rs` finds the rays. `explanation.rs` has their sums, and `text.rs` writes them
+//! them. `recorder.rs` keeps them, `walk/` records a query's
+//! path through a structure, and `reader.rs` finds the rays. `explanation.rs` has their sums, and `text/` writes them
 //! for people.
 
 mod explanation;

@@ -45,7 +45,7 @@ fn largest_error(scene: &SceneFile, until: f64) -> f64 {
     let mut largest = 0_f64;
     for step in 0..=100 {
         let seconds = f64::from(step) * until / 100.0;
-        let time = ticks(&tracks, seconds);
+        let time = ticks(&tracks, seconds).unwrap();
         let state = State::at(&blob, &loaded, &tracks, time)
             .unwrap_or_else(|error| panic!("{error}: {scene:?}"));
         let posed = state.apply(&loaded).expect("in range");

@@ -2,7 +2,7 @@
 
 use super::{repository, sources};
 use std::fs;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 /// The table of files at the head of a source; empty where there is none.
 fn table(source: &str) -> Vec<&str> {
@@ -64,6 +64,26 @@ fn tables_of_files_list_every_module() {
     }
     assert!(faults_of_all.is_empty(), "{}", faults_of_all.join("\n"));
     assert!(tables > 10, "{tables}");
+}
+
+#[test]
+fn modules_with_modules_are_in_their_folders() {
+    let tops = ["core", "host", "tests"].map(|top| sources(&repository().join(top)));
+    // Programs of tests have theirs by paths.
+    let is_program = |path: &PathBuf| path.parent().is_some_and(|it| it.ends_with("host/tests"));
+    let mut folders = 0;
+    for path in tops.into_iter().flatten().filter(|path| !is_program(path)) {
+        let Ok(files) = fs::read_dir(path.with_extension("")) else {
+            continue;
+        };
+        folders += 1;
+        for file in files {
+            let name = file.expect("a file").file_name();
+            let is_test = name == "tests.rs" || name == "tests";
+            assert!(is_test, "{}: {}", path.display(), name.display());
+        }
+    }
+    assert!(folders > 10, "{folders}");
 }
 
 #[test]

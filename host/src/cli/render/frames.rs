@@ -317,16 +317,3 @@ impl Rendered {
         )
     }
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn frames_are_a_range() {
-        assert_eq!(frames("0..48"), Ok(0..48));
-        for wrong in ["", "3..3", "5..1", "..2", "2..", "-1..2", "0..4294967296"] {
-            assert!(frames(wrong).is_err(), "{wrong}");
-        }
-    }
-}

@@ -9,7 +9,7 @@
 //! | `cylinder_cube.rs` | lists for pairs of gridels |
 //! | `census.rs` | what the paper's table takes, without building it |
 //! | `entry.rs` | nodes of the hierarchy for pairs of gridels |
-//! | `apex.rs` | lists for the rays of the eye and of lights |
+//! | `apex/` | lists for the rays of the eye and of lights |
 //! | `bundle.rs` | these rays, and what they are sorted by |
 //! | `ray_classes.rs` | lists for classes of rays by origin and direction |
 //! | `own_rays.rs` | the rays of the scene's own picture, where classes are fine |

@@ -2,7 +2,7 @@
 //!
 //! | file | what it holds |
 //! |---|---|
-//! | `tracks.rs` | tracks as records: times in ticks, values as integers |
+//! | `tracks/` | tracks as records: times in ticks, values as integers |
 //! | `joints.rs` | joints as records |
 //! | `morph.rs` | morph targets: motions of vertices, and weights |
 //! | `reach.rs` | the box that instances sweep with their joints |
