@@ -191,7 +191,7 @@ struct Rendered {
     unresolved: Vec<Unresolved>,
 }
 
-/// The inputs of frames.
+/// The inputs of a picture, or of frames.
 pub struct Shot<'s> {
     pub options: &'s TimeOptions,
     pub output: &'s Path,
