@@ -17,9 +17,17 @@ pub enum MorphError {
     /// The blob is not valid.
     #[error(transparent)]
     Blob(#[from] BlobError),
-    /// The mesh cannot be so.
+    /// Weights or meshes do not fit the morph targets.
     #[error(transparent)]
     Deform(#[from] DeformError),
+    /// The corners of a triangle come to lie on a line.
+    #[error("the corners of primitive {primitive}, a triangle of object {object}, lie on a line")]
+    Collapsed {
+        /// Number of the object in the scene and its parts.
+        object: u32,
+        /// Number of the triangle in the scene and its parts, in the order of the scene file.
+        primitive: u32,
+    },
 }
 
 /// Returns the blob of a scene with vertices, normals and boxes as its morph targets have them with these weights,
@@ -52,9 +60,11 @@ pub fn morphed(
 ) -> Result<Option<Blob>, MorphError> {
     let bytes = blob.bytes();
     let mut moved: Option<Buffer> = None;
-    let scenes = std::iter::once(scene).chain(scene.parts());
+    let of_part = |part| scene.first_primitive_of_part(part).unwrap_or(0);
+    let firsts = std::iter::once(0).chain((0..).map(of_part));
+    let scenes = std::iter::once(scene).chain(scene.parts()).zip(firsts);
     let meshes = scenes.zip(morph_targets(bytes)?).zip(blob_ranges(bytes)?);
-    for ((scene, targets), range) in meshes {
+    for (((mesh, first), targets), range) in meshes {
         if targets.is_empty() {
             continue;
         }
@@ -64,10 +74,17 @@ pub fn morphed(
             copy
         });
         let moved = &mut moved.bytes_mut()[range];
-        match scene.header().storage_bits {
-            16 => write::<Vertex16>(scene, &targets, weights, moved)?,
-            _ => write::<Vertex24>(scene, &targets, weights, moved)?,
-        }
+        let written = match mesh.header().storage_bits {
+            16 => write::<Vertex16>(mesh, &targets, weights, moved),
+            _ => write::<Vertex24>(mesh, &targets, weights, moved),
+        };
+        written.map_err(|error| match error {
+            DeformError::Collapsed { primitive } => MorphError::Collapsed {
+                object: scene.object(first + primitive),
+                primitive: first + primitive,
+            },
+            error => error.into(),
+        })?;
         seal(moved);
     }
     Ok(moved.map(|mut moved| {

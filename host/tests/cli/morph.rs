@@ -95,3 +95,21 @@ fn structures_that_keep_meshes_at_rest_are_warned_of() {
     let text = folder.done(&["inspect", "a.gridel"]);
     assert!(text.contains("weights of 1 morph target"), "{text}");
 }
+
+#[test]
+fn collapsed_triangles_are_named_with_their_object() {
+    let folder = folder();
+    let sail = "[[MESH]]\nkind = 'triangle'\nname = 'sail'\nvertices = [[0, 0, 0], [1, 0, 0], [0, 1, 0]]\n\
+                morph = { up = [[0, 0, 0], [0, 0, 0], [2, -1, 0]] }\n";
+    let own = sail.replace("MESH", "object");
+    let part = sail.replace("MESH", "part.object") + "[[instance]]\npart = 'boat'\n";
+    let ball = "[[object]]\nkind = 'sphere'\ncenter = [0, 5, 0]\nradius = 1\n";
+    for mesh in [own, format!("[[part]]\nname = 'boat'\n{part}")] {
+        let track = "[[track]]\ntarget = 'morph.up.weight'\ntimes = [0, 2]\nvalues = [0, 1]\n";
+        let scene = format!("[morph.up]\n{ball}{mesh}{track}");
+        folder.write("sail.toml", scene.as_bytes());
+        let command = ["render", "sail.toml", "--time", "2", "-o", "x.png"];
+        let words = ["at 2 s object \"sail\"", "primitive 1, a triangle"];
+        folder.fails(1, &command, &words);
+    }
+}

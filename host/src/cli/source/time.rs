@@ -5,8 +5,10 @@ use crate::cli::changes::Changes;
 use crate::cli::failure::Failure;
 use gridel_core::format::track::Track;
 use gridel_core::{Scene, Tracks};
+use gridel_host::morphed::MorphError;
 use gridel_host::scene::Posed;
 use gridel_host::state::{State, StateError, ticks};
+use gridel_host::table::shortened;
 use gridel_host::view::Notes;
 
 /// Returns the tick of a time in seconds.
@@ -106,7 +108,8 @@ impl Source {
             Ok(state)
         };
         let mut state = at().map_err(|error: StateError| {
-            let cause = format!("{}: {error}", self.input.path().display());
+            let what = self.named(scene, &error);
+            let cause = format!("{}: {what}", self.input.path().display());
             Failure::failed(cause, "change the tracks, or ask for other times")
         })?;
         if let Some(options) = &self.for_pictures {
@@ -117,6 +120,23 @@ impl Source {
             state,
             time: Some(time),
         })
+    }
+
+    /// Returns the sentence of an error, with the name of the object that it is about.
+    fn named(&self, scene: &Scene<'_>, error: &StateError) -> String {
+        let StateError::Mesh { seconds, source } = error else {
+            return error.to_string();
+        };
+        let MorphError::Collapsed { object, primitive } = source else {
+            return error.to_string();
+        };
+        let names = self.names(scene);
+        let name = names.object(*object).map(shortened);
+        let name = name.map_or_else(|| object.to_string(), |name| format!("{name:?}"));
+        format!(
+            "at {seconds} s object {name} cannot take its shape: the corners of primitive {primitive}, a triangle, lie \
+             on a line"
+        )
     }
 
     /// Returns the time that the scene is shown at, in ticks; `None` for one without a time.
