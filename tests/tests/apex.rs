@@ -132,6 +132,44 @@ fn a_moved_camera_falls_back() {
     assert_eq!(fallen_back::<f32, Apex>(&scene, &rays(65.0)), 1024);
 }
 
+/// Where a list has few cells, they reach far beyond the picture.
+#[test]
+fn rays_beyond_the_picture_find_all_objects() {
+    fn in_format<N: Number>(name: &str, scene: &Scene<'_>) {
+        let eye = scene.view().eye.map(|x| x as f64 / 8192.0);
+        let sides = scene.bounds().0.map(|side| side.map(f64::from));
+        // All over the scene's box, and beside it.
+        let ray = |number: u32| {
+            let [x, y] = [number % 64, number / 64].map(|part| f64::from(part) / 63.0);
+            let at = [1.2 * x - 0.1, 1.2 * y - 0.1, (x * 7.0 + y * 5.0) % 1.0];
+            let direction = [0, 1, 2].map(|k| {
+                let [low, high] = sides[k];
+                low + (high - low) * at[k] - eye[k]
+            });
+            Ray::<N>::from_f64(scene.bounds(), eye, direction, 0.0, 1e9).ok()
+        };
+        let rays: Vec<_> = (0..4096).filter_map(ray).collect();
+        let fallen = fallen_back::<N, Apex>(scene, &rays);
+        assert!(fallen < rays.len(), "{name}: no ray finds a list");
+    }
+    for count in [1, 2, 5, 30] {
+        for fov_degrees in [12.0, 41.0, 80.0, 120.0] {
+            let mut scene = scenes::soup(count, count as usize, 0.4);
+            scene.camera = Some(Camera {
+                eye: DVec3::new(0.3, 0.2, 4.0),
+                target: DVec3::new(0.0, 0.1 * fov_degrees / 40.0, 0.0),
+                up: DVec3::Y,
+                fov_degrees,
+            });
+            let blob = compile(&scene, &options(Structure::Apex, None))
+                .expect("compiles")
+                .blob;
+            let scene = blob.scene().expect("a scene");
+            every_format!(in_format(&format!("{count} at {fov_degrees}"), &scene));
+        }
+    }
+}
+
 #[test]
 fn classes_serve_the_scenes_own_rays_within_their_budget() {
     // A view in which rays run in many directions.

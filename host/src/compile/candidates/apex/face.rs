@@ -30,6 +30,14 @@ pub(super) struct Seen {
     pub(super) ranges: Ranges,
 }
 
+impl Seen {
+    /// Returns true if some of the rays are within ranges.
+    pub(super) fn is_within(&self, ranges: Ranges) -> bool {
+        let mut sides = self.ranges.iter().zip(ranges);
+        sides.all(|(own, of)| own[0] <= of[1] && own[1] >= of[0])
+    }
+}
+
 impl Face {
     /// Returns the face as seen from a point; `None` if no target is visible.
     pub(super) fn of_point(
@@ -50,10 +58,13 @@ impl Face {
             start: apex[axis],
             rays: Rays::Through(Gridels::across(axis).map(|across| apex[across])),
         };
-        let face = Self::of(bundle, targets, picture.unwrap_or([[-1.0, 1.0]; 2]))?;
+        let face = Self::of(bundle, targets, [[-1.0, 1.0]; 2])?;
+        let Some(window) = picture else {
+            return Some(face);
+        };
         // All of the picture, so that rays that meet nothing find an empty list.
-        let window = picture.unwrap_or(face.window);
-        Some(Self { window, ..face })
+        let is_visible = face.seen.iter().any(|it| it.is_within(window));
+        is_visible.then_some(Self { window, ..face })
     }
 
     /// Returns the face as seen from a direction.

@@ -81,35 +81,35 @@ impl<'t> Window<'t> {
             let steps = width.max(f64::from(cells[side]) + 1.0);
             (f64::from(cells[side]) * 4_294_967_296.0 / steps).min(f64::from(u32::MAX)) as u32
         });
-        let start = seen
-            .iter()
-            .map(|it| it.depths[0])
-            .fold(f64::INFINITY, f64::min);
-        let last = seen.iter().map(|it| it.depths[1]).fold(0.0, f64::max);
-        let start = (2.0 * start).floor() as i32;
-        let steps = ((2.0 * last).ceil() as u32)
-            .saturating_sub(start as u32)
-            .max(1);
         let record = ApexWindow {
             low: low.map(|x| x as i32),
             scale,
             cells: cells.map(|cells| cells as u16),
             first_cell,
-            start,
-            a_step: (u32::from(Apex::LAST_LEVEL) << 24) / steps,
+            start: 0,
+            a_step: 0,
         };
         let mut window = Self {
             record,
             bundle: *bundle,
             targets,
-            seen: seen.clone(),
+            seen: Vec::new(),
             columns: vec![Vec::new(); cells[0] as usize],
-            last,
+            last: 0.0,
         };
+        // The scale is rounded down, so the last cells reach beyond the face's window: all that is seen through them
+        // counts.
+        let sides = [0, 1].map(|side| {
+            let last = window.range(side, cells[side] - 1);
+            [window.range(side, 0)[0], last[1]]
+        });
+        let seen = seen.iter().filter(|it| it.is_within(sides)).copied();
+        window.seen = seen.collect();
+        window.count_depths();
         let edges: Vec<[f64; 2]> = (0..cells[0])
             .map(|column| window.range(0, column))
             .collect();
-        for (place, one) in seen.iter().enumerate() {
+        for (place, one) in window.seen.iter().enumerate() {
             let across = one.ranges[0];
             let first = edges.partition_point(|&[_, end]| end < across[0]);
             for (column, edge) in window.columns.iter_mut().zip(&edges).skip(first) {
@@ -120,6 +120,18 @@ impl<'t> Window<'t> {
             }
         }
         window
+    }
+
+    /// Counts levels from where the first target begins to where the last one ends.
+    fn count_depths(&mut self) {
+        let depths = self.seen.iter().map(|it| it.depths);
+        let [start, last] = depths.fold([f64::INFINITY, 0.0], |[start, last], one| {
+            [start.min(one[0]), last.max(one[1])]
+        });
+        self.last = last;
+        self.record.start = (2.0 * start).floor() as i32;
+        let steps = ((2.0 * last).ceil() as u32).saturating_sub(self.record.start as u32);
+        self.record.a_step = (u32::from(Apex::LAST_LEVEL) << 24) / steps.max(1);
     }
 
     /// The number of the cell behind the window's last.
