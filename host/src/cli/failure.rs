@@ -19,6 +19,9 @@ Exit codes:
   3    the scene does not fit the given memory
   130  interrupted; no output is incomplete";
 
+/// The exit code of a program that is interrupted.
+pub const INTERRUPTED: i32 = 130;
+
 /// Breaks lines of an error at spaces, and not within a path or a flag, so that these can be copied.
 pub fn break_lines_at_spaces() {
     // Fails only where a handler has been set before, and then lines break as that one has it.

@@ -103,7 +103,7 @@ pub fn run(memory: &PeakAlloc) -> ExitCode {
             // What is shown of progress ends in the middle of a line.
             unfinished::within_limits(|| drop(io::stderr().write_all(b"\r\x1b[2K")));
         }
-        unfinished::exit_removing_unfinished(130)
+        unfinished::exit_removing_unfinished(failure::INTERRUPTED)
     });
     if let Err(cause) = gridel_host::simd::from_environment() {
         return failure::Failure::usage(cause, "unset the variable for the fastest").report();

@@ -1,13 +1,14 @@
 //! `gridel view`: a scene, live in a window or a terminal.
 
 use super::arguments::{PictureOptions, SceneOptions, TargetPoint, TraceOptions, seconds};
-use super::failure::Failure;
+use super::failure::{Failure, INTERRUPTED};
 use super::output::print;
 use super::source::Source;
 use clap::Args;
 use gridel_core::{Scene, Settings, Structure};
+use gridel_host::output::unfinished::exit_removing_unfinished;
 use gridel_host::render::{MOST_PIXELS, too_many_pixels};
-use gridel_host::view::terminal::{self, fitting_size};
+use gridel_host::view::terminal::{self, End, fitting_size};
 use gridel_host::view::{Refiner, State, key_help};
 use std::io::{self, IsTerminal};
 use std::path::PathBuf;
@@ -106,12 +107,16 @@ fn in_terminal(
     let refiner = Refiner::new(scene);
     let Settings { width, height, .. } = state.settings();
     if io::stdin().is_terminal() && io::stdout().is_terminal() {
-        return terminal::live(&refiner, state, is_fixed).map_err(|error| {
+        let end = terminal::live(&refiner, state, is_fixed).map_err(|error| {
             Failure::failed(
                 format!("the terminal cannot be written: {error}"),
                 "use another terminal",
             )
-        });
+        })?;
+        return match end {
+            End::Quit => Ok(()),
+            End::Interrupted => exit_removing_unfinished(INTERRUPTED),
+        };
     }
     if !is_fixed {
         state.resize(fitting_size([width, height]));

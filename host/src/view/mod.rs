@@ -13,6 +13,7 @@
 //! | `notes.rs` | what a saved camera says about its scene |
 //! | `save.rs` | a camera as TOML |
 //! | `terminal.rs` | half blocks in a terminal |
+//! | `terminal_keys.rs` | keys as terminals send them |
 //! | `window.rs` | a window, with the Cargo feature `view` |
 
 mod blocks;
@@ -26,6 +27,7 @@ mod shot;
 mod state;
 mod summary;
 pub mod terminal;
+mod terminal_keys;
 #[cfg(feature = "view")]
 pub mod window;
 

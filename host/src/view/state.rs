@@ -17,6 +17,9 @@ const ZOOM: f64 = 0.8;
 /// The nearest distance to the target, in multiples of the first camera's. The furthest is where coordinates end.
 const NEAREST: f64 = 1e-4;
 
+/// How often a part of a zoom is halved to come to the farthest place.
+const HALVINGS: u32 = 16;
+
 /// The view of a scene. Everything that changes it is a function without other effects.
 pub struct State<'s> {
     scene: &'s Scene<'s>,
@@ -164,8 +167,21 @@ impl<'s> State<'s> {
         self.moved(self.camera.panned(-right, down))
     }
 
-    /// Moves the camera nearer by a number of steps, or further away.
+    /// Moves the camera nearer by a number of steps, or further away: as far as it can go.
     pub fn zoom(&mut self, steps: f64) -> Effect {
+        let mut effect = Effect::Nothing;
+        let (mut left, mut part) = (steps, steps);
+        for _ in 0..HALVINGS {
+            if left.abs() >= part.abs() && self.zoom_at_once(part) == Effect::Redraw {
+                effect = Effect::Redraw;
+                left -= part;
+            }
+            part /= 2.0;
+        }
+        effect
+    }
+
+    fn zoom_at_once(&mut self, steps: f64) -> Effect {
         let [first, now] = [self.first_camera, self.camera].map(|it| it.eye.distance(it.target));
         let wanted = (now * libm::pow(ZOOM, steps)).max(NEAREST * first);
         self.moved(self.camera.zoomed(wanted / now))
@@ -287,6 +303,10 @@ mod tests {
             assert!(furthest > 2.0 * first && state.camera.in_blob(state.scene).is_ok());
             assert_eq!(state.zoom(1.0), Effect::Redraw);
             assert!(distance(&state) < furthest);
+            // At once, too.
+            state.apply(Action::Home);
+            assert_eq!(state.zoom(-1000.0), Effect::Redraw);
+            assert!((distance(&state) / furthest - 1.0).abs() < ZOOM.recip() - 1.0);
         });
     }
 

@@ -6,6 +6,7 @@ use super::refine::Refiner;
 use super::save::save;
 use super::shot::ViewError;
 use super::state::{Effect, State};
+use super::terminal_keys::{Pressed, Sequences};
 use crate::output::unfinished::{gives_back, within_limits};
 use console::Term;
 use std::fmt::Write as _;
@@ -98,11 +99,20 @@ pub fn one_frame(refiner: &Refiner<'_>, state: &State<'_>) -> Result<String, Vie
     })
 }
 
+/// The reason why a scene is shown no longer.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum End {
+    /// The user quit, or no more keys can be read.
+    Quit,
+    /// The user interrupted the program.
+    Interrupted,
+}
+
 /// Shows a scene until the user quits. The picture fits the terminal, or keeps its size if `is_fixed`.
 ///
 /// # Errors
 /// If standard output cannot be written.
-pub fn live(refiner: &Refiner<'_>, state: State<'_>, is_fixed: bool) -> io::Result<()> {
+pub fn live(refiner: &Refiner<'_>, state: State<'_>, is_fixed: bool) -> io::Result<End> {
     let (sender, receiver) = channel();
     let wake = sender.clone();
     // Before a key is read, which changes the terminal's settings for that time.
@@ -133,28 +143,25 @@ enum Event {
     OtherKey,
     /// There is more of the picture.
     Drawn,
-    /// No more keys can be read.
-    End,
+    End(End),
 }
 
 /// Sends keys until one of them quits.
 fn read_keys(sender: &Sender<Event>) {
     let terminal = Term::stdout();
+    let mut sequences = Sequences::default();
     loop {
-        let event = match terminal.read_key_raw() {
-            Ok(console::Key::Char(c)) => Event::Key(Key::Character(c)),
-            Ok(console::Key::ArrowLeft) => Event::Key(Key::Left),
-            Ok(console::Key::ArrowRight) => Event::Key(Key::Right),
-            Ok(console::Key::ArrowUp) => Event::Key(Key::Up),
-            Ok(console::Key::ArrowDown) => Event::Key(Key::Down),
-            Ok(console::Key::Escape) => Event::Key(Key::Escape),
-            Ok(console::Key::CtrlC) | Err(_) => Event::End,
-            Ok(_) => Event::OtherKey,
+        let event = match terminal.read_key_raw().map(|sent| sequences.next(&sent)) {
+            Ok(None) => continue,
+            Ok(Some(Pressed::Key(key))) => Event::Key(key),
+            Ok(Some(Pressed::Other)) => Event::OtherKey,
+            Ok(Some(Pressed::Interrupt)) => Event::End(End::Interrupted),
+            Err(_) => Event::End(End::Quit),
         };
         let is_last = match event {
             Event::Key(key) => action(key) == Some(Action::Quit),
             Event::OtherKey | Event::Drawn => false,
-            Event::End => true,
+            Event::End(_) => true,
         };
         if sender.send(event).is_err() || is_last {
             return;
@@ -238,7 +245,7 @@ struct Live<'r, 's> {
 }
 
 impl Live<'_, '_> {
-    fn run(&mut self, events: &Receiver<Event>) -> io::Result<()> {
+    fn run(&mut self, events: &Receiver<Event>) -> io::Result<End> {
         self.refiner.show(self.state.shot());
         let mut is_drawn = false;
         let mut last = Instant::now();
@@ -252,14 +259,15 @@ impl Live<'_, '_> {
             match events.recv_timeout(timeout) {
                 Ok(Event::Drawn) => is_drawn = true,
                 Ok(Event::Key(key)) => match self.press(action(key))? {
-                    Effect::Quit => return Ok(()),
+                    Effect::Quit => return Ok(End::Quit),
                     _ => is_drawn = true,
                 },
                 Ok(Event::OtherKey) => {
                     self.press(None)?;
                     is_drawn = true;
                 }
-                Ok(Event::End) | Err(RecvTimeoutError::Disconnected) => return Ok(()),
+                Ok(Event::End(end)) => return Ok(end),
+                Err(RecvTimeoutError::Disconnected) => return Ok(End::Quit),
                 Err(RecvTimeoutError::Timeout) => {}
             }
             if is_drawn && !self.shows_keys && last.elapsed() >= FRAME_TIME {

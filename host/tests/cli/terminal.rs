@@ -210,8 +210,12 @@ mod live {
         }
 
         /// Waits for the end of the program, and returns what it wrote last.
-        fn end(mut self) -> String {
-            assert!(self.child.wait().unwrap().success());
+        fn end(self) -> String {
+            self.end_with(0)
+        }
+
+        fn end_with(mut self, exit_code: i32) -> String {
+            assert_eq!(self.child.wait().unwrap().code(), Some(exit_code));
             self.shown.extend(self.output.iter().flatten());
             String::from_utf8(self.shown).unwrap()
         }
@@ -232,8 +236,9 @@ mod live {
         let first = terminal.frame("; h shows the keys");
         // 40 columns are the limit.
         assert!(first == rendered(&folder, &["quick.gridel"], [40, 30]));
-        // To the right, up, nearer, and in another number format.
-        terminal.press("\x1b[C\x1b[A+f");
+        // To the right, up, nearer, and in another number format. Escape is the begin of other keys, and no key.
+        terminal.press("\x1b");
+        terminal.press("[C\x1bOA+f");
         let moved = terminal.frame("f64, flagged, 1 sample; h");
         assert!(moved != first);
         terminal.press("s");
@@ -318,7 +323,7 @@ mod live {
         let mut terminal = Terminal::open(&folder, "quick.gridel");
         terminal.frame("; h shows the keys");
         terminal.press("\x03");
-        let end = terminal.end();
+        let end = terminal.end_with(130);
         assert!(end.ends_with("\x1b[?25h\x1b[?1049l"), "{end:?}");
     }
 }
