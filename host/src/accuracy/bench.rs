@@ -184,7 +184,7 @@ pub struct Bench<'s> {
     exact: HashMap<Key, (Vec<[u16; 3]>, usize)>,
 }
 
-/// What compiling goes by: lattice bits, cutoff, effects left out.
+/// The settings that a blob depends on: lattice bits, cutoff, effects left out.
 type BlobKey = (u8, u64, Effects);
 
 /// Most bytes of blobs that are kept. Others are compiled again when they are needed.
@@ -456,7 +456,7 @@ mod tests {
     const BALL: &str = "[[object]]\nkind = 'sphere'\ncenter = [0, 0, 0]\nradius = 1\nname = 'ball'\n\
                         [[object]]\nkind = 'sphere'\ncenter = [2, 0, 1]\nradius = 1\nname = 'other'";
 
-    /// What is dropped and made again changes no figure, and nothing is left when all is measured.
+    /// Blobs that are dropped and compiled again change no figure, and nothing is left when all is measured.
     #[test]
     fn bench_keeps_what_later_settings_need_and_no_more() {
         let imported = crate::scene::read("ball.toml".as_ref(), BALL.into(), &Default::default());

@@ -25,7 +25,7 @@ pub struct Aim<N> {
 }
 
 impl<N> Aim<N> {
-    /// The same light, seen along another way.
+    /// Returns the light as seen along another way.
     pub fn along(self, way: Three<N>) -> Self {
         Self { way, ..self }
     }

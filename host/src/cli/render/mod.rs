@@ -119,7 +119,7 @@ enum Target<'a> {
 }
 
 impl<'a> Target<'a> {
-    /// Whether the picture is linear radiance.
+    /// Returns true if the picture is linear radiance.
     fn is_linear(&self) -> bool {
         matches!(self, Self::Picture(outputs) if outputs.is_linear())
     }
@@ -267,7 +267,7 @@ struct Blurred {
     exposure: Exposure,
     /// The changes at each moment.
     changes: Vec<Changes>,
-    /// What the shutter is warned of.
+    /// The warnings of the shutter.
     warnings: Vec<String>,
 }
 
