@@ -421,7 +421,7 @@ impl Stats {
             ("number", Align::Right),
             ("per ray", Align::Right),
         ]);
-        let a_ray = |count: u64| format!("{:.2}", count as f64 / self.rays.max(1) as f64);
+        let per_ray = |count: u64| format!("{:.2}", count as f64 / self.rays.max(1) as f64);
         for (what, count) in [
             ("rays", self.rays),
             ("  primary", self.primary),
@@ -435,7 +435,7 @@ impl Stats {
             ("primitives tested", self.primitives),
             ("instances entered", self.instances),
         ] {
-            table.row([what.to_owned(), grouped(count), a_ray(count)]);
+            table.row([what.to_owned(), grouped(count), per_ray(count)]);
         }
         table.row([
             String::from("rays per second"),

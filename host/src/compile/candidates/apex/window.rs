@@ -96,7 +96,7 @@ impl<'t> Window<'t> {
             cells: cells.map(|cells| cells as u16),
             first_cell,
             start,
-            a_step: (u32::from(Apex::LAST_LEVEL) << 24) / steps,
+            levels_per_step: (u32::from(Apex::LAST_LEVEL) << 24) / steps,
         };
         let mut window = Self {
             record,
