@@ -250,7 +250,7 @@ fn frusta_of_small_integers() {
 
 /// Cases that went wrong once.
 #[test]
-fn literal_cones() {
+fn cones_that_went_wrong_once_hold_the_bounds() {
     let literal =
         |base: [f64; 3], apex: [f64; 3], base_radius: f64, rays: &[([f64; 3], [f64; 3])]| {
             let solid = Solid::Cone(Cone {

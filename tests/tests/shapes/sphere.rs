@@ -74,7 +74,7 @@ fn a_huge_sphere_as_ground() {
 
 /// Tangents to within a step of the lattice, and exact ones, which are hits (D3).
 #[test]
-fn tangents() {
+fn tangents_hold_the_bounds_and_exact_ones_hit() {
     let mut random = Random(3);
     let cases: Vec<Case> = (0..part_of(40, 2000))
         .map(|_| {

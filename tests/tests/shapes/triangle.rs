@@ -122,7 +122,7 @@ fn coplanar_rays_and_triangles_without_area() {
 /// Triangles on which other tracers failed (D10). No ray hits three corners on a line (pbrt's
 /// `Triangle.BadCases`). Another ray is shot at a vertex that two triangles share.
 #[test]
-fn literal_traps() {
+fn rays_miss_corners_on_a_line_and_hit_shared_vertices() {
     let line = [
         DVec3::new(-1_113.454_59, -79.049_614, -56.243_190_8),
         DVec3::new(-1_113.454_59, -87.092_269_9, -56.243_190_8),

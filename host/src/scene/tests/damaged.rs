@@ -104,7 +104,7 @@ fn damage(extension: &str, bytes: &[u8], cuts: usize, flips: usize) {
 }
 
 #[test]
-fn damaged_files() {
+fn damaged_files_load_whole_or_fail_with_a_remedy() {
     for (extension, text) in [
         ("obj", OBJ),
         ("nff", NFF),

@@ -9,7 +9,7 @@ fn material(made: Value) -> Material {
 }
 
 #[test]
-fn materials() {
+fn materials_take_mirror_glass_and_glow_from_gltf() {
     let matte = material(json!({"name": "matte",
         "pbrMetallicRoughness": {"baseColorFactor": [0.5, 0.25, 1, 1], "metallicFactor": 0}}));
     assert_eq!(matte.name, "matte");

@@ -146,7 +146,7 @@ fn numbers_that_are_not_finite_are_reported_with_what_follows() {
 
 /// An accessor may replace elements of its view, or of nothing.
 #[test]
-fn sparse_positions() {
+fn sparse_positions_replace_those_of_their_view() {
     let mut bytes = square();
     bytes.extend([2, 0, 0, 0]);
     bytes.extend([9.0_f32, 8.0, 7.0].iter().flat_map(|x| x.to_le_bytes()));
