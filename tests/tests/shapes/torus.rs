@@ -112,6 +112,7 @@ fn rays_nearly_along_the_axis() {
         let hit = closest::<N, List>(scene, &ray.expect("a ray"), &mut NoCount)?;
         Some(N::far_to_f64(hit.t))
     }
+
     fn judge<N: Number>(axis: DVec3) {
         let mut random = Random(76);
         let (major_radius, minor_radius) = (25_600.0, 3840.0);
