@@ -81,7 +81,7 @@ fn concave_arrow_gets_two_triangles() {
 }
 
 #[test]
-fn collinear_and_repeated_vertices() {
+fn collinear_and_repeated_vertices_are_triangulated_exactly() {
     check(
         &[(0.0, 0.0), (1.0, 0.0), (2.0, 0.0), (2.0, 2.0), (0.0, 2.0)],
         3,
@@ -93,7 +93,7 @@ fn collinear_and_repeated_vertices() {
 }
 
 #[test]
-fn a_hole_joined_by_a_bridge() {
+fn a_hole_joined_by_a_bridge_stays_open() {
     let outline = [
         (0.0, 0.0),
         (4.0, 0.0),
@@ -110,7 +110,7 @@ fn a_hole_joined_by_a_bridge() {
 }
 
 #[test]
-fn a_hole_that_touches_the_outline() {
+fn a_hole_that_touches_the_outline_stays_open() {
     check(
         &[
             (0.0, 0.0),

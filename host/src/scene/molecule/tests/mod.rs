@@ -155,7 +155,7 @@ fn model_is_chosen_by_its_place_in_the_file() {
 }
 
 #[test]
-fn elements_from_names() {
+fn pdb_names_give_elements() {
     let symbol = |record: &str, name: &str| {
         let text = format!("{record:<6}    1 {name} UNK A   1       0.000   0.000   0.000\n");
         symbols(&pdb(&text).unwrap())[0].to_owned()
@@ -306,7 +306,7 @@ fn mmcif_atoms_take_the_numbers_of_the_author() {
 }
 
 #[test]
-fn mmcif_without_a_loop() {
+fn mmcif_without_a_loop_gives_one_atom() {
     let text = "data_x\n_cell.length_a 1\n_atom_site.type_symbol C\n_atom_site.Cartn_x 1\n_atom_site.Cartn_y 2\n\
                 _atom_site.Cartn_z 3\n_atom_site.label_atom_id CA\n_exptl.method X\n";
     let imported = cif(text).unwrap();
