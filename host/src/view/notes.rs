@@ -1,4 +1,4 @@
-//! What a saved camera says about its scene.
+//! Notes of a saved camera about its scene.
 
 use crate::compile::Unstated;
 

@@ -6,14 +6,17 @@ use std::fs;
 /// Words with which no summary begins.
 const BEGINNINGS: [&str; 4] = ["What", "Whether", "Of", "The same"];
 
+/// The marks of comments of documentation.
+const MARKS: [&str; 2] = ["///", "//!"];
+
 /// The summaries of a source: the first line of each comment of documentation, with its number.
 fn summaries(source: &str) -> impl Iterator<Item = (usize, &str)> {
-    let before = [""].into_iter().chain(source.lines());
-    let lines = before.zip(source.lines()).zip(1..);
-    lines.filter_map(|((before, line), number)| {
-        let is_first = !before.trim_start().starts_with("///");
-        let summary = line.trim_start().strip_prefix("/// ")?;
-        is_first.then_some((number, summary))
+    let behind_mark = |line| MARKS.iter().find_map(|mark| str::strip_prefix(line, mark));
+    let lines = [""].into_iter().chain(source.lines()).map(str::trim_start);
+    let pairs = lines.clone().zip(lines.skip(1)).zip(1..);
+    pairs.filter_map(move |((before, line), number)| {
+        let summary = behind_mark(line)?.strip_prefix(' ')?;
+        behind_mark(before).is_none().then_some((number, summary))
     })
 }
 
@@ -43,11 +46,11 @@ fn summaries_begin_with_the_thing_or_a_verb() {
 
 #[test]
 fn summaries_that_begin_otherwise_are_found() {
-    let source = "/// The same light.\n/// What follows is no summary.\nfn a() {}\n\n    /// Whether it is.\n    b: bool,\n\
+    let source = "//! The same light.\n//! What follows is no summary.\n\n    /// Whether it is.\n    /// Of it.\n    b: bool,\n\
                   /// Offers more.\nfn c() {}\n/// What?\n// /// Of a comment.\nfn d() {}\n";
     let found = summaries(source).filter(|(_, summary)| is_indirect(summary));
     assert_eq!(
         found.collect::<Vec<_>>(),
-        [(1, "The same light."), (5, "Whether it is."), (9, "What?")]
+        [(1, "The same light."), (4, "Whether it is."), (9, "What?")]
     );
 }
