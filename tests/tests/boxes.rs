@@ -329,7 +329,7 @@ fn any_hit_is_a_closest_hit_before_the_end() {
 /// Builds every structure with as many copies of one primitive as could overflow leaves and
 /// counters (A12). The first of them is hit (A15).
 #[test]
-fn any_number_of_the_same_primitive() {
+fn the_first_of_any_number_of_equal_primitives_is_hit() {
     fn first<N: Number>(scene: &Scene<'_>, count: usize) {
         let ray = UnitRay::new([0.0, 0.0, -60_000.0], [0.01, 0.02, 1.0]);
         let ready = ray.ready::<N>(scene).expect("a ray");

@@ -129,7 +129,7 @@ fn c1_all_pairs_of_different_faces_have_a_cell() {
 
 /// The gridels that are chosen hold the places where the exact line crosses their planes.
 #[test]
-fn c2_boundaries_edges_and_corners() {
+fn c2_gridels_at_boundaries_edges_and_corners_hold_the_line() {
     fn in_format<N: Number>(bounds: &UnitBox, count: u32) {
         let gridels = Gridels::new(bounds, count);
         let mut random = Random(u64::from(count));
@@ -230,7 +230,7 @@ fn c3_every_size_of_gridels_has_complete_lists() {
 }
 
 #[test]
-fn c4_origins_inside_and_on_faces() {
+fn c4_rays_from_inside_and_from_faces_agree_with_brute_force() {
     let scene = scenes::soup(12, 300, 0.2);
     compare("inside", &scene, 4, |scene| {
         let mut random = Random(4);
@@ -252,7 +252,7 @@ fn c4_origins_inside_and_on_faces() {
 }
 
 #[test]
-fn c5_flat_and_thin_scenes() {
+fn c5_flat_and_thin_scenes_agree_with_brute_force() {
     let grid = |x: u32, z: u32| DVec3::new(f64::from(x), 0.0, f64::from(z));
     let tiles = |height: f64| {
         let tile = move |number: u32| {
@@ -277,7 +277,7 @@ fn c5_flat_and_thin_scenes() {
 }
 
 #[test]
-fn c6_rays_in_the_sides_of_the_scene() {
+fn c6_rays_in_the_sides_of_the_scene_agree_with_brute_force() {
     // Boxes that touch the scene's sides, so that rays in a side meet something.
     let mut random = Random(9);
     let mut corner = || DVec3::from_array([0; 3].map(|_| random.below(5) as f64));
@@ -361,7 +361,7 @@ type Recorded = BTreeMap<String, BTreeMap<String, u64>>;
 
 /// The paper ran out of 48 MB with its 27,000 objects. Its lists at n = 4 say why.
 #[test]
-fn the_papers_loss_explained() {
+fn lists_of_27000_objects_exceed_the_papers_machine() {
     let chess = scenes::read(&scenes::fixture_folder().join("glass-chess.toml"));
     let cubes: BTreeMap<String, CubeCensus> = [
         ("glass-chess", chess),
@@ -376,7 +376,7 @@ fn the_papers_loss_explained() {
         ("scene", Align::Left),
         ("lists", Align::Left),
         ("count", Align::Right),
-        ("objects a list", Align::Right),
+        ("objects per list", Align::Right),
         ("longest", Align::Right),
         ("entries", Align::Right),
         ("2 bytes", Align::Right),
@@ -399,7 +399,7 @@ fn the_papers_loss_explained() {
                 name.clone(),
                 lists.to_owned(),
                 grouped(census.lists),
-                format!("{:.1}", census.objects_a_list()),
+                format!("{:.1}", census.objects_per_list()),
                 grouped(census.longest),
                 grouped(census.entries),
                 grouped(census.bytes(2)),

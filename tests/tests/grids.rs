@@ -215,7 +215,7 @@ fn flat_scenes_have_one_layer() {
 }
 
 #[test]
-fn one_cell_and_uneven_cells() {
+fn grids_of_one_cell_and_of_uneven_cells_agree_with_brute_force() {
     let scene = lattice(DVec3::ZERO, false);
     for divisions in [[1; 3], [1, 1, 40], [33, 2, 5], [64, 64, 64]] {
         probe_scene("uneven", &scene, divisions, 160);

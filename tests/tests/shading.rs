@@ -272,7 +272,7 @@ fn lights_near_a_surface_shine_on_it() {
     }
 }
 
-/// What glass reflects has no color, and the weight of the most that it lets through.
+/// Light that glass reflects has no color. Its weight is the largest of those that the glass lets through.
 #[test]
 fn tinted_glass_reflects_without_a_tint() {
     // Refracted rays end in the glass.

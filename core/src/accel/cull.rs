@@ -45,6 +45,7 @@ pub trait Culling<N: CullArithmetic>: Copy + core::fmt::Debug + Default + Send +
     fn holds(_: &Ray<N>, _: N, _: &UnitBox) -> bool {
         false
     }
+
     /// Returns true if a ray has no hit up to a t in the box of a primitive whose test is expensive. Called where no
     /// box was culled before.
     #[inline(always)]

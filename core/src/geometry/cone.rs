@@ -165,6 +165,7 @@ impl<N: Arithmetic> Mantle<N> {
             s + to.max(lowest).min(highest),
         ))
     }
+
     /// Returns the distances at which the line enters and leaves, between two places and two ends. Near the tip, where the
     /// radius is less than `thin`, they are computed again from where it is thinner.
     #[inline(always)]

@@ -291,6 +291,7 @@ fn validate<T: Primitive>(
         record.validate(InScene { at, bounds })
     })
 }
+
 impl<'a> Shapes<'a> {
     /// The clusters.
     #[inline(always)]
@@ -362,8 +363,7 @@ impl<'a> Shapes<'a> {
         kinds.fold(0, |sum: usize, &kind| sum.wrapping_add(self.records(kind)))
     }
 
-    /// The primitive of a slot among those that have a box, as a leaf of its own; an empty leaf beyond
-    /// the last.
+    /// The primitive of a slot among those that have a box, as a leaf of its own; an empty leaf beyond the last.
     #[inline(always)]
     pub(crate) fn single(&self, slot: u32) -> Leaf {
         let mut first = slot;

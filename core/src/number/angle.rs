@@ -83,13 +83,16 @@ impl Angle {
 const fn small_sin_cos(turn: u32) -> [i32; 2] {
     /// 2 pi with 29 fraction bits.
     const TURN: u64 = 3_373_259_426;
+
     const fn upper(a: u32, b: u32) -> u32 {
         ((a as u64 * b as u64) >> 32) as u32
     }
+
     /// One over a number with 32 fraction bits, to nearest.
     const fn one_over(number: u64) -> u32 {
         (((1 << 33) / number + 1) >> 1) as u32
     }
+
     // Fractions with 32 bits: the angle is at most .786, and its square .617.
     let angle = ((turn as u64 * TURN) >> 29) as u32;
     let square = upper(angle, angle);

@@ -14,6 +14,7 @@ pub trait ErrorBounds: Scalar {
     fn error_bound(magnitude: Self) -> Self {
         magnitude * Self::RELATIVE_ERROR + Self::ABSOLUTE_ERROR
     }
+
     /// Returns a length that leads from a coordinate to the next number, in either direction; next to 0 the least that
     /// keeps products exact.
     fn step_beside(coordinate: Self) -> Self;

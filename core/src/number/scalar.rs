@@ -58,11 +58,13 @@ pub trait Scalar:
     fn min(self, other: Self) -> Self {
         if other < self { other } else { self }
     }
+
     /// The larger; the first where they are equal.
     #[inline(always)]
     fn max(self, other: Self) -> Self {
         if other > self { other } else { self }
     }
+
     /// Square root of a ratio in \[0, 2\]; 0 for anything negative.
     fn sqrt(self) -> Self;
     /// Undoes `*`: length over ratio is a length, and two of one quantity make a ratio. Saturates
@@ -71,6 +73,7 @@ pub trait Scalar:
     fn div(self, divisor: Self) -> Self {
         Self::rounded(self.quotient(divisor))
     }
+
     /// The quotient of [`div`](Self::div) before it is rounded, for comparisons.
     fn quotient(self, divisor: Self) -> Self::Quotient;
     /// Rounds a quotient to the result of [`div`](Self::div).

@@ -68,10 +68,10 @@ impl<N: Number, K: Culling<N>, F: Collect<N>> Search<'_, '_, N, K, F> {
             return 0;
         };
         match self.scene.space.simd() {
-            SimdLevel::Portable => ray.met(Portable, strip),
+            SimdLevel::Portable => ray.hit_lanes(Portable, strip),
             SimdLevel::Avx2(avx2) => avx2.call(
                 #[inline(always)]
-                |avx2, ray, strip, (), (), ()| ray.met(avx2, strip),
+                |avx2, ray, strip, (), (), ()| ray.hit_lanes(avx2, strip),
                 (ray, strip, (), (), ()),
             ),
         }
@@ -111,7 +111,7 @@ impl<N: Number, K: Culling<N>, F: Collect<N>> Search<'_, '_, N, K, F> {
         }
         let met = with_simd!(self.scene.space.simd(), |simd| simd.call(
             #[inline(always)]
-            |simd, ray, recip_norm2, pack, (), ()| pack::met(simd, ray, recip_norm2, pack),
+            |simd, ray, recip_norm2, pack, (), ()| pack::hit_lanes(simd, ray, recip_norm2, pack),
             (self.ray, self.recip_norm2, pack, (), ()),
         ));
         let missed = pack.lanes() & !met.lanes;

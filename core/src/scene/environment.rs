@@ -192,7 +192,7 @@ impl<'a> EnvironmentMap<'a> {
             (0, 1, (256 - right) * down),
             (1, 1, right * down),
         ] {
-            let place = beside(bits, [column.wrapping_add(x), row.wrapping_add(y)]);
+            let place = texel_around_edges(bits, [column.wrapping_add(x), row.wrapping_add(y)]);
             for (sum, channel) in sum.iter_mut().zip(self.texel(bits, place)) {
                 // The sum is below 2^47.
                 *sum = sum.wrapping_add(u64::from(channel).wrapping_mul(weight.into()));
@@ -288,7 +288,7 @@ pub(crate) fn texel_at(bits: u32, place: [i32; 2]) -> [u32; 2] {
 /// Returns the texel at a place that can lie one texel beyond the map. An edge of the map continues at itself, turned
 /// about its middle.
 #[inline(always)]
-fn beside(bits: u32, [mut column, mut row]: [i32; 2]) -> [u32; 2] {
+fn texel_around_edges(bits: u32, [mut column, mut row]: [i32; 2]) -> [u32; 2] {
     let last = 1_i32.wrapping_shl(bits).wrapping_sub(1);
     if column < 0 || column > last {
         column = column.clamp(0, last);

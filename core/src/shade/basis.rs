@@ -11,7 +11,7 @@ const CAP: i32 = -(255 << 22);
 /// They turn steadily with it, except at the edge of a cap of 5 degrees around -z. So the samples of a pixel, for which
 /// it differs by little, stay spread evenly around it. (Frisvad, "Building an Orthonormal Basis from a 3D Unit Vector
 /// Without Normalization", 2012. In the cap, half a turn around x before and after keeps it precise.)
-pub(super) fn beside<N: Number>(direction: [N; 3]) -> [[N; 3]; 2] {
+pub(super) fn perpendicular<N: Number>(direction: [N; 3]) -> [[N; 3]; 2] {
     if direction[2] < N::ratio(CAP) {
         return outside_the_cap(turned(direction)).map(turned);
     }

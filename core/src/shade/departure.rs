@@ -132,12 +132,12 @@ impl<N: Number> FarPlace<N> {
         if is_length::<N>(&place) {
             return None;
         }
-        Some(Self(place).beside(hit, BESIDE))
+        Some(Self(place).moved_off(hit, BESIDE))
     }
 
     /// The place moved to the side that the ray came from, by a share of its distance.
     #[inline(never)]
-    fn beside(self, hit: &Hit<N>, share: i32) -> Self {
+    fn moved_off(self, hit: &Hit<N>, share: i32) -> Self {
         let (Self(place), normal) = (self, hit.facing_normal());
         let by = N::wide_scale(far_extent::<N>(place), N::ratio(share));
         let axis = |k: usize| place[k] + N::wide_scale(by, normal[k]);
@@ -158,7 +158,7 @@ impl<N: Number> FarPlace<N> {
         let zero = N::Wide::default();
         let goes_through = N::dot(direction, hit.facing_normal()) < zero;
         let place = if goes_through {
-            self.beside(hit, -2 * BESIDE)
+            self.moved_off(hit, -2 * BESIDE)
         } else {
             self
         };

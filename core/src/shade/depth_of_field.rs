@@ -26,11 +26,7 @@ impl Effect for DepthOfField {
     const EFFECT: Effects = Effects::DEPTH_OF_FIELD;
 
     #[inline(always)]
-    fn camera<'s, N: Number, X: Tracer<'s, N>>(
-        tracer: &mut X,
-        (): &mut (),
-        ray: &mut Ray<N>,
-    ) {
+    fn camera<'s, N: Number, X: Tracer<'s, N>>(tracer: &mut X, (): &mut (), ray: &mut Ray<N>) {
         let Some(lens) = tracer.scene().lens() else {
             return;
         };

@@ -6,7 +6,7 @@
 //! 2003), whose look-up takes one division and no sines. Rays use bilinear look-up, lights use single texels. Both have
 //! the same light, except for the mixing across edges.
 
-use super::basis::beside;
+use super::basis::perpendicular;
 use crate::accel::Number;
 use crate::format::Effects;
 use crate::format::environment::Environment as Record;
@@ -187,7 +187,7 @@ fn in_sun<N: Number>(record: &Record, [u, v]: [u32; 2]) -> [N::Wide; 3] {
     let [sine, cosine] = Angle(v).sin_cos().map(N::ratio);
     let (right, up) = (away * cosine, away * sine);
     let sun = record.sun_direction.map(N::ratio);
-    let [first, second] = beside(sun);
+    let [first, second] = perpendicular(sun);
     let axis = |k: usize| sun[k] * toward + first[k] * right + second[k] * up;
     [axis(0), axis(1), axis(2)].map(N::widen)
 }

@@ -13,7 +13,7 @@ use crate::accel::Number;
 use crate::format::limits::LEAST_ROUGHNESS;
 use crate::number::Angle;
 use crate::query::Hit;
-use crate::shade::basis::beside;
+use crate::shade::basis::perpendicular;
 
 /// The facets of a rough surface, seen by a ray.
 #[derive(Clone, Copy)]
@@ -55,7 +55,7 @@ impl<N: Number> Facets<N> {
     /// The normal of a random facet that the ray sees.
     #[inline(never)]
     pub(crate) fn draw(&self, direction: [N; 3], [u, v]: [u32; 2]) -> [N; 3] {
-        let [first, second] = beside(self.normal);
+        let [first, second] = perpendicular(self.normal);
         let back = |axis: [N; 3]| -N::from_wide(N::dot(axis, direction));
         // As if the surface were a hemisphere, which α flattens.
         let stretched = [

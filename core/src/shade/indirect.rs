@@ -10,7 +10,7 @@ use crate::format::limits::INDIRECT;
 use crate::number::Angle;
 use crate::observe::event::RayKind;
 use crate::query::Hit;
-use crate::shade::basis::beside;
+use crate::shade::basis::perpendicular;
 use crate::shade::effect::{Effect, Tracer};
 use crate::shade::surface::{Bounce, Secondary, Surface};
 
@@ -73,7 +73,7 @@ fn around<N: Number>(normal: [N; 3], [u, v]: [u32; 2]) -> [N; 3] {
     let (away, toward) = (square.sqrt(), (N::ONE - square).sqrt());
     let [sine, cosine] = Angle(v).sin_cos().map(N::ratio);
     let (along, across) = (away * cosine, away * sine);
-    let [first, second] = beside(normal);
+    let [first, second] = perpendicular(normal);
     let axis = |k: usize| first[k] * along + second[k] * across + normal[k] * toward;
     [axis(0), axis(1), axis(2)]
 }

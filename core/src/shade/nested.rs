@@ -64,7 +64,7 @@ impl Effect for Nested {
             let media = [boundary.from, boundary.to].map(|place| medium_number(scene, place));
             tracer.count().event(Event::Boundary { media });
         }
-        match met(scene, *inside, hit.object, hit.front) {
+        match face_at(scene, *inside, hit.object, hit.front) {
             Face::Other => {}
             Face::There(interface) => surface.interface = Some(interface),
             Face::Hidden => {
@@ -158,8 +158,9 @@ enum Face<N> {
     Hidden,
 }
 
+/// Returns the face at which a ray enters an object or leaves it.
 #[inline(never)]
-fn met<N: Number>(scene: &Scene<'_>, inside: Inside, object: u32, enters: bool) -> Face<N> {
+fn face_at<N: Number>(scene: &Scene<'_>, inside: Inside, object: u32, enters: bool) -> Face<N> {
     match Boundary::at(scene, inside, object, enters) {
         None => Face::Other,
         Some(boundary) if boundary.is_there() => Face::There(boundary.interface(scene)),

@@ -3,7 +3,7 @@
 use crate::accel::Number;
 use crate::format::light_form::LightForm;
 use crate::number::{Format, extent, far_extent};
-use crate::shade::basis::{beside, cross};
+use crate::shade::basis::{cross, perpendicular};
 use crate::shade::light::{Distance, ROOT_OF_HALF, Way, length};
 use crate::shade::surface::Aim;
 
@@ -38,7 +38,7 @@ pub(super) fn of_sphere<N: Number>(
     let sag = cap * u;
     let away = (sag + (sag - sag * sag)).sqrt().min(widest);
     let toward = N::ONE - sag;
-    let [first, second] = beside(unit);
+    let [first, second] = perpendicular(unit);
     let (right, up) = (away * cosine, away * sine);
     let axis = |k: usize| unit[k] * toward + first[k] * right + second[k] * up;
     let direction = [axis(0), axis(1), axis(2)];
@@ -56,7 +56,7 @@ pub(super) fn of_sphere<N: Number>(
 
 /// The quotient of two numbers.
 #[inline(always)]
-fn over<N: Number>(a: N, b: N) -> N {
+fn quotient<N: Number>(a: N, b: N) -> N {
     in_one_place(move || a.div(b))
 }
 
@@ -121,18 +121,20 @@ pub(super) fn of_flat<N: Number>(
     let far = from + depth;
 
     // The tangent of half the angle: x / (h + √(h² + x²)).
-    let half_tangent = |row: N| over(row, height + hypotenuse(height, row));
+    let half_tangent = |row: N| quotient(row, height + hypotenuse(height, row));
     let [nearest, farthest] = [half_tangent(near), half_tangent(far)];
     let turn = farthest.half() - nearest.half();
     let tangent = nearest + turn * u + turn * u;
     let square = tangent * tangent;
     let one = N::ONE.half();
-    let narrowing = over(one, one + square.half());
+    let narrowing = quotient(one, one + square.half());
     let (sine, cosine) = (tangent * narrowing, one - square * narrowing);
-    let row = over(height * sine, cosine.max(N::ZERO)).max(near).min(far);
+    let row = quotient(height * sine, cosine.max(N::ZERO))
+        .max(near)
+        .min(far);
     let away = hypotenuse(height, row);
 
-    let place = over(row - from, depth);
+    let place = quotient(row - from, depth);
     let start = on(along, corner) + on(along, second) * place;
     let [left, right] = match form.shape {
         LightForm::DISC => {
@@ -143,12 +145,12 @@ pub(super) fn of_flat<N: Number>(
         LightForm::TRIANGLE => [start, start + side * (N::ONE - place)],
         _ => [start, start + side],
     };
-    let sine_of = |end: N| over(end, hypotenuse(end, away));
+    let sine_of = |end: N| quotient(end, hypotenuse(end, away));
     let [leftmost, rightmost] = [sine_of(left), sine_of(right)];
     let width = rightmost.half() - leftmost.half();
     let sine = leftmost + width * v + width * v;
     let cosine = (N::ONE - sine * sine).sqrt();
-    let place = over(away * sine, cosine).max(left).min(right);
+    let place = quotient(away * sine, cosine).max(left).min(right);
 
     let axis = |k: usize| along[k] * place + across[k] * row - normal[k] * height;
     let whole = |quarter: N| N::wide_times(quarter.scale_down(bits).widen(), 4);

@@ -10,7 +10,7 @@ use gridel_host::table::{counted, significant};
 use pyo3::prelude::*;
 use std::path::PathBuf;
 
-/// What a scene is compiled from.
+/// The source that a scene is compiled from.
 pub struct Model {
     pub scene: Scene,
     pub options: Options,

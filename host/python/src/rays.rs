@@ -366,8 +366,8 @@ impl Middle {
         }
     }
 
-    /// The same ray from where it is a few times the scene's size before it, along its largest component, and the t of
-    /// that place.
+    /// Moves the origin of a ray close to the scene: along its largest component, it is a few times the scene's size
+    /// before it. Returns also the t of this place on the given ray.
     pub fn nearer(&self, ray: &SceneRay) -> (SceneRay, f64) {
         let axis = ray.direction.abs().max_position();
         let before = (self.far / f64::from(1 << 20)).copysign(ray.direction[axis]);

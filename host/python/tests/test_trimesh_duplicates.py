@@ -25,7 +25,7 @@ def inside(vertices, faces, points):
 
 
 def crossed_oddly(triangles, points):
-    """Whether a ray in float64 from each point crosses an odd number of triangles, by brute force."""
+    """Returns for each point true if a ray in float64 from it crosses an odd number of triangles, by brute force."""
     direction = np.array([0.3571, -0.7133, 0.6029])
     base, one, two = triangles[:, 0], triangles[:, 1] - triangles[:, 0], triangles[:, 2] - triangles[:, 0]
     normal = np.cross(direction, two)

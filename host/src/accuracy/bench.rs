@@ -116,7 +116,7 @@ impl Point {
 /// The picture that others are measured against.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Reference {
-    /// Samples a pixel.
+    /// Samples per pixel.
     pub samples: u16,
     /// A secondary ray that can change no channel by more than this is not traced.
     #[serde(default)]
@@ -184,7 +184,7 @@ pub struct Bench<'s> {
     exact: HashMap<Key, (Vec<[u16; 3]>, usize)>,
 }
 
-/// What compiling goes by: lattice bits, cutoff, effects left out.
+/// The settings that a blob depends on: lattice bits, cutoff, effects left out.
 type BlobKey = (u8, u64, Effects);
 
 /// Most bytes of blobs that are kept. Others are compiled again when they are needed.
@@ -261,24 +261,36 @@ impl<'s> Bench<'s> {
     }
 
     /// Returns a number that distinguishes scenes.
+    ///
+    /// # Errors
+    /// If the scene cannot be compiled.
     pub fn checksum(&mut self) -> Result<u32, MeasureError> {
         let base = self.base();
         Ok(checksum(self.blob(&base)?.bytes()))
     }
 
     /// Returns the treatment of the scene's instances; `None` without any.
+    ///
+    /// # Errors
+    /// If the scene cannot be compiled.
     pub fn instances(&mut self) -> Result<Option<InstanceCount>, MeasureError> {
         let (base, copied) = (self.base(), self.copied);
         Ok(InstanceCount::of(&self.blob(&base)?.scene()?, copied))
     }
 
     /// Returns the effects that the scene calls for.
+    ///
+    /// # Errors
+    /// If the scene cannot be compiled.
     pub fn effects(&mut self) -> Result<Effects, MeasureError> {
         let base = self.base();
         Ok(self.blob(&base)?.scene()?.effects_with_parts())
     }
 
     /// Returns the compiler's warnings of the scene as it is stated.
+    ///
+    /// # Errors
+    /// If the scene cannot be compiled.
     pub fn warnings(&mut self) -> Result<Vec<String>, MeasureError> {
         let base = self.base();
         Ok(self.compiled(&base)?.report.warnings(base.lattice_bits))
@@ -329,6 +341,9 @@ impl<'s> Bench<'s> {
 
     /// Renders the reference, on all threads of the pool that this is called in. Its setting is that of
     /// [`reference_setting`](super::reference_setting).
+    ///
+    /// # Errors
+    /// If the scene cannot be compiled or rendered with this setting, or its exact picture is required and not known.
     pub fn reference(&mut self, setting: &Setting) -> Result<Reference, MeasureError> {
         let (pixels, open) = self.true_picture(setting)?;
         let hits = self.first_hits(setting)?;
@@ -344,6 +359,9 @@ impl<'s> Bench<'s> {
     }
 
     /// Seconds of one more repeat.
+    ///
+    /// # Errors
+    /// If the scene cannot be compiled or rendered with this setting.
     pub fn time(&mut self, setting: &Setting) -> Result<f64, MeasureError> {
         Ok(self.rendered(setting, false)?.seconds)
     }
@@ -376,6 +394,9 @@ impl<'s> Bench<'s> {
     }
 
     /// Measures a setting without its time; returns its pixels, too.
+    ///
+    /// # Errors
+    /// If the scene cannot be compiled or rendered with this setting, or its exact picture is required and not known.
     pub fn measure(
         &mut self,
         setting: &Setting,
@@ -449,38 +470,4 @@ fn settings([width, height]: [u16; 2], setting: &Setting) -> Settings {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::super::{reference_setting, sweep};
-    use super::*;
-
-    const BALL: &str = "[[object]]\nkind = 'sphere'\ncenter = [0, 0, 0]\nradius = 1\nname = 'ball'\n\
-                        [[object]]\nkind = 'sphere'\ncenter = [2, 0, 1]\nradius = 1\nname = 'other'";
-
-    /// What is dropped and made again changes no figure, and nothing is left when all is measured.
-    #[test]
-    fn bench_keeps_what_later_settings_need_and_no_more() {
-        let imported = crate::scene::read("ball.toml".as_ref(), BALL.into(), &Default::default());
-        let scene = imported.expect("a scene").scene;
-        let bench = || Bench::new(&scene, Structure::Flagged, [8, 6]);
-        let (mut all, mut few) = (bench(), bench());
-        few.most_blob_bytes = 0;
-        let mut settings = sweep(all.base(), all.effects().expect("a blob"));
-        settings.retain(|setting| setting.samples < 8);
-        assert!(settings.iter().any(|it| it.without != Effects::NONE));
-        let with = reference_setting(8, &settings);
-        few.plan(settings.clone());
-        let reference = all.reference(&with).expect("a reference");
-        assert_eq!(few.reference(&with).expect("a reference"), reference);
-        let mut most = 0;
-        for setting in &settings {
-            let measured = |bench: &mut Bench<'_>| bench.measure(setting, &reference);
-            let points = [&mut all, &mut few].map(|it| measured(it).expect("a point"));
-            assert_eq!(points[0], points[1], "{}", setting.name());
-            assert_eq!(few.compiled.len(), 1);
-            most = most.max(few.pictures.len());
-        }
-        assert!(0 < most && most < all.pictures.len() / 2, "{most}");
-        assert!(few.pictures.is_empty() && few.hits.is_empty());
-        assert!(all.compiled.len() > 5);
-    }
-}
+mod tests;

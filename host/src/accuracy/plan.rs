@@ -3,7 +3,7 @@
 use super::setting::{Key, Setting};
 use gridel_core::{Effects, Format};
 
-/// What the first hits of a picture go by: number format, lattice bits, effects left out.
+/// The settings that the first hits of a picture depend on: number format, lattice bits, effects left out.
 pub type HitsKey = (Format, u8, Effects);
 
 pub fn hits_key(setting: &Setting) -> HitsKey {

@@ -25,7 +25,7 @@ pub struct Aim<N> {
 }
 
 impl<N> Aim<N> {
-    /// The same light, seen along another way.
+    /// Returns the light as seen along another way.
     pub fn along(self, way: Three<N>) -> Self {
         Self { way, ..self }
     }
@@ -162,11 +162,11 @@ pub fn arriving<N: Enclosure>(
     let mut part = one;
     if form.reference > 0 {
         // Nothing is nearer than 2^-32 of that distance.
-        let ratio = length::<N>(form.reference.into()).over(distance)?;
+        let ratio = length::<N>(form.reference.into()).div(distance)?;
         part = ratio.at_most(N::int(1 << 32)).square();
     }
     if form.range != 0 {
-        let square = own.over(range(form))?.square();
+        let square = own.div(range(form))?.square();
         part = part * (one - square.square()).at_least(zero);
     }
     if let Some(share) = aim.share {
@@ -185,7 +185,7 @@ pub fn arriving<N: Enclosure>(
                         (0, Some(is_inside)) => N::int(is_inside.into()),
                         (0, None) => zero.hull(one),
                         (width, _) => {
-                            let within = within.at_least(zero).over(ratio_of(width))?;
+                            let within = within.at_least(zero).div(ratio_of(width))?;
                             within.at_most(one).square()
                         }
                     };

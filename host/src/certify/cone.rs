@@ -103,7 +103,7 @@ impl<N: Enclosure> Line<N> {
         let to_apex = distance(at_apex, self.height2 - self.start_axial);
         let cap = |distance: N, part: u8| {
             Ok(Some(Crossing {
-                t: distance.over(along).ok_or(Grazes)?,
+                t: distance.div(along).ok_or(Grazes)?,
                 fraction: Some([distance, along]),
                 part,
                 leaves: false,
@@ -139,7 +139,7 @@ impl<N: Enclosure> Line<N> {
             0.0
         } else {
             let from_middle = along(scale(w, N::scaled(1, 1)), -N::one(), q);
-            dot(d, from_middle).over(norm2(d)).ok_or(Grazes)?.middle()
+            dot(d, from_middle).div(norm2(d)).ok_or(Grazes)?.middle()
         };
         if !shift.is_finite() {
             return Err(Grazes);
@@ -215,7 +215,7 @@ impl<N: Enclosure> Quadric<N> {
 
     /// A line that is parallel to one of the mantle: it crosses one nappe, once.
     fn inside_once(&self) -> Result<Cut<N>, Grazes> {
-        let root = (-self.c).over(self.b + self.b).ok_or(Grazes)?;
+        let root = (-self.c).div(self.b + self.b).ok_or(Grazes)?;
         let nappe = (self.g + self.e * root).sign();
         if nappe == Some(Ordering::Less) {
             return Ok(Cut::Outside);
@@ -239,7 +239,7 @@ impl<N: Enclosure> Quadric<N> {
         }
         let (low, high) = if self.starts_at_root {
             // The other root is -2 b / a.
-            let other = (-(b + b)).over(a).ok_or(Grazes)?;
+            let other = (-(b + b)).div(a).ok_or(Grazes)?;
             match b.sign() {
                 Some(Ordering::Equal) => (N::zero(), N::zero()),
                 Some(side) if (side == Ordering::Less) == (sign == Ordering::Greater) => {
@@ -305,11 +305,11 @@ fn ends<N: Enclosure>(
 fn roots<N: Enclosure>([a, b, c]: [N; 3], root: N) -> Option<(N, N)> {
     let is_negative = b.middle() < 0.0;
     let sum = if is_negative { root - b } else { -(b + root) };
-    let first = sum.over(a)?;
-    let second = match c.over(sum) {
+    let first = sum.div(a)?;
+    let second = match c.div(sum) {
         Some(second) => second,
         // Both roots are near 0: the other formula is as good.
-        None => (if is_negative { -b - root } else { root - b }).over(a)?,
+        None => (if is_negative { -b - root } else { root - b }).div(a)?,
     };
     // `sum` has the sign opposite to that of b, so this one is the larger if a agrees with it.
     let first_is_larger = is_negative == (a.sign() == Some(Ordering::Greater));
@@ -328,7 +328,7 @@ fn grazes<N: Enclosure>(cone: &Cone, ray: &Ray<N>) -> Result<(), Grazes> {
     let widest = N::int(cone.base_radius.max(cone.apex_radius));
     let reach = norm2(half) + widest.square();
     let closest = dot(relative, ray.direction)
-        .over(norm2(ray.direction))
+        .div(norm2(ray.direction))
         .ok_or(Grazes)?;
     let apart = norm2(along(relative, -closest, ray.direction));
     match (reach - apart).sign() {

@@ -221,7 +221,7 @@ impl Enclosure for Ball {
         })
     }
 
-    fn over(self, divisor: Self) -> Option<Self> {
+    fn div(self, divisor: Self) -> Option<Self> {
         divisor.sign().filter(|sign| sign.is_ne())?;
         on_balls(|balls| {
             let ((a, r), (b, s)) = (balls.get(self), balls.get(divisor));

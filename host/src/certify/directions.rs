@@ -20,7 +20,7 @@ pub fn perpendiculars<N: Enclosure>([x, y, z]: Three<N>) -> Option<[Three<N>; 2]
     // The kernels' `CAP`.
     let is_in_cap = (z + N::scaled(255, 8)).sign()? == Ordering::Less;
     let signed = |value: N| if is_in_cap { -value } else { value };
-    let scale = -one.over(one + signed(z))?;
+    let scale = -one.div(one + signed(z))?;
     let mixed = x * y * scale;
     Some([
         [one + x.square() * scale, mixed, signed(-x)],

@@ -99,9 +99,9 @@ impl<N: Enclosure> Facets<N> {
         let cos_out = limited(cos_out);
         let part = if is_reflected {
             let seen = cos_out * (self.cos_in + self.slant_in);
-            seen.over(self.masking(cos_out))?
+            seen.div(self.masking(cos_out))?
         } else {
-            (cos_out + cos_out).over(cos_out + self.slant(cos_out))?
+            (cos_out + cos_out).div(cos_out + self.slant(cos_out))?
         };
         let part = limited(part);
         let is_open = is_up.is_none();
@@ -126,8 +126,8 @@ impl<N: Enclosure> Facets<N> {
             .at_most(N::one());
         // By the rule half of it is no less than 2^-31.
         let masking = self.masking(cos_out).at_least(N::scaled(1, 30));
-        let distribution = self.square.over(spread)?.over(spread)?;
-        Some(distribution * cos_out.half().over(masking)?)
+        let distribution = self.square.div(spread)?.div(spread)?;
+        Some(distribution * cos_out.half().div(masking)?)
     }
 }
 

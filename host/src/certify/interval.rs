@@ -162,7 +162,7 @@ impl Enclosure for Interval {
         }
     }
 
-    fn over(self, divisor: Self) -> Option<Self> {
+    fn div(self, divisor: Self) -> Option<Self> {
         if !(divisor.low > 0.0 || divisor.high < 0.0) {
             return None;
         }

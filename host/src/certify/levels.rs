@@ -32,7 +32,7 @@ fn largest<N: Enclosure>(path: &Path<N>) -> N {
 
 /// The length of a direction whose largest component is 1.
 fn norm<N: Enclosure>(path: &Path<N>, largest: N) -> Option<Log2> {
-    let square = largest.square().over(norm2(path.ray.direction))?;
+    let square = largest.square().div(norm2(path.ray.direction))?;
     Some(Log2::of_ratio(square).negative().half())
 }
 
@@ -60,7 +60,7 @@ pub fn footprint<N: Enclosure>(
         return Some(None);
     };
     let largest = largest(path);
-    let cosine = dot(path.ray.direction, hit.normal).abs().over(largest)?;
+    let cosine = dot(path.ray.direction, hit.normal).abs().div(largest)?;
     let stretched = norm(path, largest)?.plus(Log2::of_ratio(cosine).negative());
     let width = length.and(spread - log2_of_power(LENGTH_BITS));
     Some(Some(width.plus(stretched.half()).and(density)))

@@ -17,7 +17,7 @@ use gridel_core::format::limits::MAX_SHADOW_SURFACES;
 use gridel_core::format::record::{Light, Material};
 use std::cmp::Ordering;
 
-/// What is between a point and a light.
+/// The surfaces between a point and a light.
 struct Passed<N> {
     /// The surfaces that the light may pass, and surfaces that may coincide with them.
     surfaces: Vec<Candidate<N>>,

@@ -138,7 +138,7 @@ impl Boundary {
         let k = if less == more {
             N::one()
         } else {
-            ratio_of::<N>(less).over(ratio_of(more))?
+            ratio_of::<N>(less).div(ratio_of(more))?
         };
         Some(Interface { k, to_denser })
     }

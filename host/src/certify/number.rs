@@ -22,7 +22,7 @@ pub trait Enclosure:
     fn sign(self) -> Option<Ordering>;
 
     /// The quotient; `None` if the divisor may be 0.
-    fn over(self, divisor: Self) -> Option<Self>;
+    fn div(self, divisor: Self) -> Option<Self>;
 
     /// The square of one and the same number.
     fn square(self) -> Self;
@@ -176,7 +176,7 @@ pub fn unit<N: Enclosure>(v: Three<N>) -> Option<Three<N>> {
     let length = norm2(v).sqrt();
     let mut unit = [N::zero(); 3];
     for (unit, x) in unit.iter_mut().zip(v) {
-        *unit = x.over(length)?;
+        *unit = x.div(length)?;
     }
     Some(unit)
 }

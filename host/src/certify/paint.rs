@@ -123,7 +123,7 @@ fn mixed<N: Enclosure>(weights: Three<N>, roots: [u8; 3]) -> Option<N> {
     let squares = roots.map(|root| i64::from(root) * i64::from(root));
     let [a, b, c] = squares.map(N::int);
     let sum = weights[0] * a + weights[1] * b + weights[2] * c;
-    let ratio = sum.over(N::int(255 * 255))?;
+    let ratio = sum.div(N::int(255 * 255))?;
     Some(ratio.at_least(N::zero()).at_most(N::one()))
 }
 

@@ -70,7 +70,7 @@ pub struct Split<N> {
 /// The reflected part, by Fresnel's equations.
 fn fresnel<N: Enclosure>(k: N, cos_in: N, cos_out: N) -> N {
     let whole = N::zero().hull(N::one());
-    let part = |a: N, b: N| match (a - b).over(a + b) {
+    let part = |a: N, b: N| match (a - b).div(a + b) {
         Some(amplitude) => within(amplitude.square(), whole),
         // Both may be 0 where the surface is seen edge on.
         None => whole,
@@ -127,7 +127,7 @@ pub fn split<N: Enclosure>(
             Some(true) => {}
             None => is_open = true,
         }
-        cos_out = total.over(k.square())?.sqrt();
+        cos_out = total.div(k.square())?.sqrt();
         (scaled, lift) = (N::one(), cos_in - k * cos_out);
     }
     let mut reflected = fresnel(k, cos_in, cos_out);
@@ -267,7 +267,7 @@ pub fn weights<N: Enclosure>(
     let areas = [area(b, c), area(c, a), area(a, b)];
     let mut weights = [N::zero(); 3];
     for (weight, area) in weights.iter_mut().zip(areas) {
-        *weight = area.over(N::int(across))?;
+        *weight = area.div(N::int(across))?;
     }
     Some((point, weights))
 }
@@ -318,7 +318,7 @@ pub fn lift<N: Enclosure>(world: &World<'_>, hit: &Hit<N>) -> Option<(Option<boo
         let mapped = placed.normal(direction);
         let stretch = norm2(mapped).sqrt();
         let mapped = unit(mapped)?;
-        way = scale(mapped, length.over(stretch)?);
+        way = scale(mapped, length.div(stretch)?);
     }
     Some((positive(dot(way, facing)), way))
 }

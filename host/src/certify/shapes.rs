@@ -153,7 +153,7 @@ pub fn flat<N: Enclosure>(
         Some(_) => {}
         None => return Err(Grazes),
     }
-    let t = above.over(approach).ok_or(Grazes)?;
+    let t = above.div(approach).ok_or(Grazes)?;
     Ok(Some(Crossing {
         t,
         fraction: Some([above, approach]),
@@ -201,7 +201,7 @@ fn disc<N: Enclosure>(
     // Not if the line stays away from the disc's sphere.
     let radius = N::int(radius);
     let length = norm2(ray.direction);
-    let closest = dot(relative, ray.direction).over(length).ok_or(Grazes)?;
+    let closest = dot(relative, ray.direction).div(length).ok_or(Grazes)?;
     let apart = norm2(along(relative, -closest, ray.direction));
     if (radius.square() - apart).sign() == Some(Ordering::Less) {
         return Ok(());
@@ -239,7 +239,7 @@ fn sphere<N: Enclosure>(
         return Ok(());
     }
     // Where the length may be 0, nothing is known of the ray: that is open, and no miss.
-    let closest = dot(relative, ray.direction).over(length).ok_or(Grazes)?;
+    let closest = dot(relative, ray.direction).div(length).ok_or(Grazes)?;
     if itself.is_some() {
         // The other root is 0.
         crossing(closest + closest, true, true).keep(ray.start, found);
@@ -251,7 +251,7 @@ fn sphere<N: Enclosure>(
         Some(Ordering::Less) => return Ok(()),
         sign => sign.is_some(),
     };
-    let half = square.over(length).ok_or(Grazes)?.sqrt();
+    let half = square.div(length).ok_or(Grazes)?.sqrt();
     crossing(closest - half, false, sure).keep(ray.start, found);
     crossing(closest + half, true, sure).keep(ray.start, found);
     Ok(())
@@ -292,7 +292,7 @@ fn cuboid<N: Enclosure>(
         let (below, above) = (to(0, lowest[k]), to(1, highest[k]));
         let slope = ray.direction[k];
         let face = |distance: N, part: usize, leaves: bool| {
-            let t = distance.over(slope)?;
+            let t = distance.div(slope)?;
             Some(Crossing {
                 t,
                 fraction: Some([distance, slope]),

@@ -66,7 +66,7 @@ fn ends<N: Enclosure>(coordinate: N) -> Option<[i64; 2]> {
 /// The radiance of the map in a direction of length 1.
 fn map<N: Enclosure>(scene: &Scene<'_>, [x, y, z]: Three<N>) -> Option<Sky<N>> {
     let sum = x.abs() + y.abs() + z.abs();
-    let [x, y] = [x.over(sum)?, y.over(sum)?];
+    let [x, y] = [x.div(sum)?, y.div(sum)?];
     // Seen along z, and turned outwards on the lower half, to the side of the sign of either coordinate.
     let mut places = Vec::new();
     let is_below = positive(-z);
@@ -119,7 +119,7 @@ pub fn from_map<N: Enclosure>(scene: &Scene<'_>, point: [u32; 2]) -> Option<(Thr
     };
     let direction = exact::<N>([x, y, z]);
     // Half the sum of the components at length 1, rounded down; their sum is one.
-    let half_sum = N::scaled(1 << 59, 0).over(norm2(direction).sqrt())?;
+    let half_sum = N::scaled(1 << 59, 0).div(norm2(direction).sqrt())?;
     let [low, high] = half_sum.bounds().map(|it| it.floor() as i32);
     let (low, high) = (
         scene.environment_light(place, low)?,

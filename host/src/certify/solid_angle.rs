@@ -36,9 +36,9 @@ pub fn of_sphere<N: Enclosure>(radius: N, way: Three<N>, [u, v]: [u32; 2]) -> Op
     let one = N::one();
     let distance = norm2(way).sqrt();
     let axis = unit(way)?;
-    let widest = radius.over(distance)?;
+    let widest = radius.div(distance)?;
     let square = widest.square();
-    let half = one.over(one + (one - square).sqrt())?;
+    let half = one.div(one + (one - square).sqrt())?;
     // 1 - cos of the direction's angle, of up to that of the cone's.
     let sag = square * half * directions::ratio(u);
     let away = (sag + (sag - sag.square())).sqrt().at_most(widest);
@@ -47,7 +47,7 @@ pub fn of_sphere<N: Enclosure>(radius: N, way: Three<N>, [u, v]: [u32; 2]) -> Op
     let sides = directions::perpendiculars(axis)?;
     let direction = directions::combined(axis, toward, sides, [away * cosine, away * sine]);
     // From the middle of the chord to the surface.
-    let part = away.over(widest)?.at_most(one);
+    let part = away.div(widest)?.at_most(one);
     let inward = radius * (one - part.square()).sqrt();
     Some(Drawn {
         way: scale(direction, distance * toward - inward),
@@ -80,16 +80,16 @@ pub fn of_flat<N: Enclosure>(
     let away_from = |row: N| (height.square() + row.square()).sqrt();
 
     // Rows by the tangent of half their angle.
-    let half_tangent = |row: N| row.over(height + away_from(row));
+    let half_tangent = |row: N| row.div(height + away_from(row));
     let nearest = half_tangent(near)?;
     let turn = half_tangent(far)? - nearest;
     let tangent = nearest + turn * directions::ratio(u);
-    let narrowing = one.over(one + tangent.square())?;
-    let row = height * (tangent + tangent).over(one - tangent.square())?;
+    let narrowing = one.div(one + tangent.square())?;
+    let row = height * (tangent + tangent).div(one - tangent.square())?;
     let row = row.at_least(near).at_most(far);
 
     // Points of a row by the sine of theirs.
-    let place = (row - from).over(depth)?;
+    let place = (row - from).div(depth)?;
     let middle = dot(along, way);
     let start = middle + dot(along, second) * place;
     let [left, right] = match form.shape {
@@ -101,12 +101,12 @@ pub fn of_flat<N: Enclosure>(
         _ => [start, start + side],
     };
     let away = away_from(row);
-    let sine_of = |end: N| end.over((end.square() + away.square()).sqrt());
+    let sine_of = |end: N| end.div((end.square() + away.square()).sqrt());
     let leftmost = sine_of(left)?;
     let width = sine_of(right)? - leftmost;
     let sine = leftmost + width * directions::ratio(v);
     let cosine = (one - sine.square()).at_least(N::zero()).sqrt();
-    let place = (away * sine).over(cosine)?.at_least(left).at_most(right);
+    let place = (away * sine).div(cosine)?.at_least(left).at_most(right);
 
     let area = side * depth;
     let area = match form.shape {

@@ -29,7 +29,7 @@ pub fn developed<N: Enclosure>(encoding: u8, channel: N) -> Option<N> {
         return Some(channel);
     }
     let channel = channel.at_least(N::zero());
-    let ratio = channel.over(channel + N::one())?;
+    let ratio = channel.div(channel + N::one())?;
     if encoding != View::ACES {
         return Some(ratio);
     }
@@ -39,5 +39,5 @@ pub fn developed<N: Enclosure>(encoding: u8, channel: N) -> Option<N> {
     let above = ratio * (constant(1_331_439_862) * ratio + constant(16_106_127));
     let below = ratio * (constant(987_842_478) * ratio + constant(316_753_838))
         + constant(75_161_928) * rest.square();
-    Some(above.over(below)?.at_most(N::one()))
+    Some(above.div(below)?.at_most(N::one()))
 }

@@ -58,13 +58,13 @@ pub fn crossings<N: Enclosure>(
     let (d, w) = (ray.direction, exact::<N>(axis));
     let q = minus(ray.origin, exact(center));
     let length = norm2(d);
-    let closest = (-dot(q, d)).over(length).ok_or(Grazes)?;
+    let closest = (-dot(q, d)).div(length).ok_or(Grazes)?;
     let reach = N::int(major + minor).square();
     let chord = reach - norm2(along(q, closest, d));
     if chord.sign() == Some(Ordering::Less) {
         return Ok(());
     }
-    let half = chord.over(length).ok_or(Grazes)?.sqrt();
+    let half = chord.div(length).ok_or(Grazes)?.sqrt();
     // Seen from the point of the line that is closest to the center, so that squares are small.
     let shift = N::float(if itself { 0.0 } else { closest.middle() });
     let q = along(q, shift, d);
@@ -173,7 +173,7 @@ fn bernstein<N: Enclosure>(polynomial: &Quartic<N>, [first, last]: [N; 2]) -> Op
     }
     let [a0, a1, a2, a3, a4] = c;
     let quarter = |x: N| x.half().half();
-    let sixth = a2.over(N::int(6))?;
+    let sixth = a2.div(N::int(6))?;
     Some([
         a0,
         a0 + quarter(a1),
@@ -298,7 +298,7 @@ fn narrowed<N: Enclosure>(quartic: &Quartic<N>, between: N) -> N {
         let from = root.point();
         let here = value(quartic, from);
         let slope = slope(quartic, root);
-        let Some(off) = here.over(slope) else {
+        let Some(off) = here.div(slope) else {
             break;
         };
         let next = from - off;

@@ -22,7 +22,7 @@ pub(super) enum BoardRun {
     Failed(String),
 }
 
-/// What a program printed by name: a figure, or the text in place of one.
+/// The output of a program by name: a figure, or the text in place of one.
 pub(super) type Figures = BTreeMap<String, Result<u64, String>>;
 
 /// The figures and the picture of a program that ran.

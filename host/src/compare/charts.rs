@@ -14,7 +14,7 @@ pub const CHARTS: [&str; 6] = [
     "growth-setup.svg",
 ];
 
-/// What a chart of growth shows, its unit, and the figure of a row.
+/// The title of a chart of growth, its unit, and the figure of a row.
 type GrowthChart = (&'static str, &'static str, fn(&Row) -> Option<f64>);
 
 /// The charts of growth, in the order of [`CHARTS`].

@@ -41,7 +41,7 @@ struct Reader<'t> {
     waiting: Vec<usize>,
     /// True if the current query is a light's.
     light: bool,
-    /// What is not listed of the queries to come.
+    /// The parts of the queries to come that are not listed.
     unlisted: Iter<'t, Unlisted>,
 }
 

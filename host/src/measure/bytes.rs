@@ -209,7 +209,7 @@ mod tests {
 
     /// The figures that the core's documentation states.
     #[test]
-    fn boards_need_12_bytes_an_entry_and_40_a_ray() {
+    fn boards_need_12_bytes_per_entry_and_40_per_ray() {
         let [none, nested] = [Effects::NONE, Effects::NESTED];
         assert_eq!(
             bytes::<f32>(4, 10, [6, bytes_per_ray::<f32>(none)]),

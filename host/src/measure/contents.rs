@@ -1,4 +1,4 @@
-//! What a blob holds.
+//! The structures of a blob, and its longest leaf.
 
 use gridel_core::{Scene, Structure};
 

@@ -320,7 +320,7 @@ pub struct RenderSettings {
     /// Picture size in pixels.
     pub width: u32,
     pub height: u32,
-    /// Samples a pixel: 1 to 4,096.
+    /// Samples per pixel: 1 to 4,096.
     pub samples: u16,
     /// Maximum number of reflections and refractions of a ray: 0 to 32.
     pub depth: u8,

@@ -89,7 +89,7 @@ pub(super) struct ImageMeans(HashMap<*const Image, (Arc<Image>, Mean)>);
 pub(super) struct Mean {
     /// As linear light.
     pub(super) color: [f64; 3],
-    /// Of red, where it is a number rather than light.
+    /// The mean of red, as a number rather than light.
     pub(super) red: f64,
 }
 

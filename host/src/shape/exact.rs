@@ -85,18 +85,21 @@ macro_rules! operator {
                 Real((&self.0).$method(&other.0))
             }
         }
+
         impl $trait<Real> for Real {
             type Output = Real;
             fn $method(self, other: Real) -> Real {
                 (&self).$method(&other)
             }
         }
+
         impl $trait<&Real> for Real {
             type Output = Real;
             fn $method(self, other: &Real) -> Real {
                 (&self).$method(other)
             }
         }
+
         impl $trait<Real> for &Real {
             type Output = Real;
             fn $method(self, other: Real) -> Real {

@@ -130,7 +130,9 @@ fn of_objects(scene: &Scene<'_>, object: impl Fn(u32) -> u32) -> Vec<ClosedMesh>
             .extend(scene.triangle(slot));
     }
     let units = |corners: &[[i32; 3]; 3]| corners.map(|it| it.map(|x| f64::from(x) / 256.0));
-    let closed = objects.into_iter().filter(|(_, it)| is_closed(it));
+    let closed = objects
+        .into_iter()
+        .filter(|(_, it)| is_oriented_manifold(it));
     let mut closed: Vec<_> = closed
         .map(|(object, triangles)| ClosedMesh {
             object,
@@ -142,7 +144,8 @@ fn of_objects(scene: &Scene<'_>, object: impl Fn(u32) -> u32) -> Vec<ClosedMesh>
     closed
 }
 
-fn is_closed(triangles: &[[[i32; 3]; 3]]) -> bool {
+/// Returns true if every edge of some triangles belongs to two of them, with opposite directions along it.
+fn is_oriented_manifold(triangles: &[[[i32; 3]; 3]]) -> bool {
     // How often triangles use each edge in one direction, and in the other.
     let mut edges: HashMap<[[i32; 3]; 2], [u32; 2]> = HashMap::new();
     for &[a, b, c] in triangles {

@@ -1,12 +1,12 @@
-//! What a saved camera says about its scene.
+//! Notes of a saved camera about its scene.
 
 use crate::compile::Unstated;
 
-/// What the picture of a camera depends on besides, for comments.
+/// Notes on what else the picture of a camera depends on, for comments.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Notes {
     /// Names of the tracks that move the camera, such as `camera.orbit`.
     pub tracks: Vec<&'static str>,
-    /// What the scene file does not state.
+    /// Values that the scene file does not state.
     pub unstated: Unstated,
 }

@@ -10,7 +10,7 @@ use std::time::{Duration, Instant};
 /// How long an answer may take.
 const LIMIT: Duration = Duration::from_secs(90);
 
-/// What tests of pages need.
+/// The programs that tests of pages need, in words.
 pub const NEEDS: &str = "needs chromium and chromedriver";
 
 /// Returns whether the browser or its driver is not installed.

@@ -112,7 +112,7 @@ fn chain(joints: usize) -> String {
     scene + &format!("[[instance]]\npart = 'box'\njoint = 'j{}'\n", joints - 1)
 }
 
-/// What compositions round adds up; all of a chain's joints turn the box by a multiple of 90 degrees here.
+/// The rounding of compositions adds up. All joints of a chain turn the box by a multiple of 90 degrees here.
 #[test]
 fn long_chains_of_joints_keep_their_instances() {
     let folder = Folder::new();

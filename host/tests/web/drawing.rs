@@ -1,4 +1,4 @@
-//! What the page draws when something changes or fails while it draws.
+//! Changes and failures while the page draws.
 
 use crate::browser::Browser;
 use crate::page::{

@@ -50,9 +50,11 @@ fn points_are_contained_where_geometry_says_so() {
         }
         assert!(inside[..4].iter().all(|&it| it > count / 50), "{inside:?}");
     }
+
     trait XyLength {
         fn xy_length(&self) -> f64;
     }
+
     impl XyLength for DVec3 {
         fn xy_length(&self) -> f64 {
             self.x.hypot(self.y)

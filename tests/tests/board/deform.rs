@@ -96,7 +96,7 @@ impl Moving {
         assert!(panicking.is_empty(), "{build} can panic: {panicking:#?}");
         let instructions = report[&format!("{}-instructions", self.step)];
         println!(
-            "{build}: {} instructions a triangle",
+            "{build}: {} instructions per triangle",
             instructions / triangles
         );
         if board.core == "Cortex-M4F" {

@@ -219,7 +219,7 @@ fn a_camera_orbits(board: &'static Board, format: Format, compiled: &Compiled) {
         let instructions = report["frame-instructions"];
         assert!(
             instructions <= FRAME,
-            "{build}: {instructions} instructions a frame"
+            "{build}: {instructions} instructions per frame"
         );
     }
     let mut figures = Figures::new();

@@ -159,7 +159,7 @@ fn primary_rays_of_suzanne_in_16_bits(board: &'static Board, format: Format) {
 
 /// Instructions that a primary ray through a molecule of some 2,800 spheres takes at most, where there
 /// are floats.
-const A_RAY_AMONG_SPHERES: u64 = 620;
+const PER_RAY_AMONG_SPHERES: u64 = 620;
 
 /// A molecule of that size, computed or a protein, on a lattice of 16 bits.
 fn primary_rays_of_a_molecule(board: &'static Board, molecule: &Compiled) {
@@ -168,9 +168,12 @@ fn primary_rays_of_a_molecule(board: &'static Board, molecule: &Compiled) {
     let report = build.program("primary").run();
     assert_eq!(report["rays"], 64 * 64, "{build}");
     assert!(report["hits"] > 200, "{build}");
-    let a_ray = report["ray-instructions"];
+    let per_ray = report["ray-instructions"];
     if board.format() == Format::F32 {
-        assert!(a_ray <= A_RAY_AMONG_SPHERES, "{build}: {a_ray} a ray");
+        assert!(
+            per_ray <= PER_RAY_AMONG_SPHERES,
+            "{build}: {per_ray} per ray"
+        );
     }
     figures.add(&build.to_string(), &report);
     figures.check();

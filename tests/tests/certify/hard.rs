@@ -30,7 +30,7 @@ fn never_wrong(scene: &Scene<'_>, size: [u16; 2]) -> Vec<([u16; 2], Enclosed)> {
     never_wrong_at(scene, size, all.collect())
 }
 
-/// The same for some of the pixels.
+/// Compares some of the pixels like [`never_wrong`].
 fn never_wrong_at(
     scene: &Scene<'_>,
     size: [u16; 2],

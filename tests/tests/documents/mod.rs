@@ -13,6 +13,7 @@ mod paper;
 mod peers;
 mod pictures;
 mod records;
+mod summaries;
 mod tables;
 mod times;
 mod variables;

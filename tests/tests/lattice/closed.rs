@@ -109,7 +109,7 @@ const STRETCHES: [[f64; 3]; 8] = [
     [64.0, 1.0, 0.7],
 ];
 
-/// What became of a mesh.
+/// The state of a mesh after it was stretched.
 #[derive(PartialEq)]
 enum Outcome {
     NoInside,

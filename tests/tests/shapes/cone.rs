@@ -68,18 +68,18 @@ fn on_mantle(random: &mut Random, base: DVec3, apex: DVec3, radius: f64, part: f
 }
 
 #[test]
-fn cones_and_rays_of_every_sort() {
+fn cones_and_rays_of_every_sort_hold_the_bounds() {
     of_every_sort(5);
 }
 
 #[test]
-fn frusta_and_rays_of_every_sort() {
+fn frusta_and_rays_of_every_sort_hold_the_bounds() {
     of_every_sort(6);
 }
 
 /// Rays aim at the tip from everywhere, pass it at distances of many magnitudes, and start at the tip itself.
 #[test]
-fn rays_at_the_tip() {
+fn rays_at_the_tip_hold_the_bounds() {
     let cases = cones("tip", 20, |random, base, apex, radius| {
         let size = radius.max((apex - base).length());
         let aside = direction(random) * random.magnitude(1e-6, 1.0) * size;
@@ -115,7 +115,7 @@ fn the_mirrored_nappe_is_not_there() {
 
 /// Rays run along lines of the mantle, exactly and within angles of any magnitude, on either side of it.
 #[test]
-fn rays_along_lines_of_the_mantle() {
+fn rays_along_lines_of_the_mantle_hold_the_bounds() {
     let cases = cones("generator", 22, |random, base, apex, radius| {
         let on = on_mantle(random, base, apex, radius, 0.0);
         let along = apex - on;
@@ -139,7 +139,7 @@ fn rays_along_lines_of_the_mantle() {
 
 /// Tangents of the mantle at any height, the more often the nearer to the tip.
 #[test]
-fn tangents_of_the_mantle() {
+fn tangents_of_the_mantle_hold_the_bounds() {
     let cases = cones("tangent", 23, |random, base, apex, radius| {
         let part = 1.0 - random.magnitude(1e-5, 1.0);
         let on = on_mantle(random, base, apex, radius, part);
@@ -155,7 +155,7 @@ fn tangents_of_the_mantle() {
 
 /// Rays enter through the cap and leave through the mantle, or the other way, at every angle.
 #[test]
-fn in_and_out_through_the_cap() {
+fn rays_in_and_out_through_the_cap_hold_the_bounds() {
     let cases = cones("cap", 24, |random, base, apex, radius| {
         let up = apex - base;
         let inner = up.cross(direction(random)).normalize() * radius * random.unit();
@@ -170,7 +170,7 @@ fn in_and_out_through_the_cap() {
 
 /// A ray from inside always has a hit, where it leaves (D24).
 #[test]
-fn from_inside_a_cone() {
+fn rays_from_inside_a_cone_hit_it() {
     fn judge<N: Number>() {
         let cases = cones("inside", 25, |random, base, apex, radius| {
             // Well inside against the lattice's step.
@@ -203,7 +203,7 @@ fn from_inside_a_cone() {
 /// quadrics have their vertex at infinity. The first is the frustum of issue 16, whose t was 2.01562786 in `f32`, off
 /// by 8.45 steps.
 #[test]
-fn frusta_of_small_integers() {
+fn frusta_of_small_integers_hold_the_bounds() {
     let mut random = Random(26);
     let mut cases = vec![Case {
         class: "issue 16",
@@ -250,7 +250,7 @@ fn frusta_of_small_integers() {
 
 /// Cases that went wrong once.
 #[test]
-fn literal_cones() {
+fn cones_that_went_wrong_once_hold_the_bounds() {
     let literal =
         |base: [f64; 3], apex: [f64; 3], base_radius: f64, rays: &[([f64; 3], [f64; 3])]| {
             let solid = Solid::Cone(Cone {

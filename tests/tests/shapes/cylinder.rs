@@ -38,7 +38,7 @@ fn ray(origin: DVec3, way: DVec3) -> ([f64; 3], [f64; 3]) {
 }
 
 #[test]
-fn cylinders_and_rays_of_every_sort() {
+fn cylinders_and_rays_of_every_sort_hold_the_bounds() {
     of_every_sort(4);
 }
 
@@ -83,7 +83,7 @@ fn rays_parallel_to_the_axis_meet_the_caps() {
 
 /// Hairs, coins and both far away (D13).
 #[test]
-fn needles_and_coins() {
+fn needles_and_coins_hold_the_bounds() {
     let mut random = Random(11);
     let cases: Vec<Case> = (0..part_of(60, 4000))
         .map(|number| {
@@ -114,7 +114,7 @@ fn needles_and_coins() {
 
 /// Rays aim at rims, run in the planes of caps, and run along lines of the mantle (D14).
 #[test]
-fn rims_and_planes_of_caps() {
+fn rays_at_rims_and_in_planes_of_caps_hold_the_bounds() {
     let mut random = Random(12);
     let cases: Vec<Case> = (0..part_of(60, 4000))
         .map(|_| {

@@ -11,7 +11,7 @@ use gridel_tests::every_format;
 use gridel_tests::random::Random;
 
 #[test]
-fn discs_and_rays_of_every_sort() {
+fn discs_and_rays_of_every_sort_hold_the_bounds() {
     of_every_sort(3);
 }
 

@@ -29,13 +29,13 @@ fn direction(random: &mut Random) -> DVec3 {
 }
 
 #[test]
-fn spheres_and_rays_of_every_sort() {
+fn spheres_and_rays_of_every_sort_hold_the_bounds() {
     of_every_sort(0);
 }
 
 /// A radius down to a millionth of the distance (D1).
 #[test]
-fn small_spheres_far_away() {
+fn small_spheres_far_away_hold_the_bounds() {
     let mut random = Random(1);
     let cases: Vec<Case> = (0..part_of(40, 2000))
         .map(|_| {
@@ -55,7 +55,7 @@ fn small_spheres_far_away() {
 
 /// The ground as a sphere that all but fills the lattice, seen from just above it (D2).
 #[test]
-fn a_huge_sphere_as_ground() {
+fn a_huge_sphere_as_ground_holds_the_bounds() {
     let mut random = Random(2);
     let cases: Vec<Case> = (0..part_of(20, 1000))
         .map(|_| {
@@ -74,7 +74,7 @@ fn a_huge_sphere_as_ground() {
 
 /// Tangents to within a step of the lattice, and exact ones, which are hits (D3).
 #[test]
-fn tangents() {
+fn tangents_hold_the_bounds_and_exact_ones_hit() {
     let mut random = Random(3);
     let cases: Vec<Case> = (0..part_of(40, 2000))
         .map(|_| {
@@ -117,7 +117,7 @@ fn tangents() {
 
 /// Rays from inside always hit the far side, where they leave (D24); rays from behind miss (D15).
 #[test]
-fn from_inside_and_from_behind() {
+fn rays_from_inside_hit_and_rays_from_behind_miss() {
     fn judge<N: Number>() {
         let mut random = Random(4);
         let mut cases = |inside: bool| -> Vec<Case> {

@@ -86,12 +86,12 @@ fn any(random: &mut Random) -> f64 {
 }
 
 #[test]
-fn tori_and_rays_of_every_sort() {
+fn tori_and_rays_of_every_sort_hold_the_bounds() {
     of_every_sort(7);
 }
 
 #[test]
-fn rays_through_the_hole_and_along_the_axis() {
+fn rays_through_the_hole_and_along_the_axis_hold_the_bounds() {
     let cases = tori("hole", 70, any, |random, target| {
         let part = [0.0, 1.0, random.unit()][random.below(3)];
         let place = target.center + target.outward * (target.major - target.minor) * part;
@@ -106,12 +106,13 @@ fn rays_through_the_hole_and_along_the_axis() {
 
 /// Slopes whose squares are no ordinary numbers, or 0, lead where a slope of 0 leads.
 #[test]
-fn rays_nearly_along_the_axis() {
+fn rays_nearly_along_the_axis_hit_where_those_along_it_do() {
     fn t<N: Number>(scene: &Scene<'_>, origin: DVec3, way: DVec3) -> Option<f64> {
         let ray = UnitRay::new(origin.to_array(), way.to_array()).ready::<N>(scene);
         let hit = closest::<N, List>(scene, &ray.expect("a ray"), &mut NoCount)?;
         Some(N::far_to_f64(hit.t))
     }
+
     fn judge<N: Number>(axis: DVec3) {
         let mut random = Random(76);
         let (major_radius, minor_radius) = (25_600.0, 3840.0);
@@ -142,7 +143,7 @@ fn rays_nearly_along_the_axis() {
 }
 
 #[test]
-fn rays_in_the_plane_of_the_circle_and_tangents_of_its_equators() {
+fn rays_in_the_plane_of_the_circle_and_tangents_of_its_equators_hold_the_bounds() {
     let cases = tori("equator", 71, any, |random, target| {
         let equator = match random.below(4) {
             0 => target.major - target.minor,
@@ -162,7 +163,7 @@ fn rays_in_the_plane_of_the_circle_and_tangents_of_its_equators() {
 
 /// Rays are tangents on the circle at the top, inside and outside, at all slants, among them tangents of a saddle.
 #[test]
-fn tangents_of_tori() {
+fn tangents_of_tori_hold_the_bounds() {
     let cases = tori("tangent", 72, any, |random, target| {
         let angle = std::f64::consts::TAU * [0.25, random.unit()][random.below(2)];
         let normal = target.outward * angle.cos() + target.axis * angle.sin();
@@ -178,7 +179,7 @@ fn tangents_of_tori() {
 
 /// A ray from inside always has a hit, where it leaves.
 #[test]
-fn from_inside_a_torus() {
+fn rays_from_inside_a_torus_hit_it() {
     fn judge<N: Number>() {
         let proportion = |random: &mut Random| 0.1 + random.unit();
         let cases = tori("inside", 73, proportion, |random, target| {
@@ -198,7 +199,7 @@ fn from_inside_a_torus() {
 
 /// A ring whose tube is one step of the lattice, from its own size up to that of the lattice.
 #[test]
-fn rings_of_one_step() {
+fn rings_of_one_step_hold_the_bounds() {
     let thinnest = |_: &mut Random| 0.0;
     let cases = tori("one step", 74, thinnest, |random, target| {
         let tube = direction(random) * target.minor * random.unit();
@@ -215,7 +216,7 @@ fn rings_of_one_step() {
 /// Radii at both ends of their ranges: a step each, and a reach as large as the lattice. The axis is an axis of
 /// coordinates or a diagonal, where the torus reaches beyond the lattice's end from the center.
 #[test]
-fn tori_at_the_ends_of_the_lattice() {
+fn tori_at_the_ends_of_the_lattice_hold_the_bounds() {
     let mut random = Random(75);
     let step = 1.0 / 256.0;
     let tori = [

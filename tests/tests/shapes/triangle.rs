@@ -18,14 +18,14 @@ fn point(random: &mut Random, size: f64) -> DVec3 {
 }
 
 #[test]
-fn triangles_and_rays_of_every_sort() {
+fn triangles_and_rays_of_every_sort_hold_the_bounds() {
     of_every_sort(1);
 }
 
 /// Needles a step of the lattice wide, and triangles of the least area that the lattice has. t
 /// comes from the plane, so it is as accurate as that of any other (D6, D7, D9).
 #[test]
-fn needles_and_specks() {
+fn needles_and_specks_hold_the_bounds() {
     let mut random = Random(7);
     let step = 1.0 / 256.0;
     let cases: Vec<Case> = (0..part_of(80, 4000))
@@ -68,7 +68,7 @@ fn needles_and_specks() {
 /// Rays in a triangle's plane have a hit with a finite t in the triangle's own range, or none.
 /// Triangles without area have no hits and do no harm (D8).
 #[test]
-fn coplanar_rays_and_triangles_without_area() {
+fn coplanar_rays_have_a_finite_hit_or_none() {
     fn trace<N: Number>(scene: &Scene<'_>, corners: [DVec3; 3], random: &mut Random) {
         for _ in 0..100 {
             let [a, b, c] = corners;
@@ -122,7 +122,7 @@ fn coplanar_rays_and_triangles_without_area() {
 /// Triangles on which other tracers failed (D10). No ray hits three corners on a line (pbrt's
 /// `Triangle.BadCases`). Another ray is shot at a vertex that two triangles share.
 #[test]
-fn literal_traps() {
+fn rays_miss_corners_on_a_line_and_hit_shared_vertices() {
     let line = [
         DVec3::new(-1_113.454_59, -79.049_614, -56.243_190_8),
         DVec3::new(-1_113.454_59, -87.092_269_9, -56.243_190_8),

@@ -155,7 +155,7 @@ impl ApexWindow {
     #[inline(always)]
     pub fn level(&self, step: i32) -> u8 {
         let way = step.saturating_sub(self.start).max(0) as u64;
-        ((way * u64::from(self.a_step)) >> 24).min(Apex::LAST_LEVEL.into()) as u8
+        ((way * u64::from(self.levels_per_step)) >> 24).min(Apex::LAST_LEVEL.into()) as u8
     }
 
     /// Returns the column or row of a slope or place, by the side along which it is counted.

@@ -157,7 +157,7 @@ impl Passage {
         let length = leave.saturating_sub(enter).max(1) as u32;
         Levels {
             enter,
-            a_step: (Levels::COUNT << 24) / length,
+            levels_per_step: (Levels::COUNT << 24) / length,
         }
     }
 }
@@ -179,7 +179,7 @@ pub(in crate::accel) struct Levels {
     /// The step at which the ray enters.
     enter: i32,
     /// Levels per step, with 24 fraction bits, rounded down.
-    a_step: u32,
+    levels_per_step: u32,
 }
 
 impl Levels {
@@ -191,18 +191,18 @@ impl Levels {
     /// Returns a level that is not above that of a step.
     #[inline(always)]
     pub(in crate::accel) fn at_least(&self, step: i32) -> u32 {
-        self.level(step.saturating_sub(Self::SLACK), self.a_step)
+        self.level(step.saturating_sub(Self::SLACK), self.levels_per_step)
     }
 
     /// Returns a level that is not below that of a step.
     #[inline(always)]
     pub(in crate::accel) fn at_most(&self, step: i32) -> u32 {
-        self.level(step.saturating_add(Self::SLACK), self.a_step + 1)
+        self.level(step.saturating_add(Self::SLACK), self.levels_per_step + 1)
     }
 
     #[inline(always)]
-    fn level(&self, step: i32, a_step: u32) -> u32 {
+    fn level(&self, step: i32, levels_per_step: u32) -> u32 {
         let way = step.saturating_sub(self.enter).max(0) as u64;
-        ((way * u64::from(a_step)) >> 24).min(u64::from(Self::COUNT) - 1) as u32
+        ((way * u64::from(levels_per_step)) >> 24).min(u64::from(Self::COUNT) - 1) as u32
     }
 }

@@ -71,7 +71,7 @@ impl ClassRange {
 
     /// Levels of keys per culling step along an axis, with 24 fraction bits.
     #[inline(always)]
-    pub fn levels_a_step(bounds: &UnitBox, axis: usize) -> u32 {
+    pub fn levels_per_step(bounds: &UnitBox, axis: usize) -> u32 {
         let [low, high] = pick(bounds.0, axis).map(i32::from);
         let steps = 2 * (high - low + 2 * Gridels::MARGIN);
         (u32::from(u8::MAX) << 24) / steps.max(1) as u32
@@ -79,9 +79,9 @@ impl ClassRange {
 
     /// Returns the key of a place, in culling steps from where a ray of the class begins.
     #[inline(always)]
-    pub fn key(step: i32, levels_a_step: u32) -> u8 {
+    pub fn key(step: i32, levels_per_step: u32) -> u8 {
         let way = step.max(0) as u64;
-        ((way * u64::from(levels_a_step)) >> 24).min(u8::MAX.into()) as u8
+        ((way * u64::from(levels_per_step)) >> 24).min(u8::MAX.into()) as u8
     }
 }
 
@@ -149,10 +149,10 @@ impl Traverse for RayClasses {
             return Bvh::walk(space, &views.fallback, ray, &cull, stack, count, leaf);
         };
         look_up(cell, count);
-        let a_step = ClassRange::levels_a_step(space.bounds(), point.face / 2);
+        let levels_per_step = ClassRange::levels_per_step(space.bounds(), point.face / 2);
         let level = |t: N| {
             let step = t.to_cull().saturating_sub(point.start);
-            ClassRange::key(step.saturating_add(SLACK), a_step)
+            ClassRange::key(step.saturating_add(SLACK), levels_per_step)
         };
         let mut tmax = ray.tmax;
         let mut end = level(tmax);

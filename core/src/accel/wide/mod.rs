@@ -183,7 +183,7 @@ fn pop_closest<N: Number, C: Observer>(
 #[inline(always)]
 fn pop_any(nodes: &[WideNode], stack: &mut StackView) -> Option<Child> {
     let Entry { node, near, .. } = stack.pop()?;
-    take(nodes.get(node as usize)?, node, near as u32, stack)
+    next_child(nodes.get(node as usize)?, node, near as u32, stack)
 }
 
 /// Goes down from a node, each time to the child that the ray enters first, while the others wait. Where the ray hits
@@ -256,7 +256,7 @@ fn descend_any<S: Simd, N: Number, C: Observer>(
             current = next;
             continue;
         };
-        let Some(first) = take(node, number, met, stack) else {
+        let Some(first) = next_child(node, number, met, stack) else {
             // Only a forged blob is deeper than it states: the walk ends.
             stack.clear();
             return Child::NONE;
@@ -292,7 +292,7 @@ fn open<'n, S: Simd, N: Number, C: Observer>(
 /// Returns one of the children of a node that the ray hits, while the others wait together: the node, with one bit per
 /// child. Returns `None` if there is no room.
 #[inline(always)]
-fn take(node: &WideNode, number: u32, mut met: u32, stack: &mut StackView) -> Option<Child> {
+fn next_child(node: &WideNode, number: u32, mut met: u32, stack: &mut StackView) -> Option<Child> {
     let first = take_lowest(&mut met);
     if met != 0 {
         let rest = Entry {

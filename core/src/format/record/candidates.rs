@@ -73,7 +73,7 @@ records! {
         /// Start of the levels of keys: culling steps (half units) along the major axis from the apex or the plane.
         pub start: i32,
         /// Levels per culling step, with 24 fraction bits.
-        pub a_step: u32,
+        pub levels_per_step: u32,
     }
 }
 

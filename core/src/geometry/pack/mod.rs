@@ -40,7 +40,7 @@ impl LaneHits {
 ///
 /// Cost: some 40 operations in eight lanes.
 #[inline(always)]
-pub(crate) fn met<N: Arithmetic, S: Simd, P: Pack>(
+pub(crate) fn hit_lanes<N: Arithmetic, S: Simd, P: Pack>(
     simd: S,
     ray: &Ray<N>,
     recip_norm2: N,

@@ -18,6 +18,7 @@ pub trait Project: Arithmetic {
     fn depth_projection(origin: Self, slope: Self, bits: u32) -> AxisProjection<Self> {
         Self::axis_projection(origin, slope, bits)
     }
+
     /// Projects a coordinate of at most 24 bits: to steps in floats, to a length along the ray's direction in
     /// [`Fixed`](crate::Fixed).
     fn project(coordinate: i32, axis: &AxisProjection<Self>) -> Self;
@@ -39,6 +40,7 @@ pub trait Project: Arithmetic {
     fn same_sign(_: [Self; 3]) -> bool {
         false
     }
+
     /// Returns true if a ray hits a surface steeply, given the product of the normal's
     /// [`direction`](crate::number::Vectors::direction) with a slope. Steep means that the error of t is bounded: at
     /// least 2^-8 in [`Fixed`](crate::Fixed), see `geometry/triangle.rs`.

@@ -84,20 +84,20 @@ impl<N: Project> StripRay<N> {
     ///
     /// Cost in `f32`: some 100 operations in four lanes.
     #[inline(always)]
-    pub(crate) fn met<S: Simd, T: Strip>(&self, simd: S, strip: &T) -> u32 {
+    pub(crate) fn hit_lanes<S: Simd, T: Strip>(&self, simd: S, strip: &T) -> u32 {
         if N::FORMAT != Format::F32 {
-            return self.met_one_by_one(strip, strip.members().lanes());
+            return self.hits_one_by_one(strip, strip.members().lanes());
         }
-        let (met, doubtful) = self.met_in_lanes(simd, strip);
+        let (met, doubtful) = self.hits_by_lanes(simd, strip);
         if doubtful == 0 {
             return met;
         }
-        met & !doubtful | self.met_one_by_one(strip, doubtful)
+        met & !doubtful | self.hits_one_by_one(strip, doubtful)
     }
 
     /// The places that the ray hits, and those that lanes cannot decide.
     #[inline(always)]
-    fn met_in_lanes<S: Simd, T: Strip>(&self, simd: S, strip: &T) -> (u32, u32) {
+    fn hits_by_lanes<S: Simd, T: Strip>(&self, simd: S, strip: &T) -> (u32, u32) {
         let Projection { axes, shear, .. } = &self.projection;
         // No closures, because the compiler does not always inline them.
         let rows = strip.rows();
@@ -163,11 +163,11 @@ impl<N: Project> StripRay<N> {
 
     /// Tests triangles in a number format's own arithmetic.
     #[inline(never)]
-    fn met_one_by_one<T: Strip>(&self, strip: &T, places: u32) -> u32 {
+    fn hits_one_by_one<T: Strip>(&self, strip: &T, places: u32) -> u32 {
         match axis(self.axes, 2) {
-            0 => met_along::<0, N, T>(&self.projection, strip, places),
-            1 => met_along::<1, N, T>(&self.projection, strip, places),
-            _ => met_along::<2, N, T>(&self.projection, strip, places),
+            0 => hits_along::<0, N, T>(&self.projection, strip, places),
+            1 => hits_along::<1, N, T>(&self.projection, strip, places),
+            _ => hits_along::<2, N, T>(&self.projection, strip, places),
         }
     }
 }
@@ -178,7 +178,7 @@ fn axis(axes: u32, role: u32) -> usize {
     (axes >> (2 * role) & 3) as usize
 }
 
-fn met_along<const MAJOR: usize, N: Project, T: Strip>(
+fn hits_along<const MAJOR: usize, N: Project, T: Strip>(
     projection: &Projection<N>,
     strip: &T,
     places: u32,

@@ -18,7 +18,7 @@ fn at(z: f64, angle: f64) -> Vector {
 /// The directions around one, which is rounded to the number format.
 fn around<N: Number>(direction: Vector) -> [Vector; 3] {
     let rounded = direction.map(|x| N::ratio((x * f64::from(1 << 30)).round() as i32));
-    let [first, second] = beside(rounded);
+    let [first, second] = perpendicular(rounded);
     [first, second, rounded].map(|it| it.map(N::ratio_to_f64))
 }
 

@@ -145,7 +145,7 @@ proptest! {
 
 /// Straight on, all formulas have one value (F7); and glass like air is invisible (F9).
 #[test]
-fn normal_incidence_and_matched_indices() {
+fn glass_obeys_fresnel_straight_on_and_is_invisible_like_air() {
     fn judge<N: Number>() {
         let normal = [N::ZERO, N::ZERO, N::ONE];
         for step in 1..=100 {

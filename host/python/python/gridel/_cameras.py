@@ -25,7 +25,7 @@ def _numbers(value: Any, name: str, shape: Tuple[int, ...]) -> np.ndarray:
 
 
 def _by_matrices(intrinsic: np.ndarray, extrinsic: np.ndarray) -> Tuple[np.ndarray, np.ndarray]:
-    """Where rays begin, and what turns pixels into directions."""
+    """Returns where rays begin, and the matrix that turns pixels into directions."""
     if np.linalg.matrix_rank(intrinsic) < 3:
         raise ValueError("intrinsic_matrix is singular; its focal lengths and its last number must not be 0")
     turn = extrinsic[:3, :3]
@@ -35,7 +35,7 @@ def _by_matrices(intrinsic: np.ndarray, extrinsic: np.ndarray) -> Tuple[np.ndarr
 def _by_field_of_view(
     degrees: float, places: Tuple[np.ndarray, np.ndarray, np.ndarray], size: Tuple[int, int]
 ) -> np.ndarray:
-    """What turns pixels into directions."""
+    """Returns the matrix that turns pixels into directions."""
     if not 0.0 < degrees < 180.0:
         raise ValueError(f"fov_deg is {degrees}; it must be above 0 and below 180")
     center, eye, up = places

@@ -73,7 +73,7 @@ def _numbers_of_places(vertices: NDArray[np.float64], faces: NDArray[np.int64]) 
 
 
 def _choose(faces: list[list[int]], by_others: dict[int, int]) -> list[bool]:
-    """Whether each face counts, given the edges of each, and whether other faces have an odd number at an edge."""
+    """Returns for each face true if it counts, given the edges of each, and the parity of other faces at each edge."""
     at: dict[int, list[int]] = {}
     for face, edges in enumerate(faces):
         for edge in edges:

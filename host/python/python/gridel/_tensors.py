@@ -20,12 +20,12 @@ def _is_of_open3d(value: Any) -> bool:
 
 
 def is_tensor(value: Any) -> bool:
-    """Whether a value is a tensor of Open3D's."""
+    """Returns true if a value is a tensor of Open3D."""
     return _is_of_open3d(value) and hasattr(value, "numpy")
 
 
 def is_device(value: Any) -> bool:
-    """Whether a value is a device of Open3D's or the name of one."""
+    """Returns true if a value is a device of Open3D, or the name of one."""
     if isinstance(value, str):
         return _DEVICE.fullmatch(value) is not None
     return _is_of_open3d(value) and type(value).__name__ == "Device"

@@ -146,7 +146,7 @@ class RaycastingScene:
         return self._moved(rows(array_of(rays, "rays"), (6,), "rays"))
 
     def _may_leave_single_precision(self, rays: np.ndarray) -> bool:
-        """Whether a hit of any ray (..., 6) can have a t beyond single precision."""
+        """Returns true if a hit of any ray (..., 6) can have a t beyond single precision."""
         if rays.size == 0:
             return False
         rays = rays if rays.dtype.kind == "f" else rays.astype(np.float64)

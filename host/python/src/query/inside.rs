@@ -20,7 +20,7 @@ pub enum Inside<'a> {
     Scene,
 }
 
-/// Whether each point is inside.
+/// Returns for each point true if it is inside.
 pub fn contains(
     scene: &Scene<'_>,
     points: Points<'_>,

@@ -90,7 +90,7 @@ impl NativeScene {
         Self::compiled(py, model)
     }
 
-    /// What [`from_meshes`](Self::from_meshes) was given; `None` of other scenes.
+    /// Returns the arguments of [`from_meshes`](Self::from_meshes); `None` of other scenes.
     #[expect(clippy::type_complexity, reason = "arguments of a function")]
     fn given<'py>(
         &self,
@@ -348,7 +348,8 @@ impl NativeScene {
         Ok((places.reshape([length, 3])?, numbers, triangles))
     }
 
-    /// Whether each point lies in a closed object, or by parity in any `"object"`, or in the `"scene"` as a whole.
+    /// Returns for each point true if it lies in a closed object, or by parity in any `"object"`, or in the `"scene"`
+    /// as a whole.
     #[expect(clippy::too_many_arguments, reason = "keyword arguments of Python")]
     fn contains<'py>(
         &self,

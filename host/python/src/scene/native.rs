@@ -38,7 +38,7 @@ self_cell::self_cell!(
 #[pyclass(frozen, name = "NativeScene")]
 pub struct NativeScene {
     pub(super) blob: CheckedBlob,
-    /// What it was compiled from; `None` of a blob.
+    /// The source that it was compiled from; `None` of a blob.
     pub(super) model: Option<Model>,
     /// The number of the first primitive of each object of `model`.
     pub(super) firsts: Vec<u32>,

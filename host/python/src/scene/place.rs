@@ -17,7 +17,7 @@ pub(super) struct Meeting {
     pub place: DVec3,
     /// The weights of the second and third corner.
     weights: [f64; 2],
-    /// Of length 1.
+    /// The normal, with length 1.
     normal: Option<DVec3>,
 }
 

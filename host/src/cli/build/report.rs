@@ -228,7 +228,7 @@ impl<'r> Built<'r> {
         lines
     }
 
-    /// What a board has left.
+    /// The line about the memory that a board has left.
     fn memory_line(&self) -> Option<Line<'_>> {
         let report = self.memory?;
         let remains = |account: &Account| {

@@ -30,8 +30,9 @@ use tracks::TrackList;
 ///
 /// Compiles a scene file as `gridel build` does by default, without writing a blob. Working memory is what the caller
 /// provides besides the call stack: for pictures a workspace and, on boards, the RAM of parts, of meshes that deform,
-/// of instances and joints that move, and of lights and materials that tracks change. The workspace is exact for this machine, and for 32-bit boards that align an f64 to 8
-/// bytes. A scene that does not fit the board of --target is shown, and the exit code is 3.
+/// of instances and joints that move, and of lights and materials that tracks change. The workspace is exact for this
+/// machine, and for 32-bit boards that align an f64 to 8 bytes. A scene that does not fit the board of --target is
+/// shown, and the exit code is 3.
 #[derive(Args)]
 #[command(after_help = super::failure::EXIT_CODES)]
 pub struct Arguments {

@@ -68,7 +68,7 @@ enum Target<'a> {
 }
 
 impl<'a> Target<'a> {
-    /// Whether the picture is linear radiance.
+    /// Returns true if the picture is linear radiance.
     fn is_linear(&self) -> bool {
         matches!(self, Self::Picture(outputs) if outputs.is_linear())
     }

@@ -123,7 +123,7 @@ impl Image {
 }
 
 impl<'a> Outputs<'a> {
-    /// Whether the picture is linear radiance.
+    /// Returns true if the picture is linear radiance.
     pub fn is_linear(&self) -> bool {
         matches!(self.stored, Stored::Linear(_))
     }

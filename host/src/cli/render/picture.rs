@@ -128,7 +128,7 @@ struct Blurred {
     exposure: Exposure,
     /// The changes at each moment.
     changes: Vec<Changes>,
-    /// What the shutter is warned of.
+    /// The warnings of the shutter.
     warnings: Vec<String>,
 }
 
@@ -228,7 +228,7 @@ impl Stats {
             ("number", Align::Right),
             ("per ray", Align::Right),
         ]);
-        let a_ray = |count: u64| format!("{:.2}", count as f64 / self.rays.max(1) as f64);
+        let per_ray = |count: u64| format!("{:.2}", count as f64 / self.rays.max(1) as f64);
         for (what, count) in [
             ("rays", self.rays),
             ("  primary", self.primary),
@@ -242,7 +242,7 @@ impl Stats {
             ("primitives tested", self.primitives),
             ("instances entered", self.instances),
         ] {
-            table.row([what.to_owned(), grouped(count), a_ray(count)]);
+            table.row([what.to_owned(), grouped(count), per_ray(count)]);
         }
         table.row([
             String::from("rays per second"),

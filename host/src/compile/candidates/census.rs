@@ -19,7 +19,7 @@ pub struct Census {
 
 impl Census {
     /// Objects that a list holds on average.
-    pub fn objects_a_list(&self) -> f64 {
+    pub fn objects_per_list(&self) -> f64 {
         self.entries as f64 / self.lists.max(1) as f64
     }
 

@@ -187,13 +187,13 @@ impl Classes {
         }
         let list = |cell: u64, list: &mut List| {
             let class = listed[cell as usize];
-            let a_step = ClassRange::levels_a_step(&targets.bounds, class.face / 2);
+            let levels_per_step = ClassRange::levels_per_step(&targets.bounds, class.face / 2);
             let mut met = class.met.clone();
             met.sort_unstable_by(|a, b| a.1.total_cmp(&b.1).then(a.0.cmp(&b.0)));
             list.extend(met.iter().map(|&(slot, from)| {
                 // Half units, rounded down by more than arithmetic can be off.
                 let step = (2.0 * from - 1e-3).floor();
-                (slot, ClassRange::key(step as i32, a_step))
+                (slot, ClassRange::key(step as i32, levels_per_step))
             }));
         };
         let plan = Plan {

@@ -238,6 +238,7 @@ impl Nodes {
         slots.dedup();
         slots
     }
+
     fn sections(&self) -> Vec<Section> {
         let some = !self.nodes.is_empty();
         let starts = if some { &self.starts[..] } else { &[] };

@@ -1,4 +1,4 @@
-//! What moves: tracks as sections, and the room that it takes.
+//! Motion: tracks as sections, and the room that they take.
 //!
 //! | file | what it holds |
 //! |---|---|

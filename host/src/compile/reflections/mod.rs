@@ -72,7 +72,7 @@ pub fn dim_reflections(scene: &Scene) -> Vec<String> {
     sentences.collect()
 }
 
-/// What sends light.
+/// A source of light.
 #[derive(Clone, Copy)]
 enum Source {
     /// A light of the scene, by its number.
@@ -99,11 +99,11 @@ struct Lamp {
     color: Color,
     /// The brightest sample that arrives, over the color.
     arriving: f64,
-    /// Whether its place changes with time.
+    /// True if its place changes with time.
     moves: bool,
-    /// Whether rays bring it below a roughness of 0.3, and facets do not mirror it.
+    /// True if rays bring it below a roughness of 0.3, and facets do not mirror it.
     is_met: bool,
-    /// Whether as much arrives everywhere.
+    /// True if as much arrives everywhere.
     is_even: bool,
 }
 

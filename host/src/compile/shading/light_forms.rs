@@ -119,7 +119,7 @@ fn range_record(units: f64) -> i32 {
     }
 }
 
-/// What a form's shape is in its record, in scene units.
+/// The shape of a form as its record holds it, in scene units.
 struct Outline {
     shape: u32,
     normal: DVec3,

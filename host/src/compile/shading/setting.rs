@@ -108,8 +108,8 @@ impl Setting {
     }
 }
 
-/// What a scene does not state, and the compiler supplies for its pictures. A scene with another camera gets other
-/// values.
+/// Values that a scene does not state, and the compiler supplies for its pictures. A scene with another camera gets
+/// other values.
 ///
 /// ```
 /// # let file = "[[object]]\nkind = 'sphere'\ncenter = [0, 0, 0]\nradius = 1\nname = 'ball'";

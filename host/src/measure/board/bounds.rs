@@ -4,7 +4,7 @@
 //! factor by which a program that was built exceeds the bound that the other programs give for it. Left out one by one,
 //! 97 % of the recorded programs take less than the sum that [`from_less`] gives, and the others up to 8 % more.
 
-/// What a program has code for: one bit for each part.
+/// The parts that a program has code for: one bit for each.
 pub type Parts = u128;
 
 /// A program that was built, and a figure of it.

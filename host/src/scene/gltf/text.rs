@@ -14,7 +14,7 @@ const VALUE: u64 = 200;
 /// Copies of the text: the file, its strings, and what they hold as base64.
 const TEXT: u64 = 3;
 
-/// What a text has.
+/// The counts of a text's elements, and the names of their extensions.
 #[derive(Debug, Default, PartialEq)]
 pub(super) struct Counts<'t> {
     objects: u64,

@@ -135,7 +135,7 @@ fn content_of_no_format_is_rejected_with_all_formats() {
 }
 
 #[test]
-fn names_without_folder_and_extension() {
+fn stem_and_extension_leave_out_folder_and_gz() {
     for (name, expected) in [
         ("a/bunny.ply", "bunny"),
         ("bunny.ply.gz", "bunny"),

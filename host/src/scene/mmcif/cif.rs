@@ -152,7 +152,7 @@ mod tests {
     use std::path::Path;
 
     #[test]
-    fn tokens_and_their_lines() {
+    fn tokens_have_the_lines_where_they_end() {
         let text = "data_1ABC # c\nloop_\n_a.b _a.c\n'it''s' \"C1'\" . ?\n;two\nlines\n;\nDATA_x save_f a#b ;c";
         let source = Source::from_bytes(Path::new("t.cif"), text.into());
         let mut tokens = Tokens::new(&source);
@@ -194,7 +194,7 @@ mod tests {
     }
 
     #[test]
-    fn values_without_an_end() {
+    fn values_without_an_end_are_rejected_with_their_line() {
         for (text, message) in [
             ("a\n'b c\n", "t.cif:2: a quoted value has no end"),
             ("a\n\n;b\nc;\n", "t.cif:3: a text field has no end"),

@@ -94,7 +94,7 @@ mod tests {
     }
 
     #[test]
-    fn water_and_an_ion() {
+    fn hydrogens_bond_to_oxygens_and_an_ion_to_nothing() {
         let sites = [
             site("O", 0.0, 0.0, 0.0),
             site("H", 0.9572, 0.0, 0.0),
@@ -126,7 +126,7 @@ mod tests {
     }
 
     #[test]
-    fn distances_without_bound() {
+    fn only_near_atoms_at_places_without_bound_are_bonded() {
         let sites = [
             site("C", 1e300, 0.0, 0.0),
             site("C", -1e300, 1e308, 0.0),

@@ -237,7 +237,7 @@ mod tests {
     }
 
     #[test]
-    fn symbols_in_any_case_and_with_charges() {
+    fn symbols_are_read_in_any_case_and_with_charges() {
         assert_eq!(
             Element::from_symbol("FE3+").map(Element::symbol),
             Some("Fe")

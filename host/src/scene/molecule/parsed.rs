@@ -42,8 +42,8 @@ pub(in crate::scene) struct Atom<'a> {
     pub(in crate::scene) insertion: &'a str,
     /// The archive's number of the residue in `asym`, in mmCIF.
     pub(in crate::scene) label: &'a str,
-    /// What distinguishes residues of one chain and number: the segment in PDB, and in mmCIF the archive's chain of
-    /// residues that the author did not number.
+    /// Distinguishes residues of one chain and number: the segment in PDB, and in mmCIF the archive's chain of residues
+    /// that the author did not number.
     pub(in crate::scene) segment: &'a str,
 }
 

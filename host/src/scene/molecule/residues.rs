@@ -31,7 +31,7 @@ pub(super) fn number<'a>(atoms: &[&Atom<'a>]) -> Vec<Option<u32>> {
     atoms.iter().map(residue).collect()
 }
 
-/// What distinguishes residues of a model.
+/// Returns the key that distinguishes residues of a model.
 fn key<'a>(atom: &Atom<'a>) -> [&'a str; 4] {
     [atom.chain, atom.number, atom.insertion, atom.segment]
 }

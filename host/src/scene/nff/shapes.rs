@@ -97,7 +97,7 @@ impl<'a> Importer<'a> {
         )
     }
 
-    /// Reads `p` (three numbers a vertex) and `pp` (six).
+    /// Reads `p` (three numbers per vertex) and `pp` (six).
     pub(super) fn polygon(
         &mut self,
         line: &Line<'a>,

@@ -269,7 +269,7 @@ fn outline(vertices: &[DVec3]) -> DVec3 {
 }
 
 #[test]
-fn standard_procedural_databases() {
+fn standard_procedural_databases_keep_their_primitives() {
     let facts: [(&str, &[(char, usize)]); 9] = [
         ("balls.nff", &[('s', 7381), ('p', 1), ('l', 3)]),
         ("balls_s2.nff", &[('s', 91), ('p', 1), ('l', 3)]),

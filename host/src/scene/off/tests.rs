@@ -29,7 +29,7 @@ fn fault(text: &str) -> (String, Option<usize>) {
 }
 
 #[test]
-fn keyword_counts_and_comments_in_every_layout() {
+fn keyword_counts_and_comments_are_read_in_every_layout() {
     for text in [
         format!("OFF\n{SQUARE}"),
         format!("OFF {SQUARE}"),

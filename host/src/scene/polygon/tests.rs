@@ -76,12 +76,12 @@ fn crossing_outlines_are_not_exact() {
 }
 
 #[test]
-fn concave_arrow() {
+fn concave_arrow_gets_two_triangles() {
     check(&[(0.0, 0.0), (4.0, 0.0), (4.0, 4.0), (3.0, 1.0)], 2);
 }
 
 #[test]
-fn collinear_and_repeated_vertices() {
+fn collinear_and_repeated_vertices_are_triangulated_exactly() {
     check(
         &[(0.0, 0.0), (1.0, 0.0), (2.0, 0.0), (2.0, 2.0), (0.0, 2.0)],
         3,
@@ -93,7 +93,7 @@ fn collinear_and_repeated_vertices() {
 }
 
 #[test]
-fn a_hole_joined_by_a_bridge() {
+fn a_hole_joined_by_a_bridge_stays_open() {
     let outline = [
         (0.0, 0.0),
         (4.0, 0.0),
@@ -110,7 +110,7 @@ fn a_hole_joined_by_a_bridge() {
 }
 
 #[test]
-fn a_hole_that_touches_the_outline() {
+fn a_hole_that_touches_the_outline_stays_open() {
     check(
         &[
             (0.0, 0.0),
@@ -141,7 +141,7 @@ fn a_line_keeps_its_empty_triangles() {
 }
 
 #[test]
-fn extreme_coordinates() {
+fn extreme_coordinates_are_triangulated_exactly() {
     for scale in [1e-300, 1e-160, 1e160, 1e307] {
         let arrow = [(0.0, 0.0), (4.0, 0.0), (4.0, 4.0), (3.0, 1.0)];
         let vertices: Vec<DVec3> = polygon(&arrow).into_iter().map(|v| v * scale).collect();

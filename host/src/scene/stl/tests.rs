@@ -215,7 +215,7 @@ fn faults_name_line_or_triangle() {
 }
 
 #[test]
-fn real_files() {
+fn stl_files_of_other_programs_keep_their_triangles() {
     for (name, objects, triangles) in [
         ("meshes/cylinder.stl", 1, 416),
         ("meshes/two_objects_mixed_case_names.stl", 2, 24),

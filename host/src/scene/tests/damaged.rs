@@ -104,7 +104,7 @@ fn damage(extension: &str, bytes: &[u8], cuts: usize, flips: usize) {
 }
 
 #[test]
-fn damaged_files() {
+fn damaged_files_load_whole_or_fail_with_a_remedy() {
     for (extension, text) in [
         ("obj", OBJ),
         ("nff", NFF),
@@ -129,7 +129,7 @@ fn damageable() -> impl Iterator<Item = &'static Importer> {
 }
 
 #[test]
-fn damaged_examples_of_every_format() {
+fn damaged_examples_of_every_format_load_whole_or_fail_with_a_remedy() {
     for importer in damageable() {
         let text = importer.example.as_bytes();
         damage(importer.extensions[0], text, text.len(), 500);
@@ -137,7 +137,7 @@ fn damaged_examples_of_every_format() {
 }
 
 #[test]
-fn damaged_gzipped_files() {
+fn damaged_gzipped_files_load_whole_or_fail_with_a_remedy() {
     for importer in damageable() {
         let bytes = samples::gzipped(importer.example.as_bytes());
         let extension = format!("{}.gz", importer.extensions[0]);
@@ -146,7 +146,7 @@ fn damaged_gzipped_files() {
 }
 
 #[test]
-fn bad_files_of_other_projects() {
+fn bad_files_of_other_projects_load_whole_or_fail_with_a_remedy() {
     let Some(folder) = samples::find("bad") else {
         return;
     };
@@ -163,7 +163,7 @@ fn bad_files_of_other_projects() {
 }
 
 #[test]
-fn counts_and_indices_that_lie() {
+fn wrong_counts_and_indices_fail_at_once() {
     let huge = [
         ("nff", "p 4000000000\n0 0 0\n"),
         ("nff", "p 18446744073709551615\n0 0 0\n"),

@@ -216,7 +216,7 @@ fn lost_tracks(scene: &Scene, has_other: bool) -> impl Iterator<Item = &'static 
     all.into_iter().filter(|it| it.0).map(|it| it.1)
 }
 
-/// What a scene has besides objects and lights that are visible as such, in words.
+/// Names the parts of a scene besides objects and lights that are visible as such.
 fn besides_objects(scene: &Scene) -> Option<String> {
     let forms = scene.light_forms.iter().flatten();
     let lamps = forms.filter(|it| it.is_visible).count();

@@ -1,4 +1,4 @@
-//! What a blob needs, as Rust constants for the program that it is built into.
+//! Writes the needs of a blob as Rust constants for the program that it is built into.
 //!
 //! A crate beside the build script: the script would be compiled with the features of the core that a program
 //! chooses, and the core for it anew.

@@ -22,7 +22,7 @@ fn stored(scene: &Scene<'_>) -> geometry::plane::Plane {
 }
 
 #[test]
-fn planes_and_rays_of_every_sort() {
+fn planes_and_rays_of_every_sort_hold_the_bounds() {
     of_every_sort(8);
 }
 

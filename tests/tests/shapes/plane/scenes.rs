@@ -212,6 +212,7 @@ fn planes_cast_and_receive_shadows() {
         });
         !through::<N>(gridel_core::Structure::Bvh, &scene, &ready).1
     }
+
     fn judge<N: Number>() {
         let ball = Shape::Sphere(Sphere {
             center: DVec3::new(0.0, 1.0, 0.0),

@@ -23,7 +23,7 @@ proptest! {
 }
 
 #[test]
-fn roots_at_the_ends_of_guesses() {
+fn roots_at_the_ends_of_guesses_are_exact() {
     for i in 0..=96_u64 {
         for beside in -2..=2_i64 {
             let square = (32 + i).wrapping_shl(57).wrapping_add_signed(beside);

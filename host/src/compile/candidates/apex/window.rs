@@ -87,7 +87,7 @@ impl<'t> Window<'t> {
             cells: cells.map(|cells| cells as u16),
             first_cell,
             start: 0,
-            a_step: 0,
+            levels_per_step: 0,
         };
         let mut window = Self {
             record,
@@ -131,7 +131,7 @@ impl<'t> Window<'t> {
         self.last = last;
         self.record.start = (2.0 * start).floor() as i32;
         let steps = ((2.0 * last).ceil() as u32).saturating_sub(self.record.start as u32);
-        self.record.a_step = (u32::from(Apex::LAST_LEVEL) << 24) / steps.max(1);
+        self.record.levels_per_step = (u32::from(Apex::LAST_LEVEL) << 24) / steps.max(1);
     }
 
     /// The number of the cell behind the window's last.

@@ -48,7 +48,7 @@ struct Member<'g> {
     place: usize,
 }
 
-/// What is joined already.
+/// Members that are joined already.
 struct Group<'g> {
     /// The names of the groups that were not compared yet.
     below: Option<&'g str>,

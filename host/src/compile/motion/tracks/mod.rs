@@ -192,7 +192,7 @@ pub fn places(tracks: &[Track], camera: &Camera) -> Vec<DVec3> {
         .collect()
 }
 
-/// What is wrong with a track, and the remedy.
+/// The cause of an error of a track, and the remedy.
 type Fault = (String, &'static str);
 
 /// An error of a track.

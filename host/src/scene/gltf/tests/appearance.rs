@@ -9,7 +9,7 @@ fn material(made: Value) -> Material {
 }
 
 #[test]
-fn materials() {
+fn materials_take_mirror_glass_and_glow_from_gltf() {
     let matte = material(json!({"name": "matte",
         "pbrMetallicRoughness": {"baseColorFactor": [0.5, 0.25, 1, 1], "metallicFactor": 0}}));
     assert_eq!(matte.name, "matte");
@@ -54,7 +54,7 @@ fn materials() {
 }
 
 #[test]
-fn a_camera_and_lights() {
+fn camera_and_lights_are_read_from_nodes() {
     let mut document = document();
     document["cameras"] = json!([
         {"type": "orthographic",
@@ -411,7 +411,7 @@ fn images_without_a_kind_or_data_are_told_by_their_bytes_or_left_out() {
 }
 
 #[test]
-fn alpha_modes_of_textures() {
+fn alpha_modes_of_textures_choose_cut_out_or_blend() {
     let mut document = textured();
     let pixels = [[255, 0, 0, 255], [0, 0, 255, 9]];
     let image = STANDARD.encode(crate::scene::image::tests::png_of(2, 1, &pixels));

@@ -11,7 +11,7 @@ fn facing(object: &Object) -> DVec3 {
 }
 
 #[test]
-fn a_square_as_text_and_as_binary() {
+fn a_square_is_read_as_text_and_as_binary() {
     let scene = scene(&document());
     let (vertices, triangles) = mesh(&scene.objects[0]);
     assert_eq!(vertices[2], DVec3::new(1.0, 1.0, 0.0));
@@ -27,7 +27,7 @@ fn a_square_as_text_and_as_binary() {
 }
 
 #[test]
-fn a_buffer_in_a_file_of_its_own() {
+fn a_buffer_is_read_from_a_file_of_its_own() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("thing.gltf");
     let mut document = document();
@@ -58,7 +58,7 @@ fn nodes_place_their_meshes() {
 }
 
 #[test]
-fn strips_fans_and_meshes_without_indices() {
+fn strips_fans_and_meshes_without_indices_become_triangles() {
     let mut document = document();
     document["meshes"][0]["primitives"] = json!([
         {"attributes": {"POSITION": 0}, "mode": 6},
@@ -146,7 +146,7 @@ fn numbers_that_are_not_finite_are_reported_with_what_follows() {
 
 /// An accessor may replace elements of its view, or of nothing.
 #[test]
-fn sparse_positions() {
+fn sparse_positions_replace_those_of_their_view() {
     let mut bytes = square();
     bytes.extend([2, 0, 0, 0]);
     bytes.extend([9.0_f32, 8.0, 7.0].iter().flat_map(|x| x.to_le_bytes()));
@@ -179,7 +179,7 @@ fn sparse_positions() {
 
 /// Triangles, instances counted, as other programs count them.
 #[test]
-fn files_of_other_projects() {
+fn gltf_files_of_other_programs_keep_their_triangles() {
     for (name, objects, triangles) in [
         ("monkey.glb", 1, 968),
         ("BoxTextured.glb", 1, 12),

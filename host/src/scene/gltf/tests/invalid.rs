@@ -3,7 +3,7 @@
 use super::*;
 
 #[test]
-fn broken_documents() {
+fn broken_documents_are_rejected_with_their_cause() {
     let with = |change: fn(&mut Value)| {
         let mut document = document();
         change(&mut document);

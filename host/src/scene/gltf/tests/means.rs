@@ -96,7 +96,7 @@ fn texture_of_emission_with_factor_0_is_not_read() {
     );
 }
 
-/// What glows on the front alone, or too strongly, does so after it is weighted.
+/// Emission on the front alone, or too strong, is warned of only if weights leave it so.
 #[test]
 fn warnings_of_emission_are_those_of_the_weighted_factor() {
     let mut document = glowing();

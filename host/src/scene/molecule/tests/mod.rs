@@ -55,7 +55,7 @@ HETATM    4 FE   HEM B  10A     -1.000  20.000-300.000  1.00  0.00          FE3+
 ";
 
 #[test]
-fn pdb_columns() {
+fn pdb_columns_give_names_elements_and_places() {
     let imported = pdb(CYSTEINE).unwrap();
     assert_eq!(
         names(&imported),
@@ -76,7 +76,7 @@ fn pdb_columns() {
 }
 
 #[test]
-fn alternate_locations() {
+fn altloc_chooses_one_of_the_alternate_locations() {
     let with = |altloc| {
         read(
             "t.pdb",
@@ -104,7 +104,7 @@ fn alternate_locations() {
 }
 
 #[test]
-fn models() {
+fn model_is_chosen_by_its_place_in_the_file() {
     let atom = |x: f64| format!("ATOM      1  C   UNK A   1    {x:8.3}   0.000   0.000\n");
     let text = format!(
         "MODEL 7\n{}ENDMDL\nMODEL 9\n{}MODEL 9\n{}ENDMDL\n{}END\n",
@@ -155,7 +155,7 @@ fn models() {
 }
 
 #[test]
-fn elements_from_names() {
+fn pdb_names_give_elements() {
     let symbol = |record: &str, name: &str| {
         let text = format!("{record:<6}    1 {name} UNK A   1       0.000   0.000   0.000\n");
         symbols(&pdb(&text).unwrap())[0].to_owned()
@@ -286,7 +286,7 @@ ATOM 3 C 1E5 . A A X 1 ? 0 0 0 2
 ";
 
 #[test]
-fn mmcif_atoms() {
+fn mmcif_atoms_take_the_numbers_of_the_author() {
     let imported = cif(ATOM_SITE).unwrap();
     assert_eq!(names(&imported), ["X/A 001/C1'", "Y/HEM 7A/FE"]);
     assert_eq!(symbols(&imported), ["C", "Fe"]);
@@ -306,7 +306,7 @@ fn mmcif_atoms() {
 }
 
 #[test]
-fn mmcif_without_a_loop() {
+fn mmcif_without_a_loop_gives_one_atom() {
     let text = "data_x\n_cell.length_a 1\n_atom_site.type_symbol C\n_atom_site.Cartn_x 1\n_atom_site.Cartn_y 2\n\
                 _atom_site.Cartn_z 3\n_atom_site.label_atom_id CA\n_exptl.method X\n";
     let imported = cif(text).unwrap();
@@ -317,7 +317,7 @@ fn mmcif_without_a_loop() {
 }
 
 #[test]
-fn mmcif_bonds() {
+fn mmcif_bonds_are_read_except_to_hydrogens_and_copies() {
     let text = format!(
         "{ATOM_SITE}loop_\n_struct_conn.conn_type_id\n_struct_conn.ptnr1_auth_asym_id\n\
          _struct_conn.ptnr1_auth_seq_id\n_struct_conn.ptnr1_label_atom_id\n_struct_conn.ptnr2_auth_asym_id\n\

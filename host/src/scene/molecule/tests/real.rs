@@ -108,7 +108,7 @@ fn pdb_and_mmcif_of_one_structure_agree() {
 }
 
 #[test]
-fn real_bonds() {
+fn files_of_other_programs_get_all_bonds() {
     let options = MoleculeOptions {
         style: MoleculeStyle::BallAndStick,
         ..MoleculeOptions::default()

@@ -12,7 +12,7 @@ fn material(text: &str) -> (Material, Vec<String>) {
 }
 
 #[test]
-fn materials() {
+fn materials_take_color_mirror_and_glass_from_mtl() {
     let (plain, warnings) =
         material("newmtl my red #2\nKd 1 0 .5\nKs .2 # gray\nNs 96.08\nillum 2\nKe 0 0 0\n");
     assert_eq!(warnings, [] as [&str; 0]);

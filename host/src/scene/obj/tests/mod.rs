@@ -329,7 +329,7 @@ fn real_meshes_have_the_triangles_box_and_area_that_trimesh_finds() {
 }
 
 #[test]
-fn known_meshes() {
+fn known_meshes_keep_their_objects_triangles_and_normals() {
     for (name, objects, triangles, normals) in [
         // Faces wound the other way round take three of its 507 normals turned.
         ("suzanne.obj", 1, 968, 510),

@@ -264,7 +264,7 @@ fn numbers_behind_the_last_property_are_warned_of() {
 }
 
 #[test]
-fn real_files() {
+fn ply_files_of_other_programs_are_read() {
     for name in [
         "meshes/fuze.ply",
         "meshes/fuze_ascii.ply",

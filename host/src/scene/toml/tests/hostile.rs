@@ -14,7 +14,7 @@ fn survive(folder: &std::path::Path, text: &str) {
 }
 
 #[test]
-fn the_example_cut_off_at_every_byte() {
+fn the_example_cut_off_at_every_byte_loads_or_fails_with_a_remedy() {
     let folder = tempfile::tempdir().unwrap();
     let text = example();
     for end in (0..text.len()).filter(|&end| text.is_char_boundary(end)) {
@@ -23,7 +23,7 @@ fn the_example_cut_off_at_every_byte() {
 }
 
 #[test]
-fn the_example_with_characters_exchanged() {
+fn the_example_with_characters_exchanged_loads_or_fails_with_a_remedy() {
     let folder = tempfile::tempdir().unwrap();
     let text = example();
     let replacements = [
@@ -42,7 +42,7 @@ fn the_example_with_characters_exchanged() {
 }
 
 #[test]
-fn bytes_that_are_no_text() {
+fn bytes_that_are_no_text_are_rejected() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("scene.toml");
     std::fs::write(&path, b"background = 0\n# \xff\xfe\n").unwrap();

@@ -23,7 +23,7 @@ fn imports(file: &str, times: usize) -> String {
     format!("[[object]]\nkind = 'import'\nfile = '{file}'\n").repeat(times)
 }
 
-/// Whether the scene takes the tracks over or not, so that nothing depends on what comes first.
+/// Keys count whether or not the scene takes the tracks over, so that nothing depends on the order of imports.
 #[test]
 fn keys_of_every_import_count() {
     let folder = tempfile::tempdir().unwrap();
