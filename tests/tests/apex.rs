@@ -8,7 +8,7 @@ use gridel_core::{
 };
 use gridel_host::compile::{Options, compile};
 use gridel_host::picture_rays::PictureRays;
-use gridel_host::scene::{Camera, Light, Scene as SceneFile};
+use gridel_host::scene::{Camera, Light, Scene as SceneFile, Shape};
 use gridel_tests::every_format;
 use gridel_tests::query::{HitBits, any, closest};
 use gridel_tests::scenes;
@@ -135,7 +135,7 @@ fn a_moved_camera_falls_back() {
 /// Where a list has few cells, they reach far beyond the picture.
 #[test]
 fn rays_beyond_the_picture_find_all_objects() {
-    fn in_format<N: Number>(name: &str, scene: &Scene<'_>) {
+    fn in_format<N: Number>(served: &mut usize, scene: &Scene<'_>) {
         let eye = scene.view().eye.map(|x| x as f64 / 8192.0);
         let sides = scene.bounds().0.map(|side| side.map(f64::from));
         // All over the scene's box, and beside it.
@@ -149,25 +149,34 @@ fn rays_beyond_the_picture_find_all_objects() {
             Ray::<N>::from_f64(scene.bounds(), eye, direction, 0.0, 1e9).ok()
         };
         let rays: Vec<_> = (0..4096).filter_map(ray).collect();
-        let fallen = fallen_back::<N, Apex>(scene, &rays);
-        assert!(fallen < rays.len(), "{name}: no ray finds a list");
+        *served += rays.len() - fallen_back::<N, Apex>(scene, &rays);
     }
+    let ball = |x: f64| Shape::Sphere {
+        center: DVec3::new(x, 0.0, 0.0),
+        radius: 1.0,
+    };
+    let mut served = 0;
     for count in [1, 2, 5, 30] {
         for fov_degrees in [12.0, 41.0, 80.0, 120.0] {
-            let mut scene = scenes::soup(count, count as usize, 0.4);
-            scene.camera = Some(Camera {
-                eye: DVec3::new(0.3, 0.2, 4.0),
-                target: DVec3::new(0.0, 0.1 * fov_degrees / 40.0, 0.0),
-                up: DVec3::Y,
-                fov_degrees,
-            });
-            let blob = compile(&scene, &options(Structure::Apex, None))
-                .expect("compiles")
-                .blob;
-            let scene = blob.scene().expect("a scene");
-            every_format!(in_format(&format!("{count} at {fov_degrees}"), &scene));
+            // One within the picture, and one far aside.
+            let balls = scenes::of([ball(0.0), ball(7.5)].into_iter().take(count as usize));
+            let soup = scenes::soup(count, count as usize, 0.4);
+            for (mut scene, distance) in [(balls, 10.0), (soup, 4.0)] {
+                scene.camera = Some(Camera {
+                    eye: DVec3::new(0.3, 0.2, distance),
+                    target: DVec3::new(0.0, 0.1 * fov_degrees / 40.0, 0.0),
+                    up: DVec3::Y,
+                    fov_degrees,
+                });
+                let blob = compile(&scene, &options(Structure::Apex, None))
+                    .expect("compiles")
+                    .blob;
+                let scene = blob.scene().expect("a scene");
+                every_format!(in_format(&mut served, &scene));
+            }
         }
     }
+    assert!(served > 100_000, "{served}");
 }
 
 #[test]
