@@ -37,6 +37,10 @@ pub const FARTHEST_HIT: i64 = 1 << 62;
 /// 2^17 units. So some point of the shape is a length in every format, with the same margin.
 pub const FARTHEST_POINT: i64 = 1 << 25;
 
+/// Points of shapes without bounds stay this many units below the longest length. A start beside such a point is then a
+/// length, too.
+pub(crate) const ROOM_FOR_ERRORS: i16 = 16;
+
 /// Maximum number of instances of a scene.
 pub const MAX_INSTANCES: usize = 1 << 20;
 

@@ -2,12 +2,12 @@
 //! its caller, before it is moved to the scene's box.
 //!
 //! A plane at right angles to an axis is exact: the hit's coordinate on that axis is the plane's own. Where a hit lies
-//! beyond the lengths of [`Fixed`](crate::Fixed), its point is a point of the plane in the same direction. `t` is still
+//! beyond the lengths of [`Fixed`](crate::Fixed) less 16 units, its point is a nearer point of the plane. `t` is still
 //! the plane's.
 
 use crate::axis::pick;
 use crate::format::layout::records;
-use crate::format::limits::{FARTHEST_HIT, FARTHEST_POINT};
+use crate::format::limits::{FARTHEST_HIT, FARTHEST_POINT, ROOM_FOR_ERRORS};
 use crate::format::range::Ranges;
 use crate::format::record::UnitBox;
 use crate::format::{BlobError, Reason};
@@ -73,8 +73,8 @@ impl Plane {
         N::far_over(along_normal, N::dot(normal, slope))
     }
 
-    /// A point of the plane, moved towards the plane's own point until it is a length on every axis. So it stays in the
-    /// plane.
+    /// A point of the plane, moved towards the plane's own point until it is a length on every axis, with room for error
+    /// bounds. So it stays in the plane.
     fn within_reach<N: Arithmetic>(&self, mut place: [N::Wide; 3]) -> [N::Wide; 3] {
         // More halvings than a far coordinate has bits.
         for _ in 0..64 {
@@ -167,6 +167,6 @@ fn far_dot<N: Arithmetic>(far: [N::Wide; 3], ratios: [N; 3]) -> N::Wide {
 
 /// Returns a far coordinate as a length: the nearest that leaves room for error bounds.
 fn held<N: Arithmetic>(coordinate: N::Wide) -> N {
-    let most = N::narrow(N::far(1 << 60)) - N::from_unit(16);
+    let most = N::narrow(N::far(1 << 60)) - N::from_unit(ROOM_FOR_ERRORS);
     N::narrow(coordinate).max(-most).min(most)
 }

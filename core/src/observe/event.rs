@@ -51,7 +51,8 @@ pub enum Event {
     },
     /// A query of a structure starts.
     Query {
-        /// The start of the ray inside the kernels: its own origin, or where it reaches the scene's box.
+        /// The start of the ray inside the kernels: its own origin, or where it reaches the scene's box. For a ray that
+        /// passes the scene so far away that it has no start, its own origin.
         origin: [f64; 3],
         /// Its direction; the largest component is 1 or -1.
         slope: [f64; 3],
@@ -59,6 +60,8 @@ pub enum Event {
         start_t: f64,
         /// The interval of the query, from `origin`. It is empty if the ray misses the scene.
         interval: [f64; 2],
+        /// The interval in which hits of shapes without bounds count, from `origin`. It is empty in builds without them.
+        far_interval: [f64; 2],
         /// True if any hit will do.
         any: bool,
     },

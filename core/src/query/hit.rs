@@ -145,8 +145,9 @@ pub struct Hit<N: Number> {
     /// The place on the ray: a length in units along the ray's major axis (see [`Ray`]).
     pub t: N::Wide,
     /// The point of the surface next to the place of `t` on the ray, in units. A plane can be hit up to 2^49 units from
-    /// the lattice's middle. Where a coordinate is beyond 2^18 units in `fixed`, or 2^47 in `f32` and `f64`, this is a
-    /// nearer point of the plane, and only `t` says where the hit is.
+    /// the lattice's middle. Where a coordinate is beyond 2^18 - 16 units in `fixed`, or 2^47 - 16 in `f32` and `f64`,
+    /// this is a nearer point of the plane, and only `t` says where the hit is. The 16 units are room for
+    /// [`outside`](Self::outside) and [`inside`](Self::inside).
     pub point: [N; 3],
     /// The geometric normal, of length 1: outward from solids, to the side from which a triangle's
     /// corners run counter-clockwise, along a disc's own.

@@ -62,10 +62,11 @@ pub(crate) fn each<N: Number, C: Observer>(
         let nearest = in_interval.is_some_and(&mut consider);
         count.primitives(1);
         if C::ENABLED {
+            let (_, origin_t) = ray.reference_point();
             count.event(Event::Candidate {
                 kind: place.kind,
                 primitive: scene.primitive_at(place),
-                crossing: hit.map(|hit| [N::far_to_f64(hit.t - ray.start_t); 2]),
+                crossing: hit.map(|hit| [N::far_to_f64(hit.t - origin_t); 2]),
                 nearest,
             });
         }

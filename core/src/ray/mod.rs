@@ -302,11 +302,14 @@ impl<N: Arithmetic> Ray<N> {
 
     /// A query along this ray, as events report it.
     pub(crate) fn query(&self, any: bool) -> Event {
+        let (origin, start_t) = self.reference_point();
+        let start_t = N::far_to_f64(start_t);
         Event::Query {
-            origin: self.origin.map(N::length_to_f64),
+            origin: origin.map(N::far_to_f64),
             slope: self.slope.map(N::ratio_to_f64),
-            start_t: N::far_to_f64(self.start_t),
+            start_t,
             interval: [self.tmin, self.tmax].map(N::length_to_f64),
+            far_interval: self.given_interval().map(|t| N::far_to_f64(t) - start_t),
             any,
         }
     }

@@ -1,10 +1,11 @@
 //! The starts of rays that leave hits: outside of the surface, on the side to which they go.
 //!
-//! In `fixed` a plane can be hit farther away than lengths reach. The [point](Hit::point) of such a hit is another one
-//! of the plane. Rays to lights start from the place itself, and rays that wait from where they come to the scene's box.
+//! In `fixed` a plane can be hit farther away than lengths reach, less room for error bounds. The [point](Hit::point) of
+//! such a hit is a nearer one of the plane. Rays to lights start from the place itself, and rays that wait from where
+//! they come to the scene's box.
 
 use crate::accel::Number;
-use crate::format::limits::UNBOUNDED;
+use crate::format::limits::{ROOM_FOR_ERRORS, UNBOUNDED};
 use crate::number::{Format, far_extent};
 use crate::observe::count::NoCount;
 use crate::query::{Hit, unbounded};
@@ -17,11 +18,11 @@ use crate::target::InSomeBuilds;
 pub(crate) struct Origin<'f, N: Number> {
     /// A point of the surface.
     pub(crate) point: [N; 3],
-    /// The place itself, if it is beyond lengths.
+    /// The place itself, if the hit's point can be a nearer one.
     far: Far<'f, N>,
 }
 
-/// The place of a hit beyond lengths, if it is one. It is absent in builds without shapes that can be hit there.
+/// The place of a hit whose point can be a nearer one. It is absent in builds without shapes that can be hit there.
 pub(crate) type Far<'f, N> = InSomeBuilds<Option<&'f FarPlace<N>>, { UNBOUNDED as usize }>;
 
 impl<'f, N: Number> Origin<'f, N> {
@@ -101,7 +102,8 @@ fn from_anywhere<N: Number>(
     Ray::new(scene.bounds(), origin.place(), way, start, end).ok()
 }
 
-/// A place beyond lengths at which a plane was hit, outside of the plane on the side that the ray came from.
+/// The place of a plane's hit whose point can be a nearer one. It lies outside of the plane, on the side that the ray
+/// came from.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct FarPlace<N: Number>([N::Wide; 3]);
 
@@ -109,12 +111,12 @@ pub(crate) struct FarPlace<N: Number>([N::Wide; 3]);
 const BESIDE: i32 = 1 << 4;
 
 impl<N: Number> FarPlace<N> {
-    /// Returns the place of a hit if it is beyond the lengths of the format.
+    /// Returns the place of a hit if its point can be a nearer one.
     #[inline(always)]
     pub(crate) fn of(ray: &Ray<N>, hit: &Hit<N>) -> Option<Self> {
-        // A point that stands for a farther one lies at least this far away: a plane's own point reaches to half of
-        // the longest length.
-        let far = N::FAR.half().half();
+        // A point that stands for a farther one lies at least this far away. On some axis it is half way between the
+        // plane's own point, which reaches to half of the longest length, and a point beyond lengths less the room.
+        let far = N::FAR.half().half() - N::from_unit(ROOM_FOR_ERRORS);
         let can_be_far = N::FORMAT == Format::Fixed
             && hit.point.iter().any(|&x| x >= far || x <= -far)
             && hit.is_unbounded();
@@ -129,7 +131,9 @@ impl<N: Number> FarPlace<N> {
     #[inline(never)]
     fn beyond(ray: &Ray<N>, hit: &Hit<N>) -> Option<Self> {
         let place = ray.far_point(hit.t)?;
-        if is_length::<N>(&place) {
+        // Twice the room of points, because the place is not rounded as they are. Between the two both are right.
+        let room = N::from_unit(2 * ROOM_FOR_ERRORS);
+        if far_extent::<N>(place) < (N::FAR - room).widen() {
             return None;
         }
         Some(Self(place).moved_off(hit, BESIDE))

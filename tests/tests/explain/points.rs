@@ -3,7 +3,7 @@
 use super::{explanation, rays, way};
 use glam::DVec3;
 use gridel_core::{Format, Settings, Structure};
-use gridel_host::explain::{Explanation, Names, Shown, Subject, explain};
+use gridel_host::explain::{Explanation, Names, Shown, Step, Subject, Verdict, explain};
 use gridel_host::trace::{Frame, SceneRay};
 use gridel_tests::scenes;
 
@@ -221,5 +221,124 @@ fn explain_gives_the_points_of_planes_far_away() {
         }
         let expected = if format == Format::Fixed { 1e7 } else { 9e9 };
         assert!(farthest > expected, "{format:?}: {farthest:e}");
+    }
+}
+
+/// Rays that leave planes outside of the scene's box start where the plane was hit, also if they pass the box.
+#[test]
+fn explain_gives_points_that_lie_on_rays_that_leave_planes() {
+    let file = |z: f64, wall: DVec3, ground: DVec3| {
+        let ahead = z - 5.0;
+        format!(
+            "background = [0.2, 0.4, 0.8]
+            [camera]
+            eye = [0, 1, {z}]
+            target = [5, 1, {ahead}]
+            [render]
+            width = 32
+            height = 24
+            depth = 3
+            cutoff = 0
+            [[light]]
+            kind = 'point'
+            position = [0, 4, 2]
+            [material.glass]
+            transmit = 1
+            ior = 1.5
+            [material.mirror]
+            mirror = 0.5
+            [[object]]
+            kind = 'plane'
+            point = [2, 0, 0]
+            normal = {:?}
+            material = 'glass'
+            [[object]]
+            kind = 'plane'
+            point = [0, -1, 0]
+            normal = {:?}
+            material = 'mirror'
+            [[object]]
+            kind = 'sphere'
+            center = [0, 0, 0]
+            radius = 1",
+            wall.to_array(),
+            ground.to_array()
+        )
+    };
+    let across = [DVec3::NEG_X, DVec3::Y];
+    let tilted = [DVec3::new(-1.0, 0.25, 0.0), DVec3::new(0.125, 1.0, 0.0)];
+    for (z, normals) in [
+        (30.0, across),
+        (10.0, across),
+        (30.0, tilted),
+        (10.0, tilted),
+    ] {
+        let file = file(z, normals[0], normals[1]);
+        let scene = gridel_host::scene::read("a.toml".as_ref(), file.into(), &Default::default());
+        let scene = scene.expect("a scene").scene;
+        let blob = gridel_host::compile::compile(&scene, &Default::default());
+        let blob = blob.expect("a blob").blob;
+        let scene = blob.scene().expect("a scene");
+        let frame = Frame::of(&scene);
+        let middle = frame.place([0.0; 3]);
+        for format in Format::ALL {
+            let bits = match format {
+                Format::Fixed => 24,
+                Format::F32 => 20,
+                Format::F64 => 44,
+            };
+            let (mut sent, mut passing) = (0, 0);
+            for number in (0..32 * 24).step_by(5) {
+                let pixel = [number % 32, number / 32];
+                let subject = Subject::Pixel(pixel);
+                let settings = Settings::of(&scene);
+                let explained = explain(&scene, format, Structure::DualSplit, settings, subject);
+                let explained = explained.expect("an explanation");
+                let about = || format!("{z} {normals:?} {} {pixel:?}", format.name());
+                hits_lie_on_their_rays(&explained, &about);
+                let rays = &explained.samples[0].rays;
+                for ray in rays {
+                    let Some((hit, walk)) = ray.hit.as_ref().zip(ray.walk.as_ref()) else {
+                        continue;
+                    };
+                    let point = DVec3::from_array(hit.point);
+                    let reach = (point - middle).abs().max_element();
+                    let most =
+                        hit.distance_error + f64::powi(2.0, -bits) * (reach + hit.distance + 8.0);
+                    if let Some(normal) = normals.get(hit.primitive as usize) {
+                        let through = [DVec3::new(2.0, 0.0, 0.0), DVec3::NEG_Y];
+                        let apart = point - through[hit.primitive as usize];
+                        let off = apart.dot(normal.normalize()).abs();
+                        assert!(off <= most, "{}: {off:e} {most:e} {hit:?}", about());
+                    }
+                    // In `fixed`, rays that wait can start elsewhere if they leave a hit beyond lengths.
+                    let has_point = format != Format::Fixed || reach < frame.length(262_112.0);
+                    let children = ray.children.iter().filter(|_| has_point);
+                    let children = children.filter_map(|&child| rays[child].walk.as_ref());
+                    let shadows = ray.lights.iter().filter_map(|light| light.shadow.first());
+                    for next in children.chain(shadows) {
+                        let off = DVec3::from_array(next.origin).distance(point);
+                        assert!(off <= most, "{}: {off:e} {most:e} {next:?}", about());
+                        sent += 1;
+                        passing += usize::from(next.interval[0] > next.interval[1]);
+                    }
+                    // Beyond the box, too, what lies ahead is in the interval.
+                    let ahead = |step: &&Step| match step {
+                        Step::Candidate(it) => it.crossing.is_some_and(|[enter, _]| enter > 1e-3),
+                        _ => false,
+                    };
+                    for step in walk.steps.iter().filter(ahead) {
+                        let Step::Candidate(candidate) = step else {
+                            continue;
+                        };
+                        let verdict = candidate.verdict;
+                        assert_ne!(verdict, Verdict::NotInInterval, "{}: {walk:?}", about());
+                    }
+                }
+            }
+            let about = format!("{z} {normals:?} {format:?}: {sent} rays, {passing} pass the box");
+            eprintln!("{about}");
+            assert!(sent > 100 && passing > 10, "{about}");
+        }
     }
 }

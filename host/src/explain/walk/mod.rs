@@ -25,9 +25,9 @@ pub struct Walk {
     /// The interval of the ray that counts.
     pub interval: [f64; 2],
     /// The start of the kernels: `origin`, or the first point that is within the scene's box along the ray's major
-    /// axis. Along the others it need not be.
+    /// axis. Along the others it need not be. `origin` if the ray passes the box far away.
     pub start: [f64; 3],
-    /// Distance of `start`: 0 unless the ray starts before the scene's box.
+    /// Distance of `start`: 0 unless the ray starts before the scene's box, and comes near it.
     pub moved: f64,
     /// True if any hit suffices.
     pub any: bool,
@@ -116,6 +116,8 @@ struct InUnits {
     turned: f64,
     /// The interval that counts.
     interval: [f64; 2],
+    /// The interval that counts for shapes without bounds.
+    far_interval: [f64; 2],
     /// The nearest hit so far.
     limit: f64,
     /// The interval of the ray in the node that it entered last.
@@ -135,6 +137,7 @@ impl Walk {
             slope,
             start_t: moved,
             interval,
+            far_interval,
             any,
         } = event
         else {
@@ -149,12 +152,7 @@ impl Walk {
         let direction = exact / norm;
         let scale = norm * frame.length(1.0);
         let moved = (given.begin + moved) * scale;
-        // A ray that passes the scene's box has an empty interval, and a start that is not one of its points.
-        let place = if interval[1] < 0.0 {
-            given.origin + moved * direction
-        } else {
-            frame.place(start)
-        };
+        let place = frame.place(start);
         Some(Self {
             origin: given.origin.to_array(),
             direction: direction.to_array(),
@@ -178,6 +176,7 @@ impl Walk {
                 aside: (given.origin + moved * direction).distance(place),
                 turned: direction.distance(rounded.normalize()),
                 interval,
+                far_interval,
                 limit: interval[1],
                 around: interval,
             },
@@ -202,17 +201,19 @@ impl Walk {
         (self.ray.begin + t) * self.ray.scale
     }
 
-    /// Returns the place of a hit in scene coordinates, given in units. Where that is no place of the lattice, as of a
-    /// plane far away, the number format has only the distance right.
+    /// Returns the place of a hit in scene coordinates, given in units. Where the point stands for a farther one of the
+    /// same plane, the number format has only the distance right.
     pub(super) fn place(&self, frame: &Frame, distance: f64, point: [f64; 3]) -> [f64; 3] {
-        let most = match self.ray.format {
-            Format::Fixed => f64::powi(2.0, 17),
-            Format::F32 | Format::F64 => f64::powi(2.0, 46),
+        // A point that stands for a farther one is more than a quarter of the longest length less 8 units away from
+        // it: see `Plane` of the core.
+        let apart = match self.ray.format {
+            Format::Fixed => f64::powi(2.0, 15),
+            Format::F32 | Format::F64 => f64::powi(2.0, 44),
         };
-        if point.iter().all(|x| x.abs() < most) {
-            return frame.place(point).to_array();
-        }
-        [0, 1, 2].map(|axis: usize| self.origin[axis] + distance * self.direction[axis])
+        let point = frame.place(point);
+        let on_ray = DVec3::from_array(self.origin) + distance * DVec3::from_array(self.direction);
+        let is_near = (point - on_ray).abs().max_element() < frame.length(apart);
+        if is_near { point } else { on_ray }.to_array()
     }
 
     /// Returns how far `origin + distance * direction` may be from the point that the kernels compute there. The
@@ -289,7 +290,10 @@ impl Walk {
                     None => Verdict::Missed,
                     Some(_) if nearest => Verdict::Nearest,
                     Some([enter, leave]) => {
-                        let [first, last] = ray.interval;
+                        let [first, last] = match kind.is_bounded() {
+                            true => ray.interval,
+                            false => ray.far_interval,
+                        };
                         let counts = |t: f64| first <= t && t <= last;
                         if counts(enter) || counts(leave) {
                             Verdict::Farther
