@@ -9,6 +9,7 @@ use gridel_core::{
 use gridel_host::compile::{Options, compile};
 use gridel_host::picture_rays::PictureRays;
 use gridel_host::scene::{Camera, Light, Scene as SceneFile, Shape};
+use gridel_host::shape::Sphere;
 use gridel_tests::every_format;
 use gridel_tests::query::{HitBits, any, closest};
 use gridel_tests::scenes;
@@ -151,9 +152,11 @@ fn rays_beyond_the_picture_find_all_objects() {
         let rays: Vec<_> = (0..4096).filter_map(ray).collect();
         *served += rays.len() - fallen_back::<N, Apex>(scene, &rays);
     }
-    let ball = |x: f64| Shape::Sphere {
-        center: DVec3::new(x, 0.0, 0.0),
-        radius: 1.0,
+    let ball = |x: f64| {
+        Shape::Sphere(Sphere {
+            center: DVec3::new(x, 0.0, 0.0),
+            radius: 1.0,
+        })
     };
     let mut served = 0;
     for count in [1, 2, 5, 30] {

@@ -193,7 +193,8 @@ fn rays_leave_planes_at_the_end_of_lengths_from_their_place() {
                 let blob = blob(&imported.expect("a scene").scene);
                 let scene = blob.scene().expect("a scene");
                 assert_eq!(scene.header().unit_exponent, -13, "{file}");
-                assert_eq!(scene.header().origin[axis], 0.0, "{file}");
+                let origin = scene.header().origin;
+                assert_eq!(origin[axis], 0.0, "{file}");
                 let size = [64, 64];
                 let exact = picture(&blob, Format::F64, size);
                 for format in [Format::Fixed, Format::F32] {
