@@ -242,12 +242,12 @@ fn emulate(board: &Board, program: &Path, folder: &Path) -> Result<String, Obsta
         .stdin(Stdio::null())
         .stdout(file(&printed)?)
         .stderr(file(&complaints)?);
-    let running = Running::start(&mut command)
+    let mut running = Running::start(&mut command)
         .map_err(failed(format!("{} cannot be run", board.emulator)))?;
     let size = |path: &Path| fs::metadata(path).map_or(0, |it| it.len());
     let prints_too_much = || size(&printed) + size(&complaints) > MOST_PRINTED;
     let time = Duration::from_secs(board.seconds.into());
-    let ended = wait(&running, time, &prints_too_much)
+    let ended = wait(&mut running, time, &prints_too_much)
         .map_err(failed(format!("{} cannot be run", board.emulator)))?;
     if prints_too_much() {
         return Err(Obstacle::Failure(format!(
@@ -276,7 +276,7 @@ fn emulate(board: &Board, program: &Path, folder: &Path) -> Result<String, Obsta
 
 /// Waits for a program; returns `None` if it runs for too long, or as soon as it prints too much.
 fn wait(
-    running: &Running,
+    running: &mut Running,
     time: Duration,
     prints_too_much: &dyn Fn() -> bool,
 ) -> io::Result<Option<ExitStatus>> {

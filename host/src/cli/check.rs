@@ -65,6 +65,12 @@ struct Checked<'r> {
 
 /// Runs the checks of a manifest.
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
+    if is_standard(&arguments.manifest) {
+        return Err(Failure::usage(
+            "`-` is standard input, and a manifest is read from a file",
+            "name the file: its folder is where its paths begin; one that is called `-` is written `./-`",
+        ));
+    }
     let manifest = Manifest::read(&arguments.manifest)
         .map_err(|error| Failure::Failed(miette::Report::new(error)))?;
     prove_outputs(arguments, &manifest)?;

@@ -1,6 +1,6 @@
 //! The effects of a scene, and what requires each.
 
-use gridel_core::format::record::{Light, Material};
+use gridel_core::format::record::Material;
 use gridel_core::{Effects, Scene};
 use gridel_host::compile::{Names, Report, RequiringPart};
 use gridel_host::measure::board::{MemoryReport, WORK_LIST};
@@ -89,15 +89,17 @@ impl CalledFor {
     /// Returns the effects of a blob, whose lights and materials have numbers.
     fn in_blob(scene: &Scene<'_>) -> Vec<Self> {
         let callers = |effect: Effects| -> Vec<RequiringPart> {
-            let lights = scene.lights().iter().map(Light::effects);
-            let lights = numbers_of("light", effect, lights);
-            let materials = scene.materials().iter().map(Material::effects);
-            let own =
-                (of_meshes(scene).contains(effect)).then(|| String::from("the scene's own meshes"));
+            let of_scene = of_scene(scene).into_iter();
+            let of_scene = of_scene.filter(|(called, _)| called.contains(effect));
+            let of_scene = of_scene.map(|(_, part)| String::from(part));
+            // The environment stands for its own lights.
+            let lights = scene.lights().iter();
+            let lights = lights.map(|light| light.effects().without(Effects::ENVIRONMENT));
+            let materials = (0..scene.materials().len()).map(|number| of_material(scene, number));
             let parts = numbers_of("part", effect, scene.parts().iter().map(of_meshes));
-            lights
+            numbers_of("light", effect, lights)
                 .chain(numbers_of("material", effect, materials))
-                .chain(own)
+                .chain(of_scene)
                 .chain(parts)
                 .map(|part| RequiringPart::new(part, &SourceSpan::default()))
                 .collect()
@@ -108,6 +110,35 @@ impl CalledFor {
             .map(|(effect, name)| Self::new(name, callers(effect)))
             .collect()
     }
+}
+
+/// Returns the effects that a blob requires besides those of lights, materials and parts, and what requires them.
+fn of_scene(scene: &Scene<'_>) -> [(Effects, &'static str); 5] {
+    let environment = Effects::ENVIRONMENT.only_if(scene.environment().is_some());
+    let aperture = Effects::DEPTH_OF_FIELD.only_if(scene.lens().is_some());
+    let bounces = Effects::INDIRECT.only_if(scene.bounces() > 0);
+    [
+        (of_meshes(scene), "the scene's own meshes"),
+        (environment, RequiringPart::ENVIRONMENT),
+        (scene.view().effects(), RequiringPart::TONE_MAPPING),
+        (aperture, RequiringPart::APERTURE),
+        (bounces, RequiringPart::BOUNCES),
+    ]
+}
+
+/// Returns the effects that a material of a blob requires, with those of the sections beside its record.
+fn of_material(scene: &Scene<'_>, number: usize) -> Effects {
+    let own = scene.materials().get(number).map(Material::effects);
+    let emission = scene.emissions().get(number);
+    let glows = emission.is_some_and(|emission| emission.radiance != [0; 3]);
+    let roughness = scene.roughnesses().get(number);
+    let is_rough = roughness.is_some_and(|&alpha| alpha > 0);
+    let mut media = scene.media().iter();
+    let has_priority = media.any(|&material| material as usize == number);
+    own.unwrap_or_default()
+        .with(Effects::EMISSION.only_if(glows))
+        .with(Effects::GLOSSY.only_if(is_rough))
+        .with(Effects::NESTED.only_if(has_priority))
 }
 
 /// Returns the effects that the vertices of a scene's own meshes require.
@@ -137,7 +168,10 @@ impl fmt::Display for CalledFor {
             .take(SHOWN)
             .map(RequiringPart::to_string)
             .collect();
-        write!(f, "{}, for {}", self.effect, shown.join(", "))?;
+        f.write_str(&self.effect)?;
+        if !shown.is_empty() {
+            write!(f, ", for {}", shown.join(", "))?;
+        }
         if self.by.len() > SHOWN {
             write!(f, " and {} more", self.by.len() - SHOWN)?;
         }

@@ -259,7 +259,6 @@ struct Named {
     #[serde(flatten)]
     explanation: Explanation,
     /// Names of objects by number; those without a name are missing.
-    #[serde(skip_serializing_if = "BTreeMap::is_empty")]
     objects: BTreeMap<u32, ObjectNames>,
     /// Names of instances by number; those without a name are missing.
     #[serde(skip_serializing_if = "BTreeMap::is_empty")]

@@ -55,6 +55,11 @@ impl Input {
         &self.path
     }
 
+    /// Returns its path if it is a file.
+    pub fn file(&self) -> Option<&Path> {
+        self.bytes.is_none().then_some(self.path.as_path())
+    }
+
     /// Returns whether it is a blob, and not a scene file.
     pub fn is_blob(&self) -> Result<bool, Failure> {
         match &self.bytes {

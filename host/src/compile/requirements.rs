@@ -18,6 +18,15 @@ pub struct RequiringPart {
 }
 
 impl RequiringPart {
+    /// The part that requires an environment.
+    pub const ENVIRONMENT: &'static str = "the environment";
+    /// The part that requires tone mapping.
+    pub const TONE_MAPPING: &'static str = "the `tone_mapping` of pictures";
+    /// The part that requires depth of field.
+    pub const APERTURE: &'static str = "the camera's `aperture`";
+    /// The part that requires indirect light.
+    pub const BOUNCES: &'static str = "the `bounces` of pictures";
+
     /// Returns a part of a scene file.
     pub fn new(part: impl Into<String>, place: &SourceSpan) -> Self {
         Self {

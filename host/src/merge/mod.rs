@@ -10,6 +10,8 @@ pub use frames::{FramesError, NumberedPicture, in_order};
 
 use crate::picture::{PictureFormat, Rows, write_png};
 use crate::scene::TICKS_PER_SECOND;
+use crate::table::grouped;
+use std::cmp::Ordering;
 use std::fmt;
 use std::io::{self, BufRead, Read, Write};
 use std::ops::Range;
@@ -31,6 +33,12 @@ pub enum PartError {
     Png(String),
     #[error("it is not a PPM picture (P6) with 3 bytes per pixel")]
     Ppm,
+    #[error("its pixels take {} bytes, and it has {} of them", grouped(*.expected), grouped(*.found))]
+    Truncated { expected: u64, found: u64 },
+    #[error("it has more than the {} bytes of its pixels", grouped(*.expected))]
+    TooLong { expected: u64 },
+    #[error("it ends within its header")]
+    Header,
     #[error(
         "it does not state which rows it has and how they were rendered, so it is not a part of a picture"
     )]
@@ -129,14 +137,25 @@ fn text(info: &png::Info<'_>, keyword: &str) -> Option<String> {
     Some(chunk.text.clone())
 }
 
+/// Bytes of the longest line of a PPM's header.
+const LONGEST_LINE: u64 = 256;
+
 fn read_ppm(mut input: impl BufRead) -> Result<ReadPicture, PartError> {
     let mut note = None;
     let mut words = Vec::new();
     while words.len() < 4 {
         let mut line = Vec::new();
-        input.by_ref().take(256).read_until(b'\n', &mut line)?;
+        input
+            .by_ref()
+            .take(LONGEST_LINE)
+            .read_until(b'\n', &mut line)?;
+        let is_cut =
+            line.len() < LONGEST_LINE as usize && words.first().is_some_and(|it| it == "P6");
         let line = String::from_utf8(line).map_err(|_| PartError::Ppm)?;
-        let text = line.strip_suffix('\n').ok_or(PartError::Ppm)?;
+        let text = line.strip_suffix('\n').ok_or(match is_cut {
+            true => PartError::Header,
+            false => PartError::Ppm,
+        })?;
         match text.strip_prefix("# rows ") {
             Some(rows) => note = Some(rows.to_owned()),
             None if text.starts_with('#') => {}
@@ -158,8 +177,16 @@ fn read_ppm(mut input: impl BufRead) -> Result<ReadPicture, PartError> {
     let size = 3 * u64::from(width) * u64::from(height);
     let mut pixels = Vec::new();
     input.take(size + 1).read_to_end(&mut pixels)?;
-    if pixels.len() as u64 != size {
-        return Err(PartError::Ppm);
+    let found = pixels.len() as u64;
+    match found.cmp(&size) {
+        Ordering::Less => {
+            return Err(PartError::Truncated {
+                expected: size,
+                found,
+            });
+        }
+        Ordering::Equal => {}
+        Ordering::Greater => return Err(PartError::TooLong { expected: size }),
     }
     Ok((width.into(), height.into(), note, pixels))
 }

@@ -20,6 +20,13 @@ pub(super) struct Unfinished {
     screen: Option<Box<dyn FnOnce() + Send>>,
 }
 
+impl Unfinished {
+    /// Returns the place of a program in the list of those that run; `None` if it was seen to end.
+    fn place(&self, id: u32) -> Option<usize> {
+        self.running.iter().position(|child| child.id() == id)
+    }
+}
+
 static UNFINISHED: Mutex<Unfinished> = Mutex::new(Unfinished {
     paths: Vec::new(),
     running: Vec::new(),
@@ -75,10 +82,7 @@ fn exit_removing(mut unfinished: MutexGuard<'static, Unfinished>, exit_code: i32
         give_back();
     }
     // The program ends, so failures are not reported.
-    for child in &mut unfinished.running {
-        let _ = child.kill();
-        let _ = child.wait();
-    }
+    unfinished.running.iter_mut().for_each(end);
     for path in &unfinished.paths {
         let _ = match path.is_dir() {
             true => fs::remove_dir_all(path),
@@ -120,9 +124,34 @@ impl Drop for TemporaryFolder {
     }
 }
 
-/// A program that runs for this one, and is ended with it.
+/// Ends a program that runs. On Unix this ends its process group as well, which has the processes that it started.
+fn end(child: &mut Child) {
+    #[cfg(unix)]
+    end_group(child.id());
+    // One that has ended needs neither.
+    let _ = child.kill();
+    let _ = child.wait();
+}
+
+/// Ends the processes of a group, which has the number of its first process.
+#[cfg(unix)]
+fn end_group(number: u32) {
+    use nix::sys::signal::{Signal, killpg};
+    use nix::unistd::Pid;
+    // A group of which nothing runs is an error.
+    let group = i32::try_from(number).map(Pid::from_raw);
+    let _ = group.map(|group| killpg(group, Signal::SIGKILL));
+}
+
+/// A program that runs for this one. It is ended with this one, and so are the processes that it started.
+///
+/// On Unix it runs in a process group of its own. A process that leaves this group is not ended. Elsewhere only the
+/// program itself is ended.
 #[derive(Debug)]
-pub struct Running(u32);
+pub struct Running {
+    id: u32,
+    status: Option<ExitStatus>,
+}
 
 impl Running {
     /// Starts a program.
@@ -130,34 +159,41 @@ impl Running {
     /// # Errors
     /// If it cannot be started.
     pub fn start(command: &mut Command) -> io::Result<Self> {
+        #[cfg(unix)]
+        std::os::unix::process::CommandExt::process_group(command, 0);
         let mut unfinished = unfinished();
         let child = command.spawn()?;
         let id = child.id();
         unfinished.running.push(child);
-        Ok(Self(id))
+        Ok(Self { id, status: None })
     }
 
-    /// Returns its exit status, if it has ended.
+    /// Returns its exit status, if it has ended. Then the processes that it started are ended, too.
     ///
     /// # Errors
     /// If the system reports an error.
-    pub fn ended(&self) -> io::Result<Option<ExitStatus>> {
+    pub fn ended(&mut self) -> io::Result<Option<ExitStatus>> {
+        if self.status.is_some() {
+            return Ok(self.status);
+        }
         let mut unfinished = unfinished();
-        let mut running = unfinished.running.iter_mut();
-        running
-            .find(|child| child.id() == self.0)
-            .map_or(Ok(None), Child::try_wait)
+        let Some(place) = unfinished.place(self.id) else {
+            return Ok(None);
+        };
+        self.status = unfinished.running[place].try_wait()?;
+        if self.status.is_some() {
+            // At once: later the system may give its number to another program.
+            end(&mut unfinished.running.swap_remove(place));
+        }
+        Ok(self.status)
     }
 }
 
 impl Drop for Running {
     fn drop(&mut self) {
         let mut unfinished = unfinished();
-        if let Some(place) = unfinished.running.iter().position(|it| it.id() == self.0) {
-            let mut child = unfinished.running.swap_remove(place);
-            // One that has ended needs neither.
-            let _ = child.kill();
-            let _ = child.wait();
+        if let Some(place) = unfinished.place(self.id) {
+            end(&mut unfinished.running.swap_remove(place));
         }
     }
 }

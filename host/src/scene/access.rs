@@ -5,7 +5,7 @@
 //! so a link that leads outside is outside. Backslashes separate folders as slashes do, on every
 //! system.
 
-use super::SceneError;
+use super::error::{SceneError, UNREADABLE};
 use super::files::{Files, lexical};
 use super::image::Texels;
 use crate::table::shortened;
@@ -89,7 +89,7 @@ impl Access {
                 (bytes, "check that the path names a file you may read")
             }
         };
-        bytes.map_err(|error| SceneError::new(path, format!("cannot be read: {error}"), remedy))
+        bytes.map_err(|error| SceneError::new(path, format!("{UNREADABLE}: {error}"), remedy))
     }
 
     /// The files of a disk that were read so far.

@@ -8,6 +8,9 @@ use std::path::{Path, PathBuf};
 /// The remedy of a file that is cut short or damaged.
 pub(super) const COPY_AGAIN: &str = "copy the file again, as binary, or export it again";
 
+/// The beginning of the cause of a file that cannot be read. It is a sentence with the name of the file.
+pub(super) const UNREADABLE: &str = "cannot be read";
+
 /// An error in a scene file (or in one that it imports), or in a manifest of checks.
 #[derive(Debug)]
 pub struct SceneError {
@@ -59,7 +62,12 @@ impl std::fmt::Display for SceneError {
         if let Some(line) = self.line {
             write!(f, ":{line}")?;
         }
-        write!(f, ": {}", self.cause)
+        // "a.toml cannot be read", but "a.toml: the text is not UTF-8".
+        let separator = match self.line {
+            None if self.cause.starts_with(UNREADABLE) => " ",
+            _ => ": ",
+        };
+        write!(f, "{separator}{}", self.cause)
     }
 }
 

@@ -241,6 +241,26 @@ fn files_that_are_no_results_stay() {
     folder.fails(2, &SMALL, &words);
 }
 
+/// A blob that has the name of a result, in a folder with the results of an earlier run.
+#[test]
+fn input_among_the_results_stays() {
+    let folder = folder();
+    folder.done(&["build", "ball.toml", "-o", "ball.gridel"]);
+    let small = ["--size", "4x4", "-o", "."];
+    for name in [
+        "certify.html",
+        "certify.json",
+        "map.png",
+        "exact.png",
+        "certify.state",
+    ] {
+        folder.done(&[&["certify", "ball.toml"], &small[..]].concat());
+        folder.write(name, &folder.read("ball.gridel"));
+        let words = [&format!("the output ./{name} is the input, which would be lost")[..]];
+        folder.fails(2, &[&["certify", name], &small[..]].concat(), &words);
+    }
+}
+
 #[test]
 fn scenes_that_move_are_certified_at_a_time() {
     let folder = folder();

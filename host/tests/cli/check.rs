@@ -99,8 +99,13 @@ fn mistakes_are_explained() {
     folder.fails(
         1,
         &["check", "missing.toml"],
-        &["missing.toml", "cannot be read"],
+        &["× missing.toml cannot be read: "],
     );
+    std::fs::create_dir(folder.path("sub")).unwrap();
+    let words = ["× sub cannot be read: it is not a file"];
+    folder.fails(1, &["check", "sub"], &words);
+    let words = ["`-` is standard input", "a manifest is read from a file"];
+    folder.fails(2, &["check", "-"], &words);
     folder.fails(
         2,
         &["check", "check.toml", "--junit", "check.toml"],

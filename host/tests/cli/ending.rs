@@ -183,24 +183,72 @@ fn an_interrupt_leaves_the_old_file_and_nothing_else() {
     assert_eq!(folder.names(), names);
 }
 
+/// Writes a manifest whose emulator is a script, and a blob for it.
 #[cfg(unix)]
-#[test]
-fn an_interrupt_ends_the_emulator() {
+fn with_emulator(script: &str, seconds: u32) -> Folder {
     use std::os::unix::fs::PermissionsExt;
     let folder = Folder::with_quick();
-    let script = "#!/bin/sh\nif [ \"$1\" = --version ]; then exit 0; fi\n\
-                  echo $$ >\"$STARTED.new\"; mv \"$STARTED.new\" \"$STARTED\"; exec sleep 600\n";
-    folder.write("emulator", script.as_bytes());
+    folder.write("emulator", format!("#!/bin/sh\n{script}\n").as_bytes());
     let executable = PermissionsExt::from_mode(0o755);
     std::fs::set_permissions(folder.path("emulator"), executable).unwrap();
     folder.write("program.elf", b"\x7fELF");
-    let manifest = "[[check]]\nscene = \"quick.gridel\"\n[[check.board]]\nmachine = \"m\"\n\
-                    emulator = \"./emulator\"\nelf = \"program.elf\"\nbudget = { loops = 1 }\n";
+    let manifest = format!(
+        "[[check]]\nscene = \"quick.gridel\"\n[[check.board]]\nmachine = \"m\"\n\
+         emulator = \"./emulator\"\nelf = \"program.elf\"\nbudget = {{ loops = 1 }}\n\
+         seconds = {seconds}\n"
+    );
     folder.write("check.toml", manifest.as_bytes());
+    folder
+}
+
+/// A part of a script: a child that writes a letter to `$ALIVE` again and again, for half a minute.
+#[cfg(unix)]
+const CHILD: &str =
+    "i=0; while [ $i -lt 600 ]; do echo a >>\"$ALIVE\"; i=$((i+1)); sleep 0.05; done & ";
+
+/// Asserts that nothing writes to `$ALIVE` any longer.
+#[cfg(unix)]
+fn assert_dead(folder: &Folder, context: &str) {
+    let written = || std::fs::metadata(folder.path("alive")).map_or(0, |it| it.len());
+    let pause = || std::thread::sleep(std::time::Duration::from_millis(300));
+    pause();
+    let before = written();
+    pause();
+    assert_eq!(written(), before, "{context}");
+}
+
+#[cfg(unix)]
+#[test]
+fn nothing_that_an_emulator_started_runs_after_the_check() {
+    for (rest, code, words) in [
+        ("echo loops 1", 0, "1 passed"),
+        ("wait", 1, "has not ended after 1 s"),
+        ("yes a & wait", 1, "prints more than 4,194,304 bytes"),
+    ] {
+        let folder = with_emulator(&format!("{CHILD}{rest}"), 1);
+        let mut command = folder.command(&["check", "check.toml"]);
+        let output = command.env("ALIVE", folder.path("alive")).output();
+        let output = output.unwrap();
+        let printed = String::from_utf8(output.stdout).unwrap();
+        assert_eq!(output.status.code(), Some(code), "{rest}: {printed}");
+        assert!(printed.contains(words), "{rest}: {printed}");
+        assert_dead(&folder, rest);
+    }
+}
+
+#[cfg(unix)]
+#[test]
+fn an_interrupt_ends_the_emulator_and_what_it_started() {
+    let script = format!(
+        "if [ \"$1\" = --version ]; then exit 0; fi\n{CHILD}\n\
+         echo $$ >\"$STARTED.new\"; mv \"$STARTED.new\" \"$STARTED\"; wait"
+    );
+    let folder = with_emulator(&script, 600);
     std::fs::create_dir(folder.path("temporary")).unwrap();
     let mut child = folder
         .command(&["check", "check.toml"])
         .env("STARTED", folder.path("started"))
+        .env("ALIVE", folder.path("alive"))
         .env("TMPDIR", folder.path("temporary"))
         .stdout(Stdio::null())
         .stderr(Stdio::null())
@@ -220,6 +268,7 @@ fn an_interrupt_ends_the_emulator() {
     assert!(sh(&format!("kill -INT {}", child.id())));
     assert_eq!(child.wait().unwrap().code(), Some(130));
     assert!(!sh(&format!("kill -0 {emulator}")));
+    assert_dead(&folder, "interrupted");
     let left = std::fs::read_dir(folder.path("temporary")).unwrap();
     assert_eq!(left.count(), 0);
 }

@@ -105,6 +105,17 @@ fn steps_that_are_not_listed_are_counted() {
     assert_eq!(walk["steps"].as_array().unwrap().len(), 20_000);
 }
 
+/// A ray that hits nothing, and one that hits an object without a name.
+#[test]
+fn objects_of_json_are_a_table_in_every_pixel() {
+    let folder = Folder::new();
+    folder.write("a.toml", format!("{CAMERA}{BALL}").as_bytes());
+    for pixel in ["0,0", "160,120"] {
+        let report = folder.json(&["explain", "a.toml", "--pixel", pixel]);
+        assert!(report["objects"].is_object(), "{report}");
+    }
+}
+
 #[test]
 fn intervals_reject_what_does_not_change_them() {
     let folder = Folder::new();

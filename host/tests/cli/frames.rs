@@ -353,3 +353,22 @@ fn frames_beyond_memory_have_a_remedy_that_frames_take() {
         &["missing.png cannot be read", "may read"],
     );
 }
+
+#[test]
+fn tracks_that_do_nothing_are_not_in_the_blob() {
+    let folder = Folder::new();
+    let scene = "[[object]]\nkind = 'sphere'\ncenter = [0, 0, 0]\nradius = 1\n\
+        [material.unused]\nmirror = 1\n\
+        [[track]]\ntarget = 'material.unused.mirror'\ntimes = [0, 2]\nvalues = [0, 1]\n";
+    folder.write("a.toml", scene.as_bytes());
+    let at = ["--time", "1", "--size", "8x6", "-o", "a.png"];
+    let run = folder.run(&[&["render", "a.toml"], &at[..]].concat());
+    assert_eq!(run.code, Some(0), "{run:?}");
+    assert!(
+        run.said().contains("no object has the material unused"),
+        "{run:?}"
+    );
+    folder.done(&["build", "a.toml", "-o", "a.gridel"]);
+    let words = ["nothing in a.gridel moves", "leave the time out"];
+    folder.fails(2, &[&["render", "a.gridel"], &at[..]].concat(), &words);
+}

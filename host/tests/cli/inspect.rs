@@ -300,3 +300,43 @@ fn effects_that_tracks_call_for_are_counted() {
         );
     }
 }
+
+/// What lies beside the records of materials, lights and meshes in a blob requires effects, too.
+#[test]
+fn every_effect_of_a_blob_has_what_requires_it() {
+    let folder = Folder::new();
+    folder.write("screen.png", include_bytes!("../../../fixtures/screen.png"));
+    let scene = format!(
+        "ambient = 1\n[camera]\neye = [0, 0, 9]\ntarget = [0, 0, 0]\naperture = 0.5\n\
+         [render]\nbounces = 1\ntone_mapping = 'aces'\n\
+         [environment]\nzenith = 1\nhorizon = 1\nground = 1\n\
+         [material.shiny]\nmirror = 0.5\nroughness = 0.5\n\
+         [material.ice]\ntransmit = 1\npriority = 1\n\
+         [material.lamp]\nemission = 1\n\
+         [[object]]\nkind = 'sphere'\ncenter = [0, 0, 0]\nradius = 1\nmaterial = 'shiny'\n\
+         [[object]]\nkind = 'sphere'\ncenter = [3, 0, 0]\nradius = 1\nmaterial = 'ice'\n\
+         [[object]]\nkind = 'sphere'\ncenter = [6, 0, 0]\nradius = 1\nmaterial = 'lamp'\n{LEVELS}"
+    );
+    folder.write("all.toml", scene.as_bytes());
+    folder.done(&["build", "all.toml", "-o", "all.gridel"]);
+    let inspection = folder.json(&["inspect", "all.gridel"]);
+    let effects = inspection["effects"].as_array().unwrap();
+    for effect in effects {
+        let by = effect["by"].as_array().unwrap();
+        assert!(!by.is_empty(), "{effect}");
+    }
+    for (name, part) in [
+        ("environment", "the environment"),
+        ("nested", "material 1"),
+        ("glossy", "material 0"),
+        ("tone-mapping", "the `tone_mapping` of pictures"),
+        ("emission", "material 2"),
+        ("depth-of-field", "the camera's `aperture`"),
+        ("indirect", "the `bounces` of pictures"),
+    ] {
+        let found = effects.iter().find(|it| it["effect"] == name).unwrap();
+        assert_eq!(found["by"], json!([{ "part": part }]), "{name}");
+    }
+    let text = folder.done(&["inspect", "all.gridel"]);
+    assert!(text.contains("glossy, for material 0\n"), "{text}");
+}

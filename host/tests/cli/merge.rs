@@ -122,6 +122,11 @@ fn parts_that_do_not_fit_are_rejected() {
     dark[pixels + 5 * 48 * 3] ^= 1;
     folder.write("dark.ppm", &dark);
     folder.write("broken.png", &folder.read("a.png")[..200]);
+    let whole = folder.read("a.ppm");
+    folder.write("cut.ppm", &whole[..whole.len() - 5]);
+    folder.write("long.ppm", &[&whole[..], b"x"].concat());
+    folder.write("header.ppm", &whole[..30]);
+    folder.write("gray.ppm", b"P5\n# rows 0..1 of 1; depth 1\n1 1\n255\na");
     folder.write("lies.ppm", b"P6\n# rows 0..2 of 3; depth 1\n1 1\n255\nabc");
     let fails = |code: i32, arguments: &[&str], words: &[&str]| {
         folder.fails(code, &[&["merge"], arguments].concat(), words);
@@ -152,6 +157,18 @@ fn parts_that_do_not_fit_are_rejected() {
         &["lies.ppm", "-o", "x.ppm"],
         &["the rows 0..2, but it has 1"],
     );
+    for (name, words) in [
+        (
+            "cut.ppm",
+            "its pixels take 2,880 bytes, and it has 2,875 of them",
+        ),
+        ("long.ppm", "it has more than the 2,880 bytes of its pixels"),
+        ("header.ppm", "it ends within its header"),
+        ("gray.ppm", "it is not a PPM picture (P6)"),
+    ] {
+        let words = format!("{name} cannot be merged: {words}");
+        fails(1, &[name, "-o", "x.ppm"], &[&words]);
+    }
     fails(1, &["nowhere.png", "-o", "x.png"], &["nowhere.png"]);
     fails(
         2,

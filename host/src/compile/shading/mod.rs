@@ -22,7 +22,7 @@ use super::CompileError;
 use super::geometry::extent::Shapes;
 use super::motion::joints;
 use super::motion::tracks;
-use super::requirements::Requirements;
+use super::requirements::{Requirements, RequiringPart};
 use super::section::{Section, section};
 use super::view::camera::place;
 use super::view::coordinates::Coordinates;
@@ -87,7 +87,8 @@ impl ShadingData {
         let environment = environment.transpose()?;
         if let Some(environment) = &environment {
             lights.records.extend(&environment.lights);
-            requirements.add(Effects::ENVIRONMENT, "the environment", &places.environment);
+            let part = RequiringPart::ENVIRONMENT;
+            requirements.add(Effects::ENVIRONMENT, part, &places.environment);
         }
         let light = |color, what: &str| exposure.of_color(color, || what.into()).map(radiance);
         let view = View {
@@ -101,19 +102,19 @@ impl ShadingData {
             (
                 view.effects(),
                 true,
-                "the `tone_mapping` of pictures",
+                RequiringPart::TONE_MAPPING,
                 &places.tone_mapping,
             ),
             (
                 Effects::DEPTH_OF_FIELD,
                 lens.is_some(),
-                "the camera's `aperture`",
+                RequiringPart::APERTURE,
                 &places.aperture,
             ),
             (
                 Effects::INDIRECT,
                 bounces.is_some(),
-                "the `bounces` of pictures",
+                RequiringPart::BOUNCES,
                 &places.bounces,
             ),
         ] {
