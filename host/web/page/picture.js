@@ -18,6 +18,8 @@ const table = new Table(at("rows"), (chosen) => {
 
 /** Between paintings of work that is not finished, in milliseconds. */
 const WORK_PAUSE = 400;
+/** Between paintings, pixels of a picture per millisecond. */
+const PIXELS_PER_PAUSE = 100_000;
 
 let isPainting = false;
 /** The colors that the canvas shows, but for rows that were drawn since. */
@@ -135,7 +137,8 @@ function paint() {
     return;
   }
   requestAnimationFrame(() => {
-    isPainting = false;
+    // Browsers copy the whole canvas for each painting.
+    setTimeout(() => { isPainting = false; }, state.frame.colors.length / PIXELS_PER_PAUSE);
     // The last of an earlier picture.
     if (state.finished && view() !== "picture") return;
     show(state.frame.colors, state.frame.changed());

@@ -29,9 +29,10 @@ export class Frame {
     this.linear = new Uint16Array(3 * pixels);
     this.work = new Uint32Array(pixels);
     this.changed();
-    this.begin();
+    this.drawn = 0;
   }
 
+  /** Begins a picture, over what is there. */
   begin() {
     this.sides = new Uint8Array(this.width * this.height).fill(255);
     this.work.fill(0);
