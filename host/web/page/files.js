@@ -34,7 +34,7 @@ async function whole(path, opened) {
   } catch ({ message }) {
     const large = file?.size >= 2 ** 30;
     return { path, problem: Problem.of(`${path} cannot be read: ${large ? `${bytesText(file.size)} are too many for this browser` : message.replace(/\.$/, "")}`,
-      large ? "use the program for it" : "open it again, if it still exists and you may read it") };
+      large ? "use the program for this file" : "open it again, if it still exists and you may read it") };
   }
 }
 

@@ -134,8 +134,9 @@ function showChosen(opened = []) {
   at("scene-name").hidden = !main || Boolean(sample) || isListed;
   at("scene-name").textContent = `File: ${main?.path}`;
   at("main-label").hidden = all.length < 2;
-  at("main").replaceChildren(...all.map((it) => new Option(it.path, it.path)));
-  at("main").selectedIndex = all.indexOf(main);
+  const none = Object.assign(new Option("choose a scene", ""), { hidden: true });
+  at("main").replaceChildren(...all.map((it) => new Option(it.path, it.path)), none);
+  at("main").value = isListed ? main.path : "";
 }
 
 /** Opens the file that is chosen among several. */
