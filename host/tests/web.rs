@@ -15,6 +15,9 @@ mod page;
 #[path = "web/opening.rs"]
 mod opening;
 
+#[path = "web/choosing.rs"]
+mod choosing;
+
 #[path = "web/drawing.rs"]
 mod drawing;
 
@@ -45,7 +48,7 @@ fn main() {
         _ => "",
     };
     let is_required = page.is_some() && browser::is_required();
-    let tests: [Test; 13] = [
+    let tests: [Test; 19] = [
         ("web_page_is_small", page_is_small),
         ("web_page_draws_the_pixels_of_the_program", pixels_equal),
         ("web_page_follows_mouse_and_keys", camera_follows),
@@ -59,6 +62,27 @@ fn main() {
             "web_page_stops_compiling_for_another_scene",
             opening::compiling_stops,
         ),
+        (
+            "web_page_rejects_large_pictures_and_keeps_the_scene",
+            choosing::large_pictures_fail,
+        ),
+        (
+            "web_page_starts_workers_that_failed_again",
+            choosing::workers_start_again,
+        ),
+        (
+            "web_page_lists_scenes_beside_a_broken_one",
+            choosing::broken_scenes_are_passed,
+        ),
+        (
+            "web_page_names_files_that_cannot_be_read",
+            choosing::unreadable_files_are_named,
+        ),
+        (
+            "web_page_keeps_settings_chosen_while_it_opens",
+            choosing::choices_stay,
+        ),
+        ("web_page_fits_low_windows", choosing::pictures_fit),
         ("web_page_answers_while_it_draws", answers_soon),
         ("web_page_draws_after_an_error", drawing::errors_pass),
         (

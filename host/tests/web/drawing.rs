@@ -45,7 +45,7 @@ pub fn errors_pass(page: &Page) {
     // A picture that waits is drawn after one that fails.
     let drawn = with_modules(
         &browser,
-        "const frames = [0, 1].map(() => frameOf(size(), true));
+        "const frames = [0, 1].map(() => frameOf(size()));
          const failing = workers.draw({ ...shot(), depth: 99 }, frames[0]).then(() => 'drawn', () => 'failed');
          const waiting = workers.draw({ ...shot(), samples: 1 }, frames[1]);
          return `${await failing}, ${typeof await waiting}`",

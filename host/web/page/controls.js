@@ -59,9 +59,10 @@ export function offerAll(about) {
   at("files").accept = [...about.extensions, ...about.images, "gridel", "gz", "mtl", "bin"].map((it) => `.${it}`).join(",");
 }
 
-/** Offers what the scene can be shown with. */
-export function offer(scene, about) {
+/** Offers what the scene can be shown with, and chooses what its file says. Settings to keep stay where that is possible. */
+export function offer(scene, about, kept) {
   const { first, blob } = scene;
+  const now = settings();
   const structures = blob ? first.structures : about.structures;
   at("structure").replaceChildren(...structures.map((name) => new Option(name, name)));
   at("bits").disabled = Boolean(blob);
@@ -77,8 +78,11 @@ export function offer(scene, about) {
   const samples = [...new Set([...SAMPLES, first.samples])].sort((a, b) => a - b);
   at("samples").replaceChildren(...samples.map((number) => new Option(number, number)));
   at("depth").defaultValue = first.depth;
-  choose({ format: settings().format, bits: first.latticeBits, structure: first.structures.includes(USUAL) ? USUAL : first.structures[0],
-    samples: first.samples, depth: first.depth, without: [] });
+  const chosen = { format: now.format, bits: first.latticeBits, structure: first.structures.includes(USUAL) ? USUAL : first.structures[0],
+    samples: first.samples, depth: first.depth, without: [] };
+  const can = { bits: !blob, structure: structures.includes(now.structure), samples: samples.includes(now.samples), depth: true, without: !blob };
+  for (const key of kept) if (can[key]) chosen[key] = now[key];
+  choose(chosen);
 }
 
 /** Lists the warnings of the importer and the compiler. */

@@ -1,5 +1,8 @@
 // Files that are chosen or dropped, folders too.
 
+import { Problem } from "./workers.js";
+import { bytesText } from "./table.js";
+
 /** Formats in the order in which one of several files is the scene; others are companions. */
 const SCENES = ["gridel", "toml", "gltf", "glb", "obj", "nff", "cif", "mmcif", "pdb", "ent", "ply", "stl", "off", "xyz"];
 
@@ -18,13 +21,25 @@ export function candidates(files) {
   const scenes = files.filter((file) => rank(file) < SCENES.length);
   const depth = ({ path }) => path.split("/").length;
   // Without any of them the program says what it reads.
-  return (scenes.length ? scenes : files.slice(0, 1)).sort((a, b) => rank(a) - rank(b) || depth(a) - depth(b));
+  return (scenes.length ? scenes : files.slice(0, 1))
+    .sort((a, b) => rank(a) - rank(b) || depth(a) - depth(b));
+}
+
+/** A file with its bytes, or with the reason why it cannot be read: a scene may not need it. */
+async function whole(path, opened) {
+  let file;
+  try {
+    file = await opened;
+    return { path, bytes: new Uint8Array(await file.arrayBuffer()) };
+  } catch ({ message }) {
+    const large = file?.size >= 2 ** 30;
+    return { path, problem: Problem.of(`${path} cannot be read: ${large ? `${bytesText(file.size)} are too many for this browser` : message.replace(/\.$/, "")}`,
+      large ? "use the program for this file" : "open it again, if it still exists and you may read it") };
+  }
 }
 
 export async function fromList(list) {
-  return Promise.all(Array.from(list, async (file) => ({
-    path: file.webkitRelativePath || file.name, bytes: new Uint8Array(await file.arrayBuffer()),
-  })));
+  return Promise.all(Array.from(list, (file) => whole(file.webkitRelativePath || file.name, file)));
 }
 
 /** The files of a drop. */
@@ -35,24 +50,26 @@ export async function fromDrop(transfer) {
   const walk = async (entry, folder) => {
     const path = folder + entry.name;
     if (entry.isFile) {
-      const file = await new Promise((resolve, reject) => entry.file(resolve, reject));
-      files.push({ path, bytes: new Uint8Array(await file.arrayBuffer()) });
+      files.push(await whole(path, new Promise((resolve, reject) => entry.file(resolve, reject))));
       return;
     }
     const reader = entry.createReader();
     // A reader gives a hundred at a time.
     for (;;) {
-      const some = await new Promise((resolve, reject) => reader.readEntries(resolve, reject));
+      const some = await new Promise((resolve, reject) => reader.readEntries(resolve, reject)).catch(({ message }) => {
+        throw Problem.of(`the folder ${path} cannot be read: ${message.replace(/\.$/, "")}`, "open it again, if it still exists and you may read it");
+      });
       if (!some.length) return;
       for (const inner of some) await walk(inner, `${path}/`);
     }
   };
   for (const entry of entries) await walk(entry, "");
-  return files;
+  // A folder gives them in no order.
+  return files.sort((a, b) => a.path.localeCompare(b.path));
 }
 
 export function isBlob({ path, bytes }) {
-  const magic = [..."GRIDEL"].every((letter, index) => bytes[index] === letter.charCodeAt(0));
+  const magic = [..."GRIDEL"].every((letter, index) => bytes?.[index] === letter.charCodeAt(0));
   return magic || extension(path) === "gridel";
 }
 

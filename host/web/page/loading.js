@@ -59,7 +59,7 @@ async function give(scene) {
   held.files = null;
   await workers.ask({ do: "clear-files" });
   if (!scene.blob) {
-    for (const { path, bytes } of scene.files) await workers.ask({ do: "add-file", path }, bytes);
+    for (const { path, bytes } of scene.files) if (bytes) await workers.ask({ do: "add-file", path }, bytes);
   }
   held.files = scene.number;
 }
@@ -85,7 +85,8 @@ export async function compile(scene, chosen) {
 
 /** Shows what the compiler says of a scene. */
 export function showCompiled(scene) {
-  showWarnings(scene.warnings);
+  const unread = scene.files.filter((it) => it.problem);
+  showWarnings([...scene.warnings, ...unread.map((it) => `${it.problem.message}; it is left out`)]);
   at("camera-note").hidden = scene.hasOwnLight;
 }
 

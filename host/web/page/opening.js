@@ -3,18 +3,20 @@
 import { USUAL, at, offer } from "./controls.js";
 import { candidates, isBlob } from "./files.js";
 import { Abandoned, Problem } from "./workers.js";
-import { checkSize, inTurn, setState, settlePicture, showError, sizeOf, state, statusDuring, workers } from "./state.js";
+import { inTurn, setState, settlePicture, showError, state, statusDuring, workers } from "./state.js";
 import { compile, forget, giveUp, showCompiled } from "./loading.js";
 import { bytesText } from "./table.js";
 import { clearStale } from "./reports.js";
 import { home } from "./camera.js";
-import { update } from "./picture.js";
+import { resize, update } from "./picture.js";
 
 /** Counts files that are opened, of which the last one is shown. */
 let openings = 0;
 /** What was opened while this one is, and is opened after all if this one cannot be. */
 let current = null;
 let before = null;
+/** The files of which one can be chosen: those that were opened last, also if their first scene is broken. */
+let offered = [];
 
 /** Settles when there is a list of what can be chosen. */
 let start;
@@ -40,13 +42,18 @@ export async function open(read, { main, sample, keepsError = false } = {}) {
   try {
     const files = await read;
     await started;
+    if (!isStale()) rejectSame(files);
+    what.files = files;
     const opened = isStale() ? null : await inTurn(() => isStale() ? null : load(files, main, sample, mine));
     if (isStale()) return;
+    // Before it takes the place of the scene before.
+    resize(opened);
     [current, before] = [null, null];
     Object.assign(state, { scene: opened, opening: null, finished: null });
-    offer(opened, state.about);
+    offer(opened, state.about, state.kept);
+    state.kept.clear();
     showCompiled(opened);
-    showChosen();
+    showChosen(files);
     clearStale();
     document.title = `${opened.name}: what accuracy costs`;
     home({ keepsError });
@@ -56,7 +63,7 @@ export async function open(read, { main, sample, keepsError = false } = {}) {
     current = null;
     showError(error);
     setState("opening");
-    await restore();
+    await restore(what.files);
   } finally {
     if (state.opening === own) state.opening = null;
     settle();
@@ -64,7 +71,7 @@ export async function open(read, { main, sample, keepsError = false } = {}) {
 }
 
 /** Shows again what was shown, or was being opened, before what cannot be opened. */
-async function restore() {
+async function restore(files) {
   state.opening = null;
   if (before) {
     const { read, main, sample } = before;
@@ -72,7 +79,8 @@ async function restore() {
     open(read, { main, sample, keepsError: true });
     return;
   }
-  showChosen();
+  state.kept.clear();
+  showChosen(files);
   await inTurn(forget);
   // Without a scene nothing is drawn.
   if (state.scene) update({ keepsError: true });
@@ -84,15 +92,21 @@ async function load(files, main = candidates(files)[0], sample, number) {
   if (!main) {
     throw Problem.of("there are no files to open: the folder is empty", "open a scene file and the files that it names, or a blob");
   }
-  rejectSame(files);
+  if (main.problem) throw main.problem;
   const begun = performance.now();
   const opened = { files, main, sample, name: main.path, number, blob: isBlob(main) ? main.bytes : null };
-  await compile(opened, { bits: 24, structure: USUAL, without: [] });
+  try {
+    await compile(opened, { bits: 24, structure: USUAL, without: [] });
+  } catch (error) {
+    // Why a file that it names is not there.
+    const lacks = ({ path, problem }) => problem && error.report?.includes(path.split("/").at(-1));
+    for (const { problem } of files.filter(lacks)) error.report += `\n${problem.report}`;
+    throw error;
+  }
   opened.first = opened.info;
   // It was compiled as the reference is.
   opened.reference = opened.bytes;
   opened.time = performance.now() - begun;
-  checkSize(sizeOf(opened.info, 0.5), false);
   return opened;
 }
 
@@ -100,24 +114,34 @@ async function load(files, main = candidates(files)[0], sample, number) {
 function rejectSame(files) {
   const sizes = new Map();
   for (const { path, bytes } of files) {
+    const size = bytes ? bytesText(bytes.length) : "unreadable";
     if (sizes.has(path)) {
-      const both = [sizes.get(path), bytes.length].map((it) => `${path} (${bytesText(it)})`).join(" and ");
+      const both = [sizes.get(path), size].map((it) => `${path} (${it})`).join(" and ");
       throw Problem.of(`two files have the same name: ${both}`, "open one of them, or rename one");
     }
-    sizes.set(path, bytes.length);
+    sizes.set(path, size);
   }
 }
 
-/** Shows which sample and which file was chosen. */
-function showChosen() {
+/** Shows which sample and which file was chosen, and offers the scenes of files that were opened. */
+function showChosen(opened = []) {
   const { files = [], main, sample } = state.scene ?? {};
   // Without one, each sample can be chosen.
   at("sample").value = sample ?? "";
-  const all = candidates(files);
-  at("scene-name").hidden = !main || Boolean(sample) || all.length > 1;
+  offered = candidates(opened).length > 1 ? opened : files;
+  const all = candidates(offered);
+  const isListed = all.length > 1 && all.includes(main);
+  at("scene-name").hidden = !main || Boolean(sample) || isListed;
   at("scene-name").textContent = `File: ${main?.path}`;
   at("main-label").hidden = all.length < 2;
-  at("main").replaceChildren(...all.map((it) => new Option(it.path, it.path, false, it === main)));
+  const none = Object.assign(new Option("choose a scene", ""), { hidden: true });
+  at("main").replaceChildren(...all.map((it) => new Option(it.path, it.path)), none);
+  at("main").value = isListed ? main.path : "";
+}
+
+/** Opens the file that is chosen among several. */
+export function openMain() {
+  return open(offered, { main: offered.find(({ path }) => path === at("main").value) });
 }
 
 /** Opens the sample that is chosen. */

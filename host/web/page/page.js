@@ -18,10 +18,16 @@ import { explain, explainFields, memory, saveBlob, saveMemory, savePicture } fro
 import { fromDrop, fromList } from "./files.js";
 import { home, move } from "./camera.js";
 import { look, update } from "./picture.js";
-import { open, openSample, start } from "./opening.js";
+import { open, openMain, openSample, start } from "./opening.js";
 import { showError, state, status, workers } from "./state.js";
 import { listen } from "./pointer.js";
 import { press } from "./keys.js";
+
+/** Shows a setting that was chosen; a scene that is opened keeps it. */
+function set(setting) {
+  if (state.opening) state.kept.add(setting);
+  update();
+}
 
 /** What letters do. */
 const actions = {
@@ -33,10 +39,10 @@ const actions = {
   },
   a: () => {
     cycle(at("structure"));
-    update();
+    set("structure");
   },
-  m: () => step(at("samples"), 1) && update(),
-  l: () => step(at("samples"), -1) && update(),
+  m: () => step(at("samples"), 1) && set("samples"),
+  l: () => step(at("samples"), -1) && set("samples"),
   c: () => {
     const other = view() === "work" ? "picture" : "work";
     document.querySelector(`[name=view][value=${other}]`).checked = true;
@@ -95,14 +101,11 @@ function connect() {
     // The same file can be chosen again after a change.
     target.value = "";
   };
-  at("main").onchange = () => {
-    const { files } = state.scene;
-    open(files, { main: files.find(({ path }) => path === at("main").value) });
-  };
+  at("main").onchange = openMain;
   at("settings").onsubmit = (event) => event.preventDefault();
-  at("settings").onchange = () => {
+  at("settings").onchange = ({ target }) => {
     correct(at("depth"));
-    update();
+    set(at("effects").contains(target) ? "without" : target.id);
   };
   at("bits").oninput = () => { at("bits-shown").textContent = at("bits").value; };
   for (const radio of document.querySelectorAll("[name=view]")) radio.onchange = guarded(look);
@@ -117,7 +120,14 @@ function connect() {
   at("save-blob").onclick = guarded(saveBlob);
   at("save-picture").onclick = guarded(savePicture);
   at("save-memory").onclick = guarded(saveMemory);
-  at("error-close").onclick = () => { at("error").hidden = true; };
+  const error = at("error");
+  let from = null;
+  error.addEventListener("focusin", ({ relatedTarget }) => { if (!error.contains(relatedTarget)) from = relatedTarget; });
+  at("error-close").onclick = () => {
+    error.hidden = true;
+    from?.focus({ preventScroll: true });
+    if (document.activeElement !== from) at("canvas").focus({ preventScroll: true });
+  };
   // The text itself can be hidden, and would not be read then.
   at("canvas").setAttribute("aria-description", at("keys").textContent.replace(/\s+/g, " ").trim());
   listen(at("canvas"), { move, click: explain, key: (event) => press(event, move, actions) });

@@ -1,11 +1,12 @@
 // The picture: drawn, compared, painted.
 
 import { USUAL, at, choose, count, nameOf, settings, view } from "./controls.js";
-import { Table, bytesText, errorText, secondsText } from "./table.js";
+import { Table, bytesText, errorText, secondsText, shareText } from "./table.js";
 import { bytesOf, packed } from "./workers.js";
 import { compile, giveUpFor, referenceSlot } from "./loading.js";
 import {
-  describe, frameOf, inTurn, mark, setDone, setState, settlePicture, shareOf, shot, showError, state, statusDuring, workers,
+  checkSize, describe, frameOf, inTurn, mark, setDone, setState, settlePicture, shareOf, shot, showError, sizeOf, state, statusDuring,
+  workers,
 } from "./state.js";
 import { clearStale, memory } from "./reports.js";
 
@@ -17,8 +18,12 @@ const table = new Table(at("rows"), (chosen) => {
 
 /** Between paintings of work that is not finished, in milliseconds. */
 const WORK_PAUSE = 400;
+/** Between paintings, pixels of a picture per millisecond. */
+const PIXELS_PER_PAUSE = 100_000;
 
 let isPainting = false;
+/** The colors that the canvas shows, but for rows that were drawn since. */
+let painted = null;
 
 /** Shows what the controls say. Errors of another scene can be left on the page. */
 export async function update({ moved = false, keepsError = false } = {}) {
@@ -39,9 +44,9 @@ export async function update({ moved = false, keepsError = false } = {}) {
     await inTurn(() => isStale() || compile(scene, chosen));
     if (isStale()) return;
     const wanted = state.wanted = { ...shot(chosen), heatMap: view() === "work" };
-    if (state.frame.width !== wanted.width || state.frame.height !== wanted.height) resize(wanted);
-    [at("pixel-x").max, at("pixel-y").max] = [wanted.width - 1, wanted.height - 1];
     if (moved || table.key !== tableKey()) table.clear(tableKey());
+    resize(scene);
+    [at("pixel-x").max, at("pixel-y").max] = [wanted.width - 1, wanted.height - 1];
     describe(chosen, "drawing");
     const seconds = await workers.draw(wanted, state.frame, { onchange: paint });
     if (isStale() || seconds === undefined) return;
@@ -64,14 +69,18 @@ export async function update({ moved = false, keepsError = false } = {}) {
   }
 }
 
-/** A picture of another size. */
-function resize({ width, height }) {
+/** Makes room for the picture of a scene. Throws, and leaves all as it is, if there is none. */
+export function resize(scene) {
   const { canvas } = context;
-  state.frame = frameOf([width, height], at("size").value !== "0.5");
-  canvas.width = width;
-  canvas.height = height;
-  // All of it fits a window.
-  canvas.style.maxWidth = `calc(85vh * ${width / height})`;
+  const scale = Number(at("size").value);
+  checkSize(scene, scale);
+  const [width, height] = sizeOf(scene.info, scale);
+  if (state.frame.width !== width || state.frame.height !== height) {
+    state.frame = frameOf([width, height]);
+    [canvas.width, canvas.height] = [width, height];
+  }
+  // All of it fits a window, beside room to scroll by touch.
+  canvas.style.maxWidth = `calc(min(85vh, 100vh - 7rem) * ${width / height})`;
 }
 
 /** Forgets what was measured for another picture. */
@@ -91,7 +100,7 @@ async function compare(chosen, isStale) {
   const key = JSON.stringify([scene.number, wanted]);
   if (state.reference?.key !== key) {
     state.reference = null;
-    const drawn = frameOf([wanted.width, wanted.height], at("size").value !== "0.5");
+    const drawn = frameOf([wanted.width, wanted.height]);
     statusDuring(`Drawing the reference, ${count(samples, "sample")}`, () => shareOf(drawn));
     const onchange = () => { at("progress").value = shareOf(drawn); };
     const seconds = await workers.draw(wanted, drawn, { onchange, isBackground: true });
@@ -103,11 +112,12 @@ async function compare(chosen, isStale) {
   const { answer } = await workers.ask({ do: "errors" }, both);
   if (isStale()) return;
   const bits = scene.blob ? scene.info.latticeBits : 24;
-  at("reference-text").textContent = `Reference: f64, ${bits} lattice bits, all effects, ${count(samples, "sample")} per pixel, ` +
+  const [blob, effects] = scene.blob ? ["the blob itself in ", ""] : ["", ", all effects"];
+  at("reference-text").textContent = `Reference: ${blob}f64, ${bits} lattice bits${effects}, ${count(samples, "sample")} per pixel, ` +
     `depth ${depth}; it took ${secondsText(reference.seconds)}.`;
   at("rmse").textContent = errorText(answer.rmse);
   at("largest").textContent = errorText(answer.largest);
-  at("different").textContent = `${(100 * answer.share).toFixed(2)} %`;
+  at("different").textContent = shareText(answer.share);
   table.add({ chosen, name: nameOf(chosen, scene), ...answer, seconds: picture.seconds, bytes: scene.info.bytes });
   picture.errors = answer;
   await paintLast();
@@ -127,19 +137,24 @@ function paint() {
     return;
   }
   requestAnimationFrame(() => {
-    isPainting = false;
+    // Browsers copy the whole canvas for each painting.
+    setTimeout(() => { isPainting = false; }, state.frame.colors.length / PIXELS_PER_PAUSE);
     // The last of an earlier picture.
     if (state.finished && view() !== "picture") return;
-    show(state.frame.colors);
+    show(state.frame.colors, state.frame.changed());
     mark("seen");
   });
 }
 
-function show(colors) {
-  const { canvas } = context;
-  if (colors.length !== canvas.width * canvas.height) return;
+/** Shows colors: all, or the rows that changed if it shows the others. */
+function show(colors, rows) {
+  const { width, height } = context.canvas;
+  if (colors.length !== width * height) return;
+  const [first, end] = painted === colors && rows ? rows : [0, height];
+  painted = colors;
+  if (first >= end) return;
   const pixels = new Uint8ClampedArray(colors.buffer, colors.byteOffset, 4 * colors.length);
-  context.putImageData(new ImageData(pixels, canvas.width), 0, 0);
+  context.putImageData(new ImageData(pixels, width), 0, 0, 0, first, width, end - first);
 }
 
 /** Paints the work so far. */
@@ -161,7 +176,7 @@ async function paintLast() {
   if (!mine) return false;
   const isWork = mine.wanted.heatMap;
   if (!isWork && view() === "picture") {
-    show(frame.colors);
+    show(frame.colors, frame.changed());
     return true;
   }
   if (!isWork && (!mine.errors || !reference)) return false;

@@ -22,6 +22,8 @@ export const state = {
   change: 0,
   /** Settles when the files that are being opened are shown, or cannot be; null if none are. */
   opening: null,
+  /** The settings that were chosen while files are opened, which the new scene keeps. */
+  kept: new Set(),
   /** Takes whether a picture was finished, for what waits for one; null if nothing does. */
   onpicture: null,
 };
@@ -81,7 +83,11 @@ export function status(text) {
 export function statusDuring(what, share = () => 0) {
   const isSame = progress?.what === what;
   progress = { what, share };
-  if (isSame) return;
+  if (isSame) {
+    // The share that is shown is another picture's.
+    if (said.startsWith(`${what}: `)) say(what);
+    return;
+  }
   clearTimeout(timer);
   const tell = () => {
     const percent = Math.floor(100 * progress.share());
@@ -140,12 +146,15 @@ export function showError(error) {
   if (error instanceof Abandoned) return;
   settlePicture(false);
   let problem = error;
-  if (error instanceof RangeError) {
-    problem = Problem.of(`the browser has not enough memory for this: ${error.message}`, "choose a smaller picture, or use the program");
+  if (error instanceof RangeError || error?.name === "DataCloneError") {
+    problem = Problem.of(`the browser has not enough memory for this: ${error.message}`,
+      "choose a smaller picture or smaller files, or use the program");
   } else if (!(error instanceof Problem)) {
     problem = new Problem({ message: String(error), report: String(error.stack ?? error) });
   }
   at("error-text").textContent = problem.report;
+  // Marks below an excerpt stay in their columns.
+  at("error-text").classList.toggle("excerpt", problem.report.includes("╭"));
   at("error").hidden = false;
   status(problem.message);
   setState("error");
@@ -169,17 +178,22 @@ export function size() {
   return sizeOf(state.scene.info, Number(at("size").value));
 }
 
-/** Throws if a picture is larger than browsers can show. */
-export function checkSize([width, height], canBeHalf) {
-  if (width * height <= MOST_PIXELS && Math.max(width, height) <= MOST_SIDE) return;
-  const otherwise = "render it with the program: `gridel render`";
-  throw Problem.of(`a picture of ${width} x ${height} pixels is too large for browsers: ` +
-    "2^26 pixels are the most", canBeHalf ? `choose half as its size, or ${otherwise}` : otherwise);
+/** Throws if the picture of a scene is larger than browsers can show. */
+export function checkSize(scene, scale) {
+  const { width, height } = scene.info;
+  const fits = (by) => {
+    const [columns, rows] = sizeOf(scene.info, by);
+    return columns * rows <= MOST_PIXELS && Math.max(columns, rows) <= MOST_SIDE;
+  };
+  if (fits(scale)) return;
+  const how = scale < 1 ? ", even at half its size" : scale > 1 ? " at double its size" : "";
+  const again = scene === state.scene ? "" : " and open it again";
+  throw Problem.of(`the picture of ${scene.name}, ${width} x ${height} pixels, is too large for browsers${how}: 2^26 pixels are the most`,
+    `${fits(0.5) ? `choose half as its size${again}, or ` : ""}render it with the program: \`gridel render\``);
 }
 
 /** A frame of a size. */
-export function frameOf([width, height], canBeHalf) {
-  checkSize([width, height], canBeHalf);
+export function frameOf([width, height]) {
   try {
     return new Frame(width, height);
   } catch {

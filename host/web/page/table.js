@@ -2,6 +2,12 @@
 
 export const errorText = (error) => (error === 0 ? "0" : error < 0.0001 ? error.toExponential(1) : error.toFixed(5));
 export const secondsText = (seconds) => (seconds < 1 ? `${Math.round(1000 * seconds)} ms` : `${seconds.toFixed(2)} s`);
+/** A share in percent, with the digits that tell it from none and from all. */
+export function shareText(share) {
+  const percent = 100 * share;
+  const least = Math.min(percent, 100 - percent);
+  return `${least > 0 ? percent.toFixed(Math.max(2, Math.ceil(-Math.log10(least)))) : percent} %`;
+}
 export const bytesText = (bytes) => `${bytes.toLocaleString("en")} bytes`;
 
 export class Table {
@@ -40,7 +46,7 @@ export class Table {
       last.append(button);
       line.append(head,
         cell(errorText(row.rmse), row.rmse / most(error), "bar"), cell(errorText(row.largest)),
-        cell(`${(100 * row.share).toFixed(2)} %`),
+        cell(shareText(row.share)),
         cell(secondsText(row.seconds), row.seconds / most(seconds), "bar cost"),
         cell(row.bytes.toLocaleString("en"), row.bytes / most(bytes), "bar cost"), last);
       return line;

@@ -28,13 +28,22 @@ export class Frame {
     this.colors = new Uint32Array(pixels).fill(0xff000000);
     this.linear = new Uint16Array(3 * pixels);
     this.work = new Uint32Array(pixels);
-    this.begin();
+    this.changed();
+    this.drawn = 0;
   }
 
+  /** Begins a picture, over what is there. */
   begin() {
     this.sides = new Uint8Array(this.width * this.height).fill(255);
     this.work.fill(0);
     this.drawn = 0;
+  }
+
+  /** The first of the rows that were put since the last call, and the end of them. */
+  changed() {
+    const rows = [this.first, this.end];
+    [this.first, this.end] = [this.height, 0];
+    return rows;
   }
 
   put(words) {
@@ -44,6 +53,8 @@ export class Frame {
       const x = place & 0xffff, y = place >>> 16;
       const columns = (blueSize >>> 16) & 0xff, rows = blueSize >>> 24;
       const pixel = y * width + x;
+      this.first = Math.min(this.first, y);
+      this.end = Math.max(this.end, y + rows);
       linear[3 * pixel] = redGreen;
       linear[3 * pixel + 1] = redGreen >>> 16;
       linear[3 * pixel + 2] = blueSize;
@@ -64,6 +75,8 @@ export class Frame {
 export class Workers {
   constructor(module, count) {
     this.answers = new Map();
+    /** Workers that failed, which are started again when they are asked next. */
+    this.failed = new Set();
     this.id = 0;
     this.generation = 0;
     /** The picture that is drawn, and the one that waits for it. */
@@ -79,28 +92,47 @@ export class Workers {
   started(index) {
     const worker = new Worker("worker.js");
     worker.onmessage = ({ data }) => this.receive(index, data);
-    // A script that cannot be loaded has no message.
-    worker.onerror = ({ message }) => this.onfault?.(message
-      ? new Problem({ message, help: "reload the page", report: message })
-      : Problem.of("worker.js cannot be loaded", "start the server of the page again, and reload the page"));
+    worker.onerror = ({ message }) => {
+      if (this.all[index] !== worker) return;
+      // A script that cannot be loaded has no message.
+      const problem = message ? Problem.of(`a worker failed: ${message}`, "try again, and reload the page if it fails again")
+        : Problem.of("worker.js cannot be loaded", "start the server of the page again, and try again; reload the page if that fails");
+      this.failed.add(index);
+      this.end(index, problem);
+      if (this.current) this.fail(problem, true);
+      this.onfault?.(problem);
+    };
     return worker;
   }
 
-  /** Ends the first worker and starts another, which holds nothing. What the first was asked is rejected. */
-  restart() {
-    this.stop();
-    this.all[0].terminate();
-    this.all[0] = this.started(0);
-    for (const [id, [, reject, index]] of this.answers) {
-      if (index !== 0) continue;
+  /** Ends a worker. What it was asked is rejected. */
+  end(index, error) {
+    this.all[index].terminate();
+    for (const [id, [, reject, asked]] of this.answers) {
+      if (asked !== index) continue;
       this.answers.delete(id);
-      reject(new Abandoned("given up"));
+      reject(error);
     }
     this.onlost?.();
-    this.send(0, { module: this.module });
+  }
+
+  /** Starts a worker again, which holds nothing. */
+  startAgain(index) {
+    this.failed.delete(index);
+    this.all[index] = this.started(index);
+    // What it is asked next fails, too.
+    this.send(index, { module: this.module }).catch(() => {});
+  }
+
+  /** Ends the first worker, and starts another. */
+  restart() {
+    this.stop();
+    this.end(0, new Abandoned("given up"));
+    this.startAgain(0);
   }
 
   send(index, message, transfer = []) {
+    if (this.failed.has(index)) this.startAgain(index);
     const id = this.id += 1;
     return new Promise((resolve, reject) => {
       this.answers.set(id, [resolve, reject, index]);
