@@ -13,7 +13,7 @@ pub(super) enum Pressed {
     Interrupt,
 }
 
-/// What may come next.
+/// The place within a sequence.
 #[derive(Clone, Copy, Debug, Default)]
 enum Place {
     #[default]

@@ -301,7 +301,7 @@ fn effects_that_tracks_call_for_are_counted() {
     }
 }
 
-/// What lies beside the records of materials, lights and meshes in a blob requires effects, too.
+/// Effects are required by more than the records of materials, lights and meshes, too.
 #[test]
 fn every_effect_of_a_blob_has_what_requires_it() {
     let folder = Folder::new();
