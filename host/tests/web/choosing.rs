@@ -1,4 +1,4 @@
-//! What can be chosen: sizes, files, and settings while a scene is opened.
+//! Choices of sizes, files, and settings while a scene is opened.
 
 use crate::browser::Browser;
 use crate::page::{Page, assert_no_message, choose, content, open, settle, shown};
