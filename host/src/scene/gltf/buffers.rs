@@ -383,7 +383,7 @@ pub(super) fn fetch(
         .map_err(|[cause, remedy]| wrong(format!("is in a file: {cause}"), &remedy))?;
     access.read(&file).map_err(|read| {
         FileError::Unreadable(error(
-            format!("is in {}: {}", file.display(), read.cause),
+            format!("is in {}, which {}", file.display(), read.cause),
             "put that file beside the scene file",
         ))
     })

@@ -24,7 +24,7 @@ const NO_FACES: &str = "the file has no faces and no triangle strips";
 #[rustfmt::skip]
 const FILES: [(&str, Expected); 64] = [
     ("IndexOutOfRange.gltf", Rejected("mesh 0, primitive 0 uses vertex 255, and it has 24 vertices")),
-    ("MissingBin_BoxTextured.gltf", Rejected("BoxTextured0.bin cannot be read")),
+    ("MissingBin_BoxTextured.gltf", Rejected("BoxTextured0.bin, which cannot be read")),
     ("PLY__cube_binary_header_with_RN_newline.ply", Read(1, &[])),
     ("RecursiveNodes.gltf", Rejected("node 0 is inside of itself")),
     ("assimp_WithCamera.nff", Read(4, &[])),
