@@ -25,7 +25,7 @@ pub fn quoted(word: &str) -> String {
     }
 }
 
-/// Reads a number that is valid; otherwise the error is what to write.
+/// Reads a number. For all that is not a valid one the error is the advice.
 pub fn number(text: &str, is_valid: impl Fn(f64) -> bool, advice: &str) -> Result<f64, String> {
     let value = text.parse().ok();
     value
@@ -175,7 +175,7 @@ pub fn open_seconds(text: &str) -> Result<f64, String> {
     )
 }
 
-/// Reads a range such as `100..200`, whose end is not part of it; otherwise the error is what to write.
+/// Reads a range such as `100..200`, whose end is not part of it. For all that is not a range the error is the advice.
 fn range<T>(text: &str, advice: &str) -> Result<Range<T>, String>
 where
     T: FromStr + PartialOrd + Display,

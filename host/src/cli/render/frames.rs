@@ -1,6 +1,7 @@
 //! The pictures of a scene that moves: an animation, or numbered files.
 
-use super::shutter::{self, ShutterOptions, changes, scenes};
+use super::report::RenderingReport;
+use super::shutter::{ShutterOptions, changes, scenes};
 use crate::cli::arguments;
 use crate::cli::failure::Failure;
 use crate::cli::input::is_standard;
@@ -16,7 +17,7 @@ use gridel_host::animation::{Animation, AnimationFormat, NumberedName};
 use gridel_host::picture::{Exposure, Frame, Moment, PictureFormat, RenderMetadata, srgb};
 use gridel_host::render::{Job, Picture, render_moments};
 use gridel_host::resolution::Unresolved;
-use gridel_host::table::{counted, grouped};
+use gridel_host::table::grouped;
 use rayon::ThreadPool;
 use serde::Serialize;
 use std::io;
@@ -177,15 +178,8 @@ struct Rendered {
     per_second: u16,
     width: u16,
     height: u16,
-    format: &'static str,
-    accel: &'static str,
-    samples: u16,
-    depth: u8,
-    threads: usize,
-    /// Moments of each frame, while the shutter is open.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    moments: Option<u16>,
-    seconds: f64,
+    #[serde(flatten)]
+    rendering: RenderingReport,
     /// Objects that the format does not resolve.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     unresolved: Vec<Unresolved>,
@@ -258,13 +252,7 @@ pub fn run(shot: Shot<'_>, frames: Range<u32>, output: &Output) -> Result<(), Fa
         per_second,
         width: job.settings.width,
         height: job.settings.height,
-        format: job.format.name(),
-        accel: job.structure.name(),
-        samples: job.settings.samples,
-        depth: job.settings.depth,
-        threads: shot.pool.current_num_threads(),
-        moments: exposure.map(|it| it.moments),
-        seconds: begun.elapsed().as_secs_f64(),
+        rendering: RenderingReport::of(job, shot.pool, exposure, begun.elapsed()),
         unresolved: shot.unresolved,
     };
     match shot.as_json {
@@ -303,17 +291,8 @@ impl Rendered {
     fn text(&self) -> String {
         let [first, end] = self.frames;
         format!(
-            "{}: frames {first}..{end} at {} per second, {} x {}, {}, {}, {} per pixel{}, {:.3} s with {}\n",
-            self.pictures,
-            self.per_second,
-            self.width,
-            self.height,
-            self.format,
-            self.accel,
-            counted(self.samples.into(), "sample"),
-            shutter::of_moments(self.moments),
-            self.seconds,
-            counted(self.threads, "thread")
+            "{}: frames {first}..{end} at {} per second, {} x {}, {}\n",
+            self.pictures, self.per_second, self.width, self.height, self.rendering
         )
     }
 }

@@ -3,6 +3,7 @@
 mod frames;
 mod outputs;
 mod picture;
+mod report;
 mod shutter;
 
 use super::arguments::TargetPoint;

@@ -2,6 +2,7 @@
 
 use super::frames::{Shot, TimeOptions};
 use super::outputs::{AovFile, HeatMapFile, Outputs};
+use super::report::RenderingReport;
 use super::shutter::{self, scenes};
 use crate::cli::changes::Changes;
 use crate::cli::failure::Failure;
@@ -11,7 +12,7 @@ use crate::cli::source::tick;
 use gridel_core::Counters;
 use gridel_host::picture::{Exposure, Moment, RenderMetadata};
 use gridel_host::resolution::Unresolved;
-use gridel_host::table::{Align, Table, counted, grouped};
+use gridel_host::table::{Align, Table, grouped};
 use serde::Serialize;
 use std::time::{Duration, Instant};
 
@@ -22,15 +23,8 @@ struct Rendered {
     width: u16,
     height: u16,
     rows: [u16; 2],
-    format: &'static str,
-    accel: &'static str,
-    samples: u16,
-    depth: u8,
-    threads: usize,
-    /// While the shutter is open.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    moments: Option<u16>,
-    seconds: f64,
+    #[serde(flatten)]
+    rendering: RenderingReport,
     #[serde(skip_serializing_if = "Option::is_none")]
     stats: Option<Stats>,
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -88,9 +82,10 @@ pub fn run(
     let counters = image.shown().and_then(|picture| picture.counters.as_ref());
     let stats = counters.filter(|_| has_stats);
     let time = blurred.as_ref().map(|it| it.time).or(source.time());
+    let exposure = blurred.as_ref().map(|it| it.exposure);
     let metadata = RenderMetadata::of(&scene, job)
         .at(time.map(Moment::Time))
-        .exposed(blurred.as_ref().map(|it| it.exposure))
+        .exposed(exposure)
         .as_part(is_part);
     let written = pool.install(|| outputs.write((&scene, job), &image, &metadata));
     let (heat_map, aovs) = written?;
@@ -99,13 +94,7 @@ pub fn run(
         width: job.settings.width,
         height: job.settings.height,
         rows: [job.rows.start, job.rows.end],
-        format: job.format.name(),
-        accel: job.structure.name(),
-        samples: job.settings.samples,
-        depth: job.settings.depth,
-        threads: pool.current_num_threads(),
-        moments: blurred.map(|it| it.exposure.moments),
-        seconds: taken.as_secs_f64(),
+        rendering: RenderingReport::of(job, pool, exposure, taken),
         stats: stats.map(|counters| Stats::of(counters, taken)),
         heat_map,
         aovs,
@@ -164,16 +153,8 @@ impl Rendered {
             format!(", rows {first}..{end}")
         };
         let mut text = format!(
-            "{}: {} x {}{rows}, {}, {}, {} per pixel{}, {:.3} s with {}\n",
-            self.picture,
-            self.width,
-            self.height,
-            self.format,
-            self.accel,
-            counted(self.samples.into(), "sample"),
-            shutter::of_moments(self.moments),
-            self.seconds,
-            counted(self.threads, "thread")
+            "{}: {} x {}{rows}, {}\n",
+            self.picture, self.width, self.height, self.rendering
         );
         if let Some(map) = &self.heat_map {
             text.push_str(&format!(

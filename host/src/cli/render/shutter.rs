@@ -166,12 +166,6 @@ pub fn scenes<'a>(changes: &'a [Changes], scene: &Scene<'a>) -> Result<Vec<Scene
     changes.iter().map(|it| it.apply(scene)).collect()
 }
 
-/// Returns the text of a report about moments.
-pub fn of_moments(number: Option<u16>) -> String {
-    let said = |number: u16| format!(" at {}", counted(number.into(), "moment"));
-    number.map_or(String::new(), said)
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -13,7 +13,8 @@ use gridel_host::view::Notes;
 
 /// Returns the tick of a time in seconds.
 pub fn tick(tracks: &Tracks<'_>, seconds: f64) -> Result<i32, Failure> {
-    ticks(tracks, seconds).map_err(|error| Failure::usage(error.to_string(), "choose another time"))
+    ticks(tracks, seconds)
+        .map_err(|error| Failure::usage(error.to_string(), "choose a time in this range"))
 }
 
 impl Source {
