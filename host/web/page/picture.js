@@ -79,8 +79,7 @@ export function resize(scene) {
     state.frame = frameOf([width, height]);
     [canvas.width, canvas.height] = [width, height];
   }
-  // All of it fits a window, beside room to scroll by touch.
-  canvas.style.maxWidth = `calc(min(85vh, 100vh - 7rem) * ${width / height})`;
+  canvas.style.setProperty("--shape", width / height);
 }
 
 /** Forgets what was measured for another picture. */
