@@ -261,8 +261,8 @@ unsafe fn cast_units<N: Number>(
     };
     let t = scale.multiple(N::far_to_f64(hit.t))?;
     let point = hit.point.map(N::length_to_f64);
-    // A point of a plane that is farther away than a point of the core can be.
-    let is_far = point.iter().any(|x| x.abs() > MOST_HELD);
+    // A point of a plane that can stand for one that is farther away than a point of the core can be.
+    let is_far = point.iter().any(|x| x.abs() > SURELY_HELD);
     let on_ray = |axis: usize| given.origin[axis] + t * given.direction[axis];
     Ok(gridel_hit_f64 {
         t,
@@ -313,8 +313,9 @@ impl From<gridel_ray_f32> for gridel_ray_f64 {
     }
 }
 
-/// Units up to which a hit's point is the place that is hit, in the number formats of casts in scene units.
-const MOST_HELD: f64 = (1_u64 << 46) as f64;
+/// Units up to which a hit's point is the place that is hit, in the number formats of casts in scene units. A point that
+/// stands for a farther one lies half way between one beyond 2^46 units and the plane's own.
+const SURELY_HELD: f64 = (1_u64 << 44) as f64;
 
 /// The relation of scene units to the core's.
 struct Units {

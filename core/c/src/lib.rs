@@ -51,15 +51,8 @@ pub(crate) type Accel = gridel_core::Bvh;
 pub(crate) type Accel = gridel_core::List;
 
 /// Its name.
-pub(crate) const STRUCTURE: gridel_core::Structure = if cfg!(feature = "dual-split") {
-    gridel_core::Structure::DualSplit
-} else if cfg!(feature = "flagged") {
-    gridel_core::Structure::Flagged
-} else if cfg!(feature = "bvh") {
-    gridel_core::Structure::Bvh
-} else {
-    gridel_core::Structure::List
-};
+pub(crate) const STRUCTURE: gridel_core::Structure =
+    <Accel as gridel_core::accel::Traverse>::STRUCTURE;
 
 /// Neither Gridel nor this library panics; the project's tests check that in linked programs. A bare machine still
 /// needs a handler.

@@ -18,6 +18,7 @@ use embassy_nrf::spim::{self, Spim};
 use embassy_nrf::{bind_interrupts, peripherals};
 use embassy_sync::blocking_mutex::raw::NoopRawMutex;
 use embassy_sync::zerocopy_channel::{Channel, Receiver, Sender};
+use gridel_core::scene::coordinate_steps;
 use gridel_core::{
     Angle, Camera, DualSplit, Effects, Fixed, NoCount, Position, Renderer, Rgb565, Scene, Settings,
     Up, Workspace, include_blob,
@@ -76,7 +77,9 @@ async fn render(mut rows: Sender<'static, NoopRawMutex, Row>) {
         samples: 1,
         ..Settings::of(&scene)
     };
-    let distance = 8 << -scene.coordinate_exponent();
+    let Some(distance) = coordinate_steps(scene.coordinate_exponent(), 8, 1) else {
+        return;
+    };
     let [raised, seen] = [16, 8].map(|whole| Angle::of_turn(1, whole));
     let mut azimuth = Angle(0);
     loop {
