@@ -66,7 +66,7 @@ macro_rules! effects {
                 required by "a light with a falloff, a spot or an area";
             /// Lights with an area: soft shadows.
             AREA_LIGHT = 12, "area-light", AreaLight in area_light, casts 0,
-                required by "a light that is a sphere, a rectangle or a disc";
+                required by "a light that is a sphere, a rectangle, a triangle or a disc";
             /// Tone mapping: pixels are mapped to the range of a display.
             TONE_MAPPING = 13, "tone-mapping", ToneMapping in tone_mapping, casts 0,
                 required by "a view with a curve for tones";
@@ -128,8 +128,13 @@ macro_rules! sets {
             /// The effects whose code this build holds.
             pub const AVAILABLE: Effects = Effects($((cfg!(feature = $name) as u32) << $bit)|*);
 
-            /// The effects because of which rays wait.
-            pub(crate) const CASTING: Effects = Effects($((($rays > 0) as u32) << $bit)|*);
+            /// The effects because of which rays wait: those of which [`work_depth`](Self::work_depth) knows the rays.
+            pub(crate) const CASTING: Effects = {
+                let casting = Effects($((($rays > 0) as u32) << $bit)|*);
+                let known = Self::MIRROR.with(Self::GLASS).with(Self::ALPHA).with(Self::INDIRECT);
+                assert!(casting.0 == known.0);
+                casting
+            };
 
             /// A sentence about the Cargo feature of an effect of this set that this build lacks.
             pub(crate) const fn missing(self) -> Option<&'static str> {

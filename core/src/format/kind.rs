@@ -52,9 +52,16 @@ macro_rules! kinds {
         }
 
         impl Kind {
+            /// Kinds for which the word of a leaf has numbers: 7 marks a [node](crate::format::node::Child).
+            pub(crate) const MOST: usize = 7;
+
             /// All kinds, in order.
             pub const ALL: [Kind; [$($form_number,)* $($number),*].len()] =
-                [$(Kind::$form,)* $(Kind::$kind),*];
+                {
+                    let all = [$(Kind::$form,)* $(Kind::$kind),*];
+                    assert!(all.len() <= Kind::MOST);
+                    all
+                };
 
             #[inline(always)]
             pub(crate) const fn from_number(number: u32) -> Option<Self> {

@@ -1,5 +1,6 @@
 //! Node words: they say whether a node is a leaf, and where its children lie.
 
+use crate::format::kind::Kind;
 use crate::format::leaf::Leaf;
 
 /// The kind and the children of a node: the last word of its record.
@@ -141,7 +142,8 @@ impl Child {
     /// Number of nodes that a word can address.
     pub const NODES: u32 = (1 << 24) - 1;
 
-    const NODE: u32 = 7 << 29;
+    /// A kind would need the same bits if there were eight.
+    const NODE: u32 = (Kind::MOST as u32) << 29;
 
     /// Returns a node.
     pub const fn node(number: u32) -> Self {

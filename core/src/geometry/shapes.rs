@@ -96,14 +96,12 @@ macro_rules! registry {
                     $(Kind::$kind => super::$module::$record::BOUNDED,)*
                 }
             }
-        }
 
-        impl Kind {
-            /// The last kind that leaves hold.
+            /// The last kind that leaves hold. Kinds without boxes come behind it, so that the others have the first slots.
             pub(crate) const LAST_BOUNDED: Kind = {
-                let mut last = Kind::ALL.len() - 1;
-                while !Kind::ALL[last].is_bounded() {
-                    last -= 1;
+                let mut last = 0;
+                while last + 1 < Kind::ALL.len() && Kind::ALL[last + 1].is_bounded() {
+                    last += 1;
                 }
                 Kind::ALL[last]
             };
