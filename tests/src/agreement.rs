@@ -2,7 +2,7 @@
 
 use crate::query::{HitBits, UnitRay, any, closest, depart, held, through};
 use crate::random::Random;
-use gridel_core::accel::{Space, StructureViews, Traverse};
+use gridel_core::accel::{SceneGeometry, StructureViews, Traverse};
 use gridel_core::format::Leaf;
 use gridel_core::format::limits::FARTHEST;
 use gridel_core::shared::Cull;
@@ -28,7 +28,7 @@ impl Traverse for Plain {
     type Cull<N: Number> = Cull;
 
     fn walk<N: Number, C: Observer>(
-        space: &Space<'_>,
+        geometry: &SceneGeometry<'_>,
         views: &Self::Views<'_>,
         ray: &Ray<N>,
         cull: &Cull,
@@ -36,7 +36,7 @@ impl Traverse for Plain {
         count: &mut C,
         leaf: impl FnMut(Leaf, &mut C) -> Option<N>,
     ) {
-        walk_bvh(space, views, ray, cull, stack, count, leaf);
+        walk_bvh(geometry, views, ray, cull, stack, count, leaf);
     }
 }
 

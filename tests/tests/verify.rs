@@ -1,7 +1,7 @@
 //! `verify` finds no fault in right answers, and every fault that is made on purpose.
 
 use glam::{DQuat, DVec3, EulerRot};
-use gridel_core::accel::{Space, StackView, StructureViews, Traverse};
+use gridel_core::accel::{SceneGeometry, StackView, StructureViews, Traverse};
 use gridel_core::format::Leaf;
 use gridel_core::shared::Cull;
 use gridel_core::{Accel, Flagged, Hit, Kind, List, Number, Observer, Ray, Scene, Structure};
@@ -359,7 +359,7 @@ impl Traverse for Forgetful {
     type Cull<N: Number> = Cull;
 
     fn walk<N: Number, C: Observer>(
-        space: &Space<'_>,
+        geometry: &SceneGeometry<'_>,
         views: &Self::Views<'_>,
         ray: &Ray<N>,
         cull: &Cull,
@@ -367,7 +367,7 @@ impl Traverse for Forgetful {
         count: &mut C,
         mut leaf: impl FnMut(Leaf, &mut C) -> Option<N>,
     ) {
-        Flagged::walk(space, views, ray, cull, stack, count, |found, count| {
+        Flagged::walk(geometry, views, ray, cull, stack, count, |found, count| {
             if found.first.is_multiple_of(5) {
                 return Some(ray_end(ray));
             }

@@ -128,7 +128,10 @@ impl From<RenderError> for gridel_status {
     fn from(error: RenderError) -> Self {
         match error {
             RenderError::Size { .. } => Self::PictureSize,
-            RenderError::Samples(_) | RenderError::Moments { .. } => Self::PictureSamples,
+            RenderError::Samples(_)
+            | RenderError::NoMoments
+            | RenderError::Moments { .. }
+            | RenderError::MomentSettings => Self::PictureSamples,
             RenderError::Depth(_) => Self::PictureDepth,
             RenderError::Structure(_) => Self::BlobMissingStructure,
             RenderError::Effects(_) => Self::BlobMissingEffects,

@@ -3,7 +3,7 @@
 use crate::accel::cull::Culling;
 use crate::accel::number::Number;
 use crate::accel::registry::{Accel, StructureViews, StructureVisitor};
-use crate::accel::space::Space;
+use crate::accel::scene_geometry::SceneGeometry;
 use crate::accel::stack::StackView;
 use crate::accel::traverse::Traverse;
 use crate::format::structure::structures;
@@ -63,12 +63,12 @@ macro_rules! dynamic {
             type Cull<N: Number> = N::Cull;
             type Views<'a> = StructureViews<'a>;
 
-            fn needs(space: &Space<'_>) -> Structure {
-                space.chosen()
+            fn needs(geometry: &SceneGeometry<'_>) -> Structure {
+                geometry.chosen()
             }
 
             fn walk<N: Number, C: Observer>(
-                space: &Space<'_>,
+                geometry: &SceneGeometry<'_>,
                 views: &StructureViews<'_>,
                 ray: &Ray<N>,
                 _: &N::Cull,
@@ -76,11 +76,11 @@ macro_rules! dynamic {
                 count: &mut C,
                 leaf: impl FnMut(Leaf, &mut C) -> Option<N>,
             ) {
-                match space.chosen() {
+                match geometry.chosen() {
                     $(Structure::$variant => {
                         let cull = <super::$variant as Traverse>::Cull::<N>::new(ray);
                         let views = <super::$variant as Accel>::views(views);
-                        super::$variant::walk(space, views, ray, &cull, stack, count, leaf);
+                        super::$variant::walk(geometry, views, ray, &cull, stack, count, leaf);
                     })*
                 }
             }

@@ -3,7 +3,7 @@
 use crate::accel::cull::Cull;
 use crate::accel::number::Number;
 use crate::accel::records::Records;
-use crate::accel::space::Space;
+use crate::accel::scene_geometry::SceneGeometry;
 use crate::accel::stack::StackView;
 use crate::accel::traverse::Traverse;
 use crate::format::{BlobError, Kind, Leaf, SectionKind, Sections, Structure};
@@ -22,7 +22,7 @@ impl Traverse for List {
     type Cull<N: Number> = Cull;
 
     fn walk<N: Number, C: Observer>(
-        space: &Space<'_>,
+        geometry: &SceneGeometry<'_>,
         _: &Self::Views<'_>,
         _: &Ray<N>,
         _: &Cull,
@@ -32,7 +32,7 @@ impl Traverse for List {
     ) {
         for kind in Kind::ALL.into_iter().filter(|kind| kind.is_bounded()) {
             let mut first = 0;
-            let end = space.shapes.records(kind) as u32;
+            let end = geometry.shapes.records(kind) as u32;
             while first < end {
                 let size = (end - first).min(Leaf::MAX_COUNT);
                 let range = Leaf {
@@ -45,7 +45,7 @@ impl Traverse for List {
                 }
                 first += size;
             }
-            for cluster in 0..space.shapes.sole_clusters(kind) as u32 {
+            for cluster in 0..geometry.shapes.sole_clusters(kind) as u32 {
                 let cluster = Leaf {
                     kind,
                     first: cluster,
@@ -71,7 +71,7 @@ impl<'a> Records<'a> for Views<'a> {
         Ok(Self(core::marker::PhantomData))
     }
 
-    fn check(&self, _: &Space<'a>) -> Result<usize, BlobError> {
+    fn check(&self, _: &SceneGeometry<'a>) -> Result<usize, BlobError> {
         Ok(0)
     }
 }

@@ -1,6 +1,6 @@
 //! The records of a structure in a blob.
 
-use crate::accel::space::Space;
+use crate::accel::scene_geometry::SceneGeometry;
 use crate::format::{BlobError, SectionKind, Sections};
 
 /// The records of a structure in a blob, and the proof that they are valid.
@@ -13,7 +13,7 @@ pub(in crate::accel) trait Records<'a>: Copy {
     /// Finds the records.
     fn read(sections: &Sections<'a>) -> Result<Self, BlobError>;
 
-    /// Proves all that a walk relies on, in linear time, and returns the entries that its stack
-    /// needs. The rest of the scene is already proved.
-    fn check(&self, space: &Space<'a>) -> Result<usize, BlobError>;
+    /// Proves all that a walk relies on, and returns the entries that its stack needs. The rest of the scene is already
+    /// proved. Takes time linear in the number of records and in the [depth](super::hierarchy) of a hierarchy.
+    fn check(&self, geometry: &SceneGeometry<'a>) -> Result<usize, BlobError>;
 }

@@ -1,7 +1,7 @@
 //! Every structure of this build, by name and as a type. [`structures!`] lists them.
 
 use crate::accel::records::Records;
-use crate::accel::space::Space;
+use crate::accel::scene_geometry::SceneGeometry;
 use crate::accel::traverse::Traverse;
 #[cfg(all(feature = "bvh", feature = "triangle"))]
 use crate::format::record::Pair;
@@ -60,44 +60,44 @@ macro_rules! registry {
 
             /// Returns true if a structure of the scene uses the shared leaves. A structure without code in this build
             /// counts as using them if there are any.
-            pub(crate) fn uses_leaves(space: &Space<'_>) -> bool {
+            pub(crate) fn uses_leaves(geometry: &SceneGeometry<'_>) -> bool {
                 let uses = |structure| match structure {
                     $(
                         #[cfg($feature)]
                         Structure::$variant => <super::$($module)::+::Views<'a> as Records>::USES_LEAVES,
                     )*
                     #[cfg(not(feature = "all-structures"))]
-                    _ => !space.leaves.is_empty(),
+                    _ => !geometry.leaves.is_empty(),
                 };
-                Structure::ALL.into_iter().any(|it| space.holds(it) && uses(it))
+                Structure::ALL.into_iter().any(|it| geometry.holds(it) && uses(it))
             }
 
             /// Proves that primitives have records of their own where a structure leads to these.
-            fn check_records(space: &Space<'a>) -> Result<(), BlobError> {
+            fn check_records(geometry: &SceneGeometry<'a>) -> Result<(), BlobError> {
                 let clusters = Structure::List.bit() | Structure::Wide.bit();
-                if space.header.structures & !clusters == 0 {
+                if geometry.header.structures & !clusters == 0 {
                     return Ok(());
                 }
-                crate::accel::wide::check_records(space)
+                crate::accel::wide::check_records(geometry)
             }
 
             /// Proves every structure whose code is here. Returns the deepest stack that one needs,
             /// and whether all that the scene holds were proved.
-            pub(crate) fn check(&self, space: &Space<'a>, sections: &Sections<'a>)
+            pub(crate) fn check(&self, geometry: &SceneGeometry<'a>, sections: &Sections<'a>)
                 -> Result<(usize, bool), BlobError>
             {
                 let (mut depth, mut proved) = (0, 0);
-                Self::check_records(space)?;
+                Self::check_records(geometry)?;
                 $(
                     #[cfg($feature)]
                     {
                         proved |= Structure::$variant.bit();
                         depth = depth.max(check_one(
-                            &self.$field, Structure::$variant, space, sections,
+                            &self.$field, Structure::$variant, geometry, sections,
                         )?);
                     }
                 )*
-                Ok((depth, space.header.structures & !proved == 0))
+                Ok((depth, geometry.header.structures & !proved == 0))
             }
         }
     };
@@ -122,11 +122,11 @@ impl<'a> StructureViews<'a> {
 fn check_one<'a, R: Records<'a>>(
     records: &R,
     structure: Structure,
-    space: &Space<'a>,
+    geometry: &SceneGeometry<'a>,
     sections: &Sections<'a>,
 ) -> Result<usize, BlobError> {
-    if space.holds(structure) {
-        return records.check(space);
+    if geometry.holds(structure) {
+        return records.check(geometry);
     }
     for &section in R::SECTIONS {
         let found = sections.len(section);

@@ -2,7 +2,7 @@
 
 use crate::accel::cull::Culling;
 use crate::accel::number::Number;
-use crate::accel::space::Space;
+use crate::accel::scene_geometry::SceneGeometry;
 use crate::accel::stack::StackView;
 use crate::format::{Leaf, Structure};
 use crate::observe::count::Observer;
@@ -25,7 +25,7 @@ pub trait Traverse: Send + Sync {
     const ONE_COPY: bool = SMALL;
 
     /// The structure that a blob must hold for the walk.
-    fn needs(_: &Space<'_>) -> Structure {
+    fn needs(_: &SceneGeometry<'_>) -> Structure {
         Self::STRUCTURE
     }
 
@@ -33,7 +33,7 @@ pub trait Traverse: Send + Sync {
     /// `leaf` returns the t beyond which hits are ignored, or `None` to end the walk.
     #[expect(clippy::too_many_arguments, reason = "its arguments stay in registers")]
     fn walk<N: Number, C: Observer>(
-        space: &Space<'_>,
+        geometry: &SceneGeometry<'_>,
         views: &Self::Views<'_>,
         ray: &Ray<N>,
         cull: &Self::Cull<N>,
@@ -46,7 +46,7 @@ pub trait Traverse: Send + Sync {
     #[expect(clippy::too_many_arguments, reason = "its arguments stay in registers")]
     #[inline(always)]
     fn walk_any<N: Number, C: Observer>(
-        space: &Space<'_>,
+        geometry: &SceneGeometry<'_>,
         views: &Self::Views<'_>,
         ray: &Ray<N>,
         cull: &Self::Cull<N>,
@@ -55,7 +55,7 @@ pub trait Traverse: Send + Sync {
         mut hits: impl FnMut(Leaf, &mut C) -> bool,
     ) {
         let tmax = ray.tmax;
-        Self::walk(space, views, ray, cull, stack, count, |leaf, count| {
+        Self::walk(geometry, views, ray, cull, stack, count, |leaf, count| {
             (!hits(leaf, count)).then_some(tmax)
         });
     }

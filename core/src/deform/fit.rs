@@ -79,7 +79,7 @@ pub(super) fn refit<V: Vertex>(
     vertices: &[V],
     pairs: &mut [Pair],
 ) -> Result<(), DeformError> {
-    let needle = match &scene.space.shapes.triangles {
+    let needle = match &scene.geometry.shapes.triangles {
         Triangles::U16(triangles) => fit(scene, vertices, triangles, pairs),
         Triangles::U32(triangles) => fit(scene, vertices, triangles, pairs),
     };
@@ -98,14 +98,14 @@ fn fit<V: Vertex, I: Corners>(
     triangles: &[I],
     pairs: &mut [Pair],
 ) -> Option<u32> {
-    let space = &scene.space;
+    let geometry = &scene.geometry;
     let mut needle = None;
     if pairs.is_empty() {
         // One leaf, or only the list.
         around(vertices, triangles, 0, &mut needle);
     }
     refit::refit(pairs, |number| {
-        let leaf = space.leaf(number)?;
+        let leaf = geometry.leaf(number)?;
         if leaf.kind != Kind::Triangle {
             return others(scene, leaf);
         }
@@ -151,7 +151,7 @@ fn around<V: Vertex, I: Corners>(
 #[cold]
 #[inline(never)]
 fn others(scene: &Scene<'_>, leaf: Leaf) -> Option<UnitBox> {
-    let shapes = &scene.space.shapes;
+    let shapes = &scene.geometry.shapes;
     let boxes = leaf
         .slots()
         .filter_map(|slot| shapes.bounds(leaf.kind, slot));

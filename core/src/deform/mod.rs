@@ -198,9 +198,13 @@ impl<V: Vertex, A: Memory<V>, B: Memory<Pair>, C: Memory<[i16; 2]>> DeformationI
     }
 
     /// Returns the normals that morph targets have changed, as the blob [stores](crate::geometry::smooth) them; none
-    /// where they change none.
+    /// where they change none, and none of a pose that they did not make.
     pub fn normals(&self) -> &[[i16; 2]] {
-        &self.normals
+        if self.keeps_normals {
+            &self.normals
+        } else {
+            &[]
+        }
     }
 
     /// Returns the pairs of the hierarchy, with the boxes of the pose that was refitted last.
@@ -271,7 +275,7 @@ impl<V: Vertex, A: Memory<V>, B: Memory<Pair>, C: Memory<[i16; 2]>> DeformationI
 impl<'a> Scene<'a> {
     /// Returns the vertices in the blob; `None` if they have another type.
     pub fn stored_vertices<V: Vertex>(&self) -> Option<&'a [V]> {
-        self.space.shapes.vertices.stored()
+        self.geometry.shapes.vertices.stored()
     }
 
     /// Number of pairs of the structure [`Bvh`](crate::Bvh).
@@ -303,11 +307,15 @@ impl<'a> Scene<'a> {
             return Err(DeformError::NotRefitted);
         }
         let mut scene = *self;
-        scene.space.shapes.vertices.replace(&deformation.vertices);
+        scene
+            .geometry
+            .shapes
+            .vertices
+            .replace(&deformation.vertices);
         if !deformation.keeps_normals {
-            scene.space.shapes.drop_normals();
+            scene.geometry.shapes.drop_normals();
         } else if !deformation.normals.is_empty() {
-            scene.space.shapes.replace_normals(&deformation.normals);
+            scene.geometry.shapes.replace_normals(&deformation.normals);
         }
         scene.structures.replace_pairs(&deformation.pairs);
         Ok(scene)

@@ -278,7 +278,7 @@ impl<V: Vertex, A: Memory<V>, B: Memory<Pair>, C: Memory<[i16; 2]>> DeformationI
         let rest: &[V] = scene.stored_vertices().ok_or(DeformError::Storage)?;
         let normals = match morph.normals {
             [] => &[],
-            _ => scene.space.shapes.normals(),
+            _ => scene.geometry.shapes.normals(),
         };
         let (found, most) = (normals.len(), self.normals.room());
         if found > most {

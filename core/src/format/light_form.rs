@@ -39,7 +39,7 @@ records! {
         /// of the coordinates of the way to the position add up to less, and by area beyond.
         #[valid(LightWidth: 0..=ONE)]
         pub width: i32,
-        /// The direction of a spot, or the side on which a rectangle or disc shines: length 1, 30 fraction bits.
+        /// The direction of a spot, or the side on which a rectangle, triangle or disc shines: length 1, 30 fraction bits.
         #[valid(Normal: -ONE..=ONE)]
         pub normal: [i32; 3],
         /// `[edge][axis]`: the edges of a rectangle (any parallelogram) or a triangle, or two perpendicular radii of a
@@ -63,6 +63,9 @@ impl LightForm {
 }
 
 impl Light {
+    /// The value of [`directional`](Self::directional) for a directional light.
+    pub const DIRECTIONAL: u32 = 1;
+
     /// The value for a point light with a form.
     const FORM: u32 = 2;
     /// The value for an area light.
@@ -80,6 +83,11 @@ impl Light {
         } else {
             None
         }
+    }
+
+    /// Returns true if the light is at a position, with a form or without one.
+    pub const fn has_position(&self) -> bool {
+        self.directional == 0 || self.form().is_some()
     }
 
     /// Returns true if the light shines from a point.

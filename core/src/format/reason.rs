@@ -209,6 +209,7 @@ texts! {
         RightOutside => "the volume of its right child lies outside of its own",
         PrimitiveOutside => "a primitive lies outside of the volume of its leaf",
         PrimitiveOutsideRegion => "a primitive of its leaf lies outside of its region",
+        DirectionCount => "it does not have 3, 7 or 13 directions",
         UnusedBits => "bits that have no meaning are set",
         NoChild => "it has no child",
         LaneNotEmpty => "a lane without a child holds a box",

@@ -44,11 +44,11 @@ pub struct Requirements {
     pub width: usize,
     /// Its rows.
     pub height: usize,
-    /// Vertices of all meshes, for a [`Deformation`](crate::deform::Deformation).
+    /// Vertices of the scene's own meshes, without those of parts, for a [`Deformation`](crate::deform::Deformation).
     pub vertices: usize,
-    /// Pairs of the structure [`Bvh`](crate::accel), for a [`Deformation`](crate::deform::Deformation).
+    /// Pairs of the scene's own structure [`Bvh`](crate::accel), for a [`Deformation`](crate::deform::Deformation).
     pub pairs: usize,
-    /// Normals of vertices that morph targets change, for a [`Deformation`](crate::deform::Deformation).
+    /// Normals of the scene's own vertices that morph targets change, for a [`Deformation`](crate::deform::Deformation).
     pub moving_normals: usize,
     /// Morph targets, for [`Tracks::weights_at`](crate::Tracks::weights_at).
     pub morph_targets: usize,

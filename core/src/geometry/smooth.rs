@@ -18,7 +18,7 @@
 
 use crate::format::range::At;
 use crate::format::{BlobError, Field, SectionKind};
-use crate::geometry::attributes::weights;
+use crate::geometry::attributes::{at_most_vertices, weights};
 use crate::number::{Arithmetic, Format, extent};
 
 /// The largest coordinate of a stored normal; the sum of the magnitudes of all three.
@@ -179,13 +179,7 @@ fn far_unit<N: Arithmetic>(sum: [N; 3], is_opposite: bool) -> Option<[N; 3]> {
 /// Proves that normals are those of vertices, and that their coordinates are in range.
 pub(crate) fn validate(normals: &[[i16; 2]], vertices: usize) -> Result<(), BlobError> {
     let section = SectionKind::Normals;
-    if normals.len() > vertices {
-        return Err(BlobError::Count {
-            section,
-            found: normals.len(),
-            expected: vertices,
-        });
-    }
+    at_most_vertices(section, normals.len(), vertices)?;
     let most = i64::from(LARGEST);
     normals.iter().enumerate().try_for_each(|(index, normal)| {
         At { section, index }.all_within(Field::Normal, &normal.map(i64::from), -most, most)

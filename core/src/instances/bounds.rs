@@ -87,8 +87,8 @@ pub(crate) fn around(instance: &Instance, part: &UnitBox) -> Option<UnitBox> {
 
 impl Instance {
     /// Returns a box around the placed box of a part, in units of the scene. Returns `None` where it would leave the
-    /// scene's lattice, or the matrix is not a rotation times a factor from 1/2 to 1. Loading proves that an instance's
-    /// own box holds this one.
+    /// scene's lattice, or the matrix is not a rotation times a factor from 1/2 to 1. Loading proves that the
+    /// box of an instance's node holds this one.
     ///
     /// ```
     /// use gridel_core::format::instance::{Instance, MATRIX_BITS};

@@ -139,8 +139,8 @@ impl<N: Number> Hit<N> {
             Some(index) => Some(find(scene, index)?),
             None => None,
         };
-        let space = &placed.map_or(scene, |(_, part)| part).space;
-        let shapes = &space.shapes;
+        let geometry = &placed.map_or(scene, |(_, part)| part).geometry;
+        let shapes = &geometry.shapes;
         let vertices = shapes.triangles.corners(self.triangle_slot()?)?;
         let [a, b, c] = vertices;
         let position = |vertex| shapes.vertices.position(vertex);
@@ -186,7 +186,7 @@ impl<N: Number> Hit<N> {
         let (shapes, point, normal) = if self.instance().is_some() {
             self.placed_point(scene)?
         } else {
-            (&scene.space.shapes, self.point, self.normal)
+            (&scene.geometry.shapes, self.point, self.normal)
         };
         let vertices = shapes.triangles.corners(slot)?;
         let position = |vertex| shapes.vertices.position(vertex);
@@ -205,7 +205,7 @@ impl<N: Number> Hit<N> {
             normal: self.normal,
             error: self.error,
         });
-        Some((&part.space.shapes, there.point, there.normal))
+        Some((&part.geometry.shapes, there.point, there.normal))
     }
 }
 

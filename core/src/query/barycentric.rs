@@ -29,7 +29,7 @@ impl<N: Number> Hit<N> {
     pub fn barycentric(&self, scene: &Scene<'_>) -> Option<[N; 3]> {
         let slot = self.triangle_slot()?;
         let Some(instance) = self.instance() else {
-            let corners = scene.space.shapes.triangle(slot)?;
+            let corners = scene.geometry.shapes.triangle(slot)?;
             return Some(barycentric(corners, self.point, self.normal));
         };
         let (instance, part) = find(scene, instance)?;
@@ -38,7 +38,7 @@ impl<N: Number> Hit<N> {
             normal: self.normal,
             error: self.error,
         });
-        let corners = part.space.shapes.triangle(slot)?;
+        let corners = part.geometry.shapes.triangle(slot)?;
         Some(barycentric(corners, there.point, there.normal))
     }
 }

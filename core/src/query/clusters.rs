@@ -15,7 +15,7 @@ impl<N: Number, K: Culling<N>, F: Collect<N>> Search<'_, '_, N, K, F> {
     /// Tests the primitives of a cluster, or, if `ANY` hit is enough, of a pack only until one is hit.
     #[inline(always)]
     pub(super) fn cluster<C: Observer, const ANY: bool>(&mut self, leaf: Leaf, count: &mut C) {
-        let clusters = self.scene.space.shapes.clusters();
+        let clusters = self.scene.geometry.shapes.clusters();
         match (leaf.kind, clusters.strips, clusters.packs) {
             (Kind::Triangle, Strips::S16(strips), _) => self.strip(strips, leaf.first, count),
             (Kind::Triangle, Strips::S24(strips), _) => self.strip(strips, leaf.first, count),
@@ -67,7 +67,7 @@ impl<N: Number, K: Culling<N>, F: Collect<N>> Search<'_, '_, N, K, F> {
         let Some(ray) = self.strip_ray.get() else {
             return 0;
         };
-        match self.scene.space.simd() {
+        match self.scene.geometry.simd() {
             SimdLevel::Portable => ray.hit_lanes(Portable, strip),
             SimdLevel::Avx2(avx2) => avx2.call(
                 #[inline(always)]
@@ -109,7 +109,7 @@ impl<N: Number, K: Culling<N>, F: Collect<N>> Search<'_, '_, N, K, F> {
             }
             return;
         }
-        let met = with_simd!(self.scene.space.simd(), |simd| simd.call(
+        let met = with_simd!(self.scene.geometry.simd(), |simd| simd.call(
             #[inline(always)]
             |simd, ray, recip_norm2, pack, (), ()| pack::hit_lanes(simd, ray, recip_norm2, pack),
             (self.ray, self.recip_norm2, pack, (), ()),

@@ -111,7 +111,7 @@ impl Scene<'_> {
     pub fn choose(&self, structure: Structure) -> Option<Self> {
         self.holds(structure).then(|| {
             let mut scene = *self;
-            scene.space.chosen = AllStructuresOnly::new(|| structure);
+            scene.geometry.chosen = AllStructuresOnly::new(|| structure);
             scene
         })
     }

@@ -51,7 +51,7 @@ impl HitNormals {
     pub fn add(&mut self, lane: usize, scene: &Scene<'_>, ray: &ReadyRay, hit: &PrimitiveHit<f32>) {
         let place = hit.best.place;
         if place.kind == Kind::Sphere
-            && let Some(sphere) = scene.space.shapes.sphere_at(place)
+            && let Some(sphere) = scene.geometry.shapes.sphere_at(place)
         {
             let at = (&ray.ray, hit.best.t);
             self.spheres.add(lane, sphere, at, hit.leaves());
@@ -82,7 +82,7 @@ impl FourReadyRays {
     /// Returns the proof of the instructions if rays of a scene can be set up in fours: queries of it use AVX2, and it
     /// has no instances and no shapes without bounds.
     pub fn suit(scene: &Scene<'_>) -> Option<Avx2> {
-        match scene.space.simd() {
+        match scene.geometry.simd() {
             SimdLevel::Avx2(avx2) if scene.instances().is_empty() && !scene.has_unbounded => {
                 Some(avx2)
             }
@@ -112,7 +112,7 @@ impl FourReadyRays {
         let [a, b, c, d] = &mut self.rays;
         let cull = [&mut a.cull, &mut b.cull, &mut c.cull, &mut d.cull];
         WideLanes::write_four(&rays, cull);
-        let strips = &scene.space.shapes.clusters().strips;
+        let strips = &scene.geometry.shapes.clusters().strips;
         if strips.len() > 0 {
             let strip_rays = [
                 &mut a.strip_ray,
@@ -168,10 +168,10 @@ impl ReadyRay {
         let none: Option<Candidate<f32>> = None;
         let strip_ray = wide_only(|| self.strip_ray);
         let mut search = Search::with_strip_ray(scene, ray, cull, none, strip_ray);
-        let (space, views) = (&scene.space, Wide::views(&scene.structures));
+        let (geometry, views) = (&scene.geometry, Wide::views(&scene.structures));
         if ANY {
             Wide::walk_any(
-                space,
+                geometry,
                 views,
                 ray,
                 cull,
@@ -185,7 +185,7 @@ impl ReadyRay {
             );
         } else {
             Wide::walk(
-                space,
+                geometry,
                 views,
                 ray,
                 cull,

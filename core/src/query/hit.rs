@@ -85,7 +85,7 @@ impl<N: Number> PrimitiveHit<N> {
                 return Some(flat::unit_normal(normal));
             }
             let point = ray.at(best.t);
-            let shapes = &scene.space.shapes;
+            let shapes = &scene.geometry.shapes;
             let (surface, _) = shapes.surface(best.place, best.part, ray, point)?;
             Some(surface.normal)
         }
@@ -115,7 +115,7 @@ impl<N: Number> PrimitiveHit<N> {
             let best = self.best;
             let point = ray.at(best.t);
             let (surface, front) = scene
-                .space
+                .geometry
                 .shapes
                 .surface(best.place, best.part, ray, point)?;
             Some(Hit {
@@ -231,7 +231,7 @@ impl<N: Number> Hit<N> {
         match Leaf::from_word(self.place) {
             Some(Leaf { kind, first, .. }) => {
                 scene
-                    .space
+                    .geometry
                     .shapes
                     .inside(kind, first as usize, surface, self.error)
             }
@@ -296,7 +296,7 @@ fn placed_hit<N: Number>(
     let (instance, part) = find(scene, placed.index)?;
     let (map, best) = (Map::<N>::new(instance), found.best);
     let mapped = map.ray(part.bounds(), ray, ray.tmax)?;
-    let shapes = &part.space.shapes;
+    let shapes = &part.geometry.shapes;
     let near = mapped.ray.at(best.t);
     let (surface, front) = shapes.surface(best.place, best.part, &mapped.ray, near)?;
     let in_part = PlacedSurface {
@@ -342,7 +342,7 @@ fn placed_inside<N: Number>(hit: &Hit<N>, index: u32, scene: &Scene<'_>) -> [N; 
         normal: hit.normal,
         error: hit.error,
     });
-    let shapes = &part.space.shapes;
+    let shapes = &part.geometry.shapes;
     let beneath = shapes.inside(leaf.kind, leaf.first as usize, [point, normal], error);
     let [x, y, z] = beneath;
     let way = map.step([x - point[0], y - point[1], z - point[2]]);

@@ -28,11 +28,11 @@ pub(super) fn choose_as<'p, 'a>(
     scene: &Scene<'_>,
     chosen: &'p mut Option<Scene<'a>>,
 ) -> &'p Scene<'a> {
-    if part.space.same_choice(&scene.space) {
+    if part.geometry.same_choice(&scene.geometry) {
         return part;
     }
     let chosen = chosen.insert(*part);
-    chosen.space.choose_as(&scene.space);
+    chosen.geometry.choose_as(&scene.geometry);
     chosen
 }
 

@@ -39,7 +39,7 @@ impl<'s, 'a, N: Number, K: Culling<N>, F: Collect<N>> Search<'s, 'a, N, K, F> {
     pub(super) fn new(scene: &'s Scene<'a>, ray: &'s Ray<N>, cull: &'s K, found: F) -> Self {
         let strip_ray = wide_only(
             #[inline(always)]
-            || StripRay::new(ray, &scene.space.shapes.clusters().strips),
+            || StripRay::new(ray, &scene.geometry.shapes.clusters().strips),
         );
         Self::with_strip_ray(scene, ray, cull, found, strip_ray)
     }
@@ -149,7 +149,7 @@ impl<'s, 'a, N: Number, K: Culling<N>, F: Collect<N>> Search<'s, 'a, N, K, F> {
     #[inline(always)]
     fn slots<C: Observer>(&mut self, leaf: Leaf, count: &mut C) {
         let slots = leaf.slots();
-        let shapes = &self.scene.space.shapes;
+        let shapes = &self.scene.geometry.shapes;
         macro_rules! by_kind {
             (
                 forms { $($form:tt)* }
@@ -182,7 +182,7 @@ impl<'s, 'a, N: Number, K: Culling<N>, F: Collect<N>> Search<'s, 'a, N, K, F> {
     #[inline(always)]
     fn indexed_triangles<C: Observer>(&mut self, leaf: Leaf, count: &mut C) {
         let slots = leaf.slots();
-        let shapes = &self.scene.space.shapes;
+        let shapes = &self.scene.geometry.shapes;
         match (&shapes.vertices, &shapes.triangles) {
             (Vertices::V16(v), Triangles::U16(t)) => self.triangles(v, t.get(slots), leaf, count),
             (_, Triangles::U32(_)) if !WIDE_INDICES => (),
@@ -376,7 +376,7 @@ pub(super) fn search_structure<N: Number, A: Accel, C: Observer, F: Collect<N>, 
     let mut search = Search::new(scene, ray, &cull, found);
     if ANY {
         A::walk_any(
-            &scene.space,
+            &scene.geometry,
             views,
             ray,
             &cull,
@@ -389,7 +389,7 @@ pub(super) fn search_structure<N: Number, A: Accel, C: Observer, F: Collect<N>, 
         );
     } else {
         A::walk(
-            &scene.space,
+            &scene.geometry,
             views,
             ray,
             &cull,

@@ -51,7 +51,7 @@ impl<N: Number> Hit<N> {
             return self.placed_normal(scene, facing);
         }
         let slot = self.triangle_slot()?;
-        let triangle = scene.space.shapes.smooth_triangle(slot)?;
+        let triangle = scene.geometry.shapes.smooth_triangle(slot)?;
         triangle.normal(self.point, facing)
     }
 
@@ -60,7 +60,10 @@ impl<N: Number> Hit<N> {
     #[cold]
     pub(crate) fn lift(&self, scene: &Scene<'_>, facing: [N; 3]) -> Option<[N; 3]> {
         if self.instance().is_none() {
-            let triangle = scene.space.shapes.smooth_triangle(self.triangle_slot()?)?;
+            let triangle = scene
+                .geometry
+                .shapes
+                .smooth_triangle(self.triangle_slot()?)?;
             return Some(triangle.lift(self.point, facing));
         }
         let (map, triangle, there) = self.in_part(scene, facing)?;
@@ -84,7 +87,10 @@ impl<N: Number> Hit<N> {
         facing: [N; 3],
     ) -> Option<(Map<N>, SmoothTriangle, PlacedSurface<N>)> {
         let (instance, part) = find(scene, self.instance()?)?;
-        let triangle = part.space.shapes.smooth_triangle(self.triangle_slot()?)?;
+        let triangle = part
+            .geometry
+            .shapes
+            .smooth_triangle(self.triangle_slot()?)?;
         let map = Map::<N>::new(instance);
         let there = map.in_part(&PlacedSurface {
             point: self.point,

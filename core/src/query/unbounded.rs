@@ -80,7 +80,7 @@ pub(crate) fn each<N: Number, C: Observer>(
             )* }
         ) => {
             $(if Kind::$kind.is_available() && !Kind::$kind.is_bounded() {
-                for (slot, record) in (0..).zip(scene.space.shapes.$field) {
+                for (slot, record) in (0..).zip(scene.geometry.shapes.$field) {
                     let met = ray.meet_far(|place| record.cross_far(place, ray.slope));
                     test(met, PrimitiveId::in_slot(Kind::$kind, slot), count);
                 }

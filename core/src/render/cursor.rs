@@ -3,10 +3,10 @@
 
 use crate::accel::{Accel, Number};
 use crate::observe::count::Observer;
+use crate::render::encoding::Pixel;
 use crate::render::order::{Block, CoarseToFine, Rows};
-use crate::render::pixel::Pixel;
+use crate::render::pixel_samples::Samples;
 use crate::render::renderer::Renderer;
-use crate::render::samples::Samples;
 use crate::render::workspace::WorkspaceView;
 
 /// A rectangle of a picture that is rendered a few rays at a time, for firmware with deadlines.

@@ -6,7 +6,7 @@
 
 use crate::accel::{Accel, Number};
 use crate::observe::count::Observer;
-use crate::render::pixel::{Pixel, luminance, quantize};
+use crate::render::encoding::{Pixel, luminance, quantize};
 use crate::render::renderer::Renderer;
 use crate::render::workspace::WorkspaceView;
 use embedded_graphics_core::geometry::{Point, Size};

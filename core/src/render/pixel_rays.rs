@@ -10,7 +10,7 @@ use crate::axis::pick;
 use crate::format::record::{UnitBox, View};
 use crate::number::Format;
 use crate::ray::{Pencil, Ray, RayError};
-use crate::render::sample::SUBPIXELS;
+use crate::render::sample_pattern::SUBPIXELS;
 
 /// Returns true if a format distinguishes the directions of neighboring pixels, each to an eighth of their distance or
 /// better. It does not for a lens so long that only a very distant eye needs it. The picture would then show other

@@ -6,12 +6,12 @@ use crate::format::record::View;
 use crate::format::{Effects, Structure};
 use crate::number::Format;
 use crate::ray::{Ray, RayError};
-use crate::render::pixel::{Linear, from_display};
+use crate::render::encoding::{Linear, from_display};
 use crate::render::pixel_rays;
 use crate::render::pixel_rays::PixelRays;
-use crate::render::sample::SUBPIXELS;
+use crate::render::sample_pattern::SUBPIXELS;
 use crate::render::spread::{Spread, spread};
-use crate::render::trace::Loop;
+use crate::render::trace::RayLoop;
 use crate::render::workspace::WorkspaceView;
 use crate::scene::Scene;
 use crate::shade::Color;
@@ -72,8 +72,11 @@ pub enum RenderError {
     },
     /// Not 1 to 4,096 samples.
     Samples(u16),
-    /// A shutter is open over no moment, over more moments than samples per pixel, or over moments with different
-    /// settings.
+    /// A shutter has no moments.
+    NoMoments,
+    /// A shutter has moments with different settings.
+    MomentSettings,
+    /// A shutter has more moments than a pixel has samples.
     Moments {
         /// Number of moments.
         found: usize,
@@ -114,10 +117,14 @@ impl fmt::Display for RenderError {
                     "{samples} samples per pixel are not possible: ask for 1 to {MAX_SAMPLES}"
                 )
             }
+            RenderError::NoMoments => f.write_str("a shutter has no moments: give it at least one"),
             RenderError::Moments { found, samples } => write!(
                 f,
-                "{found} moments are not possible: ask for 1 to {samples}, at most one per sample, with the same settings"
+                "{found} moments are not possible with {samples} samples per pixel: ask for at most one per sample"
             ),
+            RenderError::MomentSettings => {
+                f.write_str("the moments of a shutter have different settings: give all the same")
+            }
             RenderError::Depth(depth) => {
                 write!(
                     f,
@@ -211,7 +218,7 @@ impl<'s, 'a, N: Number, A: Accel, const EFFECTS: u32> Renderer<'s, 'a, N, A, EFF
         if usize::from(depth) > MAX_RAY_DEPTH {
             return Err(RenderError::Depth(depth));
         }
-        let needed = A::needs(&scene.space);
+        let needed = A::needs(&scene.geometry);
         if !scene.holds(needed) {
             return Err(RenderError::Structure(needed));
         }
@@ -355,8 +362,8 @@ impl<'s, 'a, N: Number, A: Accel, const EFFECTS: u32> Renderer<'s, 'a, N, A, EFF
         }
     }
 
-    pub(super) fn tracing(&self) -> Loop<'s, 'a> {
-        Loop {
+    pub(super) fn ray_loop(&self) -> RayLoop<'s, 'a> {
+        RayLoop {
             scene: self.scene,
             depth: self.settings.depth,
             from_camera: true,

@@ -2,7 +2,7 @@
 
 use crate::accel::{Accel, Number};
 use crate::observe::count::Observer;
-use crate::render::samples::Samples;
+use crate::render::pixel_samples::Samples;
 use crate::render::{Pixel, RenderError, Renderer, Settings, WorkspaceView};
 
 /// A picture of a scene that moves while a shutter is open. It has a renderer for each of some moments.
@@ -53,15 +53,14 @@ impl<'r, 's, 'a, N: Number, A: Accel, const EFFECTS: u32> Shutter<'r, 's, 'a, N,
     /// # Errors
     /// If there is no moment, there are more moments than samples per pixel, or their settings differ.
     pub fn new(moments: &'r [Renderer<'s, 'a, N, A, EFFECTS>]) -> Result<Self, RenderError> {
-        let error = |samples| RenderError::Moments {
-            found: moments.len(),
-            samples,
-        };
-        let first = moments.first().ok_or(error(1))?;
+        let first = moments.first().ok_or(RenderError::NoMoments)?;
         let settings = first.settings();
-        let alike = moments.iter().all(|it| it.settings() == settings);
-        if !alike || moments.len() > settings.samples.into() {
-            return Err(error(settings.samples));
+        if moments.iter().any(|it| it.settings() != settings) {
+            return Err(RenderError::MomentSettings);
+        }
+        let (found, samples) = (moments.len(), settings.samples);
+        if found > samples.into() {
+            return Err(RenderError::Moments { found, samples });
         }
         Ok(Self { first, moments })
     }

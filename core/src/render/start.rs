@@ -4,7 +4,7 @@
 use crate::accel::Number;
 use crate::ray::Ray;
 use crate::render::pixel_rays::PixelRays;
-use crate::render::sample::place;
+use crate::render::sample_pattern::place;
 use core::hint::black_box;
 
 /// The ray with which a sample begins.

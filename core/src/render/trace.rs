@@ -33,7 +33,7 @@ use crate::target::{WIDE, inline_on_boards};
 use core::marker::PhantomData;
 
 /// The parts of the scene and the renderer that the ray loop uses.
-pub(super) struct Loop<'s, 'a> {
+pub(super) struct RayLoop<'s, 'a> {
     pub(super) scene: &'s Scene<'a>,
     pub(super) depth: u8,
     /// True if rays come from the camera, so that effects of its lens act on them. False for rays of the caller's own.
@@ -42,7 +42,7 @@ pub(super) struct Loop<'s, 'a> {
     pub(super) spread: Spread,
 }
 
-impl Loop<'_, '_> {
+impl RayLoop<'_, '_> {
     inline_on_boards!(
         /// Traces one ray of a sample and the shadow rays of its hit: the last waiting ray, or else the first ray.
         /// Returns true if no ray waits any more.
@@ -51,60 +51,75 @@ impl Loop<'_, '_> {
             sampler: Sampler,
             start: Start<'_, N>,
             radiance: &mut Color<N>,
-            space: &mut WorkspaceView<'_, N>,
+            workspace: &mut WorkspaceView<'_, N>,
             count: &mut C,
         ) -> bool {
             let causes_rays = const { EFFECTS & All::CASTING != 0 };
-            let waiting = if causes_rays { space.work.pop() } else { None };
-            let mut tracing = Tracing::<N, A, C, EFFECTS> {
-                scene: self.scene,
-                most: self.depth,
-                depth: 0,
-                kind: RayKind::Primary,
-                sampler,
-                spread: self.spread,
-                state: State::<N>::default(),
-                space,
-                count,
-                structure: PhantomData,
+            let waiting = if causes_rays {
+                workspace.work.pop()
+            } else {
+                None
             };
+            let mut current = self.first_ray::<N, A, C, EFFECTS>(sampler, workspace, count);
             let (ray, weight, kind) = match waiting {
                 Some(next) => {
                     let (origin, direction) = (Origin::of(next.origin), next.direction);
                     let ray = secondary_ray(self.scene, &origin, direction.map(N::widen), None);
-                    (tracing.depth, tracing.kind) = (next.depth, next.kind);
-                    tracing.state = next.state;
+                    (current.depth, current.kind) = (next.depth, next.kind);
+                    current.state = next.state;
                     (ray, next.weight, next.kind)
                 }
                 None => (start.ray(), Color::WHITE, RayKind::Primary),
             };
-            // A sample without a direction adds no light.
             if C::ENABLED {
-                tracing.count.event(Event::RayStarted {
+                current.count.event(Event::RayStarted {
                     kind,
-                    depth: tracing.depth,
+                    depth: current.depth,
                     weight: weight.ratios_to_f64(),
                 });
             }
+            // A sample without a direction adds no light.
             if let Some(mut ray) = ray {
                 if self.from_camera && kind == RayKind::Primary {
-                    let mut state = tracing.state;
-                    All::camera::<EFFECTS, N, _>(&mut tracing, &mut state, &mut ray);
-                    tracing.state = state;
+                    let mut state = current.state;
+                    All::camera::<EFFECTS, N, _>(&mut current, &mut state, &mut ray);
+                    current.state = state;
                 }
-                tracing.count.ray(kind, &ray);
-                tracing.add(&ray, weight, radiance);
+                current.count.ray(kind, &ray);
+                current.add(&ray, weight, radiance);
             }
-            let done = !causes_rays || tracing.space.work.is_empty();
+            let done = !causes_rays || current.workspace.work.is_empty();
             if done {
-                All::pixel::<EFFECTS, N, _>(&mut tracing, &mut State::<N>::default(), radiance);
+                All::pixel::<EFFECTS, N, _>(&mut current, &mut State::<N>::default(), radiance);
             }
             done
         }
     );
 }
 
-impl Loop<'_, '_> {
+impl<'s> RayLoop<'s, '_> {
+    /// The first ray of a sample.
+    #[inline(always)]
+    fn first_ray<'t, 'w, N: Number, A: Accel, C: Observer, const EFFECTS: u32>(
+        &self,
+        sampler: Sampler,
+        workspace: &'t mut WorkspaceView<'w, N>,
+        count: &'t mut C,
+    ) -> CurrentRay<'t, 'w, 's, N, A, C, EFFECTS> {
+        CurrentRay {
+            scene: self.scene,
+            max_depth: self.depth,
+            depth: 0,
+            kind: RayKind::Primary,
+            sampler,
+            spread: self.spread,
+            state: State::<N>::default(),
+            workspace,
+            count,
+            structure: PhantomData,
+        }
+    }
+
     /// Returns true if the scene has effects of a set whose code is there.
     #[inline(always)]
     fn has_any_of(&self, with_code: u32) -> bool {
@@ -134,33 +149,23 @@ impl Loop<'_, '_> {
     pub(super) fn developed<N: Number, A: Accel, C: Observer, const EFFECTS: u32>(
         &self,
         mut mean: Color<N>,
-        space: &mut WorkspaceView<'_, N>,
+        workspace: &mut WorkspaceView<'_, N>,
         count: &mut C,
     ) -> Color<N> {
         if self.develops::<EFFECTS>() {
-            let mut tracing = Tracing::<N, A, C, EFFECTS> {
-                scene: self.scene,
-                most: self.depth,
-                depth: 0,
-                kind: RayKind::Primary,
-                sampler: Sampler::new([0; 2], 0),
-                spread: self.spread,
-                state: State::<N>::default(),
-                space,
-                count,
-                structure: PhantomData,
-            };
-            All::develop::<EFFECTS, N, _>(&mut tracing, &mut State::<N>::default(), &mut mean);
+            let sampler = Sampler::new([0; 2], 0);
+            let mut current = self.first_ray::<N, A, C, EFFECTS>(sampler, workspace, count);
+            All::develop::<EFFECTS, N, _>(&mut current, &mut State::<N>::default(), &mut mean);
         }
         mean
     }
 }
 
 /// The ray that the loop traces.
-struct Tracing<'t, 'w, 's, N: Number, A, C, const EFFECTS: u32> {
+struct CurrentRay<'t, 'w, 's, N: Number, A, C, const EFFECTS: u32> {
     scene: &'s Scene<'s>,
     /// The largest ray depth.
-    most: u8,
+    max_depth: u8,
     /// Number of secondary rays that led to the ray, of which the ray is the last.
     depth: u8,
     kind: RayKind,
@@ -168,12 +173,14 @@ struct Tracing<'t, 'w, 's, N: Number, A, C, const EFFECTS: u32> {
     sampler: Sampler,
     spread: Spread,
     state: State<N>,
-    space: &'t mut WorkspaceView<'w, N>,
+    workspace: &'t mut WorkspaceView<'w, N>,
     count: &'t mut C,
     structure: PhantomData<A>,
 }
 
-impl<N: Number, A: Accel, C: Observer, const EFFECTS: u32> Tracing<'_, '_, '_, N, A, C, EFFECTS> {
+impl<N: Number, A: Accel, C: Observer, const EFFECTS: u32>
+    CurrentRay<'_, '_, '_, N, A, C, EFFECTS>
+{
     /// Adds the radiance of one ray, and puts the rays that it causes on the work list.
     #[inline(always)]
     fn add(&mut self, ray: &Ray<N>, weight: Color<N>, radiance: &mut Color<N>) {
@@ -181,9 +188,9 @@ impl<N: Number, A: Accel, C: Observer, const EFFECTS: u32> Tracing<'_, '_, '_, N
         let hit = self.closest_hit(ray);
         let surface = hit.and_then(|hit| Some((hit, scene.material(hit.object)?)));
         let Some((hit, material)) = surface else {
-            let mut brought = Color::radiance(scene.view.background);
-            All::miss::<EFFECTS, N, _>(self, &mut state, ray, &mut brought);
-            self.bring(Source::Background, brought.times(weight), radiance);
+            let mut incoming = Color::radiance(scene.view.background);
+            All::miss::<EFFECTS, N, _>(self, &mut state, ray, &mut incoming);
+            self.add_radiance(Source::Background, incoming.times(weight), radiance);
             return;
         };
         let far = match UNBOUNDED {
@@ -222,19 +229,19 @@ impl<N: Number, A: Accel, C: Observer, const EFFECTS: u32> Tracing<'_, '_, '_, N
 
         // Nothing is seen of a surface that alpha hides: what it would reflect costs nothing.
         let is_seen = const { EFFECTS & All::PASSING == 0 } || surface.weight != Color::BLACK;
-        let brought = match is_seen {
+        let incoming = match is_seen {
             true => self.local(&mut state, &surface).times(surface.weight),
             false => Color::BLACK,
         };
-        self.bring(Source::Surface, brought, radiance);
+        self.add_radiance(Source::Surface, incoming, radiance);
 
-        if self.depth >= self.most {
+        if self.depth >= self.max_depth {
             if C::ENABLED && required.0 & EFFECTS & All::CASTING != 0 {
                 self.count.event(Event::TooDeep);
             }
             return;
         }
-        let waiting = self.space.work.len();
+        let waiting = self.workspace.work.len();
         if const { EFFECTS & All::PASSING != 0 } && surface.passing != Color::BLACK {
             let secondary = Secondary {
                 kind: RayKind::Refracted,
@@ -266,7 +273,7 @@ impl<N: Number, A: Accel, C: Observer, const EFFECTS: u32> Tracing<'_, '_, '_, N
         if const { UNBOUNDED && EFFECTS & (All::CASTING | All::PASSING) != 0 }
             && let Some(far) = &far
         {
-            leave_far(self.scene, far, &hit, self.space.work, waiting);
+            leave_far(self.scene, far, &hit, self.workspace.work, waiting);
         }
     }
 
@@ -300,18 +307,18 @@ impl<N: Number, A: Accel, C: Observer, const EFFECTS: u32> Tracing<'_, '_, '_, N
 
     /// Adds radiance to the sample.
     #[inline(always)]
-    fn bring(&mut self, source: Source, brought: Color<N>, radiance: &mut Color<N>) {
+    fn add_radiance(&mut self, source: Source, incoming: Color<N>, radiance: &mut Color<N>) {
         // Without effects that cause waiting rays, one ray brings all the light.
         *radiance = if const { EFFECTS & All::CASTING != 0 } {
-            radiance.plus(brought)
+            radiance.plus(incoming)
         } else {
-            brought
+            incoming
         };
-        self.count.radiance(|| brought.to_f64());
+        self.count.radiance(|| incoming.to_f64());
         if C::ENABLED {
             self.count.event(Event::Added {
                 source,
-                radiance: brought.to_f64(),
+                radiance: incoming.to_f64(),
             });
         }
     }
@@ -388,7 +395,7 @@ impl<N: Number, A: Accel, C: Observer, const EFFECTS: u32> Tracing<'_, '_, '_, N
 }
 
 impl<'s, N: Number, A: Accel, C: Observer, const EFFECTS: u32> Tracer<'s, N>
-    for Tracing<'_, '_, 's, N, A, C, EFFECTS>
+    for CurrentRay<'_, '_, 's, N, A, C, EFFECTS>
 {
     type Observer = C;
 
@@ -430,12 +437,12 @@ impl<'s, N: Number, A: Accel, C: Observer, const EFFECTS: u32> Tracer<'s, N>
 
     #[inline(always)]
     fn any_hit(&mut self, ray: &Ray<N>) -> bool {
-        any_hit::<N, A, C>(self.scene, ray, self.space.stack, self.count)
+        any_hit::<N, A, C>(self.scene, ray, self.workspace.stack, self.count)
     }
 
     #[inline(always)]
     fn closest_hit(&mut self, ray: &Ray<N>) -> Option<Hit<N>> {
-        closest_hit::<N, A, C>(self.scene, ray, self.space.stack, self.count)
+        closest_hit::<N, A, C>(self.scene, ray, self.workspace.stack, self.count)
     }
 
     #[inline(always)]
@@ -464,8 +471,8 @@ impl<'s, N: Number, A: Accel, C: Observer, const EFFECTS: u32> Tracer<'s, N>
         let peak = weight.peak();
         if peak > N::ZERO && peak * N::radiance(1 << 20) > N::radiance(self.scene.view.cutoff) {
             let origin = depart(self.scene, hit, outward, false);
-            // The list is as long as the depth requires, so there is a place.
-            let _ = self.space.work.push(Pending {
+            // A list that `check_workspace` accepts has a place for it. In a shorter one it is lost.
+            let sent = self.workspace.work.push(Pending {
                 origin,
                 direction,
                 weight,
@@ -473,17 +480,17 @@ impl<'s, N: Number, A: Accel, C: Observer, const EFFECTS: u32> Tracer<'s, N>
                 kind,
                 state,
             });
-            if C::ENABLED {
-                self.count.event(Event::Sent {
-                    kind,
-                    weight: weight.ratios_to_f64(),
-                });
+            if sent.is_ok() {
+                if C::ENABLED {
+                    let weight = weight.ratios_to_f64();
+                    self.count.event(Event::Sent { kind, weight });
+                }
+                return;
             }
-        } else if C::ENABLED {
-            self.count.event(Event::Dropped {
-                kind,
-                weight: weight.ratios_to_f64(),
-            });
+        }
+        if C::ENABLED {
+            let weight = weight.ratios_to_f64();
+            self.count.event(Event::Dropped { kind, weight });
         }
     }
 }

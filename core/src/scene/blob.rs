@@ -1,6 +1,6 @@
 //! A scene: a checked view of a blob.
 
-use crate::accel::{Space, StructureViews};
+use crate::accel::{SceneGeometry, StructureViews};
 use crate::format::lens::Lens;
 use crate::format::light_form::LightForm;
 use crate::format::limits::MAX_MEDIA;
@@ -23,7 +23,7 @@ use crate::target::{
 #[derive(Clone, Copy, Debug)]
 pub struct Scene<'a> {
     /// The scene's box, primitives and leaves.
-    pub(crate) space: Space<'a>,
+    pub(crate) geometry: SceneGeometry<'a>,
     /// The records of its structures.
     pub(crate) structures: StructureViews<'a>,
     pub(crate) view: &'a View,
@@ -72,7 +72,7 @@ impl<'a> Scene<'a> {
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
     pub fn header(&self) -> &'a Header {
-        self.space.header
+        self.geometry.header
     }
 
     /// Camera, surroundings and rendering defaults.
@@ -196,7 +196,7 @@ impl<'a> Scene<'a> {
 
     /// Returns the scene's box, for [`Ray::new`](crate::Ray::new).
     pub fn bounds(&self) -> &'a UnitBox {
-        self.space.bounds()
+        self.geometry.bounds()
     }
 
     /// Returns the effects that the scene requires.
@@ -216,7 +216,7 @@ impl<'a> Scene<'a> {
 
     /// Entries that the traversal stack needs.
     pub fn stack_depth(&self) -> usize {
-        self.space.header.stack_depth.into()
+        self.geometry.header.stack_depth.into()
     }
 
     /// Returns true if the blob holds a structure.
@@ -231,7 +231,7 @@ impl<'a> Scene<'a> {
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
     pub fn holds(&self, structure: Structure) -> bool {
-        self.space.holds(structure)
+        self.geometry.holds(structure)
     }
 
     /// Returns the structures that the blob holds, the [best](Structure::BEST_FIRST) first.
@@ -259,13 +259,13 @@ impl<'a> Scene<'a> {
     /// default is portable. Has no effect in a build without the feature `wide`.
     pub fn with_simd(self, simd: SimdLevel) -> Self {
         let mut scene = self;
-        scene.space.simd = WideOnly::new(|| simd);
+        scene.geometry.simd = WideOnly::new(|| simd);
         scene
     }
 
     /// Returns the instructions that queries through [`Wide`](crate::Wide) use.
     pub fn simd(&self) -> SimdLevel {
-        self.space.simd()
+        self.geometry.simd()
     }
 
     /// Number of primitives of a kind.
@@ -281,22 +281,22 @@ impl<'a> Scene<'a> {
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
     pub fn count(&self, kind: Kind) -> usize {
-        self.space.shapes.count(kind)
+        self.geometry.shapes.count(kind)
     }
 
     /// Number of vertices of all meshes.
     pub fn vertices(&self) -> usize {
-        self.space.shapes.vertices.len()
+        self.geometry.shapes.vertices.len()
     }
 
     /// Number of vertices that have a normal: see [`smooth`](crate::geometry::smooth).
     pub fn normals(&self) -> usize {
-        self.space.shapes.normals().len()
+        self.geometry.shapes.normals().len()
     }
 
     /// Returns the colors of the first vertices: see [`attributes`](crate::geometry::attributes).
     pub fn vertex_colors(&self) -> &'a [[u8; 4]] {
-        self.space.shapes.colors()
+        self.geometry.shapes.colors()
     }
 
     /// Number of maps.
@@ -312,25 +312,25 @@ impl<'a> Scene<'a> {
     /// Returns the box of a primitive, given by its kind and its slot among those of that kind; `None` for one without
     /// bounds.
     pub fn primitive_bounds(&self, kind: Kind, slot: usize) -> Option<UnitBox> {
-        self.space.shapes.bounds(kind, slot)
+        self.geometry.shapes.bounds(kind, slot)
     }
 
     /// Returns the corners of a triangle in 1/256 unit, given by its slot.
     pub fn triangle(&self, slot: usize) -> Option<[[i32; 3]; 3]> {
-        self.space.shapes.triangle(slot)
+        self.geometry.shapes.triangle(slot)
     }
 
     /// Returns the stored normals of a triangle's corners (see [`smooth`](crate::geometry::smooth)), given by the
     /// triangle's slot; `None` if the triangle is not smooth.
     pub fn corner_normals(&self, slot: usize) -> Option<[[i16; 2]; 3]> {
-        Some(self.space.shapes.smooth_triangle(slot)?.normals)
+        Some(self.geometry.shapes.smooth_triangle(slot)?.normals)
     }
 
     /// Returns the colors of a triangle's corners (see [`attributes`](crate::geometry::attributes)), given by the
     /// triangle's slot; `None` where no corner has one.
     pub fn corner_colors(&self, slot: usize) -> Option<[[u8; 4]; 3]> {
-        let all = self.space.shapes.colors();
-        let vertices = self.space.shapes.triangles.corners(slot)?;
+        let all = self.geometry.shapes.colors();
+        let vertices = self.geometry.shapes.triangles.corners(slot)?;
         let has_color = vertices.iter().any(|&vertex| vertex < all.len());
         let color = |vertex: usize| all.get(vertex).copied().unwrap_or([255; 4]);
         has_color.then(|| vertices.map(color))
@@ -339,20 +339,20 @@ impl<'a> Scene<'a> {
     /// Returns the texture coordinates of a triangle's corners, with 20 fraction bits, given by the triangle's slot;
     /// `None` where a corner has none.
     pub fn corner_coordinates(&self, slot: usize) -> Option<[[i32; 2]; 3]> {
-        let vertices = self.space.shapes.triangles.corners(slot)?;
-        self.space.shapes.coordinates().corners(vertices)
+        let vertices = self.geometry.shapes.triangles.corners(slot)?;
+        self.geometry.shapes.coordinates().corners(vertices)
     }
 
     /// Returns a primitive in lattice coordinates, given by its kind and its slot among those of that kind.
     pub fn geometry(&self, kind: Kind, slot: usize) -> Option<Geometry> {
-        self.space.shapes.geometry(kind, slot)
+        self.geometry.shapes.geometry(kind, slot)
     }
 
     /// Returns the number, in scene-file order, of a primitive given by kind and slot. It is below the number of
     /// primitives. Several slots have one number where a triangle was cut into pieces.
     #[inline]
     pub fn primitive(&self, kind: Kind, slot: u32) -> u32 {
-        self.primitive_at(self.space.shapes.place(kind, slot))
+        self.primitive_at(self.geometry.shapes.place(kind, slot))
     }
 
     inline_on_hosts_hint_on_boards!(
@@ -370,7 +370,7 @@ impl<'a> Scene<'a> {
             let Some(lane) = place.lane() else {
                 return (self.in_slot(kind, number), kind as u8, number);
             };
-            let clusters = self.space.shapes.clusters();
+            let clusters = self.geometry.shapes.clusters();
             if kind == Kind::Triangle {
                 let members = clusters.strips.members(number);
                 let member = members.map_or(0, |members| members.member(lane));
@@ -385,7 +385,7 @@ impl<'a> Scene<'a> {
     /// members before them.
     #[inline(always)]
     fn member(&self, kind: Kind, number: u32, before: usize) -> (u32, u8, u32) {
-        let clusters = self.space.shapes.clusters();
+        let clusters = self.geometry.shapes.clusters();
         let member = clusters.members.get(before + number as usize).unwrap_or(0);
         if clusters.locations.is_empty() {
             (member, kind as u8, number)
@@ -397,7 +397,7 @@ impl<'a> Scene<'a> {
     /// The primitive in a slot of a kind that has records of its own.
     #[inline(always)]
     fn in_slot(&self, kind: Kind, slot: u32) -> u32 {
-        let slot = self.space.shapes.slot(kind, slot);
+        let slot = self.geometry.shapes.slot(kind, slot);
         self.order.get(slot).unwrap_or(slot as u32)
     }
 
@@ -414,7 +414,7 @@ impl<'a> Scene<'a> {
     #[cfg_attr(feature = "wide", inline)]
     pub fn object(&self, primitive: u32) -> u32 {
         if self.object_first.is_empty() {
-            return if self.space.header.objects == self.space.header.primitives {
+            return if self.geometry.header.objects == self.geometry.header.primitives {
                 primitive
             } else {
                 0

@@ -66,6 +66,9 @@ impl<'a> Scene<'a> {
     /// They cast shadows where this scene's do; in a scene without lights they require [`Effects::SHADOW`]. So call
     /// this on the scene as it was loaded, also for the lights of each further frame.
     ///
+    /// Keep the lights of surfaces that glow. Diffuse and rough surfaces get the light of such a surface from its light
+    /// and not from rays that hit it, so without it they lose that light.
+    ///
     /// ```
     /// # static BLOB: &[u8] =
     /// #     gridel_core::include_blob!(concat!(env!("CARGO_MANIFEST_DIR"), "/../fixtures/blobs/dual-split.gridel"));

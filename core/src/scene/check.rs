@@ -32,10 +32,10 @@ pub(crate) fn check<'a>(scene: &Scene<'a>, sections: &Sections<'a>) -> Result<()
     if let Some(textures) = scene.textures.get() {
         textures.validate()?;
     }
-    scene.space.shapes.validate(scene.space.header)?;
+    scene.geometry.shapes.validate(scene.geometry.header)?;
     check_objects(scene)?;
     if let Some(placed) = scene.placed.get() {
-        check_placed(placed, scene.space.header, sections)?;
+        check_placed(placed, scene.geometry.header, sections)?;
     }
     check_structures(scene, sections)?;
     check_own_primitives(scene)
@@ -67,20 +67,17 @@ pub(super) fn check_light(index: usize, light: &Light, scene: &Scene<'_>) -> Res
         None if ENVIRONMENT && scene.environment.get().is_some_and(|it| it.has(light)) => (),
         _ => at.within(Field::Kind, light.directional.into(), 0, 1)?,
     }
-    let most = if light.directional == 1 {
-        ONE
-    } else {
-        FARTHEST
-    };
+    let is_directional = light.directional == Light::DIRECTIONAL;
+    let most = if is_directional { ONE } else { FARTHEST };
     let vector = light.vector;
     at.all_within(Field::PositionOrDirection, &vector, -most, most)?;
-    let zero = light.directional == 1 && vector == [0; 3];
+    let zero = is_directional && vector == [0; 3];
     at.ensure(!zero, Reason::ZeroDirection)
 }
 
 fn check_materials(scene: &Scene<'_>) -> Result<(), BlobError> {
     let section = SectionKind::Materials;
-    let (header, materials) = (scene.space.header, scene.materials);
+    let (header, materials) = (scene.geometry.header, scene.materials);
     let mut required = Effects::NONE;
     if materials.is_empty() && header.primitives > 0 {
         return Err(BlobError::Count {
@@ -128,7 +125,7 @@ fn check_called(
     section: SectionKind,
     required: Effects,
 ) -> Result<Effects, BlobError> {
-    let is_known = Effects(scene.space.header.effects).contains(required);
+    let is_known = Effects(scene.geometry.header.effects).contains(required);
     Location::Section(section).ensure(is_known, Reason::MissingEffect)?;
     Ok(required)
 }
@@ -136,7 +133,7 @@ fn check_called(
 /// Returns the effects that the normals of vertices require, of the scene and of its parts; an error where the header
 /// does not require them.
 fn check_smooth(scene: &Scene<'_>) -> Result<Effects, BlobError> {
-    let own = !scene.space.shapes.normals().is_empty();
+    let own = !scene.geometry.shapes.normals().is_empty();
     let mut parts = scene.parts().iter();
     let mut in_parts = || parts.any(|part| part.effects().contains(Effects::SMOOTH));
     let required = Effects::SMOOTH.only_if(SMOOTH && (own || in_parts()));
@@ -206,7 +203,7 @@ fn check_media(scene: &Scene<'_>) -> Result<Effects, BlobError> {
 
 /// Returns the effects that the colors of vertices require: see [`check_smooth`].
 fn check_vertex_colors(scene: &Scene<'_>) -> Result<Effects, BlobError> {
-    let own = !scene.space.shapes.colors().is_empty();
+    let own = !scene.geometry.shapes.colors().is_empty();
     let mut parts = scene.parts().iter();
     let mut in_parts = || parts.any(|part| part.effects().contains(Effects::VERTEX_COLORS));
     let required = Effects::VERTEX_COLORS.only_if(VERTEX_COLORS && (own || in_parts()));
@@ -236,8 +233,8 @@ pub(super) fn check_material(
 }
 
 fn check_objects(scene: &Scene<'_>) -> Result<(), BlobError> {
-    let objects = scene.space.header.objects as usize;
-    let primitives = i64::from(scene.space.header.primitives);
+    let objects = scene.geometry.header.objects as usize;
+    let primitives = i64::from(scene.geometry.header.primitives);
     let first = &scene.object_first;
     if first.is_empty() {
         let implied = objects as i64 == primitives || objects <= 1;
@@ -276,7 +273,7 @@ fn check_objects(scene: &Scene<'_>) -> Result<(), BlobError> {
         }
     }
     let order = &scene.order;
-    let slots = scene.space.shapes.total();
+    let slots = scene.geometry.shapes.total();
     let own = scene.own_primitives();
     if !order.is_empty() || slots as i64 != own {
         let section = SectionKind::Order;
@@ -312,15 +309,15 @@ fn check_own_primitives(scene: &Scene<'_>) -> Result<(), BlobError> {
 }
 
 fn check_structures<'a>(scene: &Scene<'a>, sections: &Sections<'a>) -> Result<(), BlobError> {
-    let longest = check_leaves(scene, StructureViews::uses_leaves(&scene.space))?;
+    let longest = check_leaves(scene, StructureViews::uses_leaves(&scene.geometry))?;
     exactly(
         Field::LongestLeaf,
-        scene.space.header.longest_leaf.into(),
+        scene.geometry.header.longest_leaf.into(),
         longest,
     )?;
-    let (depth, all_proved) = scene.structures.check(&scene.space, sections)?;
+    let (depth, all_proved) = scene.structures.check(&scene.geometry, sections)?;
     let depth = depth.max(scene.stack_depth_of_parts());
-    let found = scene.space.header.stack_depth;
+    let found = scene.geometry.header.stack_depth;
     if all_proved || usize::from(found) < depth {
         exactly(Field::StackDepth, found.into(), depth as u32)?;
     }
@@ -331,16 +328,16 @@ fn check_structures<'a>(scene: &Scene<'a>, sections: &Sections<'a>) -> Result<()
 /// each kind in order.
 fn check_leaves(scene: &Scene<'_>, hierarchies: bool) -> Result<u32, BlobError> {
     let section = SectionKind::Leaves;
-    if !hierarchies && !scene.space.leaves.is_empty() {
+    if !hierarchies && !scene.geometry.leaves.is_empty() {
         return Err(BlobError::Count {
             section,
-            found: scene.space.leaves.len(),
+            found: scene.geometry.leaves.len(),
             expected: 0,
         });
     }
     let mut next = [0_u32; Kind::ALL.len()];
     let mut longest = 0;
-    for (index, &word) in (0..scene.space.leaves.len()).zip(scene.space.leaves) {
+    for (index, &word) in (0..scene.geometry.leaves.len()).zip(scene.geometry.leaves) {
         let at = At { section, index };
         let Some(leaf) = Leaf::from_word(word).filter(|leaf| leaf.kind.is_bounded()) else {
             let range = [0, Kind::LAST_BOUNDED as i64];
@@ -363,13 +360,16 @@ fn check_leaves(scene: &Scene<'_>, hierarchies: bool) -> Result<u32, BlobError> 
         // Below 2^24 and 31.
         *next = next.wrapping_add(leaf.count);
         longest = longest.max(leaf.count);
-        let most = scene.space.shapes.records(leaf.kind) as i64;
+        let most = scene.geometry.shapes.records(leaf.kind) as i64;
         at.within(Field::EndSlot, (*next).into(), 0, most)?;
     }
     if hierarchies {
         for kind in Kind::ALL.into_iter().filter(|kind| kind.is_bounded()) {
             // Primitives that only clusters hold would be missing.
-            let (found, expected) = (next[kind as usize] as usize, scene.space.shapes.count(kind));
+            let (found, expected) = (
+                next[kind as usize] as usize,
+                scene.geometry.shapes.count(kind),
+            );
             if found != expected {
                 return Err(BlobError::Count {
                     section,

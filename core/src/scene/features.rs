@@ -22,8 +22,8 @@ impl Scene<'_> {
             has(self, kind) || self.parts().iter().any(|part| has(part, kind))
         };
         let kinds = Kind::ALL.map(|kind| (any(|it, kind| it.count(kind) > 0, kind), kind.name()));
-        let wide_lattice = |it: &Self, _| it.space.header.storage_bits > 16;
-        let wide_indices = |it: &Self, _| matches!(it.space.shapes.triangles, Triangles::U32(_));
+        let wide_lattice = |it: &Self, _| it.geometry.header.storage_bits > 16;
+        let wide_indices = |it: &Self, _| matches!(it.geometry.shapes.triangles, Triangles::U32(_));
         let others = [
             (any(wide_lattice, Kind::Triangle), "wide-lattice"),
             (any(wide_indices, Kind::Triangle), "wide-indices"),

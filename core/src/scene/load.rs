@@ -18,7 +18,7 @@ impl<'a> Scene<'a> {
     /// So a walk through any structure ends. A walk through a hierarchy returns the same hits as a test of every
     /// primitive (see [`Structure::is_proved`](crate::Structure::is_proved) for the others).
     ///
-    /// Costs time linear in the blob's length and about 2 KiB of stack, or 3.3 KiB in a build with all features.
+    /// Costs time linear in the blob's length, with at most 48 steps for each leaf of a hierarchy, and about 2 KiB of stack, or 3.3 KiB in a build with all features.
     ///
     /// ```
     /// # static BLOB: &[u8] =

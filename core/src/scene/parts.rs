@@ -203,7 +203,7 @@ pub(in crate::scene) fn check_instances(
 impl<'a> Scene<'a> {
     /// Number of primitives of the scene's own objects, which structures hold.
     pub(in crate::scene) fn own_primitives(&self) -> i64 {
-        let all = self.space.header.primitives;
+        let all = self.geometry.header.primitives;
         let own = self
             .placed
             .get()

@@ -2,7 +2,7 @@
 //! section.
 
 use crate::accel::StructureViews;
-use crate::accel::space::Space;
+use crate::accel::scene_geometry::SceneGeometry;
 use crate::accel::stack::Entry;
 use crate::format::instance::Part;
 use crate::format::lens::Lens;
@@ -144,7 +144,7 @@ pub(crate) fn scene<'a>(
         rough.shown_forms = sections.records(SectionKind::ShownForms)?;
     }
     Ok(Scene {
-        space: Space {
+        geometry: SceneGeometry {
             header,
             shapes,
             leaves: sections.records(SectionKind::Leaves)?,

@@ -37,5 +37,12 @@ pub(super) fn cross<N: Number>(a: [N; 3], b: [N; 3]) -> [N; 3] {
     [component(1, 2), component(2, 0), component(0, 1)]
 }
 
+/// The cross product of two directions, rounded once.
+#[inline(always)]
+pub(super) fn wide_cross<N: Number>(a: [N; 3], b: [N; 3]) -> [N; 3] {
+    let component = |k: usize, l: usize| N::from_wide(a[k].wide(b[l]) - a[l].wide(b[k]));
+    [component(1, 2), component(2, 0), component(0, 1)]
+}
+
 #[cfg(test)]
 mod tests;

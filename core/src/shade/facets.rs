@@ -13,7 +13,7 @@ use crate::accel::Number;
 use crate::format::limits::LEAST_ROUGHNESS;
 use crate::number::Angle;
 use crate::query::Hit;
-use crate::shade::basis::perpendicular;
+use crate::shade::basis::{perpendicular, wide_cross};
 
 /// The facets of a rough surface, seen by a ray.
 #[derive(Clone, Copy)]
@@ -127,9 +127,7 @@ impl<N: Number> Facets<N> {
     #[inline(never)]
     pub(crate) fn reflect(&self, cos_out: N, halfway: [N; 3]) -> (N, u32) {
         // The sine is precise where the angle is small, and 1 - cos² is not.
-        let [[a, b, c], [d, e, f]] = [self.normal, halfway];
-        let cross = |a: N, b: N, c: N, d: N| N::from_wide(a.wide(d) - b.wide(c));
-        let sine = [cross(b, c, e, f), cross(c, a, f, d), cross(a, b, d, e)];
+        let sine = wide_cross(self.normal, halfway);
         let sine2 = N::from_wide(N::dot(sine, sine));
         let cos = N::from_wide(N::dot(self.normal, halfway));
         // α² over this, squared, is π times the distribution.

@@ -14,6 +14,7 @@ use crate::observe::count::Observer;
 use crate::observe::event::Event;
 use crate::query::{Hit, Tangent};
 use crate::ray::Ray;
+use crate::shade::basis::wide_cross;
 use crate::shade::effect::{Effect, Tracer};
 use crate::shade::smooth::{self, SENDING};
 use crate::shade::surface::{Lighting, Secondary, Surface};
@@ -127,10 +128,8 @@ fn bumped<N: Number>(
     if length <= N::ZERO {
         return None;
     }
-    // Up on an image that is not mirrored: the cross product of both.
-    let product =
-        |i: usize, j: usize| N::from_wide(front[i].wide(right[j]) - front[j].wide(right[i]));
-    let up = [product(1, 2), product(2, 0), product(0, 1)];
+    // Up on an image that is not mirrored.
+    let up = wide_cross(front, right);
     let y = if tangent.is_mirrored { -y } else { y };
     // Halves, whose squares fit.
     let part = |k: usize| (x * right[k]).half() + (y * up[k]).half() + (z * front[k]).half();

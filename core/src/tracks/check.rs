@@ -141,10 +141,10 @@ fn check_track(
     };
     let last = count as i64 - 1;
     at.within(Field::TrackIndex, track.index.into(), 0, last)?;
-    let directional = lights.get(track.index as usize).map(|it| it.directional);
+    let light = lights.get(track.index as usize);
     let fits = match target {
-        TrackTarget::LightPosition => directional.is_some_and(|it| it != 1),
-        TrackTarget::LightDirection => directional == Some(1),
+        TrackTarget::LightPosition => light.is_some_and(Light::has_position),
+        TrackTarget::LightDirection => light.is_some_and(|it| it.directional == Light::DIRECTIONAL),
         _ => true,
     };
     at.ensure(fits, Reason::WrongLight)?;

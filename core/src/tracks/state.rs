@@ -51,6 +51,7 @@ impl Tracks<'_> {
         Some(self.sample(track, target.kind(), time)?.value())
     }
 
+    /// The value of a track of the camera. Such tracks come first, so few are looked at.
     fn camera<const N: usize>(&self, target: TrackTarget, time: i32) -> Option<[i32; N]> {
         let mut tracks = self.0.tracks.iter();
         let track = tracks.find(|track| track.target == target as u16)?;
@@ -80,18 +81,18 @@ impl Tracks<'_> {
             let kind = target.kind();
             let value = || self.sample::<3>(track, kind, time);
             // A program can have replaced it with a light of the other kind.
-            match (target, light.directional) {
-                (TrackTarget::LightPosition, kind) if kind != 1 => {
+            match target {
+                TrackTarget::LightPosition if light.has_position() => {
                     if let Some(place) = value() {
                         light.vector = scene.on_lattice(Position(place.value()));
                     }
                 }
-                (TrackTarget::LightDirection, 1) => {
+                TrackTarget::LightDirection if light.directional == Light::DIRECTIONAL => {
                     if let Some(direction) = value() {
                         light.vector = towards(direction).map(i64::from);
                     }
                 }
-                (TrackTarget::LightColor, _) => {
+                TrackTarget::LightColor => {
                     if let Some(color) = value() {
                         light.color = color.value();
                     }

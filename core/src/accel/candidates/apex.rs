@@ -43,7 +43,7 @@ use crate::accel::hierarchy::bvh::Bvh;
 use crate::accel::hierarchy::pairs::Pairs;
 use crate::accel::number::Number;
 use crate::accel::records::Records;
-use crate::accel::space::Space;
+use crate::accel::scene_geometry::SceneGeometry;
 use crate::accel::stack::StackView;
 use crate::accel::traverse::Traverse;
 use crate::axis::pick;
@@ -82,7 +82,7 @@ impl Traverse for Apex {
     // Compiled once, and not for every set of effects of the ray loop.
     #[inline(never)]
     fn walk<N: Number, C: Observer>(
-        space: &Space<'_>,
+        geometry: &SceneGeometry<'_>,
         views: &Self::Views<'_>,
         ray: &Ray<N>,
         _: &NoBoxCulling,
@@ -100,7 +100,7 @@ impl Traverse for Apex {
             };
             let mut cut = false;
             views.lists.ascend(window.cell, end, |slot| {
-                let single = space.shapes.single(slot);
+                let single = geometry.shapes.single(slot);
                 if single.count == 0 {
                     cut = true;
                     return None;
@@ -120,7 +120,7 @@ impl Traverse for Apex {
         }
         let rest = Ray { tmax, ..*ray };
         let cull = Culling::new(&rest);
-        Bvh::walk(space, &views.fallback, &rest, &cull, stack, count, leaf);
+        Bvh::walk(geometry, &views.fallback, &rest, &cull, stack, count, leaf);
     }
 }
 
@@ -313,8 +313,8 @@ impl<'a> Records<'a> for Views<'a> {
 
     /// Proves that points and planes are in range, that windows follow each other in the table and fill it, and that
     /// lists are valid. Proves also that the scene holds the hierarchy for all other rays.
-    fn check(&self, space: &Space<'a>) -> Result<usize, BlobError> {
-        space.require(Structure::Bvh, Structure::Apex)?;
+    fn check(&self, geometry: &SceneGeometry<'a>) -> Result<usize, BlobError> {
+        geometry.require(Structure::Bvh, Structure::Apex)?;
         let last = self.windows.len() as i64 - 1;
         for (index, point) in self.points.iter().enumerate() {
             let section = SectionKind::ApexPoints;
@@ -345,7 +345,7 @@ impl<'a> Records<'a> for Views<'a> {
         }
         let ascend = |before: u8, after: u8| before <= after;
         // One more than there are slots, for the entry that cuts a list.
-        let end = space.shapes.bounded().saturating_add(1);
+        let end = geometry.shapes.bounded().saturating_add(1);
         self.lists.check(&LISTS, next.into(), end, ascend)?;
         Ok(0)
     }

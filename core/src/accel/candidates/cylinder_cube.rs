@@ -15,7 +15,7 @@ use crate::accel::candidates::lists::{ListSections, look_up};
 use crate::accel::cull::NoBoxCulling;
 use crate::accel::number::Number;
 use crate::accel::records::Records;
-use crate::accel::space::Space;
+use crate::accel::scene_geometry::SceneGeometry;
 use crate::accel::stack::StackView;
 use crate::accel::traverse::Traverse;
 use crate::format::{BlobError, Leaf, SectionKind, Sections, Structure};
@@ -35,7 +35,7 @@ impl Traverse for CylinderCube {
     // Compiled once, and not for every set of effects of the ray loop.
     #[inline(never)]
     fn walk<N: Number, C: Observer>(
-        space: &Space<'_>,
+        geometry: &SceneGeometry<'_>,
         views: &Self::Views<'_>,
         ray: &Ray<N>,
         _: &NoBoxCulling,
@@ -52,7 +52,7 @@ impl Traverse for CylinderCube {
             let Some(slot) = table.lists.entry(index) else {
                 return;
             };
-            if leaf(space.shapes.single(slot), count).is_none() {
+            if leaf(geometry.shapes.single(slot), count).is_none() {
                 return;
             }
         }
@@ -81,9 +81,9 @@ impl<'a> Records<'a> for Views<'a> {
         Table::read(sections, GRIDELS, &LISTS).map(Self)
     }
 
-    fn check(&self, space: &Space<'a>) -> Result<usize, BlobError> {
+    fn check(&self, geometry: &SceneGeometry<'a>) -> Result<usize, BlobError> {
         self.0
-            .check(space, GRIDELS, &LISTS, space.shapes.bounded())?;
+            .check(geometry, GRIDELS, &LISTS, geometry.shapes.bounded())?;
         Ok(0)
     }
 }

@@ -12,7 +12,7 @@ use crate::accel::cull::PairCulling;
 use crate::accel::hierarchy::pairs::{PairArray, Pairs, Walk};
 use crate::accel::number::Number;
 use crate::accel::records::Records;
-use crate::accel::space::Space;
+use crate::accel::scene_geometry::SceneGeometry;
 use crate::accel::stack::StackView;
 use crate::accel::traverse::Traverse;
 use crate::format::link::Node;
@@ -38,7 +38,7 @@ impl Traverse for CylinderCubeEntry {
     // Compiled once, and not for every set of effects of the ray loop.
     #[inline(never)]
     fn walk<N: Number, C: Observer>(
-        space: &Space<'_>,
+        geometry: &SceneGeometry<'_>,
         views: &Self::Views<'_>,
         ray: &Ray<N>,
         cull: &N::Cull,
@@ -52,9 +52,9 @@ impl Traverse for CylinderCubeEntry {
         };
         look_up(passage.cell, count);
         let walk = Walk {
-            space,
+            geometry,
             pairs,
-            root: |limit| cull.root(space.bounds(), limit),
+            root: |limit| cull.root(geometry.bounds(), limit),
             root_planes: 6,
             narrow: |pair: &Pair, _, limit| cull.children(pair, limit),
         };
@@ -110,10 +110,10 @@ impl<'a> Records<'a> for Views<'a> {
         })
     }
 
-    fn check(&self, space: &Space<'a>) -> Result<usize, BlobError> {
-        space.require(Structure::Bvh, Structure::CylinderCubeEntry)?;
-        let nodes = self.pairs.0.len() + space.leaves.len();
-        self.table.check(space, GRIDELS, &LISTS, nodes)?;
+    fn check(&self, geometry: &SceneGeometry<'a>) -> Result<usize, BlobError> {
+        geometry.require(Structure::Bvh, Structure::CylinderCubeEntry)?;
+        let nodes = self.pairs.0.len() + geometry.leaves.len();
+        self.table.check(geometry, GRIDELS, &LISTS, nodes)?;
         Ok(0)
     }
 }

@@ -3,7 +3,7 @@
 use crate::accel::candidates::gridels::{Levels, Passage};
 use crate::accel::candidates::lists::{Candidates, ListSections};
 use crate::accel::number::Number;
-use crate::accel::space::Space;
+use crate::accel::scene_geometry::SceneGeometry;
 use crate::format::record::Gridels;
 use crate::format::{BlobError, Location, Reason, SectionKind, Sections};
 use crate::ray::Ray;
@@ -39,7 +39,7 @@ impl<'a> Table<'a> {
     /// for complete lists.
     pub(in crate::accel) fn check(
         &self,
-        space: &Space<'a>,
+        geometry: &SceneGeometry<'a>,
         section: SectionKind,
         kinds: &ListSections,
         end: usize,
@@ -51,7 +51,7 @@ impl<'a> Table<'a> {
                 expected: 1,
             });
         };
-        let is_scenes = *gridels == Gridels::new(space.bounds(), gridels.count);
+        let is_scenes = *gridels == Gridels::new(geometry.bounds(), gridels.count);
         Location::Section(section).ensure(is_scenes, Reason::WrongPartition)?;
         let ascend = |before: u8, after: u8| before >> 4 <= after >> 4 && before & 15 <= after & 15;
         self.lists

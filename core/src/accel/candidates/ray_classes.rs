@@ -22,7 +22,7 @@ use crate::accel::hierarchy::bvh::Bvh;
 use crate::accel::hierarchy::pairs::Pairs;
 use crate::accel::number::Number;
 use crate::accel::records::Records;
-use crate::accel::space::Space;
+use crate::accel::scene_geometry::SceneGeometry;
 use crate::accel::stack::StackView;
 use crate::accel::traverse::Traverse;
 use crate::axis::pick;
@@ -131,7 +131,7 @@ impl Traverse for RayClasses {
     // Compiled once, and not for every set of effects of the ray loop.
     #[inline(never)]
     fn walk<N: Number, C: Observer>(
-        space: &Space<'_>,
+        geometry: &SceneGeometry<'_>,
         views: &Self::Views<'_>,
         ray: &Ray<N>,
         _: &NoBoxCulling,
@@ -141,15 +141,15 @@ impl Traverse for RayClasses {
     ) {
         /// Maximum error of a place, in culling steps.
         const SLACK: i32 = 4;
-        let Some(point) = ClassPoint::of(space.bounds(), ray) else {
+        let Some(point) = ClassPoint::of(geometry.bounds(), ray) else {
             return;
         };
-        let Some(cell) = views.cell(&point, space.bounds()) else {
+        let Some(cell) = views.cell(&point, geometry.bounds()) else {
             let cull = Culling::new(ray);
-            return Bvh::walk(space, &views.fallback, ray, &cull, stack, count, leaf);
+            return Bvh::walk(geometry, &views.fallback, ray, &cull, stack, count, leaf);
         };
         look_up(cell, count);
-        let levels_per_step = ClassRange::levels_per_step(space.bounds(), point.face / 2);
+        let levels_per_step = ClassRange::levels_per_step(geometry.bounds(), point.face / 2);
         let level = |t: N| {
             let step = t.to_cull().saturating_sub(point.start);
             ClassRange::key(step.saturating_add(SLACK), levels_per_step)
@@ -157,7 +157,7 @@ impl Traverse for RayClasses {
         let mut tmax = ray.tmax;
         let mut end = level(tmax);
         views.lists.ascend(cell, end, |slot| {
-            let limit = leaf(space.shapes.single(slot), count)?;
+            let limit = leaf(geometry.shapes.single(slot), count)?;
             if limit < tmax {
                 tmax = limit;
                 end = level(tmax);
@@ -222,8 +222,8 @@ impl<'a> Records<'a> for Views<'a> {
 
     /// Proves that there are six roots, that children come after their parents, so that every walk ends, and that
     /// leaves use the cells in order.
-    fn check(&self, space: &Space<'a>) -> Result<usize, BlobError> {
-        space.require(Structure::Bvh, Structure::RayClasses)?;
+    fn check(&self, geometry: &SceneGeometry<'a>) -> Result<usize, BlobError> {
+        geometry.require(Structure::Bvh, Structure::RayClasses)?;
         let section = SectionKind::ClassNodes;
         if self.nodes.len() < 6 {
             return Err(BlobError::Count {
@@ -262,7 +262,7 @@ impl<'a> Records<'a> for Views<'a> {
         }
         let ascend = |before: u8, after: u8| before <= after;
         self.lists
-            .check(&LISTS, cells as u64, space.shapes.bounded(), ascend)?;
+            .check(&LISTS, cells as u64, geometry.shapes.bounded(), ascend)?;
         Ok(0)
     }
 }

@@ -22,7 +22,7 @@ use crate::accel::cells::lists::{Divisions, Lists, Tester, check_complete, divid
 use crate::accel::cull::{Cull, PairCulling};
 use crate::accel::number::Number;
 use crate::accel::records::Records;
-use crate::accel::space::Space;
+use crate::accel::scene_geometry::SceneGeometry;
 use crate::accel::stack::StackView;
 use crate::accel::traverse::Traverse;
 use crate::format::range::At;
@@ -52,7 +52,7 @@ impl Traverse for Grid {
     type Cull<N: Number> = Cull;
 
     fn walk<N: Number, C: Observer>(
-        space: &Space<'_>,
+        geometry: &SceneGeometry<'_>,
         views: &Self::Views<'_>,
         ray: &Ray<N>,
         cull: &Cull,
@@ -64,14 +64,14 @@ impl Traverse for Grid {
         count.planes(6);
         count.boxes(1);
         let limit = <Cull as PairCulling<N>>::limit;
-        let root = PairCulling::<N>::root(cull, space.bounds(), limit(ray.tmax));
+        let root = PairCulling::<N>::root(cull, geometry.bounds(), limit(ray.tmax));
         if C::ENABLED {
             count.event(Event::Tested {
                 node: NodeId {
                     what: "grid",
                     number: 0,
                 },
-                sides: space.bounds().0.map(|axis| axis.map(Some)),
+                sides: geometry.bounds().0.map(|axis| axis.map(Some)),
                 span: Cull::span(root),
             });
         }
@@ -79,8 +79,8 @@ impl Traverse for Grid {
             return;
         }
         let mut end = root.far;
-        let mut tester = Tester::new(space, views.lists, leaf);
-        let mut steps = Steps::new(cull, divide(space.bounds(), shape.counts()), root.near);
+        let mut tester = Tester::new(geometry, views.lists, leaf);
+        let mut steps = Steps::new(cull, divide(geometry.bounds(), shape.counts()), root.near);
         loop {
             let cell = steps.cell();
             look_up(cell, count);
@@ -183,9 +183,9 @@ impl<'c> Steps<'c> {
 impl Views<'_> {
     /// Proves that every primitive is in the lists of all cells that it reaches. The number of entries is then exact,
     /// so there are no others. Each entry of a list is found by search, which proves that entries ascend.
-    fn check_lists(&self, space: &Space<'_>, counts: [u32; 3]) -> Result<(), BlobError> {
-        let slots = space.shapes.bounded();
-        let reach = reach(space, divide(space.bounds(), counts), MARGIN);
+    fn check_lists(&self, geometry: &SceneGeometry<'_>, counts: [u32; 3]) -> Result<(), BlobError> {
+        let slots = geometry.shapes.bounded();
+        let reach = reach(geometry, divide(geometry.bounds(), counts), MARGIN);
         let listed = self.lists.entries() as u64;
         // First, because it bounds the work.
         check_complete(listed, slots, &reach, SectionKind::GridSlots)?;
@@ -228,8 +228,8 @@ impl<'a> Records<'a> for Views<'a> {
         })
     }
 
-    fn check(&self, space: &Space<'a>) -> Result<usize, BlobError> {
-        let slots = space.shapes.bounded();
+    fn check(&self, geometry: &SceneGeometry<'a>) -> Result<usize, BlobError> {
+        let slots = geometry.shapes.bounded();
         let Some(shape) = self.shape else {
             if slots == 0 {
                 return Ok(0);
@@ -242,7 +242,7 @@ impl<'a> Records<'a> for Views<'a> {
             });
         };
         for (axis, count) in shape.counts().into_iter().enumerate() {
-            let [low, high] = space.bounds().0[axis];
+            let [low, high] = geometry.bounds().0[axis];
             let most = if low == high { 1 } else { Divisions::MOST };
             let section = SectionKind::GridShape;
             At { section, index: 0 }.within(Field::Divisions, count.into(), 1, most.into())?;
@@ -259,7 +259,7 @@ impl<'a> Records<'a> for Views<'a> {
             });
         }
         self.lists.check(SectionKind::GridStarts)?;
-        self.check_lists(space, counts)?;
+        self.check_lists(geometry, counts)?;
         Ok(0)
     }
 }

@@ -5,7 +5,7 @@
 //! divisions, in 1/2^16 unit, rounded up. Where the box is flat there is one division.
 
 use crate::accel::candidates::lists::check_starts;
-use crate::accel::space::Space;
+use crate::accel::scene_geometry::SceneGeometry;
 use crate::format::range::At;
 use crate::format::record::UnitBox;
 use crate::format::{
@@ -201,11 +201,11 @@ pub(in crate::accel) fn check_complete(
 /// Returns the cells that list a primitive, given its slot over all kinds. These are the cells that its box meets,
 /// widened by a margin.
 pub(in crate::accel) fn reach(
-    space: &Space<'_>,
+    geometry: &SceneGeometry<'_>,
     divisions: [Divisions; 3],
     margin: i32,
 ) -> impl Fn(usize) -> Option<Range> {
-    let shapes = space.shapes;
+    let shapes = geometry.shapes;
     let ends = kind_ends(&shapes);
     move |slot| {
         let leaf = locate(&ends, slot as u32)?;
@@ -262,10 +262,10 @@ pub(in crate::accel) struct Tester<'a, L> {
 
 impl<'a, L> Tester<'a, L> {
     #[inline(always)]
-    pub(in crate::accel) fn new(space: &Space<'a>, lists: Lists<'a>, leaf: L) -> Self {
+    pub(in crate::accel) fn new(geometry: &SceneGeometry<'a>, lists: Lists<'a>, leaf: L) -> Self {
         Self {
             lists,
-            ends: kind_ends(&space.shapes),
+            ends: kind_ends(&geometry.shapes),
             mailbox: [u32::MAX; 8],
             leaf,
         }

@@ -14,7 +14,7 @@ use crate::accel::cull::{Cull, Culling, PairCulling};
 use crate::accel::cull_axis::Interval;
 use crate::accel::number::Number;
 use crate::accel::records::Records;
-use crate::accel::space::Space;
+use crate::accel::scene_geometry::SceneGeometry;
 use crate::accel::stack::{Entry, StackView, pop};
 use crate::accel::traverse::Traverse;
 use crate::format::range::At;
@@ -88,8 +88,8 @@ pub struct Views<'a> {
 }
 
 impl Views<'_> {
-    fn divisions(&self, space: &Space<'_>) -> [Divisions; 3] {
-        divide(space.bounds(), [1 << self.levels; 3])
+    fn divisions(&self, geometry: &SceneGeometry<'_>) -> [Divisions; 3] {
+        divide(geometry.bounds(), [1 << self.levels; 3])
     }
 }
 
@@ -99,7 +99,7 @@ impl Traverse for Octree {
     type Cull<N: Number> = Cull;
 
     fn walk<N: Number, C: Observer>(
-        space: &Space<'_>,
+        geometry: &SceneGeometry<'_>,
         views: &Self::Views<'_>,
         ray: &Ray<N>,
         cull: &Cull,
@@ -111,19 +111,19 @@ impl Traverse for Octree {
         let mut end = limit(ray.tmax);
         count.planes(6);
         count.boxes(1);
-        let root = PairCulling::<N>::root(cull, space.bounds(), end);
+        let root = PairCulling::<N>::root(cull, geometry.bounds(), end);
         if C::ENABLED {
             count.event(Event::Tested {
                 node: node_id(0),
-                sides: space.bounds().0.map(|axis| axis.map(Some)),
+                sides: geometry.bounds().0.map(|axis| axis.map(Some)),
                 span: Cull::span(root),
             });
         }
         if root.near > root.far {
             return;
         }
-        let divisions = views.divisions(space);
-        let mut tester = Tester::new(space, views.lists, leaf);
+        let divisions = views.divisions(geometry);
+        let mut tester = Tester::new(geometry, views.lists, leaf);
         // The children's order along the ray: on every axis the side that it comes from first.
         let from = cull.descending();
         let (mut number, mut place) = (0_u32, CellId::root(views.levels));
@@ -258,8 +258,8 @@ impl<'a> Records<'a> for Views<'a> {
     }
 
     /// Children follow their parents, so every node is reached once; leaves take the lists in order.
-    fn check(&self, space: &Space<'a>) -> Result<usize, BlobError> {
-        let slots = space.shapes.bounded();
+    fn check(&self, geometry: &SceneGeometry<'a>) -> Result<usize, BlobError> {
+        let slots = geometry.shapes.bounded();
         if self.nodes.is_empty() != (slots == 0) {
             return Err(BlobError::Count {
                 section: SectionKind::OctreeNodes,
@@ -268,7 +268,7 @@ impl<'a> Records<'a> for Views<'a> {
             });
         }
         self.lists.check(SectionKind::OctreeStarts)?;
-        let reach = reach(space, self.divisions(space), 0);
+        let reach = reach(geometry, self.divisions(geometry), 0);
         let section = SectionKind::OctreeSlots;
         let (mut pairs, mut lists) = (0, 0);
         let mut waiting: Vec<(u32, CellId), { 8 * MOST_LEVELS as usize }> = Vec::new();

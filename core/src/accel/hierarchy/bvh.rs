@@ -3,7 +3,7 @@
 use crate::accel::cull::PairCulling;
 use crate::accel::hierarchy::pairs::{BoxPair, Pairs, Walk};
 use crate::accel::number::Number;
-use crate::accel::space::Space;
+use crate::accel::scene_geometry::SceneGeometry;
 use crate::accel::stack::StackView;
 use crate::accel::traverse::Traverse;
 use crate::format::link::Node;
@@ -27,7 +27,7 @@ impl Traverse for Bvh {
 
     #[inline]
     fn walk<N: Number, C: Observer>(
-        space: &Space<'_>,
+        geometry: &SceneGeometry<'_>,
         views: &Self::Views<'_>,
         ray: &Ray<N>,
         cull: &N::Cull,
@@ -35,7 +35,7 @@ impl Traverse for Bvh {
         count: &mut C,
         leaf: impl FnMut(Leaf, &mut C) -> Option<N>,
     ) {
-        walk(space, views, ray, cull, stack, count, leaf);
+        walk(geometry, views, ray, cull, stack, count, leaf);
     }
 }
 
@@ -46,7 +46,7 @@ impl Traverse for Bvh {
 #[expect(clippy::too_many_arguments, reason = "its arguments stay in registers")]
 #[inline]
 pub fn walk<N: Number, K: PairCulling<N>, C: Observer>(
-    space: &Space<'_>,
+    geometry: &SceneGeometry<'_>,
     pairs: &Pairs<'_, Pair>,
     ray: &Ray<N>,
     cull: &K,
@@ -55,9 +55,9 @@ pub fn walk<N: Number, K: PairCulling<N>, C: Observer>(
     leaf: impl FnMut(Leaf, &mut C) -> Option<N>,
 ) {
     let walk = Walk {
-        space,
+        geometry,
         pairs: *pairs,
-        root: |limit| cull.root(space.bounds(), limit),
+        root: |limit| cull.root(geometry.bounds(), limit),
         root_planes: 6,
         narrow: |pair: &Pair, _, limit| cull.children(pair, limit),
     };

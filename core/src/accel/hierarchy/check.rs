@@ -1,6 +1,6 @@
 //! The proof that a hierarchy of two children per node loses no hit, once for every kind of volume.
 
-use crate::accel::space::Space;
+use crate::accel::scene_geometry::SceneGeometry;
 use crate::format::limits::MAX_LEVELS;
 use crate::format::link::Node;
 use crate::format::{BlobError, Leaf, Location, Reason, SectionKind};
@@ -45,7 +45,7 @@ pub(in crate::accel) trait Tree: Copy {
     /// Returns true if the volumes above a leaf hold its primitives.
     fn contains_leaf(
         self,
-        space: &Space<'_>,
+        geometry: &SceneGeometry<'_>,
         leaf: Leaf,
         node: Node,
         volume: &Self::Volume,
@@ -62,11 +62,11 @@ pub(in crate::accel) trait Tree: Copy {
 #[inline(never)]
 pub(in crate::accel) fn check_tree<T: Tree>(
     tree: T,
-    space: &Space<'_>,
+    geometry: &SceneGeometry<'_>,
     root: &T::Volume,
 ) -> Result<usize, BlobError> {
-    let depth = tree.order(space.leaves.len())?;
-    if space.leaves.is_empty() {
+    let depth = tree.order(geometry.leaves.len())?;
+    if geometry.leaves.is_empty() {
         return Ok(depth);
     }
     let mut path: Vec<u32, MAX_LEVELS> = Vec::new();
@@ -82,8 +82,10 @@ pub(in crate::accel) fn check_tree<T: Tree>(
                 let _ = path.push(number << 1);
             }
             Some(leaf) => {
-                let leaf = space.leaf(leaf);
-                if !leaf.is_some_and(|leaf| tree.contains_leaf(space, leaf, node, &volume, &path)) {
+                let leaf = geometry.leaf(leaf);
+                if !leaf
+                    .is_some_and(|leaf| tree.contains_leaf(geometry, leaf, node, &volume, &path))
+                {
                     return Err(outside::<T>(node, &path));
                 }
                 while path.last().is_some_and(|step| step & 1 == 1) {

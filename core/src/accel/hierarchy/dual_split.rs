@@ -28,7 +28,7 @@ use crate::accel::hierarchy::check::{Path, Tree, check_tree};
 use crate::accel::hierarchy::order::Order;
 use crate::accel::number::Number;
 use crate::accel::records::Records;
-use crate::accel::space::Space;
+use crate::accel::scene_geometry::SceneGeometry;
 use crate::accel::stack::{Entry, StackView};
 use crate::accel::traverse::Traverse;
 use crate::format::link::Node;
@@ -46,7 +46,7 @@ use core::hint::black_box;
 /// registers read the form of an axis faster from there.
 const FORM_IN_MEMORY: bool = cfg!(target_arch = "arm") && !NARROW_PRODUCTS;
 
-/// A hierarchy of 16 bytes per node; a ray tests two to four planes per node.
+/// A hierarchy of 16 bytes per node; a ray tests two to six planes per node.
 #[derive(Clone, Copy, Debug)]
 pub enum DualSplit {}
 
@@ -57,7 +57,7 @@ impl Traverse for DualSplit {
 
     #[inline]
     fn walk<N: Number, C: Observer>(
-        space: &Space<'_>,
+        geometry: &SceneGeometry<'_>,
         views: &Self::Views<'_>,
         ray: &Ray<N>,
         cull: &Cull,
@@ -67,7 +67,7 @@ impl Traverse for DualSplit {
     ) {
         let nodes = views.0;
         let mut limit = <Cull as PairCulling<N>>::limit(ray.tmax);
-        let mut interval = PairCulling::<N>::root(cull, space.bounds(), limit);
+        let mut interval = PairCulling::<N>::root(cull, geometry.bounds(), limit);
         let cull = if FORM_IN_MEMORY {
             black_box(cull)
         } else {
@@ -75,7 +75,7 @@ impl Traverse for DualSplit {
         };
         tested(count, 6, || Event::Tested {
             node: place(0),
-            sides: space.bounds().0.map(|axis| axis.map(Some)),
+            sides: geometry.bounds().0.map(|axis| axis.map(Some)),
             span: Cull::span(interval),
         });
         if interval.near > interval.far {
@@ -109,7 +109,7 @@ impl Traverse for DualSplit {
                     continue;
                 }
                 Next::Leaf(number) => {
-                    let Some(range) = space.leaf(number) else {
+                    let Some(range) = geometry.leaf(number) else {
                         return;
                     };
                     let Some(tmax) = leaf(range, count) else {
@@ -337,8 +337,8 @@ impl<'a> Records<'a> for Views<'a> {
         Ok(Self(sections.records(SECTION)?))
     }
 
-    fn check(&self, space: &Space<'a>) -> Result<usize, BlobError> {
-        check_tree(*self, space, space.bounds())
+    fn check(&self, geometry: &SceneGeometry<'a>) -> Result<usize, BlobError> {
+        check_tree(*self, geometry, geometry.bounds())
     }
 }
 
@@ -391,7 +391,7 @@ impl Tree for Views<'_> {
     #[inline(always)]
     fn contains_leaf(
         self,
-        space: &Space<'_>,
+        geometry: &SceneGeometry<'_>,
         leaf: Leaf,
         node: Node,
         parent: &UnitBox,
@@ -401,7 +401,7 @@ impl Tree for Views<'_> {
         if let Some(record) = self.0.get(node.number() as usize) {
             carve(&mut region, record);
         }
-        space.shapes.leaf_inside(leaf, &region)
+        geometry.shapes.leaf_inside(leaf, &region)
     }
 }
 

@@ -10,7 +10,7 @@ use crate::accel::cull::{Cull, PairCulling};
 use crate::accel::cull_axis::Interval;
 use crate::accel::hierarchy::pairs::{BoxPair, Pairs, Walk};
 use crate::accel::number::Number;
-use crate::accel::space::Space;
+use crate::accel::scene_geometry::SceneGeometry;
 use crate::accel::stack::StackView;
 use crate::accel::traverse::Traverse;
 use crate::format::link::{Link, Node};
@@ -34,7 +34,7 @@ impl Traverse for Flagged {
 
     #[inline]
     fn walk<N: Number, C: Observer>(
-        space: &Space<'_>,
+        geometry: &SceneGeometry<'_>,
         views: &Self::Views<'_>,
         ray: &Ray<N>,
         cull: &Cull,
@@ -42,10 +42,10 @@ impl Traverse for Flagged {
         count: &mut C,
         leaf: impl FnMut(Leaf, &mut C) -> Option<N>,
     ) {
-        let root = |limit| PairCulling::<N>::root(cull, space.bounds(), limit);
+        let root = |limit| PairCulling::<N>::root(cull, geometry.bounds(), limit);
         let narrow = |pair: &FlaggedPair, parent, _| narrow(pair, parent, cull);
         let walk = Walk {
-            space,
+            geometry,
             pairs: *views,
             root,
             root_planes: 6,

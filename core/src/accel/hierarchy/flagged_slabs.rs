@@ -8,7 +8,7 @@ use crate::accel::hierarchy::slabs::{
     Forms, SlabPair, SlabPairs, forms, in_order, planes, root_interval,
 };
 use crate::accel::number::Number;
-use crate::accel::space::Space;
+use crate::accel::scene_geometry::SceneGeometry;
 use crate::accel::stack::StackView;
 use crate::accel::traverse::Traverse;
 use crate::format::{Leaf, Structure};
@@ -28,7 +28,7 @@ impl Traverse for FlaggedSlabs {
     type Cull<N: Number> = Cull;
 
     fn walk<N: Number, C: Observer>(
-        space: &Space<'_>,
+        geometry: &SceneGeometry<'_>,
         views: &Self::Views<'_>,
         ray: &Ray<N>,
         cull: &Cull,
@@ -39,7 +39,7 @@ impl Traverse for FlaggedSlabs {
         let pairs = *views;
         let (forms, start) = (forms(ray, pairs.root.len()), cull.start());
         let walk = Walk {
-            space,
+            geometry,
             pairs,
             root: |limit| root_interval(&forms, pairs.root, start, limit),
             root_planes: 2 * pairs.root.len() as u32,

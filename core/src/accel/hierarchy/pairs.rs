@@ -6,7 +6,7 @@ use crate::accel::hierarchy::check::{Path, Tree, check_tree};
 use crate::accel::hierarchy::order::Order;
 use crate::accel::number::Number;
 use crate::accel::records::Records;
-use crate::accel::space::Space;
+use crate::accel::scene_geometry::SceneGeometry;
 use crate::accel::stack::{Entry, StackView, pop};
 use crate::format::layout::Stored;
 use crate::format::link::Node;
@@ -111,7 +111,7 @@ pub(in crate::accel) trait PairArray: Copy {
     /// See [`Tree::contains_leaf`].
     fn contains_leaf(
         self,
-        space: &Space<'_>,
+        geometry: &SceneGeometry<'_>,
         leaf: Leaf,
         volume: &Self::Volume,
         path: &Path,
@@ -186,13 +186,13 @@ impl<A: PairArray> Tree for A {
 
     fn contains_leaf(
         self,
-        space: &Space<'_>,
+        geometry: &SceneGeometry<'_>,
         leaf: Leaf,
         _: Node,
         volume: &Self::Volume,
         path: &Path,
     ) -> bool {
-        PairArray::contains_leaf(self, space, leaf, volume, path)
+        PairArray::contains_leaf(self, geometry, leaf, volume, path)
     }
 }
 
@@ -221,8 +221,14 @@ impl<'a, P: BoxPair> PairArray for Pairs<'a, P> {
         parent.contains(child)
     }
 
-    fn contains_leaf(self, space: &Space<'_>, leaf: Leaf, volume: &UnitBox, _: &Path) -> bool {
-        space.shapes.leaf_inside(leaf, volume)
+    fn contains_leaf(
+        self,
+        geometry: &SceneGeometry<'_>,
+        leaf: Leaf,
+        volume: &UnitBox,
+        _: &Path,
+    ) -> bool {
+        geometry.shapes.leaf_inside(leaf, volume)
     }
 }
 
@@ -234,14 +240,14 @@ impl<'a, P: BoxPair> Records<'a> for Pairs<'a, P> {
         Ok(Self(sections.records(P::SECTION)?))
     }
 
-    fn check(&self, space: &Space<'a>) -> Result<usize, BlobError> {
-        check_tree(*self, space, space.bounds())
+    fn check(&self, geometry: &SceneGeometry<'a>) -> Result<usize, BlobError> {
+        check_tree(*self, geometry, geometry.bounds())
     }
 }
 
 /// The part of a ray in a walk through a hierarchy.
 pub(in crate::accel) struct Walk<'w, 'a, A, R, F> {
-    pub(in crate::accel) space: &'w Space<'a>,
+    pub(in crate::accel) geometry: &'w SceneGeometry<'a>,
     pub(in crate::accel) pairs: A,
     /// The scene's interval, given the limit.
     pub(in crate::accel) root: R,
@@ -279,7 +285,7 @@ where
         if C::ENABLED {
             count.event(Event::Tested {
                 node: self.pairs.root().id(),
-                sides: self.space.bounds().0.map(|axis| axis.map(Some)),
+                sides: self.geometry.bounds().0.map(|axis| axis.map(Some)),
                 span: span::<N, K>(interval),
             });
         }
@@ -324,7 +330,7 @@ where
                 count.event(Event::Opened(node.id()));
             }
             if node.is_leaf() {
-                let Some(range) = self.space.leaf(node.number()) else {
+                let Some(range) = self.geometry.leaf(node.number()) else {
                     return;
                 };
                 let Some(tmax) = leaf(range, count) else {

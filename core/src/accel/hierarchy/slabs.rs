@@ -18,11 +18,11 @@ use crate::accel::hierarchy::pairs::{PairArray, PairRecord, Walk};
 use crate::accel::hierarchy::reach::Reach;
 use crate::accel::number::Number;
 use crate::accel::records::Records;
-use crate::accel::space::Space;
+use crate::accel::scene_geometry::SceneGeometry;
 use crate::accel::stack::StackView;
 use crate::accel::traverse::Traverse;
 use crate::format::link::{Link, Node};
-use crate::format::{BlobError, Leaf, SectionKind, Sections, Structure};
+use crate::format::{BlobError, Leaf, Location, Reason, SectionKind, Sections, Structure};
 use crate::observe::count::Observer;
 use crate::ray::Ray;
 use heapless::Vec;
@@ -129,9 +129,15 @@ impl<'a, const FLAGGED: bool> PairArray for SlabPairs<'a, FLAGGED> {
         })
     }
 
-    fn contains_leaf(self, space: &Space<'_>, leaf: Leaf, volume: &Volume, _: &Path) -> bool {
+    fn contains_leaf(
+        self,
+        geometry: &SceneGeometry<'_>,
+        leaf: Leaf,
+        volume: &Volume,
+        _: &Path,
+    ) -> bool {
         leaf.slots().into_iter().all(|index| {
-            Reach::of(&space.shapes, leaf.kind, index).is_some_and(|reach| {
+            Reach::of(&geometry.shapes, leaf.kind, index).is_some_and(|reach| {
                 let mut slabs = DIRECTIONS.iter().zip(volume).take(self.root.len());
                 slabs.all(|(&direction, &[low, high])| {
                     let [lowest, highest] = reach.slab(direction);
@@ -223,7 +229,7 @@ impl Traverse for Slabs {
     type Cull<N: Number> = Cull;
 
     fn walk<N: Number, C: Observer>(
-        space: &Space<'_>,
+        geometry: &SceneGeometry<'_>,
         views: &Self::Views<'_>,
         ray: &Ray<N>,
         cull: &Cull,
@@ -234,7 +240,7 @@ impl Traverse for Slabs {
         let pairs = *views;
         let (forms, start) = (forms(ray, pairs.root.len()), cull.start());
         let walk = Walk {
-            space,
+            geometry,
             pairs,
             root: |limit| root_interval(&forms, pairs.root, start, limit),
             root_planes: 2 * pairs.root.len() as u32,
@@ -262,21 +268,17 @@ impl<'a, const FLAGGED: bool> Records<'a> for SlabPairs<'a, FLAGGED> {
         Ok(pairs)
     }
 
-    fn check(&self, space: &Space<'a>) -> Result<usize, BlobError> {
+    fn check(&self, geometry: &SceneGeometry<'a>) -> Result<usize, BlobError> {
         let pairs = *self;
         let directions = pairs.root.len();
         let section = Self::SECTIONS[0];
-        if !DIRECTION_COUNTS.contains(&directions) && !space.leaves.is_empty() {
-            return Err(BlobError::Count {
-                section,
-                found: directions,
-                expected: DIRECTION_COUNTS[0],
-            });
+        if !DIRECTION_COUNTS.contains(&directions) && !geometry.leaves.is_empty() {
+            return Err(Location::Section(section).invalid(Reason::DirectionCount));
         }
         let mut root: Volume = [[0; 2]; DIRECTIONS.len()];
         for (volume, &word) in root.iter_mut().zip(pairs.root) {
             *volume = planes(word);
         }
-        check_tree(pairs, space, &root)
+        check_tree(pairs, geometry, &root)
     }
 }

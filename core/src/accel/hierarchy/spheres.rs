@@ -16,7 +16,7 @@ use crate::accel::hierarchy::pairs::{PairArray, PairRecord, Walk};
 use crate::accel::hierarchy::reach::Reach;
 use crate::accel::number::Number;
 use crate::accel::records::Records;
-use crate::accel::space::Space;
+use crate::accel::scene_geometry::SceneGeometry;
 use crate::accel::stack::StackView;
 use crate::accel::traverse::Traverse;
 use crate::format::link::Node;
@@ -35,7 +35,7 @@ impl Traverse for Spheres {
     type Cull<N: Number> = Cull;
 
     fn walk<N: Number, C: Observer>(
-        space: &Space<'_>,
+        geometry: &SceneGeometry<'_>,
         views: &Self::Views<'_>,
         ray: &Ray<N>,
         cull: &Cull,
@@ -53,9 +53,9 @@ impl Traverse for Spheres {
             }
         };
         let walk = Walk {
-            space,
+            geometry,
             pairs: views.0,
-            root: |limit| PairCulling::<N>::root(cull, space.bounds(), limit),
+            root: |limit| PairCulling::<N>::root(cull, geometry.bounds(), limit),
             root_planes: 6,
             narrow: |pair: &SpherePair, _, limit| pair.spheres.map(|sphere| meet(sphere, limit)),
         };
@@ -114,8 +114,8 @@ impl<'a> Records<'a> for Views<'a> {
         Ok(Self(sections.records(SectionKind::SpherePairs)?))
     }
 
-    fn check(&self, space: &Space<'a>) -> Result<usize, BlobError> {
-        check_tree(self.0, space, &())
+    fn check(&self, geometry: &SceneGeometry<'a>) -> Result<usize, BlobError> {
+        check_tree(self.0, geometry, &())
     }
 }
 
@@ -139,9 +139,9 @@ impl<'a> PairArray for &'a [SpherePair] {
 
     /// At most [`MAX_LEVELS`](crate::format::limits::MAX_LEVELS) spheres are tested per primitive; for the root the
     /// scene's box is tested.
-    fn contains_leaf(self, space: &Space<'_>, leaf: Leaf, (): &(), path: &Path) -> bool {
+    fn contains_leaf(self, geometry: &SceneGeometry<'_>, leaf: Leaf, (): &(), path: &Path) -> bool {
         leaf.slots().into_iter().all(|index| {
-            Reach::of(&space.shapes, leaf.kind, index).is_some_and(|reach| {
+            Reach::of(&geometry.shapes, leaf.kind, index).is_some_and(|reach| {
                 path.iter().all(|&step| {
                     let pair = self.get((step >> 1) as usize);
                     pair.is_some_and(|pair| {

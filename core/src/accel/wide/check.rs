@@ -1,6 +1,6 @@
 //! The proof that a blob's eight-wide hierarchy is valid.
 
-use crate::accel::space::Space;
+use crate::accel::scene_geometry::SceneGeometry;
 use crate::format::cluster::{LANES, RADII};
 use crate::format::limits::MAX_STACK_DEPTH;
 use crate::format::range::At;
@@ -14,11 +14,11 @@ use heapless::Vec;
 /// clusters lie inside their boxes, and the hierarchy holds all primitives.
 ///
 /// Linear; uses [`MAX_STACK_DEPTH`] times 20 bytes of stack.
-pub(super) fn check(nodes: &[WideNode], space: &Space<'_>) -> Result<usize, BlobError> {
-    check_members(space)?;
-    check_order(nodes, space)?;
-    check_slot_locations(nodes, space)?;
-    check_boxes(nodes, space)
+pub(super) fn check(nodes: &[WideNode], geometry: &SceneGeometry<'_>) -> Result<usize, BlobError> {
+    check_members(geometry)?;
+    check_order(nodes, geometry)?;
+    check_slot_locations(nodes, geometry)?;
+    check_boxes(nodes, geometry)
 }
 
 /// The error at a record.
@@ -40,8 +40,8 @@ fn follows(
 
 /// Proves that members ascend from cluster to cluster, and that their number is the number of
 /// primitives.
-fn check_members(space: &Space<'_>) -> Result<(), BlobError> {
-    let clusters = space.shapes.clusters();
+fn check_members(geometry: &SceneGeometry<'_>) -> Result<(), BlobError> {
+    let clusters = geometry.shapes.clusters();
     let mut next = 0;
     for strip in 0..clusters.strips.len() {
         let section = SectionKind::Strips;
@@ -76,18 +76,18 @@ fn check_members(space: &Space<'_>) -> Result<(), BlobError> {
         next += count;
     }
     let section = SectionKind::Members;
-    let most = space.header.primitives as usize;
+    let most = geometry.header.primitives as usize;
     if triangles + next > most {
-        return Err(BlobError::Count {
+        return Err(BlobError::TooMany {
             section,
             found: triangles + next,
-            expected: most,
+            most,
         });
     }
     for (found, expected) in [
         (clusters.members.len(), triangles + next),
-        (space.shapes.count(Kind::Triangle), triangles),
-        (space.shapes.count(Kind::Sphere), next),
+        (geometry.shapes.count(Kind::Triangle), triangles),
+        (geometry.shapes.count(Kind::Sphere), next),
     ] {
         if found != expected {
             return Err(BlobError::Count {
@@ -99,7 +99,8 @@ fn check_members(space: &Space<'_>) -> Result<(), BlobError> {
     }
     // Slot locations lead to members, if there are any.
     let own = clusters.locations.is_empty();
-    for index in 0..clusters.members.len() * usize::from(own) {
+    let members = if own { clusters.members.len() } else { 0 };
+    for index in 0..members {
         let primitive = clusters.members.get(index).unwrap_or(u32::MAX).into();
         At { section, index }.within(Field::Primitive, primitive, 0, most as i64 - 1)?;
     }
@@ -144,12 +145,12 @@ fn check_radii(packs: &Packs<'_>) -> Result<(), BlobError> {
 
 /// Proves that triangles and spheres have records of their own, which all structures except the
 /// list and this one use.
-pub(crate) fn check_records(space: &Space<'_>) -> Result<(), BlobError> {
+pub(crate) fn check_records(geometry: &SceneGeometry<'_>) -> Result<(), BlobError> {
     for (section, kind) in [
         (SectionKind::Triangles, Kind::Triangle),
         (SectionKind::Spheres, Kind::Sphere),
     ] {
-        let (found, expected) = (space.shapes.records(kind), space.shapes.count(kind));
+        let (found, expected) = (geometry.shapes.records(kind), geometry.shapes.count(kind));
         if found != expected {
             return Err(BlobError::Count {
                 section,
@@ -162,9 +163,9 @@ pub(crate) fn check_records(space: &Space<'_>) -> Result<(), BlobError> {
 }
 
 /// Proves breadth-first order.
-fn check_order(nodes: &[WideNode], space: &Space<'_>) -> Result<(), BlobError> {
+fn check_order(nodes: &[WideNode], geometry: &SceneGeometry<'_>) -> Result<(), BlobError> {
     let section = SectionKind::WideNodes;
-    let Clusters { strips, packs, .. } = space.shapes.clusters();
+    let Clusters { strips, packs, .. } = geometry.shapes.clusters();
     let (mut next_node, mut next_strip, mut next_pack) = (1, 0, 0);
     // A pack that is not full comes last, wherever the hierarchy refers to it.
     let full = (0..packs.len()).rposition(|pack| packs.lanes(pack as u32).count_ones() == 8);
@@ -172,7 +173,7 @@ fn check_order(nodes: &[WideNode], space: &Space<'_>) -> Result<(), BlobError> {
     let mut next_sparse = full_packs;
     let mut others = [0; Kind::ALL.len()];
     // Where other structures share the slots, the slots are in the order of those structures.
-    let own_order = space.shapes.clusters().locations.is_empty();
+    let own_order = geometry.shapes.clusters().locations.is_empty();
     for (index, node) in nodes.iter().enumerate() {
         let mut ended = false;
         for lane in 0..LANES {
@@ -202,7 +203,7 @@ fn check_order(nodes: &[WideNode], space: &Space<'_>) -> Result<(), BlobError> {
                     (Kind::Sphere, 0) => (leaf.first as usize, &mut next_pack),
                     (kind, 1) if !kind.is_clustered() => {
                         let next = &mut others[leaf.kind as usize];
-                        let slots = space.shapes.count(leaf.kind);
+                        let slots = geometry.shapes.count(leaf.kind);
                         let first = leaf.first as usize;
                         if !own_order && first < slots {
                             *next += 1;
@@ -244,7 +245,7 @@ fn check_order(nodes: &[WideNode], space: &Space<'_>) -> Result<(), BlobError> {
     let kinds = Kind::ALL
         .into_iter()
         .filter(|kind| !kind.is_clustered() && kind.is_bounded());
-    let others = kinds.map(|kind| (others[kind as usize], space.shapes.count(kind)));
+    let others = kinds.map(|kind| (others[kind as usize], geometry.shapes.count(kind)));
     for (found, expected) in clusters.into_iter().chain(others) {
         if found != expected {
             return Err(BlobError::Count {
@@ -259,9 +260,9 @@ fn check_order(nodes: &[WideNode], space: &Space<'_>) -> Result<(), BlobError> {
 
 /// Proves, where other structures share the primitives, that the hierarchy holds each of them once.
 /// Every slot has a location that leads back to it, and there are as many locations as places.
-fn check_slot_locations(nodes: &[WideNode], space: &Space<'_>) -> Result<(), BlobError> {
+fn check_slot_locations(nodes: &[WideNode], geometry: &SceneGeometry<'_>) -> Result<(), BlobError> {
     let section = SectionKind::SlotLocations;
-    let (shapes, clusters) = (&space.shapes, space.shapes.clusters());
+    let (shapes, clusters) = (&geometry.shapes, geometry.shapes.clusters());
     let locations = clusters.locations;
     if locations.is_empty() {
         // Then the clusters hold the only triangles and spheres.
@@ -280,7 +281,7 @@ fn check_slot_locations(nodes: &[WideNode], space: &Space<'_>) -> Result<(), Blo
         }
         return Ok(());
     }
-    check_records(space)?;
+    check_records(geometry)?;
     let bounded = || Kind::ALL.into_iter().filter(|kind| kind.is_bounded());
     let slots = bounded().map(|kind| shapes.records(kind)).sum();
     if locations.len() != slots {
@@ -327,16 +328,16 @@ fn check_slot_locations(nodes: &[WideNode], space: &Space<'_>) -> Result<(), Blo
 
 /// Proves that boxes hold everything below them, and returns the maximum number of waiting entries
 /// of a walk.
-fn check_boxes(nodes: &[WideNode], space: &Space<'_>) -> Result<usize, BlobError> {
+fn check_boxes(nodes: &[WideNode], geometry: &SceneGeometry<'_>) -> Result<usize, BlobError> {
     let section = SectionKind::WideNodes;
-    let clusters = space.shapes.clusters();
+    let clusters = geometry.shapes.clusters();
     let mut deepest = 0;
     if nodes.is_empty() {
         return Ok(0);
     }
     // Waiting children, their boxes, and the number of entries that wait before they are reached.
     let mut waiting: Vec<(u32, UnitBox, u16), { MAX_STACK_DEPTH + 1 }> = Vec::new();
-    let mut current = Some((0, *space.bounds(), 0));
+    let mut current = Some((0, *geometry.bounds(), 0));
     while let Some((number, parent, before)) = current {
         let index = number as usize;
         if let Some(node) = nodes.get(index) {
@@ -364,7 +365,7 @@ fn check_boxes(nodes: &[WideNode], space: &Space<'_>) -> Result<usize, BlobError
                     (None, Some(leaf)) if leaf.count == 0 => {
                         clusters.inside(leaf.kind, leaf.first, &bounds)
                     }
-                    (None, Some(leaf)) => space.shapes.leaf_inside(leaf, &bounds),
+                    (None, Some(leaf)) => geometry.shapes.leaf_inside(leaf, &bounds),
                     (None, None) => false,
                 };
                 if !within || !parent.contains(&bounds) {

@@ -19,7 +19,7 @@ pub(super) use check::check_records;
 use crate::accel::cull::Culling;
 use crate::accel::number::Number;
 use crate::accel::records::Records;
-use crate::accel::space::Space;
+use crate::accel::scene_geometry::SceneGeometry;
 use crate::accel::stack::{Entry, StackView, pop};
 use crate::accel::traverse::Traverse;
 use crate::format::cluster::LANES;
@@ -72,8 +72,8 @@ impl<'a> Records<'a> for Views<'a> {
         })
     }
 
-    fn check(&self, space: &Space<'a>) -> Result<usize, BlobError> {
-        check::check(self.nodes, space)
+    fn check(&self, geometry: &SceneGeometry<'a>) -> Result<usize, BlobError> {
+        check::check(self.nodes, geometry)
     }
 }
 
@@ -85,7 +85,7 @@ impl Traverse for Wide {
 
     #[inline(always)]
     fn walk<N: Number, C: Observer>(
-        space: &Space<'_>,
+        geometry: &SceneGeometry<'_>,
         views: &Self::Views<'_>,
         ray: &Ray<N>,
         cull: &N::WideCull,
@@ -94,7 +94,7 @@ impl Traverse for Wide {
         mut leaf: impl FnMut(Leaf, &mut C) -> Option<N>,
     ) {
         let nodes = views.nodes;
-        let level = level::<N>(space);
+        let level = level::<N>(geometry);
         let mut limit = N::WideCull::limit(ray.tmax);
         let mut current = Child::node(0);
         stack.clear();
@@ -122,7 +122,7 @@ impl Traverse for Wide {
 
     #[inline(always)]
     fn walk_any<N: Number, C: Observer>(
-        space: &Space<'_>,
+        geometry: &SceneGeometry<'_>,
         views: &Self::Views<'_>,
         ray: &Ray<N>,
         cull: &N::WideCull,
@@ -131,7 +131,7 @@ impl Traverse for Wide {
         mut hits: impl FnMut(Leaf, &mut C) -> bool,
     ) {
         let nodes = views.nodes;
-        let level = level::<N>(space);
+        let level = level::<N>(geometry);
         let limit = N::WideCull::limit(ray.tmax);
         let mut current = Child::node(0);
         stack.clear();
@@ -159,10 +159,10 @@ impl Traverse for Wide {
 
 /// Returns the level for rays of a format: integers have no lanes.
 #[inline(always)]
-fn level<N: Number>(space: &Space<'_>) -> SimdLevel {
+fn level<N: Number>(geometry: &SceneGeometry<'_>) -> SimdLevel {
     match N::FORMAT {
         Format::Fixed => SimdLevel::Portable,
-        _ => space.simd(),
+        _ => geometry.simd(),
     }
 }
 

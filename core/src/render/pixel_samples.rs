@@ -3,8 +3,8 @@
 use crate::accel::{Accel, Number};
 use crate::observe::count::Observer;
 use crate::observe::event::Event;
-use crate::render::pixel::Linear;
-use crate::render::sample::place;
+use crate::render::encoding::Linear;
+use crate::render::sample_pattern::place;
 use crate::render::start::Start;
 use crate::render::{Renderer, WorkspaceView};
 use crate::shade::Color;
@@ -47,12 +47,12 @@ impl<N: Number> Samples<N> {
         let samples = renderer.settings().samples;
         let start = Start::Camera(renderer.rays(), [x, y], [self.index, samples]);
         let radiance = &mut self.radiance;
-        let tracing = renderer.tracing();
+        let ray_loop = renderer.ray_loop();
         let sampler = Sampler::new([x, y], self.index);
-        if !tracing.step::<N, A, C, EFFECTS>(sampler, start, radiance, space, count) {
+        if !ray_loop.step::<N, A, C, EFFECTS>(sampler, start, radiance, space, count) {
             return None;
         }
-        let headroom = tracing.headroom::<EFFECTS>();
+        let headroom = ray_loop.headroom::<EFFECTS>();
         // Limited before they are averaged, so that the edge of a highlight is smooth.
         let seen = headroom.limit(self.radiance);
         let (full, shift) = headroom.room_for_samples();
@@ -81,7 +81,7 @@ impl<N: Number> Samples<N> {
             let part = if samples > full { one << shift } else { one };
             self.sum.scaled(N::ratio(part))
         };
-        let shown = tracing.developed::<N, A, C, EFFECTS>(mean, space, count);
+        let shown = ray_loop.developed::<N, A, C, EFFECTS>(mean, space, count);
         Some(renderer.to_linear(shown))
     }
 }

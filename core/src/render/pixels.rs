@@ -4,10 +4,10 @@ use crate::accel::{Accel, Number};
 use crate::observe::count::Observer;
 use crate::observe::event::Event;
 use crate::ray::Ray;
-use crate::render::samples::Samples;
+use crate::render::pixel_samples::Samples;
 use crate::render::spread::no_spread;
 use crate::render::start::Start;
-use crate::render::trace::Loop;
+use crate::render::trace::RayLoop;
 use crate::render::{Pixel, Renderer, WorkspaceView};
 use crate::shade::Color;
 use crate::shade::sampler::Sampler;
@@ -69,28 +69,28 @@ impl<N: Number, A: Accel, const EFFECTS: u32> Renderer<'_, '_, N, A, EFFECTS> {
         count: &mut C,
     ) -> [u16; 3] {
         space.work.clear();
-        let tracing = Loop {
+        let ray_loop = RayLoop {
             from_camera: false,
             spread: no_spread(),
-            ..self.tracing()
+            ..self.ray_loop()
         };
         let mut radiance = Color::BLACK;
         let sampler = Sampler::new([0; 2], 0);
-        while !tracing.step::<N, A, C, EFFECTS>(
+        while !ray_loop.step::<N, A, C, EFFECTS>(
             sampler,
             Start::Own(ray),
             &mut radiance,
             space,
             count,
         ) {}
-        let seen = tracing.headroom::<EFFECTS>().limit(radiance);
+        let seen = ray_loop.headroom::<EFFECTS>().limit(radiance);
         if C::ENABLED {
             count.event(Event::SampleFinished {
                 at: None,
                 radiance: seen.to_f64(),
             });
         }
-        let shown = tracing.developed::<N, A, C, EFFECTS>(seen, space, count);
+        let shown = ray_loop.developed::<N, A, C, EFFECTS>(seen, space, count);
         self.to_linear(shown)
     }
 

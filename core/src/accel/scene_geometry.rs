@@ -8,7 +8,7 @@ use crate::target::{AllStructuresOnly, WideOnly};
 
 /// The space that structures divide: the scene's box, its primitives, and the leaves that hierarchies share.
 #[derive(Clone, Copy, Debug)]
-pub struct Space<'a> {
+pub struct SceneGeometry<'a> {
     pub(crate) header: &'a Header,
     pub(crate) shapes: Shapes<'a>,
     pub(crate) leaves: &'a [u32],
@@ -18,7 +18,7 @@ pub struct Space<'a> {
     pub(crate) simd: WideOnly<SimdLevel>,
 }
 
-impl<'a> Space<'a> {
+impl<'a> SceneGeometry<'a> {
     /// The scene's box.
     #[inline(always)]
     pub(crate) fn bounds(&self) -> &'a UnitBox {
@@ -44,12 +44,12 @@ impl<'a> Space<'a> {
 
     /// Returns true if another space has the same choice of walks.
     #[inline(always)]
-    pub(crate) fn same_choice(&self, other: &Space<'_>) -> bool {
+    pub(crate) fn same_choice(&self, other: &SceneGeometry<'_>) -> bool {
         self.chosen == other.chosen && self.simd == other.simd
     }
 
     /// Copies the choice of walks from another space.
-    pub(crate) fn choose_as(&mut self, other: &Space<'_>) {
+    pub(crate) fn choose_as(&mut self, other: &SceneGeometry<'_>) {
         (self.chosen, self.simd) = (other.chosen, other.simd);
     }
 
