@@ -14,7 +14,7 @@ use crate::observe::count::Observer;
 use crate::query::candidate::Candidate;
 use crate::query::collect::Collect;
 use crate::query::hit::{InInstance, PrimitiveHit};
-use crate::query::placed;
+use crate::query::instances;
 use crate::query::search::search_structure;
 use crate::query::unbounded;
 use crate::ray::Ray;
@@ -368,8 +368,8 @@ fn collect<N: Number, A: Accel, C: Observer>(
     }
     if INSTANCES && !scene.instances().is_empty() {
         let tmax = collector.limit();
-        placed::each(scene, ray, tmax, count, |entered, count| {
-            let placed::Entered {
+        instances::each(scene, ray, tmax, count, |entered, count| {
+            let instances::Entered {
                 part,
                 mapped,
                 index,

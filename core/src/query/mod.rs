@@ -21,7 +21,7 @@ mod every_hit;
 #[cfg(all(feature = "avx2", target_arch = "x86_64"))]
 mod four;
 mod hit;
-mod placed;
+mod instances;
 mod search;
 mod smooth;
 pub(crate) mod unbounded;
@@ -45,8 +45,8 @@ use crate::ray::Ray;
 use crate::scene::Scene;
 use crate::target::{InstancesOnly, WIDE, inline_on_hosts, inline_on_hosts_hint_on_boards};
 use candidate::Candidate;
-use placed::{PartSearch, SearchPart};
-use search::{search_apart, search_structure};
+use instances::{PartSearch, SearchPart};
+use search::{search_structure, search_structure_out_of_line};
 
 inline_on_hosts_hint_on_boards!(
     /// Returns the primitive that a ray hits first in its interval, found through the structure `A`.
@@ -99,7 +99,7 @@ fn search<N: Number, A: Accel, C: Observer, const ANY: bool>(
         count.event(ray.query(any));
     }
     if INSTANCES && !scene.instances().is_empty() {
-        return search_placed::<N, A, C, ANY>(scene, ray, stack, count, any);
+        return search_with_instances::<N, A, C, ANY>(scene, ray, stack, count, any);
     }
     search_own::<N, A, C, ANY>(scene, ray, stack, count, any)
 }
@@ -114,10 +114,10 @@ fn search_own<N: Number, A: Accel, C: Observer, const ANY: bool>(
     any: bool,
 ) -> Option<PrimitiveHit<N>> {
     if UNBOUNDED && scene.has_unbounded {
-        return search_all::<N, A, C, ANY>(scene, ray, stack, count, any);
+        return search_with_unbounded::<N, A, C, ANY>(scene, ray, stack, count, any);
     }
     let best = if A::ONE_COPY {
-        search_apart::<N, A, C, ANY>(scene, ray, None, stack, count, any)
+        search_structure_out_of_line::<N, A, C, ANY>(scene, ray, None, stack, count, any)
     } else {
         search_structure::<N, A, C, _, ANY>(scene, ray, None, stack, count, any)
     };
@@ -138,7 +138,7 @@ fn found<N: Number>(scene: &Scene<'_>, ray: &Ray<N>, best: Candidate<N>) -> Prim
 /// The nearest primitive on a ray in a scene with instances; see [`search`].
 #[cold]
 #[inline(never)]
-fn search_placed<N: Number, A: Accel, C: Observer, const ANY: bool>(
+fn search_with_instances<N: Number, A: Accel, C: Observer, const ANY: bool>(
     scene: &Scene<'_>,
     ray: &Ray<N>,
     stack: &mut StackView,
@@ -148,30 +148,31 @@ fn search_placed<N: Number, A: Accel, C: Observer, const ANY: bool>(
     let own = if !scene.has_own() {
         None
     } else if UNBOUNDED && scene.has_unbounded {
-        search_all::<N, A, C, ANY>(scene, ray, stack, count, any)
+        search_with_unbounded::<N, A, C, ANY>(scene, ray, stack, count, any)
     } else {
-        let best = search_apart::<N, A, C, ANY>(scene, ray, None, stack, count, any);
+        let best =
+            search_structure_out_of_line::<N, A, C, ANY>(scene, ray, None, stack, count, any);
         best.map(|best| found(scene, ray, best))
     };
     if any && own.is_some() {
         return own;
     }
     let mut search = |part: &Scene<'_>, ray: &Ray<N>, stack: &mut StackView, count: &mut C| {
-        search_apart::<N, A, C, ANY>(part, ray, None, stack, count, any)
+        search_structure_out_of_line::<N, A, C, ANY>(part, ray, None, stack, count, any)
     };
     if WIDE {
         // Hosts hold one copy for all structures.
         let search: SearchPart<'_, N, C> = &mut search;
-        placed::nearest(scene, ray, own, stack, count, PartSearch { any, search })
+        instances::nearest(scene, ray, own, stack, count, PartSearch { any, search })
     } else {
-        placed::nearest(scene, ray, own, stack, count, PartSearch { any, search })
+        instances::nearest(scene, ray, own, stack, count, PartSearch { any, search })
     }
 }
 
 /// The nearest primitive on a ray in a scene with unbounded shapes; see [`search`].
 #[cold]
 #[inline(never)]
-fn search_all<N: Number, A: Accel, C: Observer, const ANY: bool>(
+fn search_with_unbounded<N: Number, A: Accel, C: Observer, const ANY: bool>(
     scene: &Scene<'_>,
     ray: &Ray<N>,
     stack: &mut StackView,
@@ -184,7 +185,7 @@ fn search_all<N: Number, A: Accel, C: Observer, const ANY: bool>(
     let best = if any && first.is_some() {
         first?
     } else {
-        search_apart::<N, A, C, ANY>(scene, &end, first, stack, count, any)?
+        search_structure_out_of_line::<N, A, C, ANY>(scene, &end, first, stack, count, any)?
     };
     let mut hit = found(scene, ray, best);
     if let Some(far) = far

@@ -408,7 +408,12 @@ pub(super) fn search_structure<N: Number, A: Accel, C: Observer, F: Collect<N>, 
 inline_on_boards!(
     /// [`search_structure`] for scenes with instances or unbounded shapes, which search in several places: hosts hold
     /// it once for all of those.
-    pub(super) fn search_apart<N: Number, A: Accel, C: Observer, const ANY: bool>(
+    pub(super) fn search_structure_out_of_line<
+        N: Number,
+        A: Accel,
+        C: Observer,
+        const ANY: bool,
+    >(
         scene: &Scene<'_>,
         ray: &Ray<N>,
         first: Option<Candidate<N>>,

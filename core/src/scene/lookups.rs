@@ -4,6 +4,7 @@ use crate::format::Effects;
 use crate::format::environment::Environment;
 use crate::format::record::{Material, NormalMap, SurfaceMaps};
 use crate::scene::Scene;
+use crate::scene::environment::EnvironmentMap;
 use crate::scene::textures::Footprint;
 
 impl<'a> Scene<'a> {
@@ -68,25 +69,32 @@ impl<'a> Scene<'a> {
         self.environment.get()?.record
     }
 
+    /// Returns the map of the environment, and its record.
+    #[inline(always)]
+    pub(crate) fn environment_map(&self) -> Option<(&EnvironmentMap<'a>, &'a Environment)> {
+        let map = self.environment.get()?;
+        Some((map, map.record?))
+    }
+
     /// Returns the radiance that rays bring from a direction, with 20 fraction bits, without that of the sun. The
     /// direction is given by its place in the octahedral map: see [`Environment`]. `None` without an environment.
     pub fn environment_radiance(&self, place: [i32; 2]) -> Option<[i32; 3]> {
-        let map = self.environment.get()?;
-        Some(map.mixed(map.record?, place))
+        let (map, record) = self.environment_map()?;
+        Some(map.mixed(record, place))
     }
 
     /// Returns a random place of the octahedral map, drawn in proportion to the light of its texels. The argument is a
     /// point of the unit square that has 32 fraction bits. `None` without an environment.
     pub fn environment_place(&self, point: [u32; 2]) -> Option<[i32; 2]> {
-        let map = self.environment.get()?;
-        Some(map.draw(map.record?, point))
+        let (map, record) = self.environment_map()?;
+        Some(map.draw(record, point))
     }
 
     /// Returns the contribution of the map as a light from a random place, over the density of that place and π, with
     /// 20 fraction bits. Half the sum of the magnitudes of its direction's components is given, with 30 fraction bits.
     /// `None` without an environment.
     pub fn environment_light(&self, place: [i32; 2], half_sum: i32) -> Option<[i32; 3]> {
-        let map = self.environment.get()?;
-        Some(map.sampled(map.record?, place, half_sum))
+        let (map, record) = self.environment_map()?;
+        Some(map.sampled(record, place, half_sum))
     }
 }

@@ -60,11 +60,7 @@ impl Effect for Environment {
         if !light.is_environment() {
             return;
         }
-        let Some((map, record)) = scene
-            .environment
-            .get()
-            .and_then(|it| Some((it, it.record?)))
-        else {
+        let Some((map, record)) = scene.environment_map() else {
             return;
         };
         let way = if light.directional == Light::SUN {
@@ -111,8 +107,7 @@ impl Effect for Environment {
         if lighting.light.directional != Light::ENVIRONMENT {
             return;
         }
-        let map = tracer.scene().environment.get();
-        if let Some((map, record)) = map.and_then(|it| Some((it, it.record?))) {
+        if let Some((map, record)) = tracer.scene().environment_map() {
             let (place, half_sum) = place_of(lighting.to_light);
             *arriving = Color::radiance(map.sampled(record, place, half_sum.to_q30()));
         }
@@ -125,8 +120,7 @@ impl Effect for Environment {
         ray: &Ray<N>,
         radiance: &mut Color<N>,
     ) {
-        let map = tracer.scene().environment.get();
-        let Some((map, record)) = map.and_then(|it| Some((it, it.record?))) else {
+        let Some((map, record)) = tracer.scene().environment_map() else {
             return;
         };
         let [map_is_seen, sun_is_seen] = is_seen_by(tracer.kind());
