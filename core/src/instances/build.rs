@@ -9,7 +9,6 @@ use crate::format::instance::Instance;
 use crate::format::link::Node;
 use crate::format::record::{Pair, UnitBox};
 use crate::format::{BlobError, Location, Reason, SectionKind};
-use crate::instances::top::child_box;
 
 /// Builds the hierarchy above instances, with one pair fewer than instances. `around` is the box of an instance, and
 /// `scene` that of the scene, which holds all of them. `order` has one word per instance.
@@ -49,7 +48,7 @@ pub(crate) fn build(
                 return bounds(node.number());
             }
             let pair = pairs.get(node.number() as usize);
-            Ok(pair.map_or(*scene, |pair| child_box(pair, 0).union(&child_box(pair, 1))))
+            Ok(pair.map_or(*scene, Pair::bounds))
         };
         let [left, right] = children;
         let (left, right) = (below(left)?, below(right)?);

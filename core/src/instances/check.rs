@@ -8,7 +8,7 @@ use crate::format::range::{At, Ranges};
 use crate::format::record::{Pair, UnitBox};
 use crate::format::{BlobError, Field, Location, Reason, SectionKind};
 use crate::instances::bounds::check_rotation;
-use crate::instances::top::{Top, child_box};
+use crate::instances::top::Top;
 
 /// Proves the map of an instance.
 pub(crate) fn check_instance(index: usize, instance: &Instance) -> Result<(), BlobError> {
@@ -49,7 +49,7 @@ pub(crate) fn check_top(
             return Some([around(top.instances.get(number)?)?; 2]);
         }
         let pair = top.pairs.get(number)?;
-        Some([child_box(pair, 0), child_box(pair, 1)])
+        Some([pair.child_box(0), pair.child_box(1)])
     };
     let holds = |outer: &UnitBox, node: Node| {
         below(node).is_some_and(|inner| inner.iter().all(|inner| outer.contains(inner)))
@@ -59,8 +59,8 @@ pub(crate) fn check_top(
         let [left, right] = pair.children.map(Node);
         order.pair([left, right])?;
         let at = At { section, index };
-        at.ensure(holds(&child_box(pair, 0), left), Reason::LeftOutside)?;
-        at.ensure(holds(&child_box(pair, 1), right), Reason::RightOutside)?;
+        at.ensure(holds(&pair.child_box(0), left), Reason::LeftOutside)?;
+        at.ensure(holds(&pair.child_box(1), right), Reason::RightOutside)?;
     }
     let levels = order.levels()?;
     if levels > MAX_INSTANCE_LEVELS {

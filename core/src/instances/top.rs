@@ -5,7 +5,7 @@ use crate::accel::cull::{Culling, PairCulling};
 use crate::format::instance::Instance;
 use crate::format::limits::MAX_INSTANCE_LEVELS;
 use crate::format::link::Node;
-use crate::format::record::{Pair, UnitBox};
+use crate::format::record::Pair;
 use crate::observe::count::Observer;
 use crate::observe::event::{Event, NodeId};
 use crate::ray::Ray;
@@ -29,14 +29,6 @@ fn id(node: Node) -> NodeId {
         what,
         number: node.number(),
     }
-}
-
-/// The box of a pair's left (0) or right (1) child.
-pub(crate) fn child_box(pair: &Pair, child: usize) -> UnitBox {
-    UnitBox(
-        pair.planes
-            .map(|[low, high]| [low[child & 1], high[child & 1]]),
-    )
 }
 
 impl Top<'_> {
@@ -88,7 +80,7 @@ impl Top<'_> {
                 if wanted == [true; 2] {
                     count.event(Event::Opened(id(Node::pair(number))));
                 }
-                let of_child = |child: usize| child_box(pair, child).0.map(|axis| axis.map(Some));
+                let of_child = |child: usize| pair.child_box(child).0.map(|axis| axis.map(Some));
                 for (child, interval) in [left, right].into_iter().enumerate() {
                     if wanted[child & 1] {
                         count.event(Event::Tested {

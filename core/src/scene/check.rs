@@ -1,7 +1,7 @@
 //! The proofs that [`Scene::from_bytes`] makes, in the order in which each relies on those before.
 
 use crate::accel::StructureViews;
-use crate::format::limits::{FARTHEST, LEAST_ROUGHNESS, MAX_MEDIA, SMOOTH};
+use crate::format::limits::{FARTHEST, LEAST_ROUGHNESS, MAX_MEDIA};
 use crate::format::range::{At, ONE, Ranges, exactly};
 use crate::format::record::{Header, Light, Material};
 use crate::format::{
@@ -11,7 +11,7 @@ use crate::number::Fixed;
 use crate::number::Scalar;
 use crate::scene::Scene;
 use crate::scene::parts::check_placed;
-use crate::target::{ENVIRONMENT, VERTEX_COLORS};
+use crate::target::ENVIRONMENT;
 
 /// Proves that no byte of a blob was changed since it was written.
 pub(crate) fn check_sum(blob: &[u8], header: &Header) -> Result<(), BlobError> {
@@ -93,10 +93,19 @@ fn check_materials(scene: &Scene<'_>) -> Result<(), BlobError> {
         at.ensure(uncalled == Effects::NONE, Reason::MissingEffect)?;
         required = required.with(material.effects());
     }
-    required = required.with(check_smooth(scene)?);
-    required = required.with(check_vertex_colors(scene)?);
-    required = required.with(check_glow(scene)?);
+    let shapes = &scene.geometry.shapes;
     // One by one, so that effects without code in this build leave no code here.
+    let own = !shapes.normals().is_empty();
+    let smooth = check_vertices(scene, SectionKind::Normals, own, Effects::SMOOTH)?;
+    let own = !shapes.colors().is_empty();
+    let colors = check_vertices(
+        scene,
+        SectionKind::VertexColors,
+        own,
+        Effects::VERTEX_COLORS,
+    )?;
+    required = required.with(smooth).with(colors);
+    required = required.with(check_glow(scene)?);
     let lens = Effects::DEPTH_OF_FIELD.only_if(scene.lens().is_some());
     required = required.with(check_called(scene, SectionKind::Lens, lens)?);
     let bounces = Effects::INDIRECT.only_if(scene.bounces() > 0);
@@ -130,18 +139,20 @@ fn check_called(
     Ok(required)
 }
 
-/// Returns the effects that the normals of vertices require, of the scene and of its parts; an error where the header
-/// does not require them.
-fn check_smooth(scene: &Scene<'_>) -> Result<Effects, BlobError> {
-    let own = !scene.geometry.shapes.normals().is_empty();
+/// Returns the effect that a section of data of vertices requires, of the scene's own or in its parts; an error where the
+/// header does not require it.
+#[inline(always)]
+fn check_vertices(
+    scene: &Scene<'_>,
+    section: SectionKind,
+    own: bool,
+    effect: Effects,
+) -> Result<Effects, BlobError> {
     let mut parts = scene.parts().iter();
-    let mut in_parts = || parts.any(|part| part.effects().contains(Effects::SMOOTH));
-    let required = Effects::SMOOTH.only_if(SMOOTH && (own || in_parts()));
-    let section = if own {
-        SectionKind::Normals
-    } else {
-        SectionKind::Parts
-    };
+    let mut in_parts = || parts.any(|part| part.effects().contains(effect));
+    let is_available = Effects::AVAILABLE.contains(effect);
+    let required = effect.only_if(is_available && (own || in_parts()));
+    let section = if own { section } else { SectionKind::Parts };
     check_called(scene, section, required)
 }
 
@@ -198,20 +209,6 @@ fn check_media(scene: &Scene<'_>) -> Result<Effects, BlobError> {
         at.ensure(is_new, Reason::RepeatedMedium)?;
     }
     let required = Effects::NESTED.only_if(!media.is_empty());
-    check_called(scene, section, required)
-}
-
-/// Returns the effects that the colors of vertices require: see [`check_smooth`].
-fn check_vertex_colors(scene: &Scene<'_>) -> Result<Effects, BlobError> {
-    let own = !scene.geometry.shapes.colors().is_empty();
-    let mut parts = scene.parts().iter();
-    let mut in_parts = || parts.any(|part| part.effects().contains(Effects::VERTEX_COLORS));
-    let required = Effects::VERTEX_COLORS.only_if(VERTEX_COLORS && (own || in_parts()));
-    let section = if own {
-        SectionKind::VertexColors
-    } else {
-        SectionKind::Parts
-    };
     check_called(scene, section, required)
 }
 

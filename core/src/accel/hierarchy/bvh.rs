@@ -78,8 +78,6 @@ impl BoxPair for Pair {
     }
 
     fn boxes(&self, _: &UnitBox) -> [UnitBox; 2] {
-        let child =
-            |child: usize| UnitBox(self.planes.map(|[low, high]| [low[child], high[child]]));
-        [child(0), child(1)]
+        [self.child_box(0), self.child_box(1)]
     }
 }

@@ -17,7 +17,7 @@ pub(crate) fn refit(pairs: &mut [Pair], mut leaf: impl FnMut(u32) -> Option<Unit
             let bounds = if child.is_leaf() {
                 leaf(number)
             } else {
-                pairs.get(number as usize).map(around)
+                pairs.get(number as usize).map(Pair::bounds)
             };
             if let (Some(bounds), Some(pair)) = (bounds, pairs.get_mut(index)) {
                 for (planes, [low, high]) in pair.planes.iter_mut().zip(bounds.0) {
@@ -27,12 +27,4 @@ pub(crate) fn refit(pairs: &mut [Pair], mut leaf: impl FnMut(u32) -> Option<Unit
             }
         }
     }
-}
-
-/// The box around both children of a pair.
-fn around(pair: &Pair) -> UnitBox {
-    UnitBox(
-        pair.planes
-            .map(|[low, high]| [low[0].min(low[1]), high[0].max(high[1])]),
-    )
 }

@@ -92,6 +92,26 @@ records! {
     }
 }
 
+impl Pair {
+    /// The box of the left (0) or right (1) child.
+    #[inline(always)]
+    pub(crate) fn child_box(&self, child: usize) -> UnitBox {
+        UnitBox(
+            self.planes
+                .map(|[low, high]| [low[child & 1], high[child & 1]]),
+        )
+    }
+
+    /// The box around both children.
+    #[inline(always)]
+    pub(crate) fn bounds(&self) -> UnitBox {
+        UnitBox(
+            self.planes
+                .map(|[low, high]| [low[0].min(low[1]), high[0].max(high[1])]),
+        )
+    }
+}
+
 impl WideNode {
     /// The box of a missing child. No ray hits it, because its sides are swapped by more than the margins of culling.
     pub const EMPTY: UnitBox = UnitBox([[i16::MAX, i16::MIN]; 3]);
