@@ -340,6 +340,10 @@ fn normals_turn_with_the_mesh() {
         small.morph(&scene, &morph, &[0]),
         Err(DeformError::Normals { found, most })
     );
+    assert_eq!(mesh.normals().len(), 642);
+    // A pose that morph targets did not make has none of theirs.
+    mesh.vertices_mut();
+    assert!(mesh.normals().is_empty());
 }
 
 /// No vertex moves.
