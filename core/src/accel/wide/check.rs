@@ -165,15 +165,7 @@ pub(crate) fn check_records(geometry: &SceneGeometry<'_>) -> Result<(), BlobErro
 /// Proves breadth-first order.
 fn check_order(nodes: &[WideNode], geometry: &SceneGeometry<'_>) -> Result<(), BlobError> {
     let section = SectionKind::WideNodes;
-    let Clusters { strips, packs, .. } = geometry.shapes.clusters();
-    let (mut next_node, mut next_strip, mut next_pack) = (1, 0, 0);
-    // A pack that is not full comes last, wherever the hierarchy refers to it.
-    let full = (0..packs.len()).rposition(|pack| packs.lanes(pack as u32).count_ones() == 8);
-    let full_packs = full.map_or(0, |last| last + 1);
-    let mut next_sparse = full_packs;
-    let mut others = [0; Kind::ALL.len()];
-    // Where other structures share the slots, the slots are in the order of those structures.
-    let own_order = geometry.shapes.clusters().locations.is_empty();
+    let mut order = Order::new(geometry);
     for (index, node) in nodes.iter().enumerate() {
         let mut ended = false;
         for lane in 0..LANES {
@@ -192,69 +184,113 @@ fn check_order(nodes: &[WideNode], geometry: &SceneGeometry<'_>) -> Result<(), B
             if ended {
                 return Err(wrong(section, index, Reason::ChildAfterGap));
             }
-            let leaf = Leaf::from_word(child.0).filter(|leaf| leaf.kind.is_bounded());
-            let (found, next) = match (child.as_node(), leaf) {
-                (Some(number), _) => (number as usize, &mut next_node),
-                (None, Some(leaf)) => match (leaf.kind, leaf.count) {
-                    (Kind::Triangle, 0) => (leaf.first as usize, &mut next_strip),
-                    (Kind::Sphere, 0) if leaf.first as usize >= full_packs => {
-                        (leaf.first as usize, &mut next_sparse)
-                    }
-                    (Kind::Sphere, 0) => (leaf.first as usize, &mut next_pack),
-                    (kind, 1) if !kind.is_clustered() => {
-                        let next = &mut others[leaf.kind as usize];
-                        let slots = geometry.shapes.count(leaf.kind);
-                        let first = leaf.first as usize;
-                        if !own_order && first < slots {
-                            *next += 1;
-                            continue;
-                        }
-                        (first, next)
-                    }
-                    _ => {
-                        let count = leaf.count.into();
-                        let in_clusters = matches!(leaf.kind, Kind::Triangle | Kind::Sphere);
-                        let slots = [i64::from(!in_clusters); 2];
-                        let node = Location::Record(section, index);
-                        return Err(node.out_of_range(Field::LeafSlots, count, slots));
-                    }
-                },
-                (None, None) => {
-                    let kinds = [0, Kind::LAST_BOUNDED as i64];
-                    let node = Location::Record(section, index);
-                    return Err(node.out_of_range(Field::LeafKind, (child.0 >> 29).into(), kinds));
-                }
-            };
-            let is_node = child.as_node().is_some();
-            let field = if is_node { Field::Child } else { Field::Leaf };
-            follows(section, index, field, found, *next)?;
-            *next += 1;
+            order.check_child(index, child)?;
         }
-        if next_node <= index + 1 && index + 1 < nodes.len() {
+        if order.next_node <= index + 1 && index + 1 < nodes.len() {
             return Err(wrong(section, index + 1, Reason::NotReached));
         }
-        if next_node > nodes.len() {
+        if order.next_node > nodes.len() {
             return Err(wrong(section, index, Reason::BeyondLast));
         }
     }
-    let clusters = [
-        (next_strip, strips.len()),
-        (next_pack, full_packs),
-        (next_sparse, packs.len()),
-    ];
-    let kinds = Kind::ALL
-        .into_iter()
-        .filter(|kind| !kind.is_clustered() && kind.is_bounded());
-    let others = kinds.map(|kind| (others[kind as usize], geometry.shapes.count(kind)));
-    for (found, expected) in clusters.into_iter().chain(others) {
-        if found != expected {
-            return Err(BlobError::Count {
-                section,
-                found,
-                expected,
-            });
+    order.check_ends()
+}
+
+/// The numbers that come next in breadth-first order.
+struct Order<'g, 'a> {
+    geometry: &'g SceneGeometry<'a>,
+    next_node: usize,
+    next_strip: usize,
+    next_pack: usize,
+    /// Number of packs before the last that is full. One that is not comes behind it, wherever the hierarchy refers to
+    /// it.
+    full_packs: usize,
+    next_sparse: usize,
+    /// Of the kinds that are not in clusters.
+    next_slots: [usize; Kind::ALL.len()],
+}
+
+impl<'g, 'a> Order<'g, 'a> {
+    fn new(geometry: &'g SceneGeometry<'a>) -> Self {
+        let packs = geometry.shapes.clusters().packs;
+        let full = (0..packs.len()).rposition(|pack| packs.lanes(pack as u32).count_ones() == 8);
+        let full_packs = full.map_or(0, |last| last + 1);
+        Self {
+            geometry,
+            next_node: 1,
+            next_strip: 0,
+            next_pack: 0,
+            full_packs,
+            next_sparse: full_packs,
+            next_slots: [0; Kind::ALL.len()],
         }
     }
+
+    /// Proves that a child of a node is the next of its kind.
+    fn check_child(&mut self, index: usize, child: Child) -> Result<(), BlobError> {
+        let section = SectionKind::WideNodes;
+        let node = Location::Record(section, index);
+        if let Some(number) = child.as_node() {
+            return follow(index, Field::Child, number, &mut self.next_node);
+        }
+        let leaf = Leaf::from_word(child.0).filter(|leaf| leaf.kind.is_bounded());
+        let Some(leaf) = leaf else {
+            let kinds = [0, Kind::LAST_BOUNDED as i64];
+            return Err(node.out_of_range(Field::LeafKind, (child.0 >> 29).into(), kinds));
+        };
+        let next = match (leaf.kind, leaf.count) {
+            (Kind::Triangle, 0) => &mut self.next_strip,
+            (Kind::Sphere, 0) if leaf.first as usize >= self.full_packs => &mut self.next_sparse,
+            (Kind::Sphere, 0) => &mut self.next_pack,
+            (kind, 1) if !kind.is_clustered() => {
+                let shapes = &self.geometry.shapes;
+                let next = &mut self.next_slots[kind as usize];
+                // Where other structures share the slots, the slots are in the order of those structures.
+                let own_order = shapes.clusters().locations.is_empty();
+                if !own_order && (leaf.first as usize) < shapes.count(kind) {
+                    *next += 1;
+                    return Ok(());
+                }
+                next
+            }
+            (kind, count) => {
+                let slots = [i64::from(!kind.is_clustered()); 2];
+                return Err(node.out_of_range(Field::LeafSlots, count.into(), slots));
+            }
+        };
+        follow(index, Field::Leaf, leaf.first, next)
+    }
+
+    /// Proves that all strips, packs and slots were reached.
+    fn check_ends(&self) -> Result<(), BlobError> {
+        let shapes = &self.geometry.shapes;
+        let Clusters { strips, packs, .. } = shapes.clusters();
+        let clusters = [
+            (self.next_strip, strips.len()),
+            (self.next_pack, self.full_packs),
+            (self.next_sparse, packs.len()),
+        ];
+        let kinds = Kind::ALL
+            .into_iter()
+            .filter(|kind| !kind.is_clustered() && kind.is_bounded());
+        let others = kinds.map(|kind| (self.next_slots[kind as usize], shapes.count(kind)));
+        for (found, expected) in clusters.into_iter().chain(others) {
+            if found != expected {
+                return Err(BlobError::Count {
+                    section: SectionKind::WideNodes,
+                    found,
+                    expected,
+                });
+            }
+        }
+        Ok(())
+    }
+}
+
+/// Proves that a number of a node's child is the next in order, and counts on.
+fn follow(index: usize, field: Field, found: u32, next: &mut usize) -> Result<(), BlobError> {
+    follows(SectionKind::WideNodes, index, field, found as usize, *next)?;
+    *next += 1;
     Ok(())
 }
 
