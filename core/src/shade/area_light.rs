@@ -13,6 +13,7 @@ use crate::observe::count::Observer;
 use crate::observe::event::Event;
 use crate::shade::effect::{Effect, Tracer};
 use crate::shade::light::length;
+use crate::shade::sampler::ratio;
 use crate::shade::solid_angle;
 use crate::shade::surface::{Aim, Lighting, Surface};
 use crate::target::inline_on_boards;
@@ -75,7 +76,6 @@ impl Effect for AreaLight {
 inline_on_boards!(
     /// Turns the way to a light's position into the way to a random point of it.
     fn at<N: Number>(form: &LightForm, aim: &mut Aim<N>, [u, v]: [u32; 2]) {
-        let ratio = |point: u32| N::ratio((point >> 2) as i32);
         let turn = || Angle(v).sin_cos().map(N::ratio);
         if form.shape == LightForm::SPHERE {
             return solid_angle::of_sphere(form, aim, ratio(u), turn());
@@ -94,7 +94,7 @@ inline_on_boards!(
             }
             LightForm::TRIANGLE => [ratio(u), ratio(v)],
             LightForm::DISC => {
-                let (radius, [sine, cosine]) = (ratio(u).sqrt(), turn());
+                let (radius, [sine, cosine]) = (ratio::<N>(u).sqrt(), turn());
                 [radius * cosine, radius * sine]
             }
             _ => return,

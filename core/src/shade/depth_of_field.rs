@@ -14,6 +14,7 @@ use crate::observe::count::Observer;
 use crate::observe::event::Event;
 use crate::ray::Ray;
 use crate::shade::effect::{Effect, Tracer};
+use crate::shade::sampler::ratio;
 
 pub(crate) struct DepthOfField;
 
@@ -59,7 +60,7 @@ fn unit<N: Number>(vector: [i32; 3]) -> [N; 3] {
 /// The way from the eye to a random point of the lens.
 #[inline(never)]
 fn offset<N: Number>(lens: &Lens, [_, right, up]: [[N; 3]; 3], [u, v]: [u32; 2]) -> [N::Wide; 3] {
-    let radius = N::ratio((u >> 2) as i32).sqrt();
+    let radius = ratio::<N>(u).sqrt();
     let [sine, cosine] = Angle(v).sin_cos().map(N::ratio);
     let (along, across) = (radius * cosine, radius * sine);
     let aperture = N::far(lens.radius);

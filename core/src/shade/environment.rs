@@ -18,6 +18,7 @@ use crate::ray::Ray;
 use crate::scene::environment::{direction_of, texel_at, turned};
 use crate::shade::Color;
 use crate::shade::effect::{Effect, Tracer};
+use crate::shade::sampler::ratio;
 use crate::shade::surface::{Aim, Lighting, Surface};
 
 pub(crate) struct Environment;
@@ -173,7 +174,7 @@ fn is_in_sun<N: Number>(record: &Record, direction: [N; 3]) -> bool {
 /// distributed.
 #[inline(never)]
 fn in_sun<N: Number>(record: &Record, [u, v]: [u32; 2]) -> [N::Wide; 3] {
-    let half = N::ratio(record.sun_radius).half() * N::ratio((u >> 2) as i32).sqrt();
+    let half = N::ratio(record.sun_radius).half() * ratio::<N>(u).sqrt();
     let square = half * half;
     let toward = N::ONE - (square + square);
     let away = half * (N::ONE - square).sqrt();

@@ -14,6 +14,7 @@ use crate::format::limits::LEAST_ROUGHNESS;
 use crate::number::Angle;
 use crate::query::Hit;
 use crate::shade::basis::{perpendicular, wide_cross};
+use crate::shade::sampler::ratio;
 
 /// The facets of a rough surface, seen by a ray.
 #[derive(Clone, Copy)]
@@ -68,7 +69,7 @@ impl<N: Number> Facets<N> {
             return self.normal;
         }
         // A uniformly distributed point of the cap above -z; 1 less its height.
-        let part = N::ratio((u >> 2) as i32);
+        let part = ratio::<N>(u);
         let sag = part + part * z;
         let across = sag * (N::ONE - sag.half());
         let across = (across + across).max(N::ZERO).min(N::ONE).sqrt();

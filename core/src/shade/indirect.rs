@@ -12,6 +12,7 @@ use crate::observe::event::RayKind;
 use crate::query::Hit;
 use crate::shade::basis::perpendicular;
 use crate::shade::effect::{Effect, Tracer};
+use crate::shade::sampler::ratio;
 use crate::shade::surface::{Bounce, Secondary, Surface};
 
 pub(crate) struct Indirect;
@@ -69,7 +70,7 @@ impl Effect for Indirect {
 /// A random direction around a normal, of length 1.
 #[inline(never)]
 fn around<N: Number>(normal: [N; 3], [u, v]: [u32; 2]) -> [N; 3] {
-    let square = N::ratio((u >> 2) as i32);
+    let square = ratio::<N>(u);
     let (away, toward) = (square.sqrt(), (N::ONE - square).sqrt());
     let [sine, cosine] = Angle(v).sin_cos().map(N::ratio);
     let (along, across) = (away * cosine, away * sine);

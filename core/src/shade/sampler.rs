@@ -4,7 +4,7 @@
 //!
 //! ```text
 //! let [u, v] = tracer.point(dimension);    // 32 fraction bits each
-//! let ratio = N::ratio((u >> 2) as i32);   // from 0 to 1 in any number format
+//! let ratio = ratio::<N>(u);               // from 0 to 1 in any number format
 //! let [sine, cosine] = Angle(v).sin_cos(); // a turn
 //! ```
 //!
@@ -30,6 +30,8 @@
 //!
 //! All arithmetic is in integers of 32 bits, without a table, so every number format and machine draws the same points.
 //! A picture of 2^k samples is better than one of a similar number that is not a power of two.
+
+use crate::accel::Number;
 
 /// The points of one sample of a pixel.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -67,6 +69,12 @@ impl Sampler {
         let seed = mixed(place ^ (u32::from(bounce) | u32::from(dimension) << 16));
         scrambled_point(self.sample.into(), seed)
     }
+}
+
+/// Returns a coordinate of a point as a ratio, from 0 to 1.
+#[inline(always)]
+pub(super) fn ratio<N: Number>(coordinate: u32) -> N {
+    N::ratio((coordinate >> 2) as i32)
 }
 
 /// Point `index` of the sequence that a seed shuffles and scrambles.
