@@ -238,15 +238,7 @@ impl Session {
             width: scene.view().width,
         };
         let report = MemoryReport::of(scene, loaded.bytes(), &target, &rendering);
-        let report = report.map_err(|it| {
-            Problem::new(
-                format!("{} was not measured on boards", it.0.name()),
-                &format!(
-                    "choose one of {}",
-                    MemoryReport::STRUCTURES.map(Structure::name).join(", ")
-                ),
-            )
-        })?;
+        let report = report.map_err(|error| Problem::new(error, &error.remedy()))?;
         let (fits, why) = match report.fit() {
             Fit::Fits => (true, String::new()),
             Fit::Short(why) | Fit::Undecided(why) => (false, why),
