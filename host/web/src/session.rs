@@ -127,11 +127,11 @@ impl Session {
         // The blob before goes first: there may be no room for both.
         *place = None;
         let loaded = place.insert(Loaded::new(Blob::new(bytes), name)?);
-        Ok((loaded.json()?, Vec::new()))
+        Ok((loaded.json(), Vec::new()))
     }
 
     fn moved(&self, how: Move) -> Answer {
-        let scene = self.loaded(how.slot)?.scene()?;
+        let scene = self.loaded(how.slot)?.scene();
         // Panning counts heights of the picture.
         let settings = Settings {
             width: 1,
@@ -195,7 +195,7 @@ impl Session {
         let loaded = self.loaded(of.slot)?;
         let shot = loaded.shot(of)?;
         let scene = loaded
-            .scene()?
+            .scene()
             .with_view(&shot.view)
             .map_err(Problem::fault)?;
         let subject = Subject::Pixel(pixel);
@@ -231,7 +231,7 @@ impl Session {
             None => self.loaded(0)?,
         };
         let format = of.format.map_or_else(|| board.format(), |it| it.0);
-        let scene = loaded.scene()?;
+        let scene = loaded.scene();
         let rendering = Rendering {
             format,
             structure: on_boards(scene, of.structure.0),
