@@ -157,7 +157,7 @@ impl Run<'_> {
             ..ImportOptions::default()
         };
         let imported = scene::load_with(path, &options).map_err(|error| explained(&error))?;
-        if check.assembly.is_some() && !imported.assemblies {
+        if check.assembly.is_some() && !imported.kinds.assemblies {
             return Err(format!(
                 "`assembly` is for PDB and mmCIF files, and {} has none; leave it out",
                 path.display()

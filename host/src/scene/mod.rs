@@ -59,7 +59,7 @@ pub use model::{
 pub use morph::{Displacements, LARGEST_WEIGHT, NormalChanges};
 pub use normals::{Normals, NormalsChoice};
 pub use options::{
-    Choice, ImportOptions, Imported, Instances, MoleculeOptions, MoleculeStyle, Posed,
+    Choice, FileKinds, ImportOptions, Imported, Instances, MoleculeOptions, MoleculeStyle, Posed,
 };
 pub use placement::Placement;
 pub use places::Places;

@@ -377,29 +377,19 @@ fn import_from(
     let imported = input.scene(&options.for_import());
     drop(progress);
     let mut imported = imported.map_err(|error| Failure::Failed(miette::Report::new(error)))?;
-    if let Some(option) = importing.molecule.given().filter(|_| !imported.molecules) {
-        return Err(Failure::usage(
-            format!("{option} is for molecules, and {} has none", path.display()),
-            "leave the option out",
-        ));
-    }
-    if let Some(option) = importing.given_choice().filter(|_| !imported.choices) {
-        return Err(Failure::usage(
-            format!(
-                "{option} is for glTF files, and {} has none",
-                path.display()
-            ),
-            "leave the option out",
-        ));
-    }
-    if let Some(option) = importing.given_assembly().filter(|_| !imported.assemblies) {
-        return Err(Failure::usage(
-            format!(
-                "{option} is for PDB and mmCIF files, and {} has none",
-                path.display()
-            ),
-            "leave the option out",
-        ));
+    let given = [
+        importing.molecule.given(),
+        importing.given_choice(),
+        importing.given_assembly(),
+    ];
+    for option in given.into_iter().flatten() {
+        let name = option.trim_start_matches('-');
+        if let Some(why) = imported.kinds.inapplicable(name, &path.display()) {
+            return Err(Failure::usage(
+                format!("{option} {why}"),
+                "leave the option out",
+            ));
+        }
     }
     imported.warnings.iter().for_each(warn);
     let lost = scene::leave_out(&mut imported.scene, &importing.without);

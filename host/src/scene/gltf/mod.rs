@@ -34,7 +34,8 @@ use super::importer::{Choices, Importer as Entry, Input};
 use super::text::Warnings;
 use super::texture::ImageMeans;
 use super::{
-    Attributes, Image, Imported, Normals, Object, ScaleRange, Scene, SceneError, Shape, SourceSpan,
+    Attributes, FileKinds, Image, Imported, Normals, Object, ScaleRange, Scene, SceneError, Shape,
+    SourceSpan,
 };
 use crate::table::shortened;
 use animation::Motion;
@@ -143,7 +144,10 @@ fn read(input: Input<'_>) -> Result<Imported, SceneError> {
     });
     scene.places.lights = vec![place; scene.lights.len()];
     Ok(Imported {
-        choices: true,
+        kinds: FileKinds {
+            gltf: true,
+            ..FileKinds::default()
+        },
         ..Imported::of(scene, warnings.into_sentences())
     })
 }

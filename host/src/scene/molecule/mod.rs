@@ -27,7 +27,7 @@ pub(super) use parsed::{Atom, Bond, End, Group, Matrix, Model, Operators, Parsed
 
 use super::importer::Input;
 use super::text::{Source, Warnings};
-use super::{Imported, Instance, Material, MoleculeStyle, Part, Scene, SceneError};
+use super::{FileKinds, Imported, Instance, Material, MoleculeStyle, Part, Scene, SceneError};
 use crate::table::grouped;
 use assembly::{Copied, GENERATED, assemble};
 use limit::check_size;
@@ -77,8 +77,11 @@ pub(super) fn import(
         None => molecule.whole()?,
     };
     Ok(Imported {
-        molecules: true,
-        assemblies: true,
+        kinds: FileKinds {
+            molecules: true,
+            assemblies: true,
+            ..FileKinds::default()
+        },
         ..Imported::of(scene, warnings.into_sentences())
     })
 }

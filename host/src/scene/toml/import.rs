@@ -1,12 +1,11 @@
 //! Reading other scene files into this one: each once, and none into itself.
 
 use super::source::{Name, Source};
-use super::value::Fields;
 use crate::scene::access::Access;
 use crate::scene::importer::{Choices, Importers, Input};
 use crate::scene::size::Keys;
-use crate::scene::{Choice, Imported, MoleculeOptions, Scene, SceneError};
-use crate::table::{grouped, shortened};
+use crate::scene::{Choice, FileKinds, MoleculeOptions, Scene, SceneError};
+use crate::table::grouped;
 use std::collections::HashMap;
 use std::path::PathBuf;
 use std::rc::Rc;
@@ -41,7 +40,7 @@ pub(super) struct Imports {
     /// The choice of cameras and animations.
     choice: Choice,
     /// The kinds of the files.
-    pub(super) kinds: Kinds,
+    pub(super) kinds: FileKinds,
 }
 
 /// Options with which an import reads molecules.
@@ -52,61 +51,11 @@ pub(super) struct Molecules {
     pub(super) assembly: Option<String>,
 }
 
-/// The kinds of a file and of those that it imports, as far as options depend on them.
-#[derive(Clone, Copy, Debug, Default)]
-pub(super) struct Kinds {
-    pub(super) molecules: bool,
-    /// Files to choose cameras and animations from.
-    pub(super) choices: bool,
-    /// Files that can hold assemblies.
-    pub(super) assemblies: bool,
-}
-
-impl Kinds {
-    fn of(imported: &Imported) -> Self {
-        Self {
-            molecules: imported.molecules,
-            choices: imported.choices,
-            assemblies: imported.assemblies,
-        }
-    }
-
-    fn with(self, other: Self) -> Self {
-        Self {
-            molecules: self.molecules || other.molecules,
-            choices: self.choices || other.choices,
-            assemblies: self.assemblies || other.assemblies,
-        }
-    }
-
-    /// Rejects the keys of an import of this file that are for files of other kinds.
-    pub(super) fn check(self, fields: &Fields<'_>, file: &Name) -> Result<(), SceneError> {
-        let molecules = "molecules (PDB, mmCIF and XYZ files)";
-        for (key, is_used, kind) in [
-            ("style", self.molecules, molecules),
-            ("model", self.molecules, molecules),
-            ("altloc", self.molecules, molecules),
-            ("assembly", self.assemblies, "PDB and mmCIF files"),
-        ] {
-            if let Some(value) = fields.get(key).filter(|_| !is_used) {
-                return Err(value.error(
-                    format!(
-                        "`{key}` is for {kind}, and {} has none",
-                        shortened(&file.text)
-                    ),
-                    "leave the key out",
-                ));
-            }
-        }
-        Ok(())
-    }
-}
-
 /// A file that was read.
 #[derive(Clone)]
 pub(super) struct Done {
     pub(super) scene: Rc<Scene>,
-    pub(super) kinds: Kinds,
+    pub(super) kinds: FileKinds,
 }
 
 impl Imports {
@@ -122,7 +71,7 @@ impl Imports {
             warnings: Vec::new(),
             keys: Keys::default(),
             choice: input.choices.choice.clone(),
-            kinds: Kinds::default(),
+            kinds: FileKinds::default(),
         }
     }
 
@@ -225,9 +174,8 @@ impl Imports {
                 return self.nested(input, canonical.clone());
             }
             let imported = importer.import(input)?;
-            let kinds = Kinds::of(&imported);
             self.warnings.extend(imported.warnings);
-            self.kinds = kinds;
+            self.kinds = imported.kinds;
             Ok(imported.scene)
         });
         let scene = scene.map(Rc::new).map_err(|mut error| {

@@ -12,6 +12,7 @@ use crate::scene::importer::stem;
 use crate::scene::{
     Attributes, MoleculeOptions, MoleculeStyle, Scene, SceneError, Shape, Track, TrackTarget,
 };
+use crate::table::shortened;
 use std::collections::{BTreeMap, HashMap};
 use std::path::Path;
 use std::rc::Rc;
@@ -21,6 +22,9 @@ const KEYS: &[&str] = &["kind", "name", "material"];
 
 /// The kinds of objects besides those that [`Shape`] has.
 const KINDS: [&str; 5] = ["triangle", "mesh", "group", "instance", "import"];
+
+/// The keys of imports that are for files of some kinds alone.
+const FOR_SOME_FILES: [&str; 4] = ["style", "model", "altloc", "assembly"];
 
 /// Reads objects, and the files that they import.
 pub(super) struct Reader<'r> {
@@ -195,7 +199,14 @@ impl Reader<'_> {
             assembly: assembly.map(str::to_owned),
         };
         let Done { scene, kinds } = self.imports.import(self.source, &file, molecules)?;
-        kinds.check(fields, &file)?;
+        for key in FOR_SOME_FILES {
+            let Some(value) = fields.get(key) else {
+                continue;
+            };
+            if let Some(why) = kinds.inapplicable(key, &shortened(&file.text)) {
+                return Err(value.error(format!("`{key}` {why}"), "leave the key out"));
+            }
+        }
         Ok(scene)
     }
 }
