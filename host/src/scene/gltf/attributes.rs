@@ -18,12 +18,12 @@ use std::sync::Arc;
 
 /// The placement of an image on a mesh: its set of texture coordinates, and their transform.
 #[derive(Clone, Copy, PartialEq)]
-struct Placed {
+struct ImagePlacement {
     set: u32,
     transform: DAffine2,
 }
 
-impl Placed {
+impl ImagePlacement {
     /// Returns the placement of a material's images; `None` without one.
     fn of(material: &gltf::Material<'_>, transforms: &NormalTransforms) -> Option<Self> {
         Self::of_color(material).or_else(|| Self::of_normals(material, transforms))
@@ -111,7 +111,8 @@ impl Importer<'_> {
             self.warn_of(usize::from(is_clear), "the alpha of COLOR_0 is ignored");
         }
         let material = part.material();
-        let Some(set) = Placed::of(&material, &self.normal_transforms).map(|it| it.set) else {
+        let Some(set) = ImagePlacement::of(&material, &self.normal_transforms).map(|it| it.set)
+        else {
             return Ok(attributes);
         };
         let Some(accessor) = part.get(&Semantic::TexCoords(set)) else {
@@ -199,7 +200,8 @@ impl Importer<'_> {
         let Some(image) = self.image(&source, "the plain color is used")? else {
             return Ok(None);
         };
-        let placed = Placed::of_color(material).map_or(DAffine2::IDENTITY, |it| it.transform);
+        let placed =
+            ImagePlacement::of_color(material).map_or(DAffine2::IDENTITY, |it| it.transform);
         Ok(Some(sampled(image, &info.texture(), placed)))
     }
 
@@ -214,14 +216,14 @@ impl Importer<'_> {
             return Ok(None);
         };
         let (Some(placed), Some(source)) = (
-            Placed::of_normals(material, &self.normal_transforms),
+            ImagePlacement::of_normals(material, &self.normal_transforms),
             info.texture().source(),
         ) else {
             self.warn(format!(
                 "the normal map of material {name:?} names no image that Gridel reads; it is not drawn", name = shortened(name)));
             return Ok(None);
         };
-        if Placed::of_color(material).is_some_and(|it| it != placed) {
+        if ImagePlacement::of_color(material).is_some_and(|it| it != placed) {
             self.warn(format!(
                 "the normal map of material {name:?} does not lie as the texture of its color does; it is not drawn", name = shortened(name)));
             return Ok(None);
