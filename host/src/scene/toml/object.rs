@@ -137,7 +137,7 @@ impl Reader<'_> {
                             "{place}: an import inside of a group or part brings its objects alone, and not its {lost}"
                         ));
                     }
-                    if let Some(lit) = scene.with_lamps() {
+                    if let Some(lit) = scene.with_light_objects() {
                         scene = Rc::new(lit);
                     }
                 } else {
@@ -230,10 +230,10 @@ fn lost_tracks(scene: &Scene, has_other: bool) -> impl Iterator<Item = &'static 
 /// Names the parts of a scene besides objects and lights that are visible as such.
 fn besides_objects(scene: &Scene) -> Option<String> {
     let forms = scene.light_forms.iter().flatten();
-    let lamps = forms.filter(|it| it.is_visible).count();
+    let visible = forms.filter(|it| it.is_visible).count();
     let all = [
         (scene.camera.is_some(), "camera"),
-        (scene.lights.len() > lamps, "lights"),
+        (scene.lights.len() > visible, "lights"),
         (scene.background.is_some(), "background"),
         (scene.ambient != [0.0; 3], "ambient light"),
         (scene.environment.is_some(), "environment"),
