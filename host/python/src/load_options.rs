@@ -4,7 +4,7 @@ use crate::arguments::{invalid, structures};
 use gridel_core::{Effects, Structure};
 use gridel_host::compile::{LATTICE_BITS, Options, Quality};
 use gridel_host::scene::{
-    Choice, ImportOptions, Imported, Instances, MoleculeOptions, MoleculeStyle, NormalsChoice,
+    GltfOptions, ImportOptions, Imported, Instances, MoleculeOptions, MoleculeStyle, NormalsChoice,
     Posed, effect_named,
 };
 use pyo3::prelude::*;
@@ -73,12 +73,12 @@ impl LoadOptions {
                 altloc: self.altloc,
             },
             assembly: self.assembly.clone(),
-            choice: Choice {
+            gltf: GltfOptions {
                 camera: self.camera.clone(),
                 animation: self.animation.clone(),
             },
             instances: instances.unwrap_or_default(),
-            at: self.time,
+            time: self.time,
             normals: normals.unwrap_or_default(),
             allow_outside: self.allow_outside,
         })

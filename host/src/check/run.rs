@@ -153,7 +153,7 @@ impl Run<'_> {
             allow_outside: check.allow_outside,
             instances: check.instances.unwrap_or_default(),
             assembly: check.assembly.clone(),
-            at: check.time,
+            time: check.time,
             ..ImportOptions::default()
         };
         let imported = scene::load_with(path, &options).map_err(|error| explained(&error))?;

@@ -83,7 +83,7 @@ impl Imported {
 pub struct FileKinds {
     /// True if there is a molecule, to which [`MoleculeOptions`] apply.
     pub molecules: bool,
-    /// True if there is a glTF file, to which [`Choice`] applies.
+    /// True if there is a glTF file, to which [`GltfOptions`] apply.
     pub gltf: bool,
     /// True if there is a file that can hold assemblies, to which [`ImportOptions::assembly`] applies.
     pub assemblies: bool,
@@ -127,15 +127,15 @@ impl FileKinds {
 pub enum Posed {
     /// The placements at rest.
     AtRest,
-    /// The placements at [a time](ImportOptions::at).
+    /// The placements at [a time](ImportOptions::time).
     AtTime,
     /// The placements at any time: no instance hangs on the joints that tracks move.
     Always,
 }
 
-/// The choice among a glTF file's cameras and animations.
+/// The camera and the animation of a glTF file.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Choice {
+pub struct GltfOptions {
     /// The name of a camera or of its node; without one the first that has a perspective.
     pub camera: Option<String>,
     /// The name of an animation, or its number from 0; `none` for no animation, unless one has this name; without one
@@ -175,12 +175,12 @@ pub struct ImportOptions {
     /// The assembly of a PDB or mmCIF file, by its number or name. Default: the atoms that the file
     /// lists.
     pub assembly: Option<String>,
-    /// The camera and the animation.
-    pub choice: Choice,
+    /// The camera and the animation of a glTF file.
+    pub gltf: GltfOptions,
     /// The treatment of instances.
     pub instances: Instances,
     /// The time in seconds at which instances are copied where they move; without one they are copied at rest.
-    pub at: Option<f64>,
+    pub time: Option<f64>,
     /// The normals with which meshes are shaded.
     pub normals: NormalsChoice,
     /// True if the file may name files outside of its folder: imports, materials, buffers. A scene from elsewhere could

@@ -39,7 +39,7 @@ pub(super) const IMPORTER: Importer = Importer {
 
 /// Reads an XYZ file. It has no camera and no lights; the compiler adds them.
 fn read(input: Input<'_>) -> Result<Imported, SceneError> {
-    let chosen = input.choices.molecule.model;
+    let chosen = input.options.molecule.model;
     molecule::import(input, |source, warnings| parse(source, chosen, warnings))
 }
 

@@ -379,8 +379,8 @@ fn import_from(
     let mut imported = imported.map_err(|error| Failure::Failed(miette::Report::new(error)))?;
     let given = [
         importing.molecule.given(),
-        importing.given_choice(),
-        importing.given_assembly(),
+        importing.given_for_gltf(),
+        importing.given_for_assemblies(),
     ];
     for option in given.into_iter().flatten() {
         let name = option.trim_start_matches('-');

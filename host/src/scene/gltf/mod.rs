@@ -30,7 +30,7 @@ mod text;
 mod view;
 
 use super::access::Access;
-use super::importer::{Choices, Importer as Entry, Input};
+use super::importer::{FileOptions, Importer as Entry, Input};
 use super::text::Warnings;
 use super::texture::ImageMeans;
 use super::{
@@ -83,7 +83,7 @@ fn read(input: Input<'_>) -> Result<Imported, SceneError> {
     let Input {
         path,
         bytes,
-        choices: Choices { choice, .. },
+        options: FileOptions { gltf: options, .. },
         access,
         ..
     } = input;
@@ -101,7 +101,7 @@ fn read(input: Input<'_>) -> Result<Imported, SceneError> {
         scene: Scene::default(),
         materials: HashMap::new(),
         normal_transforms,
-        view: View::with_camera(choice.camera.clone()),
+        view: View::with_camera(options.camera.clone()),
         motion: Motion::default(),
         vertices: 0,
         triangles: 0,
@@ -113,7 +113,7 @@ fn read(input: Input<'_>) -> Result<Imported, SceneError> {
     };
     importer.check(&document)?;
     importer.ignored(&document);
-    importer.animation(&document, choice)?;
+    importer.animation(&document, options)?;
     importer.nodes(&document)?;
     let missing = |[cause, remedy]: [String; 2]| SceneError::new(path, cause, remedy);
     importer.view.check_camera().map_err(missing)?;

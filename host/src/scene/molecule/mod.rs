@@ -42,8 +42,8 @@ pub(super) fn import(
     input: Input<'_>,
     parse: impl for<'a> Fn(&'a Source, &mut Warnings) -> Result<Parsed<'a>, SceneError>,
 ) -> Result<Imported, SceneError> {
-    let options = input.choices.molecule;
-    let assembly = input.choices.assembly;
+    let options = input.options.molecule;
+    let assembly = input.options.assembly;
     let source = &input.into_source()?;
     let mut warnings = Warnings::default();
     let mut parsed = parse(source, &mut warnings)?;

@@ -43,7 +43,7 @@ const KEYS: &[&str] = &[
 const BLACK: Color = [0.0; 3];
 
 pub(super) fn read(input: Input<'_>, imports: &mut Imports) -> Result<Scene, SceneError> {
-    let choices = input.choices;
+    let options = input.options;
     let source = Source::new(input.path, input.bytes)?;
     let document = source.parse()?;
     let root = Fields::new(
@@ -76,8 +76,8 @@ pub(super) fn read(input: Input<'_>, imports: &mut Imports) -> Result<Scene, Sce
     let mut reader = Reader {
         source: &source,
         imports,
-        molecule: choices.molecule,
-        assembly: choices.assembly,
+        molecule: options.molecule,
+        assembly: options.assembly,
         materials: &mut materials,
         morphs: &mut morphs,
         inside: 0,

@@ -2,9 +2,9 @@
 
 use super::source::{Name, Source};
 use crate::scene::access::Access;
-use crate::scene::importer::{Choices, Importers, Input};
+use crate::scene::importer::{FileOptions, Importers, Input};
 use crate::scene::size::Keys;
-use crate::scene::{Choice, FileKinds, MoleculeOptions, Scene, SceneError};
+use crate::scene::{FileKinds, GltfOptions, MoleculeOptions, Scene, SceneError};
 use crate::table::grouped;
 use std::collections::HashMap;
 use std::path::PathBuf;
@@ -37,8 +37,8 @@ pub(super) struct Imports {
     pub(super) warnings: Vec<String>,
     /// The keys of the tracks of all files, and of each of their imports, which may copy them.
     pub(super) keys: Keys,
-    /// The choice of cameras and animations.
-    choice: Choice,
+    /// The cameras and animations of glTF files.
+    gltf: GltfOptions,
     /// The kinds of the files.
     pub(super) kinds: FileKinds,
 }
@@ -70,7 +70,7 @@ impl Imports {
             done: HashMap::new(),
             warnings: Vec::new(),
             keys: Keys::default(),
-            choice: input.choices.choice.clone(),
+            gltf: input.options.gltf.clone(),
             kinds: FileKinds::default(),
         }
     }
@@ -160,15 +160,15 @@ impl Imports {
             return Ok(done.clone());
         }
         let access = self.access.clone();
-        let choice = self.choice.clone();
-        let choices = Choices {
+        let gltf = self.gltf.clone();
+        let options = FileOptions {
             molecule: &molecules.options,
             assembly: molecules.assembly.as_deref(),
-            choice: &choice,
+            gltf: &gltf,
         };
         // The kinds of the files below are counted separately, and then added to those before.
         let before = std::mem::take(&mut self.kinds);
-        let opened = self.importers.open(&path, choices, &access);
+        let opened = self.importers.open(&path, options, &access);
         let scene = opened.and_then(|(importer, input)| {
             if importer.name == self.own.0 {
                 return self.nested(input, canonical.clone());
