@@ -45,6 +45,7 @@ pub use crate::shape::Shape;
 pub use attributes::Attributes;
 pub use emitters::MOST_FACES;
 pub use environment::{Environment, Panorama, Sky, Sun};
+pub(crate) use error::CauseAndRemedy;
 pub use error::SceneError;
 pub use files::Files;
 pub use image::{IMAGE_EXTENSIONS, Image};

@@ -6,7 +6,9 @@ use super::{Importer, material};
 use crate::scene::access::FileError;
 use crate::scene::error::COPY_AGAIN;
 use crate::scene::texture::texture_transform;
-use crate::scene::{Attributes, Image, Material, NormalMap, SceneError, Texture, Wrap};
+use crate::scene::{
+    Attributes, CauseAndRemedy, Image, Material, NormalMap, SceneError, Texture, Wrap,
+};
 use crate::table::shortened;
 use glam::{DAffine2, DVec2};
 use gltf::image::Source;
@@ -258,7 +260,7 @@ impl Importer<'_> {
         }
         let [width, height] = image.size().map(|side| side as usize);
         let counted = self.access.texels.add(width, height);
-        counted.map_err(|[cause, remedy]| {
+        counted.map_err(|CauseAndRemedy { cause, remedy }| {
             self.error(format!("image {number}, turned, {cause}"), &remedy)
         })?;
         let turned = Arc::new(image.turned());
@@ -301,13 +303,14 @@ impl Importer<'_> {
             },
         };
         let name = image.name().map_or_else(|| what.clone(), str::to_owned);
-        let decoded =
-            Image::decode(&name, &bytes, &self.access.texels).map_err(|[cause, remedy]| {
+        let decoded = Image::decode(&name, &bytes, &self.access.texels).map_err(
+            |CauseAndRemedy { cause, remedy }| {
                 self.error(
                     format!("{what} ({name:?}) {cause}", name = shortened(&name)),
                     &remedy,
                 )
-            })?;
+            },
+        )?;
         let decoded = Arc::new(decoded);
         self.images.insert(key, Ok(Arc::clone(&decoded)));
         Ok(Some(decoded))

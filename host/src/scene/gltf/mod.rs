@@ -34,8 +34,8 @@ use super::importer::{FileOptions, Importer as Entry, Input};
 use super::text::Warnings;
 use super::texture::ImageMeans;
 use super::{
-    Attributes, FileKinds, Image, Imported, Normals, Object, ScaleRange, Scene, SceneError, Shape,
-    SourceSpan,
+    Attributes, CauseAndRemedy, FileKinds, Image, Imported, Normals, Object, ScaleRange, Scene,
+    SceneError, Shape, SourceSpan,
 };
 use crate::table::shortened;
 use animation::Motion;
@@ -115,7 +115,7 @@ fn read(input: Input<'_>) -> Result<Imported, SceneError> {
     importer.ignored(&document);
     importer.animation(&document, options)?;
     importer.nodes(&document)?;
-    let missing = |[cause, remedy]: [String; 2]| SceneError::new(path, cause, remedy);
+    let missing = |CauseAndRemedy { cause, remedy }| SceneError::new(path, cause, remedy);
     importer.view.check_camera().map_err(missing)?;
     if importer.scene.objects.is_empty() && importer.scene.instances.is_empty() {
         importer.warn("the scene of the file has no triangles; nothing is drawn");
@@ -129,9 +129,7 @@ fn read(input: Input<'_>) -> Result<Imported, SceneError> {
         ..
     } = importer;
     let tracks = view.tracks(&mut motion, &place);
-    scene
-        .tracks
-        .extend(tracks.map_err(|[cause, remedy]| SceneError::new(path, cause, remedy))?);
+    scene.tracks.extend(tracks.map_err(missing)?);
     if let Some(rate) = motion.least_rate {
         let sentence = format!(
             "a camera or light that other nodes carry, or a directional light that turns, is sampled {} times per second",

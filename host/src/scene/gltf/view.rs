@@ -8,7 +8,7 @@ use super::animation::Motion;
 use super::middle::middle;
 use super::place::parts;
 use crate::scene::{
-    Camera, Color, Light, LightForm, RenderSettings, Scene, SourceSpan, Spot, Track,
+    Camera, CauseAndRemedy, Color, Light, LightForm, RenderSettings, Scene, SourceSpan, Spot, Track,
 };
 use crate::table::{printable, shortened};
 use glam::{DMat4, DVec3, DVec4};
@@ -177,7 +177,7 @@ impl View {
     ///
     /// # Errors
     /// If it is not: what to do.
-    pub(super) fn check_camera(&self) -> Result<(), [String; 2]> {
+    pub(super) fn check_camera(&self) -> Result<(), CauseAndRemedy> {
         let Some(wanted) = self.wanted.as_ref().filter(|_| self.camera.is_none()) else {
             return Ok(());
         };
@@ -197,7 +197,7 @@ impl View {
                 wanted = shortened(wanted)
             ),
         };
-        Err([cause, remedy])
+        Err(CauseAndRemedy::new(cause, remedy))
     }
 
     /// The tracks of camera and lights.
@@ -208,7 +208,7 @@ impl View {
         &mut self,
         motion: &mut Motion,
         place: &SourceSpan,
-    ) -> Result<Vec<Track>, [String; 2]> {
+    ) -> Result<Vec<Track>, CauseAndRemedy> {
         let mut tracks = match self.camera {
             Some(_) => motion.camera(self.camera_node, place)?,
             None => Vec::new(),

@@ -4,7 +4,7 @@ use super::Importer;
 use super::reader::{Line, Lines};
 use crate::scene::polygon;
 use crate::scene::size::Size;
-use crate::scene::{Attributes, Material, Normals, Object, SceneError, Shape};
+use crate::scene::{Attributes, CauseAndRemedy, Material, Normals, Object, SceneError, Shape};
 use crate::shape::{Cone, Sphere};
 use crate::table::shortened;
 use glam::DVec3;
@@ -167,8 +167,10 @@ impl<'a> Importer<'a> {
                 },
             )?;
         }
-        let (triangles, crosses) = polygon::cut("polygon", &vertices)
-            .map_err(|[cause, remedy]| self.source.error_at(line.text, cause, remedy))?;
+        let (triangles, crosses) =
+            polygon::cut("polygon", &vertices).map_err(|CauseAndRemedy { cause, remedy }| {
+                self.source.error_at(line.text, cause, remedy)
+            })?;
         if let Some(sentence) = crosses {
             self.warnings.add(self.source, line.number, sentence);
         }

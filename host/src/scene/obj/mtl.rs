@@ -13,7 +13,9 @@
 use crate::scene::access::FileError;
 use crate::scene::text::{Source, Warnings};
 use crate::scene::texture::Images;
-use crate::scene::{BRIGHTEST, Color, Diffuse, Material, NormalMap, SceneError, Texture, Wrap};
+use crate::scene::{
+    BRIGHTEST, CauseAndRemedy, Color, Diffuse, Material, NormalMap, SceneError, Texture, Wrap,
+};
 use crate::table::shortened;
 use glam::{DAffine2, DVec2};
 use std::collections::HashSet;
@@ -412,12 +414,12 @@ impl Reader<'_> {
                 ..Texture::of(image)
             })),
             // As with material files: it was often left behind.
-            Err(FileError::Unreadable([cause, _])) => {
+            Err(FileError::Unreadable(CauseAndRemedy { cause, .. })) => {
                 let sentence = format!("the texture {cause}; {instead}");
                 warnings.add(self.source, line, sentence);
                 Ok(None)
             }
-            Err(FileError::Unusable([cause, remedy])) => {
+            Err(FileError::Unusable(CauseAndRemedy { cause, remedy })) => {
                 let error = self.source.error(format!("the texture {cause}"), remedy);
                 Err(error.at_line(line))
             }

@@ -13,7 +13,8 @@ use super::polygon;
 use super::size::Size;
 use super::text::{Warnings, check_encoding};
 use super::{
-    Attributes, Imported, Material, Normals, Object, Scene, SceneError, Shape, SourceSpan,
+    Attributes, CauseAndRemedy, Imported, Material, Normals, Object, Scene, SceneError, Shape,
+    SourceSpan,
 };
 use crate::srgb::linear_of_srgb;
 use crate::table::{grouped, shortened};
@@ -251,9 +252,10 @@ fn mesh(
             short += 1;
             continue;
         }
-        let (cut, crosses) = polygon::cut("face", &points).map_err(|[cause, remedy]| {
-            wrong(format!("face {number} (from 0): {cause}"), &remedy)
-        })?;
+        let (cut, crosses) =
+            polygon::cut("face", &points).map_err(|CauseAndRemedy { cause, remedy }| {
+                wrong(format!("face {number} (from 0): {cause}"), &remedy)
+            })?;
         crossing += usize::from(crosses.is_some());
         let named = |triangle: [u32; 3]| triangle.map(|corner| corners[corner as usize] as u32);
         triangles.extend(cut.into_iter().map(named));

@@ -4,7 +4,7 @@ use super::source::{Name, Source};
 use crate::scene::access::Access;
 use crate::scene::importer::{FileOptions, Importers, Input};
 use crate::scene::size::Keys;
-use crate::scene::{FileKinds, GltfOptions, MoleculeOptions, Scene, SceneError};
+use crate::scene::{CauseAndRemedy, FileKinds, GltfOptions, MoleculeOptions, Scene, SceneError};
 use crate::table::grouped;
 use std::collections::HashMap;
 use std::path::PathBuf;
@@ -130,7 +130,7 @@ impl Imports {
         molecules: Molecules,
     ) -> Result<Done, SceneError> {
         let allowed = self.access.resolve(&source.path, &file.text);
-        let path = allowed.map_err(|[cause, remedy]| {
+        let path = allowed.map_err(|CauseAndRemedy { cause, remedy }| {
             source.error(&file.span, format!("the import {cause}"), remedy)
         })?;
         let canonical = self.access.canonical(&path).map_err(|error| {

@@ -5,8 +5,8 @@ use super::source::{Name, Source, key, undefined};
 use super::value::{Fields, Value};
 use crate::scene::texture::{Images, texture_transform};
 use crate::scene::{
-    Alpha, Color, Diffuse, Image, Interpolation, Key, Material, NormalMap, Scene, SceneError,
-    Texture, TrackTarget, Wrap,
+    Alpha, CauseAndRemedy, Color, Diffuse, Image, Interpolation, Key, Material, NormalMap, Scene,
+    SceneError, Texture, TrackTarget, Wrap,
 };
 use crate::table::shortened;
 use glam::{DAffine2, DVec2, DVec3};
@@ -329,7 +329,7 @@ fn texture(
 fn image(file: Value<'_>, images: &mut Images<'_>) -> Result<Arc<Image>, SceneError> {
     let name = file.filled()?;
     images.file(&file.source.path, name).map_err(|error| {
-        let [cause, remedy] = error.into_error();
+        let CauseAndRemedy { cause, remedy } = error.into_error();
         file.error(format!("the texture {cause}"), remedy)
     })
 }
