@@ -118,51 +118,7 @@ impl Reader<'_> {
         let mut content = match kind {
             "group" => Content::Group(self.members(&fields, "group")?),
             "instance" => Content::Instance(fields.require("group")?.name()?),
-            "import" => {
-                let mut scene = self.import(&fields)?;
-                let mut motions = HashMap::new();
-                let seen = |track: &Track| {
-                    !track.target.is_of_joint() && track.target != TrackTarget::MorphWeight
-                };
-                if self.inside > 0 {
-                    let place = self.source.place(&fields.span);
-                    if scene.tracks.iter().any(seen) {
-                        self.imports.warnings.push(format!(
-                            "{place}: the tracks of camera, lights and materials of an import inside of a group or \
-                             part move nothing"
-                        ));
-                    }
-                    if let Some(lost) = besides_objects(&scene) {
-                        self.imports.warnings.push(format!(
-                            "{place}: an import inside of a group or part brings its objects alone, and not its {lost}"
-                        ));
-                    }
-                    if let Some(lit) = scene.with_light_objects() {
-                        scene = Rc::new(lit);
-                    }
-                } else {
-                    let place = self.source.place(&fields.span);
-                    let lost = lost_tracks(&scene, material.is_some());
-                    let warnings = lost.map(|lost| format!("{place}: {lost}"));
-                    self.imports.warnings.extend(warnings);
-                    motions = material::motions(&scene);
-                }
-                // Objects that all get another material do not need their own.
-                let adopt = |(number, own)| {
-                    let motions = motions.remove(&number).unwrap_or_default();
-                    self.materials.adopt(own, motions, &name)
-                };
-                let materials = match material {
-                    Some(_) => Vec::new(),
-                    None => scene.materials.iter().enumerate().map(adopt).collect(),
-                };
-                let morphs = self.morphs.adopt(&scene);
-                Content::Import {
-                    scene,
-                    materials,
-                    morphs,
-                }
-            }
+            "import" => self.imported(&fields, material.is_some(), &name)?,
             _ => Content::Shape(shape::read(kind, &fields)?),
         };
         let mut attributes = Attributes::default();
@@ -181,6 +137,57 @@ impl Reader<'_> {
             transform,
             span: fields.span,
             content,
+        })
+    }
+
+    /// Reads the content of an import. `has_other` if its objects get another material than their own.
+    fn imported(
+        &mut self,
+        fields: &Fields<'_>,
+        has_other: bool,
+        name: &str,
+    ) -> Result<Content, SceneError> {
+        let mut scene = self.import(fields)?;
+        let mut motions = HashMap::new();
+        let place = self.source.place(&fields.span);
+        if self.inside > 0 {
+            let is_lost = |track: &Track| {
+                !track.target.is_of_joint() && track.target != TrackTarget::MorphWeight
+            };
+            if scene.tracks.iter().any(is_lost) {
+                self.imports.warnings.push(format!(
+                    "{place}: the tracks of camera, lights and materials of an import inside of a group or part move \
+                     nothing"
+                ));
+            }
+            if let Some(lost) = besides_objects(&scene) {
+                self.imports.warnings.push(format!(
+                    "{place}: an import inside of a group or part brings its objects alone, and not its {lost}"
+                ));
+            }
+            if let Some(lit) = scene.with_light_objects() {
+                scene = Rc::new(lit);
+            }
+        } else {
+            let lost = lost_tracks(&scene, has_other);
+            let warnings = lost.map(|lost| format!("{place}: {lost}"));
+            self.imports.warnings.extend(warnings);
+            motions = material::motions(&scene);
+        }
+        // Objects that all get another material do not need their own.
+        let adopt = |(number, own)| {
+            let motions = motions.remove(&number).unwrap_or_default();
+            self.materials.adopt(own, motions, name)
+        };
+        let materials = match has_other {
+            true => Vec::new(),
+            false => scene.materials.iter().enumerate().map(adopt).collect(),
+        };
+        let morphs = self.morphs.adopt(&scene);
+        Ok(Content::Import {
+            scene,
+            materials,
+            morphs,
         })
     }
 
