@@ -324,7 +324,7 @@ impl Live<'_, '_> {
             let message = self.message.as_deref();
             let below = self
                 .state
-                .status_line(&status, message, "; h shows the keys");
+                .status_line(status, message, "; h shows the keys");
             (half_blocks_within(frame, limits), below)
         });
         let below: String = below.chars().take(columns.into()).collect();

@@ -366,7 +366,7 @@ impl App<'_> {
         let mut pixels = canvas.surface.buffer_mut()?;
         let line = self.refiner.look(|frame, status| {
             frame.stretch(&mut pixels, [width, height].map(|it| it.get() as usize));
-            self.state.status_line(&status, self.message.as_deref(), "")
+            self.state.status_line(status, self.message.as_deref(), "")
         });
         pixels.present()?;
         let title = format!("{}: {line}", self.viewed.title);
