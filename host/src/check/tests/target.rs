@@ -111,7 +111,7 @@ fn target_without_figures_is_broken_and_says_why() {
     assert_eq!((report.passed(), report.failed()), (0, 1), "{report:?}");
     let why = why(&report.findings[0]);
     assert!(
-        why.contains("`grid`") && why.contains("dual-split"),
+        why.contains("grid was not measured on boards") && why.contains("dual-split"),
         "{why}"
     );
 }

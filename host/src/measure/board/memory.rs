@@ -92,7 +92,7 @@ impl NotMeasured {
     /// Returns the remedy: the structures that were measured.
     pub fn remedy(&self) -> String {
         let measured = MemoryReport::STRUCTURES.map(Structure::name).join(", ");
-        format!("build a blob without it, for {measured}")
+        format!("build the scene for one of {measured} instead")
     }
 }
 
