@@ -29,6 +29,17 @@ pub struct Animation {
     pub per_second: u16,
 }
 
+/// More pictures per second than programs show of a format.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+#[error(
+    "{} shows at most {} frames per second, and these are {per_second}",
+    format.file(), format.most_per_second()
+)]
+pub struct TooFast {
+    format: AnimationFormat,
+    per_second: u16,
+}
+
 /// Makes a picture by its number, counted from 0: sRGB, three bytes per pixel.
 pub type NextPicture<'p> = &'p mut dyn FnMut(u32) -> io::Result<Vec<u8>>;
 
@@ -56,6 +67,28 @@ impl AnimationFormat {
             Self::Apng => 1000,
             // Browsers slow down frames that are shown for less than two hundredths.
             Self::Gif => 50,
+        }
+    }
+
+    /// Checks that programs show so many pictures per second.
+    ///
+    /// # Errors
+    /// If it is more than [`Self::most_per_second`].
+    pub fn check_rate(self, per_second: u16) -> Result<(), TooFast> {
+        match per_second > self.most_per_second() {
+            true => Err(TooFast {
+                format: self,
+                per_second,
+            }),
+            false => Ok(()),
+        }
+    }
+
+    /// Returns the name of its files in a sentence.
+    fn file(self) -> &'static str {
+        match self {
+            Self::Apng => "an .apng",
+            Self::Gif => "a .gif",
         }
     }
 }

@@ -145,6 +145,49 @@ impl fmt::Debug for Blob {
     }
 }
 
+// A scene borrows from its blob.
+self_cell::self_cell!(
+    struct Checked {
+        owner: Blob,
+        #[covariant]
+        dependent: Scene,
+    }
+);
+
+/// A valid blob with its checked view, which a program keeps.
+///
+/// ```
+/// # use gridel_host::compile::{Options, compile};
+/// # let file = "[[object]]\nkind = 'sphere'\ncenter = [0, 0, 0]\nradius = 1\nname = 'ball'";
+/// # let imported = gridel_host::scene::read("ball.toml".as_ref(), file.into(), &Default::default())?;
+/// # use gridel_host::blob::{Blob, CheckedBlob};
+/// let checked = CheckedBlob::new(compile(&imported.scene, &Options::default())?.blob)?;
+/// assert_eq!(checked.scene().header().primitives, 1);
+/// assert!(CheckedBlob::new(Blob::new(b"no blob")).is_err());
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+pub struct CheckedBlob(Checked);
+
+impl CheckedBlob {
+    /// Checks a blob.
+    ///
+    /// # Errors
+    /// If it is no valid blob of this version.
+    pub fn new(blob: Blob) -> Result<Self, BlobError> {
+        Checked::try_new(blob, Blob::scene).map(Self)
+    }
+
+    /// Returns the checked view.
+    pub fn scene(&self) -> &Scene<'_> {
+        self.0.borrow_dependent()
+    }
+
+    /// Returns the bytes.
+    pub fn bytes(&self) -> &[u8] {
+        self.0.borrow_owner().bytes()
+    }
+}
+
 /// Returns whether a file begins as a blob does, or has a blob's name. The last two bytes of the magic do not count, so
 /// that a blob that was damaged as text is reported as a broken blob.
 ///

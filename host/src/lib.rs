@@ -51,6 +51,7 @@
 pub mod accuracy;
 pub mod animation;
 pub mod blob;
+mod blob_view;
 pub mod certify;
 pub mod check;
 pub mod compare;
@@ -60,7 +61,6 @@ pub mod emit;
 pub mod explain;
 mod explained;
 pub mod layer;
-mod live;
 pub mod measure;
 pub mod merge;
 pub mod morphed;

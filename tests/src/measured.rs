@@ -4,6 +4,7 @@ use crate::effort::full;
 use gridel_core::{Format, Settings, Structure};
 use gridel_host::blob::Blob;
 use gridel_host::certify::{World, code, enclose};
+use gridel_host::compile::{Options, compile};
 use gridel_host::render::{Job, render};
 use gridel_host::scene::Scene;
 
@@ -17,6 +18,17 @@ pub const SCRAMBLES_WIDE: &str = "width = 4\nheight = 4\n";
 pub fn read(text: &str) -> Scene {
     let read = gridel_host::scene::read("scene.toml".as_ref(), text.into(), &Default::default());
     read.unwrap_or_else(|error| panic!("{error}: {text}")).scene
+}
+
+/// The blob of a file in TOML.
+pub fn blob(text: &str) -> Blob {
+    compiled(&read(text))
+}
+
+/// The blob of a scene.
+pub fn compiled(scene: &Scene) -> Blob {
+    let compiled = compile(scene, &Options::default());
+    compiled.unwrap_or_else(|error| panic!("{error}")).blob
 }
 
 /// The mean of red of the pixels, from 0 to 1, and its standard error.

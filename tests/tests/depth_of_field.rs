@@ -4,12 +4,10 @@ use gridel_core::accel::Number;
 use gridel_core::{
     DualSplit, Effects, Format, NoCount, Ray, Renderer, Settings, Structure, Workspace,
 };
-use gridel_host::blob::Blob;
-use gridel_host::compile::{Options, compile};
 use gridel_host::render::{Job, render};
 use gridel_tests::effort::part_of;
 use gridel_tests::every_format;
-use gridel_tests::measured::{SCRAMBLES_WIDE, convergence, read};
+use gridel_tests::measured::{SCRAMBLES_WIDE, blob, convergence};
 
 const APERTURE: f64 = 0.8;
 const FOCUS: f64 = 10.0;
@@ -34,12 +32,6 @@ fn picture(lens: &str, objects: &str, format: Format, samples: u16) -> Vec<f64> 
         .iter()
         .map(|pixel| f64::from(pixel[0]) / 65_535.0);
     red.collect()
-}
-
-fn blob(text: &str) -> Blob {
-    compile(&read(text), &Options::default())
-        .expect("a blob")
-        .blob
 }
 
 fn lens() -> String {

@@ -2,11 +2,9 @@
 
 use glam::DVec3;
 use gridel_core::{Effects, Format, Settings, Structure};
-use gridel_host::blob::Blob;
-use gridel_host::compile::{Options, compile};
 use gridel_host::explain::{LightOutcome, Subject, explain};
 use gridel_host::scene::{Environment, Panorama, Scene, Sky, read};
-use gridel_tests::measured::{SCRAMBLES, check, measured_color, wrong_pixels};
+use gridel_tests::measured::{SCRAMBLES, check, compiled, measured_color, wrong_pixels};
 use std::f64::consts::{PI, TAU};
 use std::sync::Arc;
 
@@ -22,10 +20,6 @@ fn scene(eye: &str, target: &str, rest: &str) -> Scene {
     imported
         .unwrap_or_else(|error| panic!("{error}: {rest}"))
         .scene
-}
-
-fn compiled(scene: &Scene) -> Blob {
-    compile(scene, &Options::default()).expect("a blob").blob
 }
 
 const BALL: &str = "[[object]]\nkind = 'sphere'\ncenter = [0, 0, 0]\nradius = 1\nmaterial = 'gray'";

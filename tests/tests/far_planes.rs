@@ -1,10 +1,11 @@
 //! Infinite planes that are hit many times as far away as the scene's box is wide.
 
-use crate::large_scenes::{blob, differing, picture};
+use crate::large_scenes::{differing, picture};
 use glam::DVec3;
 use gridel_core::{Format, List, NoCount, Number, Scene};
 use gridel_host::scene::Shape;
 use gridel_host::shape::{Cuboid, Plane};
+use gridel_tests::measured::compiled;
 use gridel_tests::query::{UnitRay, closest, point_of};
 use gridel_tests::{every_format, scenes};
 
@@ -64,7 +65,7 @@ fn rays_leave_planes_at_any_distance() {
     for file in [MIRROR, SHADOW, &sky, &point, &area] {
         let imported =
             gridel_host::scene::read("far.toml".as_ref(), file.into(), &Default::default());
-        let blob = blob(&imported.expect("a scene").scene);
+        let blob = compiled(&imported.expect("a scene").scene);
         let size = [160, 120];
         let exact = picture(&blob, Format::F64, size);
         for format in [Format::Fixed, Format::F32] {
@@ -191,7 +192,7 @@ fn rays_leave_planes_at_the_end_of_lengths_from_their_place() {
                 let name = "strip.toml".as_ref();
                 let imported =
                     gridel_host::scene::read(name, file.clone().into(), &Default::default());
-                let blob = blob(&imported.expect("a scene").scene);
+                let blob = compiled(&imported.expect("a scene").scene);
                 let scene = blob.scene().expect("a scene");
                 assert_eq!(scene.header().unit_exponent, -13, "{file}");
                 let middle = scene.header().origin;

@@ -4,9 +4,8 @@ use gridel_core::{
     Effects, Fixed, Format, List, NoCount, Renderer, Settings, Structure, Workspace,
 };
 use gridel_host::blob::Blob;
-use gridel_host::compile::{Options, compile};
 use gridel_tests::effort::part_of;
-use gridel_tests::measured::{SCRAMBLES_WIDE, check, measured, read};
+use gridel_tests::measured::{SCRAMBLES_WIDE, blob, check, measured};
 
 /// Returns a room around the origin, 20 wide, whose walls glow inwards. Each wall has four squares, the size of a
 /// light.
@@ -65,12 +64,6 @@ fn light_that_passes_surfaces_spends_no_bounces() {
         let exact = part * emission / (1.0 - albedo);
         check("shells", &blob(&format!("{room}{clear}{shells}")), exact);
     }
-}
-
-fn blob(text: &str) -> Blob {
-    compile(&read(text), &Options::default())
-        .expect("a blob")
-        .blob
 }
 
 /// A closed room whose walls glow has the radiance e / (1 - a) everywhere, less the light of bounces beyond the last

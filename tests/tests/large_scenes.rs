@@ -14,6 +14,7 @@ use gridel_host::scene::{
 use gridel_host::shape::{Cuboid, Disc, Plane, Sphere};
 use gridel_host::verify::{Property, verify};
 use gridel_tests::effort::part_of;
+use gridel_tests::measured::compiled;
 use gridel_tests::scenes;
 
 /// Pixels as a screen has them.
@@ -35,11 +36,6 @@ pub(crate) fn picture(blob: &Blob, format: Format, [width, height]: [u16; 2]) ->
 pub(crate) fn differing(a: &[[u8; 3]], b: &[[u8; 3]]) -> usize {
     let differ = |(a, b): &(&[u8; 3], &[u8; 3])| (0..3).any(|k| a[k].abs_diff(b[k]) > 8);
     a.iter().zip(b).filter(differ).count()
-}
-
-pub(crate) fn blob(scene: &Scene) -> Blob {
-    let options = Options::default();
-    compile(scene, &options).expect("compiles").blob
 }
 
 /// The ground of a small box.
@@ -149,7 +145,7 @@ fn a_box_on_a_large_ground_keeps_its_shadow() {
             if let Some(camera) = &mut looked.camera {
                 camera.eye += report.step;
             }
-            let looked = self::blob(&looked);
+            let looked = compiled(&looked);
             let moved = differing(&picture(&looked, Format::F64, size), &right);
             eprintln!("{ground:?} {extent:e}: f32 {f32} fixed {fixed}, a step of the eye {moved}");
             assert!(f32 <= 5, "{ground:?} {extent:e}: f32 {f32}");
@@ -213,7 +209,7 @@ fn a_glass_ball_differs_by_no_more_than_a_step_of_the_lattice() {
             let right = picture(&one.blob, Format::F64, size);
             let off = |format| differing(&picture(&one.blob, format, size), &right);
             let moved = |shift: DVec3| {
-                let moved = blob(&ball_on(ground, extent, shift * step));
+                let moved = compiled(&ball_on(ground, extent, shift * step));
                 differing(&picture(&moved, Format::F64, size), &right)
             };
             let moved = DVec3::AXES.map(moved);
@@ -236,7 +232,7 @@ fn a_plane_looks_like_a_large_ground() {
         let scene = |ground: Ground| {
             let mut scene = ball_on(ground, 1e4, DVec3::ZERO);
             scene.materials[0].mirror = [mirror; 3];
-            blob(&scene)
+            compiled(&scene)
         };
         let (plane, tilted) = (scene(Ground::Plane), scene(Ground::TiltedPlane));
         let right = picture(&plane, Format::F64, size);
@@ -270,7 +266,7 @@ fn box_on_a_ball() -> Scene {
 }
 
 fn unresolved_in(scene: &Scene) -> Vec<Unresolved> {
-    let blob = blob(scene);
+    let blob = compiled(scene);
     unresolved(&blob.scene().expect("a scene"))
 }
 
@@ -421,7 +417,7 @@ fn reports_of_own_objects_name_no_instance() {
 #[test]
 fn verify_reports_contact_shadows_that_single_precision_loses() {
     let report = |scene: &Scene| {
-        let blob = blob(scene);
+        let blob = compiled(scene);
         let report = verify(&blob.scene().expect("a scene"), 2000, &|| ());
         let shadows = report.properties.into_iter();
         let mut shadows = shadows.filter(|it| it.property == Property::Shadows);

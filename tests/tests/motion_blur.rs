@@ -6,18 +6,11 @@ use gridel_core::{
     DualSplit, Effects, Format, NoCount, Renderer, Scene, Settings, Structure, Tracks, Workspace,
 };
 use gridel_host::blob::Blob;
-use gridel_host::compile::{Options, compile};
 use gridel_host::render::{Job, render, render_linear_moments, render_moments};
 use gridel_host::state::{State, exposed};
-use gridel_tests::measured::read;
+use gridel_tests::measured::blob;
 
 const SIDE: u16 = 32;
-
-fn blob(text: &str) -> Blob {
-    compile(&read(text), &Options::default())
-        .expect("a blob")
-        .blob
-}
 
 fn job(scene: &Scene<'_>, format: Format, samples: u16) -> Job {
     let settings = Settings {

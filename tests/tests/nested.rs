@@ -5,7 +5,7 @@ use gridel_host::blob::Blob;
 use gridel_host::compile::{CompileError, Options, compile};
 use gridel_host::render::{Job, render};
 use gridel_host::scene::Scene;
-use gridel_tests::measured::{measured, read};
+use gridel_tests::measured::{blob, measured, read};
 
 /// A body with faces square to the axis along which the camera looks, which comes from large z.
 struct Slab {
@@ -86,11 +86,6 @@ fn before_the_wall(glass: &str, from: f64, degrees: f64) -> Blob {
          [material.wall]\ndiffuse = 0\nemission = 1\nlights = false\n\
          [[object]]\nkind = 'box'\nmin = [-95, -95, -21]\nmax = [95, 95, -20]\nmaterial = 'wall'\n{glass}"
     ))
-}
-
-fn blob(text: &str) -> Blob {
-    let options = Options::default();
-    compile(&read(text), &options).expect("compiles").blob
 }
 
 /// The parts that a stack of layers reflects on its near side, transmits, and reflects on its far side.

@@ -4,7 +4,7 @@ use crate::arguments::{invalid, structures};
 use gridel_core::{Effects, Structure};
 use gridel_host::compile::{LATTICE_BITS, Options, Quality};
 use gridel_host::scene::{
-    Choice, ImportOptions, Imported, Instances, MoleculeOptions, MoleculeStyle, NormalsChoice,
+    GltfOptions, ImportOptions, Imported, Instances, MoleculeOptions, MoleculeStyle, NormalsChoice,
     Posed, effect_named,
 };
 use pyo3::prelude::*;
@@ -73,12 +73,12 @@ impl LoadOptions {
                 altloc: self.altloc,
             },
             assembly: self.assembly.clone(),
-            choice: Choice {
+            gltf: GltfOptions {
                 camera: self.camera.clone(),
                 animation: self.animation.clone(),
             },
             instances: instances.unwrap_or_default(),
-            at: self.time,
+            time: self.time,
             normals: normals.unwrap_or_default(),
             allow_outside: self.allow_outside,
         })
@@ -124,37 +124,19 @@ impl LoadOptions {
 
     /// Rejects options that do not apply to the file that was read.
     pub fn check(&self, path: &Path, imported: &Imported, instances: Instances) -> PyResult<()> {
-        let molecules = "molecules (PDB, mmCIF and XYZ files)";
-        let assemblies = "PDB and mmCIF files";
-        let gltf = "glTF files";
-        let rows = [
-            (self.style.is_some(), imported.molecules, "style", molecules),
-            (self.model.is_some(), imported.molecules, "model", molecules),
-            (
-                self.altloc.is_some(),
-                imported.molecules,
-                "altloc",
-                molecules,
-            ),
-            (self.camera.is_some(), imported.choices, "camera", gltf),
-            (
-                self.animation.is_some(),
-                imported.choices,
-                "animation",
-                gltf,
-            ),
-            (
-                self.assembly.is_some(),
-                imported.assemblies,
-                "assembly",
-                assemblies,
-            ),
+        let given = [
+            (self.style.is_some(), "style"),
+            (self.model.is_some(), "model"),
+            (self.altloc.is_some(), "altloc"),
+            (self.camera.is_some(), "camera"),
+            (self.animation.is_some(), "animation"),
+            (self.assembly.is_some(), "assembly"),
         ];
         let path = path.display();
-        for (is_given, applies, option, kind) in rows {
-            if is_given && !applies {
+        for (_, option) in given.into_iter().filter(|&(is_given, _)| is_given) {
+            if let Some(why) = imported.kinds.inapplicable(option, &"the file") {
                 return Err(invalid(format!(
-                    "{path}: `{option}` is for {kind}, and the scene has none; leave `{option}` out"
+                    "{path}: `{option}` {why}; leave `{option}` out"
                 )));
             }
         }

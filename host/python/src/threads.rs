@@ -3,9 +3,10 @@
 use pyo3::exceptions::PyRuntimeError;
 use pyo3::prelude::*;
 use rayon::{ThreadPool, ThreadPoolBuilder};
+use std::mem;
 use std::num::NonZeroUsize;
 use std::process;
-use std::sync::{Mutex, PoisonError};
+use std::sync::{Arc, Mutex, PoisonError};
 use std::thread;
 
 /// Calls a function without the GIL, in a pool of so many threads; 0 for one per core.
@@ -16,11 +17,7 @@ pub fn in_pool<T: Send>(
     threads: usize,
     work: impl FnOnce() -> T + Send,
 ) -> PyResult<T> {
-    if threads == 0 {
-        let pool = shared(py)?;
-        return Ok(py.detach(|| pool.install(work)));
-    }
-    let pool = pool(threads)?;
+    let pool = kept(py, threads)?;
     Ok(py.detach(|| pool.install(work)))
 }
 
@@ -32,22 +29,40 @@ pub fn workers(threads: usize) -> usize {
     }
 }
 
-/// The pool of this process, with one thread per core.
+/// A pool that is kept for the next call.
+struct Kept {
+    /// The process whose threads it has.
+    process: u32,
+    /// As it was asked for: 0 for one per core.
+    threads: usize,
+    pool: Arc<ThreadPool>,
+}
+
+/// Returns the pool of this process with so many threads. One with a thread per core is kept for good, and one of
+/// another size until a call asks for a third size.
 ///
-/// A fork of the process has none of its threads, and makes a pool of its own. Whoever holds the lock has the GIL, and so
+/// A fork of the process has none of its threads, and makes pools of its own. Whoever holds the lock has the GIL, and so
 /// has whoever forks: no fork begins with the lock held.
-fn shared(_: Python<'_>) -> PyResult<&'static ThreadPool> {
-    static SHARED: Mutex<Option<(u32, &ThreadPool)>> = Mutex::new(None);
-    let mut shared = SHARED.lock().unwrap_or_else(PoisonError::into_inner);
+fn kept(_: Python<'_>, threads: usize) -> PyResult<Arc<ThreadPool>> {
+    static POOLS: Mutex<[Option<Kept>; 2]> = Mutex::new([const { None }; 2]);
+    let mut pools = POOLS.lock().unwrap_or_else(PoisonError::into_inner);
+    let place = &mut pools[usize::from(threads != 0)];
     let process = process::id();
-    if let Some((owner, pool)) = *shared
-        && owner == process
+    if let Some(kept) = place
+        && (kept.process, kept.threads) == (process, threads)
     {
-        return Ok(pool);
+        return Ok(Arc::clone(&kept.pool));
     }
-    // Never dropped: the threads of another process cannot be ended from here.
-    let pool = Box::leak(Box::new(pool(0)?));
-    *shared = Some((process, pool));
+    let pool = Arc::new(pool(threads)?);
+    let before = place.replace(Kept {
+        process,
+        threads,
+        pool: Arc::clone(&pool),
+    });
+    if let Some(before) = before.filter(|it| it.process != process) {
+        // The threads of another process cannot be ended from here.
+        mem::forget(before);
+    }
     Ok(pool)
 }
 

@@ -315,7 +315,7 @@ def test_options_that_do_not_apply_to_the_file_are_rejected(ball, option, kind):
         gridel.Scene.load(ball, **{option: OPTIONS[option]})
     sentence = str(caught.value)
     assert sentence.startswith(f"{ball}: `{option}` is for {kind}")
-    assert sentence.endswith(f", and the scene has none; leave `{option}` out")
+    assert sentence.endswith(f", and the file is none of these; leave `{option}` out")
 
 
 @pytest.mark.parametrize("option", OPTIONS)

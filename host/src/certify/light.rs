@@ -3,7 +3,7 @@
 use super::aim::{self, Aim};
 use super::crossing::{Ray, Start, compare};
 use super::facets;
-use super::hit::Seen;
+use super::hit::{Hit, Seen};
 use super::media::{self, Boundary, Interface};
 use super::number::*;
 use super::paint;
@@ -196,24 +196,10 @@ impl Tracer<'_, '_> {
                 is_open = true;
                 continue;
             }
-            let mut part = white;
-            if boundary.is_none_or(|it| it.is_there()) {
-                part = if !material.is_glass() {
-                    let alpha = paint::alpha(self.world, &hit, material, None);
-                    let alpha = self.narrow(alpha, depth, &hit)?;
-                    let passing = N::one() - alpha.part;
-                    if alpha.is_open {
-                        self.note(Reason::Texture, depth, hit.primitive, hit.point);
-                    }
-                    [passing.at_least(N::zero()); 3]
-                } else {
-                    let of_material = Interface::of(hit.front, material);
-                    let interface = boundary.and_then(|it| it.interface(scene));
-                    let interface = interface.unwrap_or(of_material);
-                    let filtered = shade::filtered(&hit, material, interface.k, to_light);
-                    self.narrow(filtered, depth, &hit)?
-                };
-            }
+            let mut part = match boundary.is_none_or(|it| it.is_there()) {
+                true => self.part_through(&hit, material, boundary.as_ref(), to_light, depth)?,
+                false => white,
+            };
             let medium = media::passed(scene, boundary.as_ref(), inside, hit.object, hit.front);
             if let Some(medium) = medium.filter(|it| it.absorption != [0; 3]) {
                 let length = norm2(ray.direction).sqrt() * self.since(&surfaces, index)?;
@@ -230,10 +216,8 @@ impl Tracer<'_, '_> {
         }
         // The cutoff is compared where light has passed a surface, before the last stretch absorbs more.
         if !surfaces.is_empty() {
-            let [red, green, blue] = left;
-            let peak = red.at_least(green).at_least(blue);
             let is_certain = surfaces.iter().any(|it| it.crossing.sure);
-            match positive(peak - N::scaled(scene.view().cutoff.into(), 20)) {
+            match self.exceeds_cutoff(left) {
                 Some(true) => {}
                 Some(false) if is_certain => return Ok(black),
                 _ => {
@@ -250,6 +234,36 @@ impl Tracer<'_, '_> {
             left = times(left, shade::absorbed(medium, length));
         }
         Ok(if is_open { hull(black, left) } else { left })
+    }
+
+    /// Returns the part of a light that a surface lets through.
+    fn part_through<N: Enclosure>(
+        &self,
+        hit: &Hit<N>,
+        material: &Material,
+        boundary: Option<&Boundary>,
+        to_light: Three<N>,
+        depth: u8,
+    ) -> Result<Three<N>, Stop> {
+        if !material.is_glass() {
+            let alpha = paint::alpha(self.world, hit, material, None);
+            let alpha = self.narrow(alpha, depth, hit)?;
+            let passing = N::one() - alpha.part;
+            if alpha.is_open {
+                self.note(Reason::Texture, depth, hit.primitive, hit.point);
+            }
+            return Ok([passing.at_least(N::zero()); 3]);
+        }
+        let interface = boundary.and_then(|it| it.interface(self.world.scene));
+        let interface = interface.unwrap_or_else(|| Interface::of(hit.front, material));
+        let filtered = shade::filtered(hit, material, interface.k, to_light);
+        self.narrow(filtered, depth, hit)
+    }
+
+    /// Returns whether light is above the cutoff; `None` if that is not certain.
+    fn exceeds_cutoff<N: Enclosure>(&self, [red, green, blue]: Three<N>) -> Option<bool> {
+        let peak = red.at_least(green).at_least(blue);
+        positive(peak - N::scaled(self.world.scene.view().cutoff.into(), 20))
     }
 
     /// Returns what is between a point and a light; `None` if light certainly does not pass it.

@@ -9,10 +9,10 @@ use super::crossing::{
 };
 use super::number::*;
 use super::torus;
-use super::world::{Form, NONE, Placed, Solid};
+use super::world::{Form, NONE, PlacedPart, Solid};
 use std::cmp::Ordering;
 
-impl Placed {
+impl PlacedPart {
     /// A power of two and the matrix of integers.
     fn rotate<N: Enclosure>(&self, v: Three<N>) -> Three<N> {
         let power = N::float(f64::powi(2.0, self.exponent));

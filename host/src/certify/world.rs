@@ -142,7 +142,7 @@ pub struct Torus {
 
 /// A place where a part stands.
 #[derive(Clone, Copy, Debug)]
-pub struct Placed {
+pub struct PlacedPart {
     pub part: usize,
     /// The instance's number in scene-file order, which decides between hits at one place.
     pub number: u32,
@@ -174,7 +174,7 @@ pub struct World<'s> {
     pub scene: &'s Scene<'s>,
     pub own: Space,
     pub parts: Vec<Space>,
-    pub placed: Vec<Placed>,
+    pub placed: Vec<PlacedPart>,
     pub effects: Effects,
 }
 
@@ -206,7 +206,7 @@ impl<'s> World<'s> {
         let mut boxes = Vec::new();
         for (index, instance) in (0..).zip(scene.instances()) {
             let part = usize::from(instance.part);
-            placed.push(Placed {
+            placed.push(PlacedPart {
                 part,
                 number: instance.number,
                 matrix: instance.matrix.map(|row| row.map(i64::from)),

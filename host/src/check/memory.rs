@@ -5,7 +5,7 @@ use super::manifest::Budget;
 use super::report::{Figure, Key, Outcome};
 use super::run::{Compared, Run};
 use crate::measure::board::{
-    Account, Board, MemoryReport, NOT_BUILT, NotMeasured, Rendering, Target, working_bytes,
+    Account, Board, MemoryReport, NOT_BUILT, Rendering, Target, working_bytes,
 };
 use crate::table::grouped;
 use gridel_core::{Format, Scene, Structure};
@@ -57,12 +57,8 @@ impl Run<'_> {
         };
         let report = match MemoryReport::of(scene, blob, &target, rendering) {
             Ok(report) => report,
-            Err(NotMeasured(structure)) => {
-                let why = format!(
-                    "nothing is known of the code and call stack of `{}` on boards; use one of {}",
-                    structure.name(),
-                    MemoryReport::STRUCTURES.map(Structure::name).join(", ")
-                );
+            Err(error) => {
+                let why = format!("{error}; {}", error.remedy());
                 self.push(on(), "target", None, None, Outcome::Failed(why));
                 return;
             }

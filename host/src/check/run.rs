@@ -153,11 +153,11 @@ impl Run<'_> {
             allow_outside: check.allow_outside,
             instances: check.instances.unwrap_or_default(),
             assembly: check.assembly.clone(),
-            at: check.time,
+            time: check.time,
             ..ImportOptions::default()
         };
         let imported = scene::load_with(path, &options).map_err(|error| explained(&error))?;
-        if check.assembly.is_some() && !imported.assemblies {
+        if check.assembly.is_some() && !imported.kinds.assemblies {
             return Err(format!(
                 "`assembly` is for PDB and mmCIF files, and {} has none; leave it out",
                 path.display()

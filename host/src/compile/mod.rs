@@ -75,7 +75,7 @@ use gridel_core::format::record::{Gridels, UnitBox};
 use hierarchy::node::Primitive;
 use hierarchy::pairs;
 use hierarchy::sah::{self, Splits};
-use instances::{Parts, Placed, Role};
+use instances::{CompiledInstances, Parts, Role};
 use motion::room::Swept;
 use motion::{joints, morph, room};
 use requirements::Requirements;
@@ -231,13 +231,13 @@ fn compile_as(
         sizes.add(&parts.sizes);
     }
     let mut report = Report::of(&context, &layouts, setup);
-    let mut parts = writer::parts(&context, layouts);
+    let mut contents = writer::contents(&context, layouts);
     if options.names && !scene.unnamed {
-        report.names = parts.add_names(&Names::of_scene(scene), options.max_bytes);
+        report.names = contents.add_names(&Names::of_scene(scene), options.max_bytes);
     }
     // A table may fill what memory there is; all that it was built from makes room for the blob.
     drop(hierarchies);
-    let blob = writer::write(parts)?;
+    let blob = writer::write(contents)?;
     check_bytes(&blob, scene, options, &sizes)?;
     report.bytes = blob.bytes().len();
     Ok((Compiled { blob, report }, sizes))
@@ -268,7 +268,7 @@ fn requirements(role: Role<'_>, snapped: &Primitives) -> Requirements {
 fn bounds(
     role: Role<'_>,
     order: &[Primitive],
-    placed: &Placed,
+    placed: &CompiledInstances,
     swept: &Swept,
     space: (&Lattice, f64),
     options: &Options,
@@ -325,13 +325,13 @@ fn snap(
     scene: &Scene,
     (lowest, highest): (DVec3, DVec3),
     options: &Options,
-) -> Result<(Lattice, Primitives, Placed), CompileError> {
+) -> Result<(Lattice, Primitives, CompiledInstances), CompileError> {
     let mut coarser = 0;
     loop {
         let lattice = Lattice::around([lowest, highest], options.lattice_bits, coarser)?;
         let primitives = Primitives::snap(scene, &lattice, options.flat_meshes)?;
         let placed = match role {
-            Role::Part { .. } => Some(Placed::default()),
+            Role::Part { .. } => Some(CompiledInstances::default()),
             Role::Whole(parts) => parts.place(scene, &lattice)?,
         };
         if let Some(placed) = placed.filter(|_| !primitives.needs_room) {

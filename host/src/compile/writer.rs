@@ -29,12 +29,12 @@ fn counts_up(values: &[u32]) -> bool {
 }
 
 /// All that goes into a blob, before it has places.
-pub struct Parts {
+pub struct BlobContents {
     header: Header,
     sections: Vec<Section>,
 }
 
-impl Parts {
+impl BlobContents {
     /// Adds names, unless that makes the blob larger than `max_bytes`. Returns the kept names; `None` where nothing has
     /// a name.
     pub fn add_names(&mut self, names: &Names, max_bytes: Option<u64>) -> Option<KeptNames> {
@@ -76,8 +76,8 @@ impl Parts {
     }
 }
 
-/// Makes what goes into a blob.
-pub fn parts(context: &BuildContext<'_>, layouts: Vec<Layout>) -> Parts {
+/// Makes the contents of a blob.
+pub fn contents(context: &BuildContext<'_>, layouts: Vec<Layout>) -> BlobContents {
     let BuildContext {
         primitives, flat, ..
     } = *context;
@@ -117,7 +117,7 @@ pub fn parts(context: &BuildContext<'_>, layouts: Vec<Layout>) -> Parts {
         },
         ..header(context, &numbering)
     };
-    Parts { header, sections }
+    BlobContents { header, sections }
 }
 
 /// Returns the fields of a header that do not depend on structures; the others are 0.
@@ -298,11 +298,11 @@ fn carried(corners: &[Corner]) -> Vec<Section> {
 }
 
 /// Puts header, table and sections together. Large sections are in memory twice meanwhile.
-pub fn write(parts: Parts) -> Result<Blob, CompileError> {
-    let Parts {
+pub fn write(contents: BlobContents) -> Result<Blob, CompileError> {
+    let BlobContents {
         mut header,
         sections,
-    } = parts;
+    } = contents;
     let mut offset = size_of::<Header>() + sections.len() * size_of::<SectionEntry>();
     let mut entries = Vec::with_capacity(sections.len());
     for section in &sections {

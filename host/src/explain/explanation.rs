@@ -301,21 +301,7 @@ impl Ray {
             }
             Event::Lit { number, radiance } => {
                 *light = false;
-                match self.lights.last_mut().filter(|l| l.light == number) {
-                    Some(lighting) => {
-                        lighting.radiance = radiance;
-                        lighting.outcome = lighting.outcome();
-                    }
-                    // The light had no event before.
-                    None => {
-                        let light = scene.lights().get(number as usize);
-                        let outcome = match light.is_some_and(|it| { it.color } == [0; 3]) {
-                            true => LightOutcome::Off,
-                            false => LightOutcome::Here,
-                        };
-                        self.lights.push(Lighting::new(number, 0.0, outcome));
-                    }
-                }
+                self.record_lit(scene, number, radiance);
             }
             Event::Absorbed { weight } => match self.lights.last_mut().filter(|_| *light) {
                 Some(lighting) => lighting.absorbed = Some(weight),
@@ -366,6 +352,25 @@ impl Ray {
                 if let Some(walk) = walk {
                     walk.record(scene, event);
                 }
+            }
+        }
+    }
+
+    /// Records the radiance that a light adds to the surface.
+    fn record_lit(&mut self, scene: &Scene<'_>, number: u32, radiance: [f64; 3]) {
+        match self.lights.last_mut().filter(|it| it.light == number) {
+            Some(lighting) => {
+                lighting.radiance = radiance;
+                lighting.outcome = lighting.outcome();
+            }
+            // The light had no event before.
+            None => {
+                let light = scene.lights().get(number as usize);
+                let outcome = match light.is_some_and(|it| { it.color } == [0; 3]) {
+                    true => LightOutcome::Off,
+                    false => LightOutcome::Here,
+                };
+                self.lights.push(Lighting::new(number, 0.0, outcome));
             }
         }
     }

@@ -3,7 +3,7 @@
 //! The file of a frame states its number and how it was made ([`FrameNote`]). So frames may come from several machines
 //! and in any order.
 
-use super::{PartError, difference, open_png, pixels, text};
+use super::{PartError, difference, different_sizes, made_differently, open_png, pixels, text};
 use crate::picture::{Frame, FrameNote};
 use std::fmt;
 use std::io::{BufRead, Seek};
@@ -95,18 +95,12 @@ pub fn in_order(pictures: &[NumberedPicture]) -> Result<Vec<usize>, FramesError>
 impl fmt::Display for FramesError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Self::Sizes(_, [one, other]) => write!(
-                f,
-                "one has {}x{} pixels, the other {}x{}",
-                one[0], one[1], other[0], other[1]
-            ),
+            Self::Sizes(_, sizes) => f.write_str(&different_sizes(*sizes)),
             Self::Rates(_, [one, other]) => write!(
                 f,
                 "one is of an animation of {one} frames per second, the other of {other}"
             ),
-            Self::Made(_, [one, other]) => {
-                write!(f, "one was made with {one}, the other with {other}")
-            }
+            Self::Made(_, made) => f.write_str(&made_differently(made)),
             Self::Twice(_, number) => write!(f, "both are frame {number}"),
             Self::Missing(number) => write!(f, "frame {number} is missing"),
         }

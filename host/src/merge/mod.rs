@@ -348,14 +348,8 @@ impl Whole {
 impl fmt::Display for MergeError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            MergeError::Sizes(_, [known, other]) => write!(
-                f,
-                "one is of a picture of {}x{} pixels, the other of {}x{}",
-                known[0], known[1], other[0], other[1]
-            ),
-            MergeError::Made(_, [known, other]) => {
-                write!(f, "one was made with {known}, the other with {other}")
-            }
+            MergeError::Sizes(_, sizes) => f.write_str(&different_sizes(*sizes)),
+            MergeError::Made(_, made) => f.write_str(&made_differently(made)),
             MergeError::Differ(_, row) => write!(f, "they have different pixels in row {row}"),
             MergeError::Missing(rows) => {
                 write!(f, "no part has the rows {}..{}", rows.start, rows.end)
@@ -365,6 +359,19 @@ impl fmt::Display for MergeError {
 }
 
 impl std::error::Error for MergeError {}
+
+/// Says that two pictures have different sizes.
+fn different_sizes([one, other]: [[u32; 2]; 2]) -> String {
+    format!(
+        "one is of a picture of {}x{} pixels, the other of {}x{}",
+        one[0], one[1], other[0], other[1]
+    )
+}
+
+/// Says that two pictures were made differently.
+fn made_differently([one, other]: &[String; 2]) -> String {
+    format!("one was made with {one}, the other with {other}")
+}
 
 #[cfg(test)]
 mod tests {

@@ -5,6 +5,7 @@
 //! so a link that leads outside is outside. Backslashes separate folders as slashes do, on every
 //! system.
 
+use super::error::CauseAndRemedy;
 use super::error::{SceneError, UNREADABLE};
 use super::files::{Files, lexical};
 use super::image::Texels;
@@ -120,7 +121,7 @@ impl Access {
     ///
     /// # Errors
     /// If it lies outside of the scene's folder: the cause, which names the folder, and the remedy.
-    pub(super) fn resolve(&self, file: &Path, name: &str) -> Result<PathBuf, [String; 2]> {
+    pub(super) fn resolve(&self, file: &Path, name: &str) -> Result<PathBuf, CauseAndRemedy> {
         let slashed = name.replace('\\', "/");
         if self.files.is_some() {
             return Ok(sibling(file, &slashed));
@@ -137,7 +138,7 @@ impl Access {
             return Ok(found());
         };
         let outside = || {
-            [
+            CauseAndRemedy::new(
                 format!(
                     "{name:?} lies outside of the scene's folder, {}",
                     root.display(),
@@ -146,7 +147,7 @@ impl Access {
                 String::from(
                     "move the file into that folder, or allow such files with `--allow-outside`",
                 ),
-            ]
+            )
         };
         let drive = slashed.as_bytes();
         if drive.len() >= 2 && drive[0].is_ascii_alphabetic() && drive[1] == b':' && !cfg!(windows)
@@ -229,7 +230,7 @@ mod tests {
             "c:/a.obj",
             "../scene2/near.obj",
         ] {
-            let [cause, remedy] = access.resolve(&file, name).unwrap_err();
+            let CauseAndRemedy { cause, remedy } = access.resolve(&file, name).unwrap_err();
             assert!(cause.contains(&format!("{name:?}")), "{cause}");
             assert!(cause.contains(&folder.canonicalize().unwrap().display().to_string()));
             assert!(remedy.contains("--allow-outside"));

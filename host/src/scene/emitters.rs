@@ -28,9 +28,9 @@ impl Scene {
     /// # Ok::<(), gridel_host::scene::SceneError>(())
     /// ```
     pub fn with_emitters(&self) -> Cow<'_, Self> {
-        let is_seen = |form: &Option<LightForm>| form.is_some_and(|form| form.is_visible);
+        let is_visible = |form: &Option<LightForm>| form.is_some_and(|form| form.is_visible);
         let glows = self.materials.iter().any(Material::lights_others);
-        if !glows && !self.light_forms.iter().any(is_seen) {
+        if !glows && !self.light_forms.iter().any(is_visible) {
             return Cow::Borrowed(self);
         }
         let mut scene = self.clone();
@@ -104,12 +104,12 @@ impl Scene {
 
     fn show_lights(&mut self) {
         for number in 0..self.lights.len() {
-            let lamp = self.lamp(number);
+            let shown = self.light_object(number);
             if let Some(form) = self.light_forms.get_mut(number).and_then(Option::as_mut) {
                 form.is_visible = false;
-                form.is_surface |= lamp.is_some();
+                form.is_surface |= shown.is_some();
             }
-            if let Some((object, material)) = lamp {
+            if let Some((object, material)) = shown {
                 self.objects.push(object);
                 self.materials.push(Material {
                     lights: false,
@@ -121,13 +121,13 @@ impl Scene {
     }
 
     /// Returns the object of a light that is visible, and its material, the next one.
-    fn lamp(&self, number: usize) -> Option<(Object, Material)> {
+    fn light_object(&self, number: usize) -> Option<(Object, Material)> {
         let form = self.light_forms.get(number).copied().flatten();
         let form = form.filter(|form| form.is_visible)?;
         let Light::Point { position, color } = self.lights[number] else {
             return None;
         };
-        let shape = seen(position, &form.shape)?;
+        let shape = visible_shape(position, &form.shape)?;
         let name = match self.light_names.get(number) {
             Some(name) if !name.is_empty() => name.clone(),
             _ => format!("light {number}"),
@@ -151,10 +151,10 @@ impl Scene {
     }
 
     /// Returns a scene whose visible lights are objects that glow, and light others as such; `None` without such lights.
-    pub(super) fn with_lamps(&self) -> Option<Self> {
+    pub(super) fn with_light_objects(&self) -> Option<Self> {
         let mut scene: Option<Self> = None;
         for number in 0..self.lights.len() {
-            if let Some((object, material)) = scene.as_ref().unwrap_or(self).lamp(number) {
+            if let Some((object, material)) = scene.as_ref().unwrap_or(self).light_object(number) {
                 let scene = scene.get_or_insert_with(|| self.clone());
                 scene.objects.push(object);
                 scene.materials.push(material);
@@ -169,7 +169,7 @@ impl Scene {
         let Light::Point { position, .. } = *self.lights.get(number)? else {
             return None;
         };
-        let shape = seen(position, &form.shape).filter(|_| form.is_surface)?;
+        let shape = visible_shape(position, &form.shape).filter(|_| form.is_surface)?;
         let mut objects = self.objects.iter();
         objects.position(|it| it.shape == shape && self.materials[it.material].is_sampled)
     }
@@ -211,7 +211,7 @@ impl Scene {
                 "light {number} is a face of an object that glows, and cannot change without it"
             ));
         };
-        if let Some(shape) = seen(position, &form.shape) {
+        if let Some(shape) = visible_shape(position, &form.shape) {
             self.objects[object].shape = shape;
         }
         let material = self.objects[object].material;
@@ -330,7 +330,7 @@ fn parallelogram(first: [DVec3; 3], second: [DVec3; 3]) -> Option<(DVec3, LightS
 }
 
 /// Returns the visible shape of a light with an area.
-fn seen(position: DVec3, shape: &LightShape) -> Option<Shape> {
+fn visible_shape(position: DVec3, shape: &LightShape) -> Option<Shape> {
     let mesh = |vertices: Vec<DVec3>, triangles: Vec<[u32; 3]>| Shape::Mesh {
         vertices,
         triangles,

@@ -1,6 +1,7 @@
 //! The light around a scene, as scene files state it.
 
-use super::image::{Fault, Image, Texels, fault};
+use super::error::CauseAndRemedy;
+use super::image::{Image, Texels};
 use super::{exr_image, hdr_image};
 use crate::srgb::linear_of_srgb;
 use glam::DVec3;
@@ -148,7 +149,11 @@ impl Panorama {
     }
 
     /// Reads a Radiance, OpenEXR, PNG or JPEG file. Its content decides which.
-    pub(super) fn decode(name: &str, bytes: &[u8], texels: &Texels) -> Result<Self, Fault> {
+    pub(super) fn decode(
+        name: &str,
+        bytes: &[u8],
+        texels: &Texels,
+    ) -> Result<Self, CauseAndRemedy> {
         let check = |width, height| texels.add(width, height);
         let (width, height, pixels) = if bytes.starts_with(b"#?") {
             hdr_image::decode(bytes, check)?
@@ -157,7 +162,7 @@ impl Panorama {
         } else {
             let is_known = bytes.starts_with(b"\x89PNG") || bytes.starts_with(b"\xff\xd8");
             if !is_known {
-                return Err(fault(
+                return Err(CauseAndRemedy::new(
                     "is neither Radiance (.hdr) nor OpenEXR nor PNG nor JPEG",
                     "convert it to Radiance HDR or PNG",
                 ));
@@ -172,7 +177,7 @@ impl Panorama {
             (width, height, pixels.collect())
         };
         Self::new(name, width, height, pixels)
-            .ok_or_else(|| fault("has no pixels", "save the picture again"))
+            .ok_or_else(|| CauseAndRemedy::new("has no pixels", "save the picture again"))
     }
 
     /// Reads the file that `name` in a scene file refers to.
@@ -180,12 +185,14 @@ impl Panorama {
         access: &super::access::Access,
         scene: &Path,
         name: &str,
-    ) -> Result<Arc<Self>, Fault> {
+    ) -> Result<Arc<Self>, CauseAndRemedy> {
         let path = access.resolve(scene, name)?;
-        let of_file = |[cause, remedy]: Fault| [format!("{} {cause}", path.display()), remedy];
+        let of_file = |CauseAndRemedy { cause, remedy }| {
+            CauseAndRemedy::new(format!("{} {cause}", path.display()), remedy)
+        };
         let bytes = access
             .read(&path)
-            .map_err(|error| of_file([error.cause, error.remedy]))?;
+            .map_err(|error| of_file(CauseAndRemedy::new(error.cause, error.remedy)))?;
         Self::decode(name, &bytes, &access.texels)
             .map(Arc::new)
             .map_err(of_file)

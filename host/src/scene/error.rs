@@ -11,6 +11,22 @@ pub(super) const COPY_AGAIN: &str = "copy the file again, as binary, or export i
 /// The beginning of the cause of a file that cannot be read. It is a sentence with the name of the file.
 pub(super) const UNREADABLE: &str = "cannot be read";
 
+/// The reason why something in a scene cannot be used, for an error that names its place.
+#[derive(Debug, PartialEq)]
+pub(crate) struct CauseAndRemedy {
+    pub(crate) cause: String,
+    pub(crate) remedy: String,
+}
+
+impl CauseAndRemedy {
+    pub(crate) fn new(cause: impl Into<String>, remedy: impl Into<String>) -> Self {
+        Self {
+            cause: cause.into(),
+            remedy: remedy.into(),
+        }
+    }
+}
+
 /// An error in a scene file (or in one that it imports), or in a manifest of checks.
 #[derive(Debug)]
 pub struct SceneError {

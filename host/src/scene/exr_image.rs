@@ -1,6 +1,6 @@
 //! Pictures of linear radiance in OpenEXR files, with the feature `exr`.
 
-use super::image::{Fault, fault};
+use super::error::CauseAndRemedy;
 
 /// The first bytes of the files.
 pub(super) const MAGIC: [u8; 4] = [0x76, 0x2f, 0x31, 0x01];
@@ -12,15 +12,15 @@ type Decoded = (usize, usize, Vec<[f32; 3]>);
 #[cfg(feature = "exr")]
 pub(super) fn decode(
     bytes: &[u8],
-    check: impl Fn(usize, usize) -> Result<(), Fault>,
-) -> Result<Decoded, Fault> {
+    check: impl Fn(usize, usize) -> Result<(), CauseAndRemedy>,
+) -> Result<Decoded, CauseAndRemedy> {
     use exr::meta::MetaData;
     use exr::prelude::{ReadChannels, ReadLayers, Vec2, read};
     use std::io::Cursor;
 
     const REMEDY: &str = "save the picture again, with the channels R, G and B of numbers";
     let broken = |error: exr::error::Error| {
-        fault(
+        CauseAndRemedy::new(
             format!("cannot be read as OpenEXR, or has no channels R, G and B: {error}"),
             REMEDY,
         )
@@ -32,7 +32,7 @@ pub(super) fn decode(
             header.layer_size,
         );
         if whole != own {
-            return Err(fault(
+            return Err(CauseAndRemedy::new(
                 format!(
                     "has {}x{} pixels of a picture of {}x{}",
                     own.x(),
@@ -63,7 +63,7 @@ pub(super) fn decode(
     let is_wrong = |pixel: &[f32; 3]| !pixel.iter().all(|&it| it.is_finite() && it >= 0.0);
     if let Some(place) = pixels.iter().position(is_wrong) {
         let (x, y, [r, g, b]) = (place % width, place / width, pixels[place]);
-        return Err(fault(
+        return Err(CauseAndRemedy::new(
             format!(
                 "has the radiance {r}, {g}, {b} at {x},{y}; each must be a number of at least 0"
             ),
@@ -77,9 +77,9 @@ pub(super) fn decode(
 #[cfg(not(feature = "exr"))]
 pub(super) fn decode(
     _: &[u8],
-    _: impl Fn(usize, usize) -> Result<(), Fault>,
-) -> Result<Decoded, Fault> {
-    Err(fault(
+    _: impl Fn(usize, usize) -> Result<(), CauseAndRemedy>,
+) -> Result<Decoded, CauseAndRemedy> {
+    Err(CauseAndRemedy::new(
         "is OpenEXR, which this build cannot read",
         "convert it to Radiance HDR, or install with `cargo install --features exr`",
     ))

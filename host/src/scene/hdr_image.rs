@@ -2,8 +2,7 @@
 //!
 //! `EXPOSURE` and the other variables of the header are not applied, as in most programs.
 
-use super::image::Fault;
-use super::image::fault;
+use super::error::CauseAndRemedy;
 use crate::table::shortened;
 
 /// Width, height and linear pixels.
@@ -18,24 +17,23 @@ const LONGEST_LINE: usize = 4096;
 struct Bytes<'a>(&'a [u8]);
 
 impl<'a> Bytes<'a> {
-    fn take(&mut self, count: usize, row: usize) -> Result<&'a [u8], Fault> {
-        let (taken, rest) = self
-            .0
-            .split_at_checked(count)
-            .ok_or_else(|| fault(format!("ends in row {row} of its pixels"), REMEDY))?;
+    fn take(&mut self, count: usize, row: usize) -> Result<&'a [u8], CauseAndRemedy> {
+        let (taken, rest) = self.0.split_at_checked(count).ok_or_else(|| {
+            CauseAndRemedy::new(format!("ends in row {row} of its pixels"), REMEDY)
+        })?;
         self.0 = rest;
         Ok(taken)
     }
 
-    fn byte(&mut self, row: usize) -> Result<u8, Fault> {
+    fn byte(&mut self, row: usize) -> Result<u8, CauseAndRemedy> {
         self.take(1, row).map(|taken| taken[0])
     }
 
     /// A line of the header.
-    fn line(&mut self) -> Result<String, Fault> {
+    fn line(&mut self) -> Result<String, CauseAndRemedy> {
         let end = self.0.iter().take(LONGEST_LINE);
         let end = end.copied().position(|byte| byte == b'\n');
-        let end = end.ok_or_else(|| fault("has a header without end", REMEDY))?;
+        let end = end.ok_or_else(|| CauseAndRemedy::new("has a header without end", REMEDY))?;
         let line = String::from_utf8_lossy(&self.0[..end])
             .trim_end()
             .to_owned();
@@ -47,12 +45,12 @@ impl<'a> Bytes<'a> {
 /// Reads a picture of a size that `check` allows.
 pub(super) fn decode(
     bytes: &[u8],
-    check: impl Fn(usize, usize) -> Result<(), Fault>,
-) -> Result<Decoded, Fault> {
+    check: impl Fn(usize, usize) -> Result<(), CauseAndRemedy>,
+) -> Result<Decoded, CauseAndRemedy> {
     let mut bytes = Bytes(bytes);
     let magic = bytes.line()?;
     if !["#?RADIANCE", "#?RGBE"].contains(&magic.as_str()) {
-        return Err(fault(
+        return Err(CauseAndRemedy::new(
             format!(
                 "begins with {magic:?}, not with \"#?RADIANCE\"",
                 magic = shortened(&magic)
@@ -68,7 +66,7 @@ pub(super) fn decode(
         if let Some(format) = line.strip_prefix("FORMAT=")
             && format.trim() != "32-bit_rle_rgbe"
         {
-            return Err(fault(
+            return Err(CauseAndRemedy::new(
                 format!(
                     "has the format {format:?}; expected \"32-bit_rle_rgbe\"",
                     format = shortened(format)
@@ -79,7 +77,7 @@ pub(super) fn decode(
     }
     let resolution = bytes.line()?;
     let (width, height) = size(&resolution).ok_or_else(|| {
-        fault(
+        CauseAndRemedy::new(
             format!(
                 "has the resolution {resolution:?}; expected one such as \"-Y 512 +X 1024\"",
                 resolution = shortened(&resolution)
@@ -135,14 +133,14 @@ fn scanline(
     width: usize,
     row: usize,
     line: &mut Vec<[u8; 4]>,
-) -> Result<(), Fault> {
+) -> Result<(), CauseAndRemedy> {
     let can_run = (8..1 << 15).contains(&width);
     match bytes.0 {
         [2, 2, high, low, ..] if can_run && *high < 128 => {
             let found = usize::from(*high) << 8 | usize::from(*low);
             if found != width {
                 let cause = format!("has {found} pixels in row {row}, and the others {width}");
-                return Err(fault(cause, REMEDY));
+                return Err(CauseAndRemedy::new(cause, REMEDY));
             }
             bytes.take(4, row)?;
             line.resize(width, [0; 4]);
@@ -158,13 +156,18 @@ fn runs(
     channel: usize,
     row: usize,
     line: &mut [[u8; 4]],
-) -> Result<(), Fault> {
-    let too_long = || fault(format!("has a run beyond the end of row {row}"), REMEDY);
+) -> Result<(), CauseAndRemedy> {
+    let too_long = || CauseAndRemedy::new(format!("has a run beyond the end of row {row}"), REMEDY);
     let mut rest = line;
     while !rest.is_empty() {
         let count = bytes.byte(row)?;
         let (length, same) = match count {
-            0 => return Err(fault(format!("has a run of length 0 in row {row}"), REMEDY)),
+            0 => {
+                return Err(CauseAndRemedy::new(
+                    format!("has a run of length 0 in row {row}"),
+                    REMEDY,
+                ));
+            }
             1..=128 => (count, None),
             _ => (count - 128, Some(bytes.byte(row)?)),
         };
@@ -188,7 +191,7 @@ fn flat(
     width: usize,
     row: usize,
     line: &mut Vec<[u8; 4]>,
-) -> Result<(), Fault> {
+) -> Result<(), CauseAndRemedy> {
     let mut shift = 0;
     while line.len() < width {
         let taken = bytes.take(4, row)?;
@@ -201,8 +204,9 @@ fn flat(
         let count = usize::from(count) << shift;
         let last = line.last().copied();
         let last = last.filter(|_| shift <= 16 && count <= width - line.len());
-        let last =
-            last.ok_or_else(|| fault(format!("has a run beyond the end of row {row}"), REMEDY))?;
+        let last = last.ok_or_else(|| {
+            CauseAndRemedy::new(format!("has a run beyond the end of row {row}"), REMEDY)
+        })?;
         line.resize(line.len() + count, last);
         shift += 8;
     }
@@ -213,7 +217,7 @@ fn flat(
 mod tests {
     use super::*;
 
-    fn check(_: usize, _: usize) -> Result<(), Fault> {
+    fn check(_: usize, _: usize) -> Result<(), CauseAndRemedy> {
         Ok(())
     }
 
@@ -252,7 +256,7 @@ mod tests {
             ("+Y 1 -X 8", "its upper row and its left column first"),
             ("+X 8 -Y 1", "row by row, with its upper row first"),
         ] {
-            let [cause, remedy] = decode(&file(line, &RUNS), check).unwrap_err();
+            let CauseAndRemedy { cause, remedy } = decode(&file(line, &RUNS), check).unwrap_err();
             assert!(cause.contains(line) && remedy.ends_with(words), "{remedy}");
         }
     }
@@ -283,11 +287,11 @@ mod tests {
             ),
             (file("-Y 2 +X 2", &[9; 12]), "ends in row 1"),
         ] {
-            let [cause, remedy] = decode(&bytes, check).unwrap_err();
+            let CauseAndRemedy { cause, remedy } = decode(&bytes, check).unwrap_err();
             assert!(cause.contains(words), "{cause}");
             assert!(!remedy.is_empty());
         }
-        let large = |_, _| Err(fault("is large", "make it smaller"));
+        let large = |_, _| Err(CauseAndRemedy::new("is large", "make it smaller"));
         assert!(decode(&file("-Y 9999999 +X 9999999", &[]), large).is_err());
     }
 

@@ -1,5 +1,6 @@
 //! Images for textures: PNG and JPEG.
 
+use super::error::CauseAndRemedy;
 use crate::srgb::linear_of_srgb;
 use std::fmt;
 use std::io::Cursor;
@@ -43,9 +44,6 @@ impl fmt::Debug for Image {
         write!(f, "Image({name:?}, {width}x{height})")
     }
 }
-
-/// The reason why an image cannot be read: the cause, and a remedy.
-pub(super) type Fault = [String; 2];
 
 impl Image {
     /// Makes an image from pixels row by row, the upper row first: red, green, blue and alpha in sRGB. `None` unless
@@ -143,24 +141,24 @@ impl Image {
     }
 
     /// Reads a PNG or JPEG file, by its content, for a scene whose images are counted.
-    pub(super) fn decode(name: &str, bytes: &[u8], texels: &Texels) -> Result<Self, Fault> {
+    pub(super) fn decode(
+        name: &str,
+        bytes: &[u8],
+        texels: &Texels,
+    ) -> Result<Self, CauseAndRemedy> {
         let (width, height, pixels) = if bytes.starts_with(b"\x89PNG\r\n\x1a\n") {
             png(bytes, texels)?
         } else if bytes.starts_with(b"\xff\xd8") {
             jpeg(bytes, texels)?
         } else {
-            return Err(fault(
+            return Err(CauseAndRemedy::new(
                 "is neither PNG nor JPEG",
                 "convert it to PNG or JPEG",
             ));
         };
         Self::new(name, width as u32, height as u32, pixels)
-            .ok_or_else(|| fault("has no pixels", "save the image again"))
+            .ok_or_else(|| CauseAndRemedy::new("has no pixels", "save the image again"))
     }
-}
-
-pub(super) fn fault(cause: impl Into<String>, remedy: &str) -> Fault {
-    [cause.into(), String::from(remedy)]
 }
 
 /// Width, height and pixels.
@@ -175,10 +173,10 @@ impl Texels {
     ///
     /// # Errors
     /// If it is too large, alone or with those before it.
-    pub(super) fn add(&self, width: usize, height: usize) -> Result<(), Fault> {
+    pub(super) fn add(&self, width: usize, height: usize) -> Result<(), CauseAndRemedy> {
         let texels = width.saturating_mul(height);
         if width > MOST_SIDE || height > MOST_SIDE || texels > MOST_TEXELS {
-            return Err(fault(
+            return Err(CauseAndRemedy::new(
                 format!(
                     "has {width}x{height} pixels; at most {MOST_TEXELS} are read, and {MOST_SIDE} along a side"
                 ),
@@ -186,7 +184,7 @@ impl Texels {
             ));
         }
         if self.0.fetch_add(texels, Ordering::Relaxed) + texels > MOST_TEXELS_OF_ALL {
-            return Err(fault(
+            return Err(CauseAndRemedy::new(
                 format!(
                     "has {width}x{height} pixels, and with them the images of the scene have more than {MOST_TEXELS_OF_ALL}"
                 ),
@@ -197,9 +195,9 @@ impl Texels {
     }
 }
 
-fn png(bytes: &[u8], texels: &Texels) -> Result<Decoded, Fault> {
+fn png(bytes: &[u8], texels: &Texels) -> Result<Decoded, CauseAndRemedy> {
     let broken = |error: png::DecodingError| {
-        fault(format!("is broken: {error}"), "save the image again as PNG")
+        CauseAndRemedy::new(format!("is broken: {error}"), "save the image again as PNG")
     };
     let limits = png::Limits {
         bytes: 8 * MOST_TEXELS,
@@ -211,7 +209,7 @@ fn png(bytes: &[u8], texels: &Texels) -> Result<Decoded, Fault> {
     texels.add(width, height)?;
     let size = reader
         .output_buffer_size()
-        .ok_or_else(|| fault("is too large", "make the image smaller"))?;
+        .ok_or_else(|| CauseAndRemedy::new("is too large", "make the image smaller"))?;
     let mut buffer = vec![0; size];
     let info = reader.next_frame(&mut buffer).map_err(broken)?;
     buffer.truncate(info.buffer_size());
@@ -225,13 +223,13 @@ fn png(bytes: &[u8], texels: &Texels) -> Result<Decoded, Fault> {
     Ok((width, height, pixels.map(pixel).collect()))
 }
 
-fn jpeg(bytes: &[u8], texels: &Texels) -> Result<Decoded, Fault> {
+fn jpeg(bytes: &[u8], texels: &Texels) -> Result<Decoded, CauseAndRemedy> {
     use zune_jpeg::zune_core::bytestream::ZCursor;
     use zune_jpeg::zune_core::colorspace::ColorSpace;
     use zune_jpeg::zune_core::options::DecoderOptions;
     let broken = |error: zune_jpeg::errors::DecodeErrors| {
         let remedy = "save the image again as a baseline or progressive JPEG, or as PNG";
-        fault(format!("is broken: {error}"), remedy)
+        CauseAndRemedy::new(format!("is broken: {error}"), remedy)
     };
     // Without instructions that only some machines have, so that all decode the same bits.
     let options = DecoderOptions::default()
@@ -244,12 +242,15 @@ fn jpeg(bytes: &[u8], texels: &Texels) -> Result<Decoded, Fault> {
     decoder.decode_headers().map_err(broken)?;
     let (width, height) = decoder
         .dimensions()
-        .ok_or_else(|| fault("has no size", "save the image again"))?;
+        .ok_or_else(|| CauseAndRemedy::new("has no size", "save the image again"))?;
     texels.add(width, height)?;
     let buffer = decoder.decode().map_err(broken)?;
     let channels = buffer.len() / (width * height).max(1);
     if !(1..=4).contains(&channels) {
-        return Err(fault("is cut short", "copy the file again, as binary"));
+        return Err(CauseAndRemedy::new(
+            "is cut short",
+            "copy the file again, as binary",
+        ));
     }
     Ok((
         width,

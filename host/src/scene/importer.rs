@@ -3,7 +3,7 @@
 use super::access::Access;
 use super::gzip;
 use super::text::{Source, check_encoding};
-use super::{Choice, ImportOptions, Imported, MoleculeOptions, SceneError};
+use super::{GltfOptions, ImportOptions, Imported, MoleculeOptions, SceneError};
 use crate::table::shortened;
 use gridel_core::Up;
 use std::fmt;
@@ -109,12 +109,12 @@ impl Importers {
     pub(super) fn open<'a>(
         self,
         path: &'a Path,
-        choices: Choices<'a>,
+        options: FileOptions<'a>,
         access: &'a Access,
     ) -> Result<(&'static Importer, Input<'a>), SceneError> {
         // A file that no importer can read is not read.
         self.of_name(path)?;
-        self.input(path, access.read(path)?, choices, access)
+        self.input(path, access.read(path)?, options, access)
     }
 
     /// Content that was read already.
@@ -122,7 +122,7 @@ impl Importers {
         self,
         path: &'a Path,
         bytes: Vec<u8>,
-        choices: Choices<'a>,
+        options: FileOptions<'a>,
         access: &'a Access,
     ) -> Result<(&'static Importer, Input<'a>), SceneError> {
         let named = self.of_name(path)?;
@@ -135,7 +135,7 @@ impl Importers {
             importers: self,
             path,
             bytes,
-            choices,
+            options,
             access,
         };
         Ok((importer, input))
@@ -163,20 +163,20 @@ fn dotted(extensions: &[&str]) -> Vec<String> {
     extensions.iter().map(|it| format!(".{it}")).collect()
 }
 
-/// The choices that a file leaves open.
+/// Options for the content of a file.
 #[derive(Clone, Copy)]
-pub(super) struct Choices<'a> {
+pub(super) struct FileOptions<'a> {
     pub(super) molecule: &'a MoleculeOptions,
     pub(super) assembly: Option<&'a str>,
-    pub(super) choice: &'a Choice,
+    pub(super) gltf: &'a GltfOptions,
 }
 
-impl<'a> Choices<'a> {
+impl<'a> FileOptions<'a> {
     pub(super) fn of(options: &'a ImportOptions) -> Self {
         Self {
             molecule: &options.molecule,
             assembly: options.assembly.as_deref(),
-            choice: &options.choice,
+            gltf: &options.gltf,
         }
     }
 }
@@ -189,7 +189,7 @@ pub(super) struct Input<'a> {
     pub(super) path: &'a Path,
     /// The content, inflated if the file was gzipped.
     pub(super) bytes: Vec<u8>,
-    pub(super) choices: Choices<'a>,
+    pub(super) options: FileOptions<'a>,
     pub(super) access: &'a Access,
 }
 

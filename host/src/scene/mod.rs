@@ -45,6 +45,7 @@ pub use crate::shape::Shape;
 pub use attributes::Attributes;
 pub use emitters::MOST_FACES;
 pub use environment::{Environment, Panorama, Sky, Sun};
+pub(crate) use error::CauseAndRemedy;
 pub use error::SceneError;
 pub use files::Files;
 pub use image::{IMAGE_EXTENSIONS, Image};
@@ -59,7 +60,8 @@ pub use model::{
 pub use morph::{Displacements, LARGEST_WEIGHT, NormalChanges};
 pub use normals::{Normals, NormalsChoice};
 pub use options::{
-    Choice, ImportOptions, Imported, Instances, MoleculeOptions, MoleculeStyle, Posed,
+    FileKinds, GltfOptions, ImportOptions, Imported, Instances, MoleculeOptions, MoleculeStyle,
+    Posed,
 };
 pub use placement::Placement;
 pub use places::Places;
@@ -74,7 +76,7 @@ pub use without::{effect_named, leave_out, shown_without};
 
 use crate::table::printable;
 use access::Access;
-use importer::{Choices, Importers};
+use importer::{FileOptions, Importers};
 use std::borrow::Cow;
 use std::path::Path;
 
@@ -146,7 +148,7 @@ pub fn load(path: &Path, molecule: &MoleculeOptions) -> Result<Imported, SceneEr
 /// ```
 pub fn load_with(path: &Path, options: &ImportOptions) -> Result<Imported, SceneError> {
     let access = Access::of(path, options.allow_outside);
-    let (importer, input) = Importers(IMPORTERS).open(path, Choices::of(options), &access)?;
+    let (importer, input) = Importers(IMPORTERS).open(path, FileOptions::of(options), &access)?;
     finish(importer.import(input)?, options, &access)
 }
 
@@ -163,7 +165,7 @@ fn finish(
         object.shade(options.normals);
     }
     if options.instances == Instances::Flatten {
-        imported = with_copies(imported, options.at)?;
+        imported = with_copies(imported, options.time)?;
     }
     // Where light is reflected between surfaces, they light others by that.
     if imported.scene.render.bounces == 0 {
@@ -236,7 +238,7 @@ fn dark_emitters(scene: &Scene) -> Option<String> {
 pub fn read(name: &Path, bytes: Vec<u8>, options: &ImportOptions) -> Result<Imported, SceneError> {
     let access = Access::of(name, options.allow_outside);
     let (importer, input) =
-        Importers(IMPORTERS).input(name, bytes, Choices::of(options), &access)?;
+        Importers(IMPORTERS).input(name, bytes, FileOptions::of(options), &access)?;
     finish(importer.import(input)?, options, &access)
 }
 
@@ -262,6 +264,6 @@ pub fn read_among(
     options: &ImportOptions,
 ) -> Result<Imported, SceneError> {
     let access = Access::among(files);
-    let (importer, input) = Importers(IMPORTERS).open(name, Choices::of(options), &access)?;
+    let (importer, input) = Importers(IMPORTERS).open(name, FileOptions::of(options), &access)?;
     finish(importer.import(input)?, options, &access)
 }

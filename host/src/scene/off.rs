@@ -8,6 +8,7 @@
 //! without announcing them; these are ignored in the same way, where every vertex and every face has a line of its own.
 //! Vertices of other than three coordinates (`4OFF`, `nOFF`) and binary files are rejected. Comments begin with `#`.
 
+use super::error::CauseAndRemedy;
 use super::importer::{Importer, Input, stem};
 use super::polygon;
 use super::size::Size;
@@ -352,8 +353,8 @@ fn read_faces(
             warnings.add(source, line, sentence);
             continue;
         }
-        let (cut, crosses) =
-            polygon::cut("face", &points).map_err(|[cause, remedy]| wrong(line, cause, &remedy))?;
+        let (cut, crosses) = polygon::cut("face", &points)
+            .map_err(|CauseAndRemedy { cause, remedy }| wrong(line, cause, &remedy))?;
         if let Some(sentence) = crosses {
             warnings.add(source, line, sentence);
         }

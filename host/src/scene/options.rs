@@ -3,6 +3,7 @@
 use super::model::Scene;
 use super::normals::NormalsChoice;
 use serde::{Deserialize, Serialize};
+use std::fmt::Display;
 use std::path::PathBuf;
 
 /// Choices that a molecule file leaves to a person.
@@ -53,12 +54,8 @@ pub struct Imported {
     pub scene: Scene,
     /// Sentences for the user, each with file and line.
     pub warnings: Vec<String>,
-    /// True if a molecule was read, to which [`MoleculeOptions`] apply.
-    pub molecules: bool,
-    /// True if a file with several cameras or animations was read, to which [`Choice`] applies.
-    pub choices: bool,
-    /// True if a file that can hold assemblies was read, to which [`ImportOptions::assembly`] applies.
-    pub assemblies: bool,
+    /// The kinds of the files that were read.
+    pub kinds: FileKinds,
     /// The placements at which moving instances were copied, if they were.
     pub posed: Option<Posed>,
     /// Number of instances that were copied, as [`ImportOptions::instances`] requires.
@@ -68,18 +65,60 @@ pub struct Imported {
 }
 
 impl Imported {
-    /// A scene from a file of one kind, which holds no molecules and leaves no choices.
+    /// A scene from a file of a kind that takes no options of its own.
     pub(super) fn of(scene: Scene, warnings: Vec<String>) -> Self {
         Self {
             scene,
             warnings,
-            molecules: false,
-            choices: false,
-            assemblies: false,
+            kinds: FileKinds::default(),
             posed: None,
             copied: 0,
             files: Vec::new(),
         }
+    }
+}
+
+/// The kinds of a file and of those that it imports, as far as options are for some of them alone.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct FileKinds {
+    /// True if there is a molecule, to which [`MoleculeOptions`] apply.
+    pub molecules: bool,
+    /// True if there is a glTF file, to which [`GltfOptions`] apply.
+    pub gltf: bool,
+    /// True if there is a file that can hold assemblies, to which [`ImportOptions::assembly`] applies.
+    pub assemblies: bool,
+}
+
+impl FileKinds {
+    /// Returns the kinds of two files together.
+    pub(super) fn with(self, other: Self) -> Self {
+        Self {
+            molecules: self.molecules || other.molecules,
+            gltf: self.gltf || other.gltf,
+            assemblies: self.assemblies || other.assemblies,
+        }
+    }
+
+    /// Returns why an option does not apply to a file of these kinds; `None` if it applies. Options have the names that
+    /// they have in TOML and in Python.
+    ///
+    /// ```
+    /// use gridel_host::scene::FileKinds;
+    ///
+    /// let why = FileKinds::default().inapplicable("assembly", &"ball.toml");
+    /// let expected = "is for PDB and mmCIF files, and ball.toml is none of these";
+    /// assert_eq!(why.as_deref(), Some(expected));
+    /// ```
+    pub fn inapplicable(&self, option: &str, file: &dyn Display) -> Option<String> {
+        let (applies, kinds) = match option {
+            "style" | "model" | "altloc" => {
+                (self.molecules, "molecules (PDB, mmCIF and XYZ files)")
+            }
+            "camera" | "animation" => (self.gltf, "glTF files"),
+            "assembly" => (self.assemblies, "PDB and mmCIF files"),
+            _ => return None,
+        };
+        (!applies).then(|| format!("is for {kinds}, and {file} is none of these"))
     }
 }
 
@@ -88,15 +127,15 @@ impl Imported {
 pub enum Posed {
     /// The placements at rest.
     AtRest,
-    /// The placements at [a time](ImportOptions::at).
+    /// The placements at [a time](ImportOptions::time).
     AtTime,
     /// The placements at any time: no instance hangs on the joints that tracks move.
     Always,
 }
 
-/// The choice among a glTF file's cameras and animations.
+/// The camera and the animation of a glTF file.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Choice {
+pub struct GltfOptions {
     /// The name of a camera or of its node; without one the first that has a perspective.
     pub camera: Option<String>,
     /// The name of an animation, or its number from 0; `none` for no animation, unless one has this name; without one
@@ -136,12 +175,12 @@ pub struct ImportOptions {
     /// The assembly of a PDB or mmCIF file, by its number or name. Default: the atoms that the file
     /// lists.
     pub assembly: Option<String>,
-    /// The camera and the animation.
-    pub choice: Choice,
+    /// The camera and the animation of a glTF file.
+    pub gltf: GltfOptions,
     /// The treatment of instances.
     pub instances: Instances,
     /// The time in seconds at which instances are copied where they move; without one they are copied at rest.
-    pub at: Option<f64>,
+    pub time: Option<f64>,
     /// The normals with which meshes are shaded.
     pub normals: NormalsChoice,
     /// True if the file may name files outside of its folder: imports, materials, buffers. A scene from elsewhere could

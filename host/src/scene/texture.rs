@@ -2,7 +2,8 @@
 
 use super::access::Access;
 use super::access::FileError;
-use super::image::{Fault, Image};
+use super::error::CauseAndRemedy;
+use super::image::Image;
 use glam::{DAffine2, DVec2};
 use std::collections::HashMap;
 use std::path::{Path, PathBuf};
@@ -129,7 +130,7 @@ impl<'a> Images<'a> {
         &mut self,
         scene: &Path,
         name: &str,
-    ) -> Result<Arc<Image>, FileError<Fault>> {
+    ) -> Result<Arc<Image>, FileError<CauseAndRemedy>> {
         let path = self
             .access
             .resolve(scene, name)
@@ -142,11 +143,12 @@ impl<'a> Images<'a> {
         if let Some(image) = self.files.get(&key) {
             return Ok(Arc::clone(image));
         }
-        let of_file = |[cause, remedy]: Fault| [format!("{} {cause}", path.display()), remedy];
-        let bytes = self
-            .access
-            .read(&path)
-            .map_err(|error| FileError::Unreadable(of_file([error.cause, error.remedy])))?;
+        let of_file = |CauseAndRemedy { cause, remedy }| {
+            CauseAndRemedy::new(format!("{} {cause}", path.display()), remedy)
+        };
+        let bytes = self.access.read(&path).map_err(|error| {
+            FileError::Unreadable(of_file(CauseAndRemedy::new(error.cause, error.remedy)))
+        })?;
         let image = Image::decode(name, &bytes, &self.access.texels)
             .map_err(|fault| FileError::Unusable(of_file(fault)))?;
         let image = Arc::new(image);

@@ -39,7 +39,7 @@ pub(super) const IMPORTER: Importer = Importer {
 
 /// Reads an XYZ file. It has no camera and no lights; the compiler adds them.
 fn read(input: Input<'_>) -> Result<Imported, SceneError> {
-    let chosen = input.choices.molecule.model;
+    let chosen = input.options.molecule.model;
     molecule::import(input, |source, warnings| parse(source, chosen, warnings))
 }
 
@@ -215,7 +215,7 @@ mod tests {
     fn atoms_are_drawn_as_those_of_other_molecules() {
         let imported = model(IMPORTER.example, 1).unwrap();
         assert_eq!(imported.warnings, [] as [&str; 0]);
-        assert!(imported.molecules);
+        assert!(imported.kinds.molecules);
         assert_eq!(symbols(&imported), "O H H");
         let oxygen = &imported.scene.objects[0];
         assert_eq!((oxygen.name.as_str(), oxygen.place.line), ("O", 3));

@@ -12,14 +12,14 @@ use std::sync::Arc;
 pub struct ClosedMesh {
     pub object: u32,
     /// Its instance, if it is placed by one.
-    instance: Option<Placed>,
+    instance: Option<MeshInstance>,
     /// In units of the blob or the part that holds it.
     triangles: Arc<Vec<[[f64; 3]; 3]>>,
 }
 
 /// The instance of a closed mesh.
 #[derive(Clone, Debug)]
-struct Placed {
+struct MeshInstance {
     index: u32,
     /// The instance's number in scene-file order.
     number: u32,
@@ -55,7 +55,7 @@ impl ClosedMesh {
         let placed = placed
             .step_by(step(of_instances))
             .map(|(index, instance, mesh)| Self {
-                instance: Some(Placed {
+                instance: Some(MeshInstance {
                     index,
                     number: instance.number,
                     map: ExactMap::of(instance),

@@ -97,6 +97,14 @@ pub fn save(state: &State<'_>, folder: &Path) -> io::Result<PathBuf> {
     write_new(&saved(state), folder)
 }
 
+/// Saves the camera of a view, and returns a message about its file.
+pub(super) fn save_with_message(state: &State<'_>) -> String {
+    match save(state, Path::new("")) {
+        Ok(path) => format!("the camera is in {}", path.display()),
+        Err(error) => format!("the camera cannot be saved: {error}"),
+    }
+}
+
 fn write_new(text: &str, folder: &Path) -> io::Result<PathBuf> {
     for number in 1..=MOST_FILES {
         let path = folder.join(format!("camera-{number}.toml"));

@@ -2,6 +2,7 @@
 
 use super::keys::Action;
 use super::notes::Notes;
+use super::refine::Status;
 use super::shot::Shot;
 use crate::scene::{Camera, Lens};
 use gridel_core::format::limits::MAX_SAMPLES;
@@ -113,6 +114,20 @@ impl<'s> State<'s> {
         let structure = self.structure.name();
         let heat_map = if self.heat_map { ", heat map" } else { "" };
         format!("{format}, {structure}, {samples}{heat_map}")
+    }
+
+    /// Returns the line of a front end: the error, the message, or else the settings with the progress. When all is
+    /// drawn, `hint` follows the settings.
+    pub(super) fn status_line(&self, status: &Status, message: Option<&str>, hint: &str) -> String {
+        let settings = self.description();
+        match (&status.error, message) {
+            (Some(error), _) => error.to_string(),
+            (None, Some(message)) => message.to_owned(),
+            (None, None) if status.share < 1.0 => {
+                format!("{settings}, {:.0} %", 100.0 * status.share)
+            }
+            (None, None) => format!("{settings}{hint}"),
+        }
     }
 
     /// Performs the action of a key.

@@ -3,7 +3,7 @@
 use super::frame::Frame;
 use super::keys::{Action, Key, action, key_help};
 use super::refine::Refiner;
-use super::save::save;
+use super::save::save_with_message;
 use super::shot::ViewError;
 use super::state::{Effect, State};
 use super::terminal_keys::{Pressed, Sequences};
@@ -12,7 +12,6 @@ use console::Term;
 use std::fmt::Write as _;
 use std::io::{self, Write};
 use std::mem::ManuallyDrop;
-use std::path::Path;
 use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender, channel};
 use std::thread;
 use std::time::{Duration, Instant};
@@ -291,7 +290,7 @@ impl Live<'_, '_> {
         match effect {
             Effect::Nothing | Effect::Quit => {}
             Effect::Redraw => self.refiner.show(self.state.shot()),
-            Effect::Save => self.message = Some(self.save()),
+            Effect::Save => self.message = Some(save_with_message(&self.state)),
             Effect::Help if closes_help => {}
             Effect::Help => {
                 self.shows_keys = true;
@@ -322,26 +321,14 @@ impl Live<'_, '_> {
         let (rows, columns) = self.terminal;
         let limits = [columns, rows.saturating_sub(LINES_BELOW)];
         let (picture, below) = self.refiner.look(|frame, status| {
-            let settings = self.state.description();
-            let below = match (&status.error, &self.message) {
-                (Some(error), _) => error.to_string(),
-                (None, Some(message)) => message.clone(),
-                (None, None) if status.share < 1.0 => {
-                    format!("{settings}, {:.0} %", 100.0 * status.share)
-                }
-                (None, None) => format!("{settings}; h shows the keys"),
-            };
+            let message = self.message.as_deref();
+            let below = self
+                .state
+                .status_line(status, message, "; h shows the keys");
             (half_blocks_within(frame, limits), below)
         });
         let below: String = below.chars().take(columns.into()).collect();
         write(&format!("\x1b[H{picture}{below}\x1b[K"))
-    }
-
-    fn save(&self) -> String {
-        match save(&self.state, Path::new("")) {
-            Ok(path) => format!("the camera is in {}", path.display()),
-            Err(error) => format!("the camera cannot be saved: {error}"),
-        }
     }
 }
 

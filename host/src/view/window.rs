@@ -2,7 +2,7 @@
 
 use super::keys::{Key, action, key_help};
 use super::refine::Refiner;
-use super::save::save;
+use super::save::save_with_message;
 use super::shot::Shot;
 use super::state::{Effect, State};
 use super::summary::summary;
@@ -13,7 +13,6 @@ use softbuffer::{Context, Surface};
 use std::fmt::Display;
 use std::io::{self, Write};
 use std::num::NonZeroU32;
-use std::path::Path;
 use std::rc::Rc;
 use std::sync::mpsc::{self, Receiver, Sender};
 use std::thread;
@@ -345,10 +344,7 @@ impl App<'_> {
     }
 
     fn save(&mut self) {
-        let message = match save(&self.state, Path::new("")) {
-            Ok(path) => format!("the camera is in {}", path.display()),
-            Err(error) => format!("the camera cannot be saved: {error}"),
-        };
+        let message = save_with_message(&self.state);
         print(format!("{message}\n"));
         self.clear();
         self.message = Some(message);
@@ -368,20 +364,12 @@ impl App<'_> {
         };
         canvas.surface.resize(width, height)?;
         let mut pixels = canvas.surface.buffer_mut()?;
-        let settings = self.state.description();
-        let below = self.refiner.look(|frame, status| {
+        let line = self.refiner.look(|frame, status| {
             frame.stretch(&mut pixels, [width, height].map(|it| it.get() as usize));
-            match (&status.error, &self.message) {
-                (Some(error), _) => error.to_string(),
-                (None, Some(message)) => message.clone(),
-                (None, None) if status.share < 1.0 => {
-                    format!("{settings}, {:.0} %", 100.0 * status.share)
-                }
-                (None, None) => settings,
-            }
+            self.state.status_line(status, self.message.as_deref(), "")
         });
         pixels.present()?;
-        let title = format!("{}: {below}", self.viewed.title);
+        let title = format!("{}: {line}", self.viewed.title);
         if canvas.title != title {
             canvas.window.set_title(&title);
             canvas.title = title;

@@ -40,7 +40,7 @@ fn options_of_structures_that_are_not_built_are_rejected() {
         ),
         (
             &["--model", "2"],
-            &["--model is for molecules", "quick.toml has none"],
+            &["--model is for molecules", "quick.toml is none of these"],
         ),
         (
             &["--style", "ball-and-stick"],

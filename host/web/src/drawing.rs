@@ -40,7 +40,7 @@ impl Drawing {
             words.extend(packed(block, &drawn));
         };
         let mut blocks = self.blocks.by_ref().take(blocks);
-        draw(loaded.scene()?, &self.shot, &mut blocks, &mut put)
+        draw(loaded.scene(), &self.shot, &mut blocks, &mut put)
             .map_err(|error| Problem::new(error, "choose other settings, or another structure"))?;
         Ok(bytemuck::cast_slice(&words).to_vec())
     }

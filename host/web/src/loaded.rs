@@ -5,57 +5,43 @@ use crate::request::{CameraOf, ShotOf};
 use gridel_core::format::limits::MAX_SAMPLES;
 use gridel_core::format::record::View;
 use gridel_core::{BlobError, Scene, Settings};
-use gridel_host::blob::{Blob, remedy_of};
+use gridel_host::blob::{Blob, CheckedBlob, remedy_of};
 use gridel_host::compile::Names;
 use gridel_host::scene::Camera;
 use gridel_host::view::Shot;
 use serde_json::{Value, json};
 
-type Checked<'b> = Result<Scene<'b>, BlobError>;
-
-// A scene borrows from its blob.
-self_cell::self_cell!(
-    struct Cell {
-        owner: Blob,
-        #[covariant]
-        dependent: Checked,
-    }
-);
-
 /// A valid blob and its scene.
 pub struct Loaded {
-    cell: Cell,
+    blob: CheckedBlob,
     pub names: Names,
 }
 
 impl Loaded {
     /// Checks a blob, of a file with this name.
     pub fn new(blob: Blob, name: Option<&str>) -> Result<Self, Problem> {
-        let cell = Cell::new(blob, Blob::scene);
-        let scene = cell.borrow_dependent().as_ref();
-        let scene = scene.map_err(|error| invalid(error, name))?;
-        let names = Names::of_blob(scene, cell.borrow_owner().bytes());
+        let blob = CheckedBlob::new(blob).map_err(|error| invalid(&error, name))?;
+        let names = Names::of_blob(blob.scene(), blob.bytes());
         let names = names.map_err(|error| invalid(&error, name))?;
-        Ok(Self { cell, names })
+        Ok(Self { blob, names })
     }
 
-    pub fn scene(&self) -> Result<&Scene<'_>, Problem> {
-        let scene = self.cell.borrow_dependent().as_ref();
-        scene.map_err(|error| invalid(error, None))
+    pub fn scene(&self) -> &Scene<'_> {
+        self.blob.scene()
     }
 
     pub fn bytes(&self) -> &[u8] {
-        self.cell.borrow_owner().bytes()
+        self.blob.bytes()
     }
 
     /// Returns the data of it that a page shows.
-    pub fn json(&self) -> Result<Value, Problem> {
-        let scene = self.scene()?;
+    pub fn json(&self) -> Value {
+        let scene = self.scene();
         let settings = Settings::of(scene);
         let header = scene.header();
         let structures: Vec<_> = scene.structures().map(|it| it.name()).collect();
         let effects: Vec<_> = scene.effects().names().collect();
-        Ok(json!({
+        json!({
             "bytes": self.bytes().len(),
             "width": settings.width,
             "height": settings.height,
@@ -67,12 +53,12 @@ impl Loaded {
             "objects": header.objects,
             "primitives": header.primitives,
             "instances": scene.instances().len(),
-        }))
+        })
     }
 
     /// The view of a camera; the blob's own without one.
     pub fn view(&self, camera: Option<CameraOf>) -> Result<View, Problem> {
-        let scene = self.scene()?;
+        let scene = self.scene();
         match camera {
             None => Ok(*scene.view()),
             Some(camera) => Camera::from(camera).in_blob(scene).map_err(Problem::of),

@@ -65,7 +65,7 @@ pub fn heat_map(bytes: &[u8]) -> Answer {
 
 /// The file that `gridel render` writes.
 pub fn png(loaded: &Loaded, [width, height]: [u16; 2], bytes: &[u8]) -> Answer {
-    let scene = loaded.scene()?;
+    let scene = loaded.scene();
     let settings = Settings {
         width,
         height,

@@ -127,11 +127,11 @@ impl Session {
         // The blob before goes first: there may be no room for both.
         *place = None;
         let loaded = place.insert(Loaded::new(Blob::new(bytes), name)?);
-        Ok((loaded.json()?, Vec::new()))
+        Ok((loaded.json(), Vec::new()))
     }
 
     fn moved(&self, how: Move) -> Answer {
-        let scene = self.loaded(how.slot)?.scene()?;
+        let scene = self.loaded(how.slot)?.scene();
         // Panning counts heights of the picture.
         let settings = Settings {
             width: 1,
@@ -195,7 +195,7 @@ impl Session {
         let loaded = self.loaded(of.slot)?;
         let shot = loaded.shot(of)?;
         let scene = loaded
-            .scene()?
+            .scene()
             .with_view(&shot.view)
             .map_err(Problem::fault)?;
         let subject = Subject::Pixel(pixel);
@@ -231,22 +231,14 @@ impl Session {
             None => self.loaded(0)?,
         };
         let format = of.format.map_or_else(|| board.format(), |it| it.0);
-        let scene = loaded.scene()?;
+        let scene = loaded.scene();
         let rendering = Rendering {
             format,
             structure: on_boards(scene, of.structure.0),
             width: scene.view().width,
         };
         let report = MemoryReport::of(scene, loaded.bytes(), &target, &rendering);
-        let report = report.map_err(|it| {
-            Problem::new(
-                format!("{} was not measured on boards", it.0.name()),
-                &format!(
-                    "choose one of {}",
-                    MemoryReport::STRUCTURES.map(Structure::name).join(", ")
-                ),
-            )
-        })?;
+        let report = report.map_err(|error| Problem::new(error, &error.remedy()))?;
         let (fits, why) = match report.fit() {
             Fit::Fits => (true, String::new()),
             Fit::Short(why) | Fit::Undecided(why) => (false, why),

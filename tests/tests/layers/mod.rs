@@ -28,7 +28,7 @@ const HOST: Layers = Layers {
     order: &[
         "output simd srgb palette explained random table blob observed picture_rays shape deformation",
         "scene sample compile",
-        "live morphed state render trace npy picture layer openexr animation merge resolution report",
+        "blob_view morphed state render trace npy picture layer openexr animation merge resolution report",
         "measure emit",
         "certify accuracy compare verify explain view check",
         "cli main",
@@ -63,7 +63,7 @@ const UNEQUAL: [&str; 22] = [
 #[test]
 fn blobs_come_from_functions_that_are_equal_on_every_machine() {
     let host = Path::new(env!("CARGO_MANIFEST_DIR")).join(HOST.sources);
-    let of_blobs = "palette random shape deformation scene compile live morphed state";
+    let of_blobs = "palette random shape deformation scene compile blob_view morphed state";
     let is_of_blobs = |module: &str| of_blobs.split(' ').any(|it| it == module);
     let mut faults = Vec::new();
     for source in sources(&host) {

@@ -390,14 +390,14 @@ impl NativeScene {
         threads: usize,
     ) -> PyResult<Bound<'py, numpy::PyArray3<u8>>> {
         let how = self.how(format, accel, threads)?;
-        let own = Settings::of(self.scene()?);
+        let own = Settings::of(self.scene());
         let [width, height] = size.unwrap_or([own.width, own.height]);
         let model = self.model.as_ref();
         let framed = model.map(|model| model.framed(py, [width, height]));
         let framed = framed.transpose()?.flatten();
         let scene = match &framed {
             Some(blob) => &blob.scene().map_err(invalid)?,
-            None => self.scene()?,
+            None => self.scene(),
         };
         let settings = Settings {
             width,
@@ -441,7 +441,7 @@ impl NativeScene {
         lattice_bits: Option<u8>,
     ) -> PyResult<Bound<'py, PyBytes>> {
         if accel.is_none() && lattice_bits.is_none() {
-            return bytes(py, self.blob.borrow_owner().bytes());
+            return bytes(py, self.blob.bytes());
         }
         let Some(model) = &self.model else {
             return Err(invalid(
@@ -462,21 +462,16 @@ impl NativeScene {
     /// The names of the structures, the best first.
     #[getter]
     fn accels(&self) -> Vec<String> {
-        let names = self.scene().map(|scene| {
-            scene
-                .structures()
-                .map(|structure| structure.name().to_owned())
-                .collect()
-        });
-        names.unwrap_or_default()
+        let structures = self.scene().structures();
+        structures.map(|it| it.name().to_owned()).collect()
     }
 
     /// Numbers of objects, primitives and instances.
     #[getter]
-    fn counts(&self) -> PyResult<(u32, u32, usize)> {
-        let scene = self.scene()?;
+    fn counts(&self) -> (u32, u32, usize) {
+        let scene = self.scene();
         let header = scene.header();
-        Ok((header.objects, header.primitives, scene.instances().len()))
+        (header.objects, header.primitives, scene.instances().len())
     }
 
     /// The farthest that rounding to the lattice moved a surface, NaN of a blob.
@@ -487,8 +482,8 @@ impl NativeScene {
 
     /// The box of the scene, in scene units: lowest and highest corner.
     #[getter]
-    fn bounds(&self) -> PyResult<([f64; 3], [f64; 3])> {
-        let [low, high] = self.corners_of_box()?.map(|it| it.to_array());
-        Ok((low, high))
+    fn bounds(&self) -> ([f64; 3], [f64; 3]) {
+        let [low, high] = self.corners_of_box().map(|it| it.to_array());
+        (low, high)
     }
 }

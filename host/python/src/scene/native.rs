@@ -6,8 +6,8 @@ use crate::model::Model;
 use crate::query::How;
 use crate::rays::{Array, Middle, Rays, Slack};
 use glam::DVec3;
-use gridel_core::{BlobError, Scene};
-use gridel_host::blob::Blob;
+use gridel_core::Scene;
+use gridel_host::blob::{Blob, CheckedBlob};
 use gridel_host::compile::Compiled;
 use gridel_host::trace::Frame;
 use pyo3::prelude::*;
@@ -22,17 +22,6 @@ const ROUNDING: f64 = 1.0 / (1 << 22) as f64;
 
 /// A step of the finest lattice, as a part of a scene's size: so far directions in single precision lead astray.
 const STEP: f64 = 1.0 / (1 << 24) as f64;
-
-type Checked<'b> = Result<Scene<'b>, BlobError>;
-
-self_cell::self_cell!(
-    /// A blob and its checked view.
-    pub struct CheckedBlob {
-        owner: Blob,
-        #[covariant]
-        dependent: Checked,
-    }
-);
 
 /// A scene, compiled and checked.
 #[pyclass(frozen, name = "NativeScene")]
@@ -53,11 +42,10 @@ pub struct NativeScene {
 
 impl NativeScene {
     pub(super) fn of_blob(blob: Blob, model: Option<Model>, displacement: f64) -> PyResult<Self> {
-        let blob = CheckedBlob::new(blob, |blob| blob.scene());
-        let (middle, size) = match blob.borrow_dependent() {
-            Ok(scene) => (Middle::of(scene), size(scene)),
-            Err(error) => return Err(invalid(format!("invalid scene blob: {error}"))),
-        };
+        let blob = CheckedBlob::new(blob);
+        let blob = blob.map_err(|error| invalid(format!("invalid scene blob: {error}")))?;
+        let scene = blob.scene();
+        let (middle, size) = (Middle::of(scene), size(scene));
         let mut next = 0;
         let firsts = model
             .iter()
@@ -101,8 +89,8 @@ impl NativeScene {
         py.detach(|| Self::of_blob(blob, Some(model), displacement))
     }
 
-    pub(super) fn scene(&self) -> PyResult<&Scene<'_>> {
-        self.blob.borrow_dependent().as_ref().map_err(invalid)
+    pub(super) fn scene(&self) -> &Scene<'_> {
+        self.blob.scene()
     }
 
     pub(super) fn how(
@@ -111,7 +99,7 @@ impl NativeScene {
         accel: Option<&str>,
         threads: usize,
     ) -> PyResult<How> {
-        let scene = self.scene()?;
+        let scene = self.scene();
         let structure = match accel {
             Some(name) => structure(name)?,
             None => scene.best_structure(),
@@ -146,16 +134,16 @@ impl NativeScene {
 
     /// The lowest and the highest corner of a box around the scene: of its vertices as they were given where it has
     /// nothing but meshes, else in whole steps of its coordinates.
-    pub(super) fn corners_of_box(&self) -> PyResult<[DVec3; 2]> {
-        let scene = self.scene()?;
-        Ok(*self.bounds.get_or_init(|| {
+    pub(super) fn corners_of_box(&self) -> [DVec3; 2] {
+        let scene = self.scene();
+        *self.bounds.get_or_init(|| {
             let given = self.model.as_ref().and_then(Model::bounds);
             given.unwrap_or_else(|| {
                 let frame = Frame::of(scene);
                 let sides = scene.bounds().0;
                 [0, 1].map(|side| frame.place(sides.map(|it| f64::from(it[side]))))
             })
-        }))
+        })
     }
 
     /// The rays of an array.
@@ -165,7 +153,7 @@ impl NativeScene {
 
     /// The scene with a structure chosen.
     pub(super) fn chosen(&self, how: How) -> PyResult<Scene<'_>> {
-        let chosen = self.scene()?.choose(how.structure);
+        let chosen = self.scene().choose(how.structure);
         chosen.ok_or_else(|| invalid("the structure is not there"))
     }
 }

@@ -212,6 +212,29 @@ impl Manifest {
     }
 }
 
+/// The keys of a check.
+const KEYS: [&str; 19] = [
+    "name",
+    "scene",
+    "accel",
+    "lattice_bits",
+    "allow_outside",
+    "instances",
+    "assembly",
+    "formats",
+    "size",
+    "samples",
+    "time",
+    "hash",
+    "reference",
+    "tolerance",
+    "budget",
+    "certified",
+    "max_proved_error",
+    "target",
+    "board",
+];
+
 impl Check {
     /// Returns whether its pictures are compared with the exact one.
     pub(super) fn is_certified(&self) -> bool {
@@ -219,28 +242,7 @@ impl Check {
     }
 
     fn read(table: Value<'_>, folder: &Path) -> Result<Self, SceneError> {
-        let keys = [
-            "name",
-            "scene",
-            "accel",
-            "lattice_bits",
-            "allow_outside",
-            "instances",
-            "assembly",
-            "formats",
-            "size",
-            "samples",
-            "time",
-            "hash",
-            "reference",
-            "tolerance",
-            "budget",
-            "certified",
-            "max_proved_error",
-            "target",
-            "board",
-        ];
-        let fields = table.fields("check", &[&keys])?;
+        let fields = table.fields("check", &[&KEYS])?;
         let target = fields.or("target", None, |value| target(value).map(Some))?;
         let value = fields.require("scene")?;
         let scene = Named::read(value, folder)?;
@@ -254,18 +256,15 @@ impl Check {
             }
         };
         let formats = fields.or("formats", vec![Format::F32], formats)?;
-        let tolerance = fields.get("tolerance");
-        let reference = match fields.get("reference") {
-            Some(path) => Some(Reference::read(path, tolerance, folder)?),
-            None => match tolerance {
-                Some(value) => {
-                    return Err(value.error(
-                        "a tolerance without a `reference` allows nothing",
-                        "add the path of a picture as `reference`, or remove the tolerance",
-                    ));
-                }
-                None => None,
-            },
+        let reference = match [fields.get("reference"), fields.get("tolerance")] {
+            [Some(path), tolerance] => Some(Reference::read(path, tolerance, folder)?),
+            [None, Some(tolerance)] => {
+                return Err(tolerance.error(
+                    "a tolerance without a `reference` allows nothing",
+                    "add the path of a picture as `reference`, or remove the tolerance",
+                ));
+            }
+            [None, None] => None,
         };
         let check = Self {
             name: match fields.get("name") {

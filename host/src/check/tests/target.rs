@@ -111,7 +111,7 @@ fn target_without_figures_is_broken_and_says_why() {
     assert_eq!((report.passed(), report.failed()), (0, 1), "{report:?}");
     let why = why(&report.findings[0]);
     assert!(
-        why.contains("`grid`") && why.contains("dual-split"),
+        why.contains("grid was not measured on boards") && why.contains("dual-split"),
         "{why}"
     );
 }
@@ -156,7 +156,7 @@ fn target_is_held_to_the_structure_and_the_size_of_the_check() {
     let of_blob = |lines: &str| on_discovery(lines).replace("ball.toml", "ball.gridel");
     let (_, report) = folder.run(&of_blob("accel = \"octree\"\n"));
     assert!(
-        why(&report.findings[0]).contains("nothing is known of the code"),
+        why(&report.findings[0]).contains("octree was not measured on boards"),
         "{report:?}"
     );
     // A list takes more code than the nodes that are best, as in a blob of its own.

@@ -201,7 +201,7 @@ impl GeometryOptions {
             (self.import.assembly.is_some(), "--assembly"),
             (!self.import.without.is_empty(), "--without"),
         ])
-        .or(self.import.given_choice())
+        .or(self.import.given_for_gltf())
         .or(self.import.molecule.given())
     }
 }
@@ -210,7 +210,7 @@ impl SceneOptions {
     /// Returns the options for importers.
     pub fn for_import(&self) -> scene::ImportOptions {
         scene::ImportOptions {
-            at: self.time.or(self.opening),
+            time: self.time.or(self.opening),
             ..self.geometry.import.for_import()
         }
     }
@@ -276,7 +276,7 @@ impl ImportOptions {
     }
 
     /// Returns the name of an option for glTF files, if one was given.
-    pub fn given_choice(&self) -> Option<&'static str> {
+    pub fn given_for_gltf(&self) -> Option<&'static str> {
         first_given([
             (self.camera.is_some(), "--camera"),
             (self.animation.is_some(), "--animation"),
@@ -284,7 +284,7 @@ impl ImportOptions {
     }
 
     /// Returns the name of an option for files with assemblies, if one was given.
-    pub fn given_assembly(&self) -> Option<&'static str> {
+    pub fn given_for_assemblies(&self) -> Option<&'static str> {
         first_given([(self.assembly.is_some(), "--assembly")])
     }
 
@@ -297,11 +297,11 @@ impl ImportOptions {
     /// The options for importers.
     fn for_import(&self) -> scene::ImportOptions {
         scene::ImportOptions {
-            at: None,
+            time: None,
             molecule: self.molecule.for_import(),
             assembly: self.assembly.clone(),
             instances: self.instances.unwrap_or_default(),
-            choice: scene::Choice {
+            gltf: scene::GltfOptions {
                 camera: self.camera.clone(),
                 animation: self.animation.clone(),
             },

@@ -6,8 +6,8 @@ use crate::cli::failure::Failure;
 use clap::Args;
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use glam::DVec3;
-use gridel_core::{Format, Scene, Structure};
-use gridel_host::measure::board::{BOARDS, Board, MemoryReport, NotMeasured, Rendering, Target};
+use gridel_core::{Format, Scene};
+use gridel_host::measure::board::{BOARDS, Board, MemoryReport, Rendering, Target};
 use std::ffi::OsStr;
 
 /// The memory that a scene is to fit into.
@@ -78,18 +78,9 @@ impl TargetOptions {
         };
         let rendering = Rendering::of(scene, format);
         let report = MemoryReport::of(scene, blob, &target, &rendering);
-        report.map(Some).map_err(|NotMeasured(structure)| {
-            Failure::usage(
-                format!(
-                    "{} was not measured on boards: nothing is known of its code and call stack",
-                    structure.name()
-                ),
-                format!(
-                    "build a blob without it, for {}",
-                    MemoryReport::STRUCTURES.map(Structure::name).join(", ")
-                ),
-            )
-        })
+        report
+            .map(Some)
+            .map_err(|error| Failure::usage(error.to_string(), error.remedy()))
     }
 }
 

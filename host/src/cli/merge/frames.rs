@@ -1,5 +1,6 @@
 //! Numbered pictures become an animation.
 
+use super::misfit;
 use crate::cli::failure::Failure;
 use crate::cli::output::{print, print_json, reject_inputs, write_file};
 use crate::cli::progress::Progress;
@@ -50,17 +51,10 @@ pub fn run(
         pictures: order.len() as u32,
         per_second: first.note.frame.per_second,
     };
-    let most = format.most_per_second();
-    if animation.per_second > most {
-        return Err(Failure::usage(
-            format!(
-                "{}: a .gif shows at most {most} frames per second, and these are {}",
-                output.display(),
-                animation.per_second
-            ),
-            "merge them into an .apng",
-        ));
-    }
+    format.check_rate(animation.per_second).map_err(|error| {
+        let cause = format!("{}: {error}", output.display());
+        Failure::usage(cause, "merge them into an .apng")
+    })?;
     let progress = Progress::steps("merging", order.len() as u64);
     // The failure of a frame, in contrast to that of writing the file.
     let mut failure = None;
@@ -114,19 +108,16 @@ fn wrong(path: &Path, error: &PartError) -> Failure {
 }
 
 fn failure(inputs: &[PathBuf], error: &FramesError) -> Failure {
-    let name = |number: usize| inputs[number].display();
-    let misfit = |[one, other]: [usize; 2], remedy: &str| {
-        let cause = format!("{} and {} do not fit: {error}", name(one), name(other));
-        Failure::failed(cause, remedy)
-    };
     match error {
         FramesError::Sizes(both, _) | FramesError::Made(both, _) | FramesError::Rates(both, _) => {
             misfit(
+                inputs,
                 *both,
+                error,
                 "render all frames with one gridel from one blob, with the same options but for the range of `--frames`",
             )
         }
-        FramesError::Twice(both, _) => misfit(*both, "leave one of them out"),
+        FramesError::Twice(both, _) => misfit(inputs, *both, error, "leave one of them out"),
         FramesError::Missing(number) => Failure::failed(
             format!("the animation is not whole: {error}"),
             format!("render it with `--frames {number}..{}`", number + 1),

@@ -11,6 +11,7 @@ use gridel_host::merge::{Merge, MergeError, Part};
 use gridel_host::picture::PictureFormat;
 use gridel_host::table::counted;
 use serde::Serialize;
+use std::fmt::Display;
 use std::fs::File;
 use std::io::BufReader;
 use std::path::{Path, PathBuf};
@@ -123,18 +124,19 @@ fn format_of(path: &Path) -> Result<PictureFormat, Failure> {
 }
 
 fn failure(arguments: &Arguments, error: &MergeError) -> Failure {
-    let name = |number: usize| arguments.parts[number].display();
+    let parts = &arguments.parts;
     match error {
-        MergeError::Sizes([one, other], _) => Failure::failed(
-            format!("{} and {} do not fit: {error}", name(*one), name(*other)),
-            "merge parts of one picture",
-        ),
-        MergeError::Made([one, other], _) => Failure::failed(
-            format!("{} and {} do not fit: {error}", name(*one), name(*other)),
+        MergeError::Sizes(both, _) => misfit(parts, *both, error, "merge parts of one picture"),
+        MergeError::Made(both, _) => misfit(
+            parts,
+            *both,
+            error,
             "render all parts with one gridel from one blob, with the same options but for `--rows`",
         ),
-        MergeError::Differ([one, other], _) => Failure::failed(
-            format!("{} and {} do not fit: {error}", name(*one), name(*other)),
+        MergeError::Differ(both, _) => misfit(
+            parts,
+            *both,
+            error,
             "render both with the same scene, number format and settings",
         ),
         MergeError::Missing(rows) => Failure::failed(
@@ -142,4 +144,10 @@ fn failure(arguments: &Arguments, error: &MergeError) -> Failure {
             format!("render them with `--rows {}..{}`", rows.start, rows.end),
         ),
     }
+}
+
+/// Returns the failure that two inputs do not belong together.
+fn misfit(inputs: &[PathBuf], both: [usize; 2], error: &dyn Display, remedy: &str) -> Failure {
+    let [one, other] = both.map(|number| inputs[number].display());
+    Failure::failed(format!("{one} and {other} do not fit: {error}"), remedy)
 }

@@ -113,15 +113,11 @@ impl Output {
                     "leave %d out, or write pictures: .png, .ppm or .rgb565",
                 ));
             }
-            let (fps, most) = (options.per_second(), format.most_per_second());
-            if fps > most {
-                return Err(Failure::usage(
-                    format!(
-                        "{shown}: a .gif shows at most {most} frames per second, and {fps} are asked for"
-                    ),
-                    format!("use `--fps {most}` or less, or write an .apng"),
-                ));
-            }
+            format.check_rate(options.per_second()).map_err(|error| {
+                let most = format.most_per_second();
+                let remedy = format!("use `--fps {most}` or less, or write an .apng");
+                Failure::usage(format!("{shown}: {error}"), remedy)
+            })?;
             reject_inputs([input], [path], "the input")?;
             check_writable(path)?;
             return Ok(Self::Animation(format));

@@ -7,7 +7,9 @@ mod time;
 
 pub use time::tick;
 
-use super::arguments::{LightChange, SceneOptions, TraceOptions, check_quality, check_room};
+use super::arguments::{
+    ImportOptions, LightChange, SceneOptions, TraceOptions, check_quality, check_room,
+};
 use super::changes::Changes;
 use super::failure::Failure;
 use super::input::Input;
@@ -19,7 +21,7 @@ use gridel_host::compile::{self, Compiled, Names};
 use gridel_host::measure::Deforming;
 use gridel_host::morphed::morph_targets;
 use gridel_host::resolution::{FACTOR, Unresolved, unresolved};
-use gridel_host::scene::{self, Imported, Posed, SourceSpan, Track, TrackTarget};
+use gridel_host::scene::{self, FileKinds, Imported, Posed, SourceSpan, Track, TrackTarget};
 use gridel_host::table::{counted, grouped, printable, significant};
 use std::path::{Path, PathBuf};
 
@@ -350,57 +352,60 @@ pub fn import(path: &Path, options: &SceneOptions) -> Result<Imported, Failure> 
     Ok(import_from(&Input::open(path)?, options)?.0)
 }
 
+/// Rejects a blob in place of a scene file.
+fn reject_blob(input: &Input) -> Result<(), Failure> {
+    if !input.is_blob()? {
+        return Ok(());
+    }
+    let path = input.path();
+    if !input.begins_as_blob()? {
+        return Err(Failure::failed(
+            format!(
+                "{} has the name of a blob, but its content is not that of a blob",
+                path.display()
+            ),
+            "if it is a scene file, rename it to the extension of its format, such as .toml",
+        ));
+    }
+    Err(Failure::failed(
+        format!("{} is a blob already, not a scene file", path.display()),
+        "give the scene file that it was built from; `gridel inspect` and `gridel render` take \
+         blobs",
+    ))
+}
+
+/// Checks that the options for files of some kinds are given for such files.
+fn check_options(options: &ImportOptions, kinds: FileKinds, path: &Path) -> Result<(), Failure> {
+    let given = [
+        options.molecule.given(),
+        options.given_for_gltf(),
+        options.given_for_assemblies(),
+    ];
+    for option in given.into_iter().flatten() {
+        let name = option.trim_start_matches('-');
+        if let Some(why) = kinds.inapplicable(name, &path.display()) {
+            return Err(Failure::usage(
+                format!("{option} {why}"),
+                "leave the option out",
+            ));
+        }
+    }
+    Ok(())
+}
+
 /// Imports a scene file, and returns what its tracks move, those that options replace among them.
 fn import_from(
     input: &Input,
     options: &SceneOptions,
 ) -> Result<(Imported, Vec<TrackTarget>), Failure> {
+    reject_blob(input)?;
     let path = input.path();
-    if input.is_blob()? {
-        if !input.begins_as_blob()? {
-            return Err(Failure::failed(
-                format!(
-                    "{} has the name of a blob, but its content is not that of a blob",
-                    path.display()
-                ),
-                "if it is a scene file, rename it to the extension of its format, such as .toml",
-            ));
-        }
-        return Err(Failure::failed(
-            format!("{} is a blob already, not a scene file", path.display()),
-            "give the scene file that it was built from; `gridel inspect` and `gridel render` take \
-             blobs",
-        ));
-    }
     let importing = &options.geometry.import;
     let progress = Progress::unknown("reading");
     let imported = input.scene(&options.for_import());
     drop(progress);
     let mut imported = imported.map_err(|error| Failure::Failed(miette::Report::new(error)))?;
-    if let Some(option) = importing.molecule.given().filter(|_| !imported.molecules) {
-        return Err(Failure::usage(
-            format!("{option} is for molecules, and {} has none", path.display()),
-            "leave the option out",
-        ));
-    }
-    if let Some(option) = importing.given_choice().filter(|_| !imported.choices) {
-        return Err(Failure::usage(
-            format!(
-                "{option} is for glTF files, and {} has none",
-                path.display()
-            ),
-            "leave the option out",
-        ));
-    }
-    if let Some(option) = importing.given_assembly().filter(|_| !imported.assemblies) {
-        return Err(Failure::usage(
-            format!(
-                "{option} is for PDB and mmCIF files, and {} has none",
-                path.display()
-            ),
-            "leave the option out",
-        ));
-    }
+    check_options(importing, imported.kinds, path)?;
     imported.warnings.iter().for_each(warn);
     let lost = scene::leave_out(&mut imported.scene, &importing.without);
     warn_of_file(path, lost, &mut imported.warnings);

@@ -31,7 +31,7 @@ pub fn own_rays(context: &BuildContext<'_>) -> Result<Vec<ClassPoint>, CompileEr
         None => context.role,
     };
     let context = BuildContext { role, ..*context };
-    let blob = writer::write(writer::parts(&context, vec![hierarchy]))?;
+    let blob = writer::write(writer::contents(&context, vec![hierarchy]))?;
     Ok(rays_of(&blob.scene()?))
 }
 

@@ -59,7 +59,7 @@ pub struct Parts {
 
 /// Placed parts as a blob holds them.
 #[derive(Debug, Default)]
-pub struct Placed {
+pub struct CompiledInstances {
     records: Vec<instance::Instance>,
     /// The joint of each; empty where the scene has none.
     joints: Vec<u32>,
@@ -145,7 +145,11 @@ impl Parts {
 
     /// Places all instances of a scene on its lattice; `None` where one reaches beyond it. Those of parts without
     /// primitives are left out: there is nothing of them.
-    pub fn place(&self, scene: &Scene, lattice: &Lattice) -> Result<Option<Placed>, CompileError> {
+    pub fn place(
+        &self,
+        scene: &Scene,
+        lattice: &Lattice,
+    ) -> Result<Option<CompiledInstances>, CompileError> {
         let mut records = Vec::with_capacity(scene.instances.len());
         let mut boxes = Vec::with_capacity(scene.instances.len());
         let mut displacement = 0_f64;
@@ -185,7 +189,7 @@ impl Parts {
             joint.map_or(Joint::NONE, |joint| joint as u32)
         };
         let joints = tree.order.iter().filter(|_| !scene.joints.is_empty());
-        Ok(Some(Placed {
+        Ok(Some(CompiledInstances {
             records: records.collect(),
             joints: joints.map(joint).collect(),
             tree,
@@ -293,7 +297,7 @@ impl Parts {
     }
 }
 
-impl Placed {
+impl CompiledInstances {
     /// Returns the sections of instances.
     pub fn sections(&self) -> Vec<Section> {
         vec![

@@ -6,7 +6,7 @@ use crate::compile::geometry::primitives::Primitives;
 use crate::compile::hierarchy::node::{Node, Primitive};
 use crate::compile::hierarchy::pairs::Flat;
 use crate::compile::hierarchy::volumes::Tree;
-use crate::compile::instances::{Parts, Placed, Role};
+use crate::compile::instances::{CompiledInstances, Parts, Role};
 use crate::compile::options::{OnProgress, Options};
 use crate::compile::shading::ShadingData;
 use crate::compile::wide::Wide;
@@ -31,7 +31,7 @@ pub struct BuildContext<'g> {
     pub bounds: UnitBox,
     pub shading: &'g ShadingData,
     pub role: Role<'g>,
-    pub placed: &'g Placed,
+    pub placed: &'g CompiledInstances,
     /// The scene's parts, compiled with other options.
     pub parts_with: &'g dyn Fn(&Options) -> Result<Parts, CompileError>,
     pub options: &'g Options,

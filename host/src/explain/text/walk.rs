@@ -2,7 +2,7 @@
 
 use super::Shown;
 use super::words::{counted_were, precise, vector};
-use crate::explain::walk::{Culled, Plane, Side, Step, Tested, Verdict, Walk};
+use crate::explain::walk::{Candidate, Culled, Plane, Side, Step, Tested, Verdict, Walk};
 use crate::table::significant;
 use glam::DVec3;
 use std::fmt::{self, Formatter};
@@ -62,30 +62,7 @@ impl Shown<'_> {
                     along(walk, *hit)
                 )?,
                 Step::Candidate(candidate) => {
-                    let crossing = candidate.crossing.map(|[enter, leave]| {
-                        if enter == leave {
-                            format!("is hit at {}", along(walk, enter))
-                        } else {
-                            format!(
-                                "is hit from {} to {}",
-                                along(walk, enter),
-                                along(walk, leave)
-                            )
-                        }
-                    });
-                    let crossing = crossing.unwrap_or_else(|| String::from("is missed"));
-                    let verdict = match candidate.verdict {
-                        Verdict::Missed => "",
-                        Verdict::NotInInterval => ", outside of the ray's interval",
-                        Verdict::Farther => ", behind the closest hit",
-                        Verdict::Nearest => ": the closest hit so far",
-                    };
-                    let (kind, primitive) = (candidate.kind, candidate.primitive);
-                    let object = match candidate.instance {
-                        Some(_) => format!(" of {}", self.object(candidate.object)),
-                        None => String::new(),
-                    };
-                    writeln!(f, "    {kind} {primitive}{object} {crossing}{verdict}")?;
+                    writeln!(f, "    {}", self.candidate_text(walk, candidate))?;
                 }
             }
         }
@@ -97,6 +74,28 @@ impl Shown<'_> {
             )?;
         }
         Ok(())
+    }
+
+    /// A primitive that was tested, and what came of it.
+    fn candidate_text(&self, walk: &Walk, candidate: &Candidate) -> String {
+        let along = |distance| along(walk, distance);
+        let crossing = match candidate.crossing {
+            Some([enter, leave]) if enter == leave => format!("is hit at {}", along(enter)),
+            Some([enter, leave]) => format!("is hit from {} to {}", along(enter), along(leave)),
+            None => String::from("is missed"),
+        };
+        let verdict = match candidate.verdict {
+            Verdict::Missed => "",
+            Verdict::NotInInterval => ", outside of the ray's interval",
+            Verdict::Farther => ", behind the closest hit",
+            Verdict::Nearest => ": the closest hit so far",
+        };
+        let (kind, primitive) = (candidate.kind, candidate.primitive);
+        let object = match candidate.instance {
+            Some(_) => format!(" of {}", self.object(candidate.object)),
+            None => String::new(),
+        };
+        format!("{kind} {primitive}{object} {crossing}{verdict}")
     }
 }
 

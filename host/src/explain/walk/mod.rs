@@ -11,7 +11,7 @@ use crate::shape::rounding;
 use crate::trace::{Frame, SceneRay};
 use glam::DVec3;
 use gridel_core::observe::event::NodeId;
-use gridel_core::{Event, Format, Scene};
+use gridel_core::{Event, Format, Kind, Scene};
 use serde::Serialize;
 
 /// One query: a ray and its walk. Distances are scene units along the ray, counted from `origin`.
@@ -122,6 +122,21 @@ struct InUnits {
     limit: f64,
     /// The interval of the ray in the node that it entered last.
     around: [f64; 2],
+}
+
+impl InUnits {
+    /// Returns the verdict on a primitive of a kind that is hit there and is not the nearest one.
+    fn verdict_of_other(&self, kind: Kind, [enter, leave]: [f64; 2]) -> Verdict {
+        let [first, last] = match kind.is_bounded() {
+            true => self.interval,
+            false => self.far_interval,
+        };
+        let counts = |t: f64| first <= t && t <= last;
+        match counts(enter) || counts(leave) {
+            true => Verdict::Farther,
+            false => Verdict::NotInInterval,
+        }
+    }
 }
 
 impl Walk {
@@ -289,18 +304,7 @@ impl Walk {
                 let verdict = match crossing {
                     None => Verdict::Missed,
                     Some(_) if nearest => Verdict::Nearest,
-                    Some([enter, leave]) => {
-                        let [first, last] = match kind.is_bounded() {
-                            true => ray.interval,
-                            false => ray.far_interval,
-                        };
-                        let counts = |t: f64| first <= t && t <= last;
-                        if counts(enter) || counts(leave) {
-                            Verdict::Farther
-                        } else {
-                            Verdict::NotInInterval
-                        }
-                    }
+                    Some(crossing) => ray.verdict_of_other(kind, crossing),
                 };
                 if let (Verdict::Nearest, Some([enter, leave])) = (verdict, crossing) {
                     self.ray.limit = if enter >= ray.interval[0] {

@@ -84,8 +84,17 @@ pub enum Fit {
 pub const WORK_LIST: &str = "work list";
 
 /// A structure that was not measured on boards.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, thiserror::Error)]
+#[error("{} was not measured on boards: nothing is known of its code and call stack", .0.name())]
 pub struct NotMeasured(pub Structure);
+
+impl NotMeasured {
+    /// Returns the remedy: the structures that were measured.
+    pub fn remedy(&self) -> String {
+        let measured = MemoryReport::STRUCTURES.map(Structure::name).join(", ");
+        format!("build the scene for one of {measured} instead")
+    }
+}
 
 impl MemoryReport {
     /// The structures that were measured: those that firmware can prevalidate.
@@ -112,8 +121,7 @@ impl MemoryReport {
     ///     ram: board.ram,
     /// };
     /// let rendering = Rendering::of(&scene, Format::Fixed);
-    /// let report = MemoryReport::of(&scene, blob.bytes(), &target, &rendering);
-    /// let report = report.map_err(|_| "not measured")?;
+    /// let report = MemoryReport::of(&scene, blob.bytes(), &target, &rendering)?;
     /// assert!(matches!(report.fit(), Fit::Fits));
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```

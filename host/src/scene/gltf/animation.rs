@@ -10,7 +10,8 @@ use super::place::{parts, transform};
 use crate::scene::placement::rotation_and_scale;
 use crate::scene::size::Keys;
 use crate::scene::{
-    Interpolation, Key, SceneError, SourceSpan, TICKS_PER_SECOND, Track, TrackTarget,
+    CauseAndRemedy, Interpolation, Key, SceneError, SourceSpan, TICKS_PER_SECOND, Track,
+    TrackTarget,
 };
 use glam::{DAffine3, DMat3, DMat4, DQuat, DVec3, DVec4};
 use gltf::animation::Property;
@@ -29,9 +30,6 @@ const MOST_SAMPLES_OF_ALL: usize = 1 << 20;
 
 /// Most steps of sampling: each sample, and each key, takes one for each node on the way up. They take seconds.
 const MOST_STEPS: usize = 1 << 25;
-
-/// The reason why curves cannot be sampled: cause and remedy.
-type Fault = [String; 2];
 
 /// The moving properties of a node.
 #[derive(Clone, Debug, Default)]
@@ -221,12 +219,12 @@ impl Motion {
     }
 
     /// Counts steps before they are taken.
-    fn count_steps(&mut self, steps: usize) -> Result<(), Fault> {
+    fn count_steps(&mut self, steps: usize) -> Result<(), CauseAndRemedy> {
         self.steps = self.steps.saturating_add(steps);
         if self.steps <= MOST_STEPS {
             return Ok(());
         }
-        Err([
+        Err(CauseAndRemedy::new(
             format!(
                 "cameras and lights that move take more than {MOST_STEPS} steps: one for each sample, and for each key, \
                  of each node above them"
@@ -235,11 +233,11 @@ impl Motion {
                 "put them below fewer nodes, animate fewer lights, shorten the animation, or leave it out with \
                  `--animation none`",
             ),
-        ])
+        ))
     }
 
     /// The times at which a node is sampled.
-    fn sample_times(&mut self, node: usize) -> Result<Vec<f64>, Fault> {
+    fn sample_times(&mut self, node: usize) -> Result<Vec<f64>, CauseAndRemedy> {
         let depth = self.ancestry.depth(node);
         self.count_steps(depth)?;
         let curves = self.ancestry.chain(node).filter_map(|it| self.curves(it));
@@ -272,7 +270,7 @@ impl Motion {
         }
         self.samples += ticks.len();
         if self.samples > MOST_SAMPLES_OF_ALL {
-            return Err([
+            return Err(CauseAndRemedy::new(
                 format!(
                     "cameras and lights below nodes that move take more than {MOST_SAMPLES_OF_ALL} samples"
                 ),
@@ -280,14 +278,18 @@ impl Motion {
                     "animate fewer lights, shorten the animation, move the lights themselves, or leave the animation \
                      out with `--animation none`",
                 ),
-            ]);
+            ));
         }
         self.count_steps(ticks.len().saturating_mul(depth))?;
         Ok(ticks.into_iter().map(seconds).collect())
     }
 
     /// The tracks of a camera at a node; none if it stands still.
-    pub(super) fn camera(&mut self, node: usize, place: &SourceSpan) -> Result<Vec<Track>, Fault> {
+    pub(super) fn camera(
+        &mut self,
+        node: usize,
+        place: &SourceSpan,
+    ) -> Result<Vec<Track>, CauseAndRemedy> {
         if !self.moves(node) {
             return Ok(Vec::new());
         }
@@ -395,7 +397,7 @@ impl Motion {
         index: usize,
         directional: bool,
         place: &SourceSpan,
-    ) -> Result<Option<Track>, Fault> {
+    ) -> Result<Option<Track>, CauseAndRemedy> {
         if !self.moves(node) || directional && self.keeps_direction(node) {
             return Ok(None);
         }

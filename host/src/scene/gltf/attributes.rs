@@ -6,7 +6,9 @@ use super::{Importer, material};
 use crate::scene::access::FileError;
 use crate::scene::error::COPY_AGAIN;
 use crate::scene::texture::texture_transform;
-use crate::scene::{Attributes, Image, Material, NormalMap, SceneError, Texture, Wrap};
+use crate::scene::{
+    Attributes, CauseAndRemedy, Image, Material, NormalMap, SceneError, Texture, Wrap,
+};
 use crate::table::shortened;
 use glam::{DAffine2, DVec2};
 use gltf::image::Source;
@@ -18,12 +20,12 @@ use std::sync::Arc;
 
 /// The placement of an image on a mesh: its set of texture coordinates, and their transform.
 #[derive(Clone, Copy, PartialEq)]
-struct Placed {
+struct ImagePlacement {
     set: u32,
     transform: DAffine2,
 }
 
-impl Placed {
+impl ImagePlacement {
     /// Returns the placement of a material's images; `None` without one.
     fn of(material: &gltf::Material<'_>, transforms: &NormalTransforms) -> Option<Self> {
         Self::of_color(material).or_else(|| Self::of_normals(material, transforms))
@@ -111,7 +113,8 @@ impl Importer<'_> {
             self.warn_of(usize::from(is_clear), "the alpha of COLOR_0 is ignored");
         }
         let material = part.material();
-        let Some(set) = Placed::of(&material, &self.normal_transforms).map(|it| it.set) else {
+        let Some(set) = ImagePlacement::of(&material, &self.normal_transforms).map(|it| it.set)
+        else {
             return Ok(attributes);
         };
         let Some(accessor) = part.get(&Semantic::TexCoords(set)) else {
@@ -199,7 +202,8 @@ impl Importer<'_> {
         let Some(image) = self.image(&source, "the plain color is used")? else {
             return Ok(None);
         };
-        let placed = Placed::of_color(material).map_or(DAffine2::IDENTITY, |it| it.transform);
+        let placed =
+            ImagePlacement::of_color(material).map_or(DAffine2::IDENTITY, |it| it.transform);
         Ok(Some(sampled(image, &info.texture(), placed)))
     }
 
@@ -214,14 +218,14 @@ impl Importer<'_> {
             return Ok(None);
         };
         let (Some(placed), Some(source)) = (
-            Placed::of_normals(material, &self.normal_transforms),
+            ImagePlacement::of_normals(material, &self.normal_transforms),
             info.texture().source(),
         ) else {
             self.warn(format!(
                 "the normal map of material {name:?} names no image that Gridel reads; it is not drawn", name = shortened(name)));
             return Ok(None);
         };
-        if Placed::of_color(material).is_some_and(|it| it != placed) {
+        if ImagePlacement::of_color(material).is_some_and(|it| it != placed) {
             self.warn(format!(
                 "the normal map of material {name:?} does not lie as the texture of its color does; it is not drawn", name = shortened(name)));
             return Ok(None);
@@ -256,7 +260,7 @@ impl Importer<'_> {
         }
         let [width, height] = image.size().map(|side| side as usize);
         let counted = self.access.texels.add(width, height);
-        counted.map_err(|[cause, remedy]| {
+        counted.map_err(|CauseAndRemedy { cause, remedy }| {
             self.error(format!("image {number}, turned, {cause}"), &remedy)
         })?;
         let turned = Arc::new(image.turned());
@@ -299,13 +303,14 @@ impl Importer<'_> {
             },
         };
         let name = image.name().map_or_else(|| what.clone(), str::to_owned);
-        let decoded =
-            Image::decode(&name, &bytes, &self.access.texels).map_err(|[cause, remedy]| {
+        let decoded = Image::decode(&name, &bytes, &self.access.texels).map_err(
+            |CauseAndRemedy { cause, remedy }| {
                 self.error(
                     format!("{what} ({name:?}) {cause}", name = shortened(&name)),
                     &remedy,
                 )
-            })?;
+            },
+        )?;
         let decoded = Arc::new(decoded);
         self.images.insert(key, Ok(Arc::clone(&decoded)));
         Ok(Some(decoded))

@@ -2,9 +2,9 @@
 //!
 //! The crate's own readers trust offsets, counts and types; here every read is checked.
 
-use crate::scene::SceneError;
 use crate::scene::access::{Access, FileError};
 use crate::scene::error::COPY_AGAIN;
+use crate::scene::{CauseAndRemedy, SceneError};
 use crate::table::shortened;
 use base64::Engine as _;
 use base64::engine::general_purpose::STANDARD;
@@ -380,7 +380,9 @@ pub(super) fn fetch(
     let name = percent_encoding::percent_decode_str(local.unwrap_or(uri)).decode_utf8_lossy();
     let file = access
         .resolve(path, &name)
-        .map_err(|[cause, remedy]| wrong(format!("is in a file: {cause}"), &remedy))?;
+        .map_err(|CauseAndRemedy { cause, remedy }| {
+            wrong(format!("is in a file: {cause}"), &remedy)
+        })?;
     access.read(&file).map_err(|read| {
         FileError::Unreadable(error(
             format!("is in {}, which {}", file.display(), read.cause),

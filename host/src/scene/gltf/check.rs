@@ -12,10 +12,26 @@ use std::collections::{HashMap, HashSet};
 /// Most elements of all accessors together: some for each vertex and triangle.
 pub(super) const MOST_ELEMENTS: usize = 16 * MOST;
 
+/// Returns whether the elements of an accessor are in the file, and not all zero.
+fn is_stored(accessor: &Accessor<'_>) -> bool {
+    accessor.view().is_some() || accessor.sparse().is_some()
+}
+
 impl Importer<'_> {
     /// Validates the whole file, also the parts that are not drawn: nodes form trees, and meshes
     /// use vertices that they have.
     pub(super) fn check(&mut self, document: &Document) -> Result<(), SceneError> {
+        self.check_trees(document)?;
+        self.check_elements(document)?;
+        self.check_corners(document)?;
+        self.check_transforms(document);
+        self.check_targets(document);
+        self.check_triangles(document);
+        self.check_numbers(document)
+    }
+
+    /// Checks that no node is inside of two others or of itself, and that scenes list nodes without a parent.
+    fn check_trees(&self, document: &Document) -> Result<(), SceneError> {
         let count = document.nodes().len();
         let mut parent = vec![None; count];
         for node in document.nodes() {
@@ -58,11 +74,14 @@ impl Importer<'_> {
                 ));
             }
         }
-        // Accessors may share their bytes, so that a short file can cause any amount of work.
-        let stored = |it: &Accessor<'_>| it.view().is_some() || it.sparse().is_some();
+        Ok(())
+    }
+
+    /// Limits the elements of accessors. They may share their bytes, so that a short file can cause any amount of work.
+    fn check_elements(&self, document: &Document) -> Result<(), SceneError> {
         let elements = document
             .accessors()
-            .filter(stored)
+            .filter(is_stored)
             .map(|it| it.count().min(MOST));
         if elements.fold(0, usize::saturating_add) > MOST_ELEMENTS {
             return Err(self.error(
@@ -70,6 +89,11 @@ impl Importer<'_> {
                 "export a part of the scene",
             ));
         }
+        Ok(())
+    }
+
+    /// Checks that meshes use vertices that they have.
+    fn check_corners(&mut self, document: &Document) -> Result<(), SceneError> {
         let mut highest: HashMap<usize, Option<u32>> = HashMap::new();
         for mesh in document.meshes() {
             for part in mesh.primitives() {
@@ -91,9 +115,11 @@ impl Importer<'_> {
                 }
             }
         }
-        self.check_transforms(document);
-        self.check_targets(document);
-        self.check_triangles(document);
+        Ok(())
+    }
+
+    /// Warns of numbers that are not finite.
+    fn check_numbers(&mut self, document: &Document) -> Result<(), SceneError> {
         let parts = document.meshes().flat_map(|mesh| mesh.primitives());
         let uses = parts.flat_map(|part| {
             let attributes = part.attributes();
@@ -108,7 +134,7 @@ impl Importer<'_> {
             targets.map(|it| it.index()).collect::<Vec<_>>()
         });
         let changes: HashSet<usize> = changes.collect();
-        for accessor in document.accessors().filter(stored) {
+        for accessor in document.accessors().filter(is_stored) {
             if let Some(element) = self.buffers.first_not_finite(&accessor)? {
                 let index = accessor.index();
                 let follows = match changes.contains(&index) {

@@ -2,7 +2,7 @@
 
 use super::Importer;
 use super::animation::Motion;
-use crate::scene::{Choice, SceneError};
+use crate::scene::{GltfOptions, SceneError};
 use crate::table::{printable, shortened};
 use gltf::{Animation, Document};
 use std::path::Path;
@@ -20,9 +20,9 @@ const NONE: &str = "none";
 fn choose<'d>(
     path: &Path,
     document: &'d Document,
-    choice: &Choice,
+    options: &GltfOptions,
 ) -> Result<Option<ChosenAnimation<'d>>, SceneError> {
-    let Some(wanted) = &choice.animation else {
+    let Some(wanted) = &options.animation else {
         let first = document.animations().next();
         return Ok(first.map(|animation| ChosenAnimation {
             animation,
@@ -68,9 +68,9 @@ impl Importer<'_> {
     pub(super) fn animation(
         &mut self,
         document: &Document,
-        choice: &Choice,
+        options: &GltfOptions,
     ) -> Result<(), SceneError> {
-        let chosen = choose(self.path, document, choice)?;
+        let chosen = choose(self.path, document, options)?;
         let animation = chosen.as_ref().map(|chosen| &chosen.animation);
         self.motion = Motion::read(self.path, document, animation, &self.buffers)?;
         for sentence in std::mem::take(&mut self.motion.left_out) {

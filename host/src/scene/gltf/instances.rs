@@ -2,7 +2,7 @@
 
 use super::check::MOST_ELEMENTS;
 use super::place::{mesh_name, place_of, weights};
-use super::shared::{Placed, triangle_count};
+use super::shared::{MeshNode, triangle_count};
 use super::{Importer, Named};
 use crate::scene::size::Size;
 use crate::scene::{Instance, Part, Placement, SceneError};
@@ -88,7 +88,7 @@ impl Importer<'_> {
     }
 
     /// Checks that nodes fit into memory, before anything is made of them.
-    pub(super) fn weigh(&self, placed: &[Placed<'_>]) -> Result<(), SceneError> {
+    pub(super) fn weigh(&self, placed: &[MeshNode<'_>]) -> Result<(), SceneError> {
         let mut size = Size::default();
         let mut morphed = 0_usize;
         let mut listed = 0_usize;

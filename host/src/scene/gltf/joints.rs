@@ -9,7 +9,7 @@ use super::Importer;
 use super::animation::Motion;
 use super::curve::Curve;
 use super::place::{parts, transform};
-use super::shared::Placed;
+use super::shared::MeshNode;
 use crate::scene::{
     Interpolation, Joint, Key, LARGEST_SCALE, Placement, ScaleRange, Track, TrackTarget, extremes,
 };
@@ -26,7 +26,7 @@ const NOTHING: f64 = 1.0 / 256.0;
 
 impl Importer<'_> {
     /// Makes joints of the nodes that move meshes. `placed` has all nodes, each behind the one above it.
-    pub(super) fn joints(&mut self, placed: &[Placed<'_>]) {
+    pub(super) fn joints(&mut self, placed: &[MeshNode<'_>]) {
         // For each node, whether it or one below it has a mesh that can move.
         let mut carries = HashMap::new();
         for (node, _) in placed.iter().rev() {

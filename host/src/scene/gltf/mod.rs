@@ -30,11 +30,12 @@ mod text;
 mod view;
 
 use super::access::Access;
-use super::importer::{Choices, Importer as Entry, Input};
+use super::importer::{FileOptions, Importer as Entry, Input};
 use super::text::Warnings;
 use super::texture::ImageMeans;
 use super::{
-    Attributes, Image, Imported, Normals, Object, ScaleRange, Scene, SceneError, Shape, SourceSpan,
+    Attributes, CauseAndRemedy, FileKinds, Image, Imported, Normals, Object, ScaleRange, Scene,
+    SceneError, Shape, SourceSpan,
 };
 use crate::table::shortened;
 use animation::Motion;
@@ -82,7 +83,7 @@ fn read(input: Input<'_>) -> Result<Imported, SceneError> {
     let Input {
         path,
         bytes,
-        choices: Choices { choice, .. },
+        options: FileOptions { gltf: options, .. },
         access,
         ..
     } = input;
@@ -100,7 +101,7 @@ fn read(input: Input<'_>) -> Result<Imported, SceneError> {
         scene: Scene::default(),
         materials: HashMap::new(),
         normal_transforms,
-        view: View::with_camera(choice.camera.clone()),
+        view: View::with_camera(options.camera.clone()),
         motion: Motion::default(),
         vertices: 0,
         triangles: 0,
@@ -112,9 +113,9 @@ fn read(input: Input<'_>) -> Result<Imported, SceneError> {
     };
     importer.check(&document)?;
     importer.ignored(&document);
-    importer.animation(&document, choice)?;
+    importer.animation(&document, options)?;
     importer.nodes(&document)?;
-    let missing = |[cause, remedy]: [String; 2]| SceneError::new(path, cause, remedy);
+    let missing = |CauseAndRemedy { cause, remedy }| SceneError::new(path, cause, remedy);
     importer.view.check_camera().map_err(missing)?;
     if importer.scene.objects.is_empty() && importer.scene.instances.is_empty() {
         importer.warn("the scene of the file has no triangles; nothing is drawn");
@@ -128,9 +129,7 @@ fn read(input: Input<'_>) -> Result<Imported, SceneError> {
         ..
     } = importer;
     let tracks = view.tracks(&mut motion, &place);
-    scene
-        .tracks
-        .extend(tracks.map_err(|[cause, remedy]| SceneError::new(path, cause, remedy))?);
+    scene.tracks.extend(tracks.map_err(missing)?);
     if let Some(rate) = motion.least_rate {
         let sentence = format!(
             "a camera or light that other nodes carry, or a directional light that turns, is sampled {} times per second",
@@ -143,7 +142,10 @@ fn read(input: Input<'_>) -> Result<Imported, SceneError> {
     });
     scene.places.lights = vec![place; scene.lights.len()];
     Ok(Imported {
-        choices: true,
+        kinds: FileKinds {
+            gltf: true,
+            ..FileKinds::default()
+        },
         ..Imported::of(scene, warnings.into_sentences())
     })
 }

@@ -10,7 +10,7 @@ use std::collections::HashMap;
 const LEAST_SAVED: u64 = 1024;
 
 /// A node with a mesh, and its transform in the scene.
-pub(super) type Placed<'d> = (Node<'d>, DMat4);
+pub(super) type MeshNode<'d> = (Node<'d>, DMat4);
 
 /// The meshes that become parts, by their number in the file.
 #[derive(Default)]
@@ -24,7 +24,7 @@ pub(super) struct Shared {
 impl Shared {
     /// Chooses the meshes that at least two nodes place by a rotation, a translation and one scale, and those of nodes
     /// that `moves`.
-    pub(super) fn of(placed: &[Placed<'_>], moves: impl Fn(&Node<'_>) -> bool) -> Self {
+    pub(super) fn of(placed: &[MeshNode<'_>], moves: impl Fn(&Node<'_>) -> bool) -> Self {
         let mut uses: HashMap<usize, Vec<(usize, Placement)>> = HashMap::new();
         let mut saved: HashMap<usize, u64> = HashMap::new();
         // Summed once for each mesh, which many nodes may share.

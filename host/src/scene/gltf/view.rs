@@ -8,7 +8,7 @@ use super::animation::Motion;
 use super::middle::middle;
 use super::place::parts;
 use crate::scene::{
-    Camera, Color, Light, LightForm, RenderSettings, Scene, SourceSpan, Spot, Track,
+    Camera, CauseAndRemedy, Color, Light, LightForm, RenderSettings, Scene, SourceSpan, Spot, Track,
 };
 use crate::table::{printable, shortened};
 use glam::{DMat4, DVec3, DVec4};
@@ -177,7 +177,7 @@ impl View {
     ///
     /// # Errors
     /// If it is not: what to do.
-    pub(super) fn check_camera(&self) -> Result<(), [String; 2]> {
+    pub(super) fn check_camera(&self) -> Result<(), CauseAndRemedy> {
         let Some(wanted) = self.wanted.as_ref().filter(|_| self.camera.is_none()) else {
             return Ok(());
         };
@@ -197,7 +197,7 @@ impl View {
                 wanted = shortened(wanted)
             ),
         };
-        Err([cause, remedy])
+        Err(CauseAndRemedy::new(cause, remedy))
     }
 
     /// The tracks of camera and lights.
@@ -208,7 +208,7 @@ impl View {
         &mut self,
         motion: &mut Motion,
         place: &SourceSpan,
-    ) -> Result<Vec<Track>, [String; 2]> {
+    ) -> Result<Vec<Track>, CauseAndRemedy> {
         let mut tracks = match self.camera {
             Some(_) => motion.camera(self.camera_node, place)?,
             None => Vec::new(),
@@ -227,6 +227,14 @@ impl View {
 
     /// Puts camera and lights into a scene whose objects are all there.
     pub(super) fn finish(self, scene: &mut Scene, warn: &mut dyn FnMut(&str)) {
+        self.warn_of_ignored(warn);
+        scene.camera = self.camera;
+        self.set_width(&mut scene.render, warn);
+        self.add_lights(scene);
+    }
+
+    /// Warns of what is left out or changed.
+    fn warn_of_ignored(&self, warn: &mut dyn FnMut(&str)) {
         // Those without a perspective cannot be chosen.
         let is_first = self.names.len() > 1 && self.camera.is_some() && self.wanted.is_none();
         let has_names = self.names.iter().any(|name| !name.is_empty());
@@ -273,20 +281,27 @@ impl View {
                 warn(sentence);
             }
         }
-        scene.camera = self.camera;
-        if let Some(aspect) = self.aspect {
-            let height = scene.render.height;
-            let width = (f64::from(height) * aspect).round();
-            let widest = f64::from(RenderSettings::MAX_ASPECT * height);
-            if width > widest {
-                let sentence = format!(
-                    "the camera's picture is {} times as wide as high, which is the limit, not {aspect:.0} times",
-                    RenderSettings::MAX_ASPECT
-                );
-                warn(&sentence);
-            }
-            scene.render.width = width.clamp(1.0, widest) as u32;
+    }
+
+    /// Gives the picture the shape that the camera states.
+    fn set_width(&self, render: &mut RenderSettings, warn: &mut dyn FnMut(&str)) {
+        let Some(aspect) = self.aspect else {
+            return;
+        };
+        let width = (f64::from(render.height) * aspect).round();
+        let widest = f64::from(RenderSettings::MAX_ASPECT * render.height);
+        if width > widest {
+            let sentence = format!(
+                "the camera's picture is {} times as wide as high, which is the limit, not {aspect:.0} times",
+                RenderSettings::MAX_ASPECT
+            );
+            warn(&sentence);
         }
+        render.width = width.clamp(1.0, widest) as u32;
+    }
+
+    /// Adds the lights, the strongest at full strength.
+    fn add_lights(self, scene: &mut Scene) {
         let needs_middle =
             |lamp: &Lamp| matches!(lamp.light, Light::Point { .. }) && lamp.intensity > 0.0;
         let (middle, size) = match self.lights.iter().any(needs_middle) {

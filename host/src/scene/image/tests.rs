@@ -22,7 +22,7 @@ fn png_pixels_are_read_as_they_are() {
 fn broken_images_are_rejected_with_cause_and_remedy() {
     let whole = png_of(3, 3, &[[9, 8, 7, 255]; 9]);
     for end in [0, 4, 8, 20, 40, whole.len() - 20] {
-        let [cause, remedy] =
+        let CauseAndRemedy { cause, remedy } =
             Image::decode("cut.png", &whole[..end], &Texels::default()).unwrap_err();
         assert!(!cause.is_empty() && !remedy.is_empty(), "{end}");
     }
@@ -38,7 +38,8 @@ fn image_that_announces_too_many_pixels_is_rejected_before_they_are_read() {
     file[16..24].copy_from_slice(&[0, 0, 0x7f, 0xff, 0, 0, 0x7f, 0xff]);
     let crc = crc32(&file[12..29]);
     file[29..33].copy_from_slice(&crc.to_be_bytes());
-    let [cause, _] = Image::decode("bomb.png", &file, &Texels::default()).unwrap_err();
+    let CauseAndRemedy { cause, .. } =
+        Image::decode("bomb.png", &file, &Texels::default()).unwrap_err();
     assert!(cause.contains("32767x32767"), "{cause}");
 }
 
@@ -47,7 +48,8 @@ fn images_of_a_scene_are_limited_together() {
     let texels = Texels::default();
     let mut most = (0..).take_while(|_| texels.add(8192, 8192).is_ok());
     assert_eq!(most.by_ref().count(), 8);
-    let [cause, remedy] = Image::decode("one more", &png_of(1, 1, &[[0; 4]]), &texels).unwrap_err();
+    let CauseAndRemedy { cause, remedy } =
+        Image::decode("one more", &png_of(1, 1, &[[0; 4]]), &texels).unwrap_err();
     assert!(cause.contains("1x1") && remedy.contains("fewer"), "{cause}");
 }
 

@@ -27,7 +27,7 @@ pub(super) use parsed::{Atom, Bond, End, Group, Matrix, Model, Operators, Parsed
 
 use super::importer::Input;
 use super::text::{Source, Warnings};
-use super::{Imported, Instance, Material, MoleculeStyle, Part, Scene, SceneError};
+use super::{FileKinds, Imported, Instance, Material, MoleculeStyle, Part, Scene, SceneError};
 use crate::table::grouped;
 use assembly::{Copied, GENERATED, assemble};
 use limit::check_size;
@@ -42,8 +42,8 @@ pub(super) fn import(
     input: Input<'_>,
     parse: impl for<'a> Fn(&'a Source, &mut Warnings) -> Result<Parsed<'a>, SceneError>,
 ) -> Result<Imported, SceneError> {
-    let options = input.choices.molecule;
-    let assembly = input.choices.assembly;
+    let options = input.options.molecule;
+    let assembly = input.options.assembly;
     let source = &input.into_source()?;
     let mut warnings = Warnings::default();
     let mut parsed = parse(source, &mut warnings)?;
@@ -77,8 +77,11 @@ pub(super) fn import(
         None => molecule.whole()?,
     };
     Ok(Imported {
-        molecules: true,
-        assemblies: true,
+        kinds: FileKinds {
+            molecules: true,
+            assemblies: true,
+            ..FileKinds::default()
+        },
         ..Imported::of(scene, warnings.into_sentences())
     })
 }

@@ -207,7 +207,8 @@ impl<'a> Importer<'a> {
         color.map(|channel| channel.min(most))
     }
 
-    fn fill(&mut self, line: &Line<'a>) -> Result<(), SceneError> {
+    /// Reads the numbers of a material.
+    fn fill_numbers(&mut self, line: &Line<'a>) -> Result<[f64; 8], SceneError> {
         let format = "f r g b Kd Ks Shine T ior";
         let numbers = match line.numbers_from(1) {
             // Short lines are common in files written by hand. The missing numbers are those that
@@ -245,6 +246,11 @@ impl<'a> Importer<'a> {
                 "write numbers at or above 0",
             ));
         }
+        Ok(numbers)
+    }
+
+    fn fill(&mut self, line: &Line<'a>) -> Result<(), SceneError> {
+        let numbers = self.fill_numbers(line)?;
         let key = numbers.map(f64::to_bits);
         if let Some(&known) = self.materials.get(&key) {
             self.material = Some(known);

@@ -4,7 +4,7 @@ use super::Importer;
 use super::reader::{Line, Lines};
 use crate::scene::polygon;
 use crate::scene::size::Size;
-use crate::scene::{Attributes, Material, Normals, Object, SceneError, Shape};
+use crate::scene::{Attributes, CauseAndRemedy, Material, Normals, Object, SceneError, Shape};
 use crate::shape::{Cone, Sphere};
 use crate::table::shortened;
 use glam::DVec3;
@@ -121,6 +121,41 @@ impl<'a> Importer<'a> {
                 .source
                 .error_at(line.text, cause, "give it at least 3 vertices"));
         }
+        let (vertices, normals) = self.corners(line, lines, count, numbers)?;
+        let (triangles, crosses) =
+            polygon::cut("polygon", &vertices).map_err(|CauseAndRemedy { cause, remedy }| {
+                self.source.error_at(line.text, cause, remedy)
+            })?;
+        if let Some(sentence) = crosses {
+            self.warnings.add(self.source, line.number, sentence);
+        }
+        if numbers == 6 && normals.len() < vertices.len() {
+            let sentence = "a vertex of `pp` has no normal; its polygon is shaded flat";
+            self.warnings.add(self.source, line.number, sentence);
+        }
+        let normals = match normals.len() == vertices.len() {
+            true => Normals::given(normals, triangles.clone(), (&vertices, &triangles)),
+            false => Normals::default(),
+        };
+        let shape = Shape::Mesh {
+            vertices,
+            triangles,
+        };
+        self.add("polygon", line, shape)?;
+        if let Some(object) = self.scene.objects.last_mut() {
+            object.normals = normals;
+        }
+        Ok(())
+    }
+
+    /// Reads the vertices of a polygon, and the normals of those that have one.
+    fn corners(
+        &mut self,
+        line: &Line<'a>,
+        lines: &mut Lines<'a>,
+        count: usize,
+        numbers: usize,
+    ) -> Result<(Vec<DVec3>, Vec<DVec3>), SceneError> {
         // Nothing is reserved for the count before its lines are there: it may be a lie.
         let (mut vertices, mut normals) = (Vec::new(), Vec::new());
         while vertices.len() < count {
@@ -167,28 +202,7 @@ impl<'a> Importer<'a> {
                 },
             )?;
         }
-        let (triangles, crosses) = polygon::cut("polygon", &vertices)
-            .map_err(|[cause, remedy]| self.source.error_at(line.text, cause, remedy))?;
-        if let Some(sentence) = crosses {
-            self.warnings.add(self.source, line.number, sentence);
-        }
-        if numbers == 6 && normals.len() < vertices.len() {
-            let sentence = "a vertex of `pp` has no normal; its polygon is shaded flat";
-            self.warnings.add(self.source, line.number, sentence);
-        }
-        let normals = match normals.len() == vertices.len() {
-            true => Normals::given(normals, triangles.clone(), (&vertices, &triangles)),
-            false => Normals::default(),
-        };
-        let shape = Shape::Mesh {
-            vertices,
-            triangles,
-        };
-        self.add("polygon", line, shape)?;
-        if let Some(object) = self.scene.objects.last_mut() {
-            object.normals = normals;
-        }
-        Ok(())
+        Ok((vertices, normals))
     }
 
     /// Rejects an object of this size if it no longer fits into memory.

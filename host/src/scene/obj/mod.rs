@@ -18,7 +18,10 @@ use super::importer::{Importer, Input};
 use super::polygon;
 use super::text::{Source, Warnings};
 use super::texture::Images;
-use super::{Attributes, Color, Imported, Material, Normals, Object, Scene, SceneError, Shape};
+use super::{
+    Attributes, CauseAndRemedy, Color, Imported, Material, Normals, Object, Scene, SceneError,
+    Shape,
+};
 use crate::table::{grouped, shortened};
 use glam::{DVec2, DVec3};
 use gridel_core::Up;
@@ -147,7 +150,7 @@ fn read_libraries(
         }
         let allowed = |name: &str| {
             let path = access.resolve(&source.path, &name.replace('\\', "/"));
-            path.map_err(|[cause, remedy]| {
+            path.map_err(|CauseAndRemedy { cause, remedy }| {
                 let cause = format!("the material file {cause}");
                 source.error(cause, remedy).at_line(line)
             })
@@ -276,8 +279,10 @@ impl Mesher<'_> {
                 local.push(seen.1);
                 points.push(self.vertices[corner as usize]);
             }
-            let (cut, crosses) = polygon::cut("face", &points)
-                .map_err(|[cause, remedy]| source.error(cause, remedy).at_line(face.line))?;
+            let (cut, crosses) =
+                polygon::cut("face", &points).map_err(|CauseAndRemedy { cause, remedy }| {
+                    source.error(cause, remedy).at_line(face.line)
+                })?;
             if let Some(sentence) = crosses {
                 warnings.add(source, face.line, sentence);
             }

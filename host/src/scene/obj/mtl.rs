@@ -13,7 +13,9 @@
 use crate::scene::access::FileError;
 use crate::scene::text::{Source, Warnings};
 use crate::scene::texture::Images;
-use crate::scene::{BRIGHTEST, Color, Diffuse, Material, NormalMap, SceneError, Texture, Wrap};
+use crate::scene::{
+    BRIGHTEST, CauseAndRemedy, Color, Diffuse, Material, NormalMap, SceneError, Texture, Wrap,
+};
 use crate::table::shortened;
 use glam::{DAffine2, DVec2};
 use std::collections::HashSet;
@@ -92,49 +94,7 @@ pub(super) fn read(
             keyword,
             values,
         };
-        match keyword {
-            "Kd" => material.diffuse = reader.color(number, warnings)?,
-            "Ks" => material.specular = reader.color(number, warnings)?,
-            "Tf" => material.filter = reader.color(number, warnings)?,
-            "Ns" => material.exponent = Some(reader.number_in([0.0, 1024.0], number, warnings)?),
-            "Ni" => material.density = Some(reader.number(number, warnings)?),
-            "d" => material.dissolve = Some(reader.number_in([0.0, 1.0], number, warnings)?),
-            "Tr" => material.transparency = Some(reader.number_in([0.0, 1.0], number, warnings)?),
-            "illum" => material.illumination = reader.illumination(number, warnings)?,
-            "Ke" => {
-                material.emission = reader
-                    .color_up_to(BRIGHTEST, number, warnings)?
-                    .unwrap_or_default()
-            }
-            "Pr" => material.roughness = Some(reader.number_in([0.0, 1.0], number, warnings)?),
-            "Ka" | "sharpness" => {}
-            "map_Kd" => {
-                let instead = "the plain color is used";
-                material.texture = reader.texture(number, images, instead, warnings)?;
-            }
-            "norm" => {
-                let instead = "the normal map is not drawn";
-                material.normals = reader.texture(number, images, instead, warnings)?;
-            }
-            // `Ke` may follow.
-            "map_Ke" => material.emissive = Some((number, line)),
-            _ if keyword.starts_with("map_")
-                || ["bump", "disp", "decal", "refl"].contains(&keyword) =>
-            {
-                warnings.add(
-                    source,
-                    number,
-                    "textures other than map_Kd and norm are not drawn; the plain colors are used",
-                );
-            }
-            _ => {
-                let sentence = format!(
-                    "the statement {keyword:?} is unknown and ignored",
-                    keyword = shortened(keyword)
-                );
-                warnings.add(source, number, sentence);
-            }
-        }
+        material.read(&reader, (number, line), images, warnings)?;
     }
     for material in &mut all {
         material.weight_emission(source, images, warnings)?;
@@ -145,7 +105,62 @@ pub(super) fn read(
         .collect())
 }
 
-impl Statements<'_> {
+impl<'s> Statements<'s> {
+    /// Reads the statement of a line, which is given with its number.
+    fn read(
+        &mut self,
+        reader: &Reader<'_>,
+        (number, line): (usize, &'s str),
+        images: &mut Images<'_>,
+        warnings: &mut Warnings,
+    ) -> Result<(), SceneError> {
+        let keyword = reader.keyword;
+        match keyword {
+            "Kd" => self.diffuse = reader.color(number, warnings)?,
+            "Ks" => self.specular = reader.color(number, warnings)?,
+            "Tf" => self.filter = reader.color(number, warnings)?,
+            "Ns" => self.exponent = Some(reader.number_in([0.0, 1024.0], number, warnings)?),
+            "Ni" => self.density = Some(reader.number(number, warnings)?),
+            "d" => self.dissolve = Some(reader.number_in([0.0, 1.0], number, warnings)?),
+            "Tr" => self.transparency = Some(reader.number_in([0.0, 1.0], number, warnings)?),
+            "illum" => self.illumination = reader.illumination(number, warnings)?,
+            "Ke" => {
+                self.emission = reader
+                    .color_up_to(BRIGHTEST, number, warnings)?
+                    .unwrap_or_default()
+            }
+            "Pr" => self.roughness = Some(reader.number_in([0.0, 1.0], number, warnings)?),
+            "Ka" | "sharpness" => {}
+            "map_Kd" => {
+                let instead = "the plain color is used";
+                self.texture = reader.texture(number, images, instead, warnings)?;
+            }
+            "norm" => {
+                let instead = "the normal map is not drawn";
+                self.normals = reader.texture(number, images, instead, warnings)?;
+            }
+            // `Ke` may follow.
+            "map_Ke" => self.emissive = Some((number, line)),
+            _ if keyword.starts_with("map_")
+                || ["bump", "disp", "decal", "refl"].contains(&keyword) =>
+            {
+                warnings.add(
+                    reader.source,
+                    number,
+                    "textures other than map_Kd and norm are not drawn; the plain colors are used",
+                );
+            }
+            _ => {
+                let sentence = format!(
+                    "the statement {keyword:?} is unknown and ignored",
+                    keyword = shortened(keyword)
+                );
+                warnings.add(reader.source, number, sentence);
+            }
+        }
+        Ok(())
+    }
+
     fn build(&self, source: &Source, warnings: &mut Warnings) -> Material {
         let default = Material::default();
         let illumination = self.illumination.unwrap_or(2);
@@ -412,12 +427,12 @@ impl Reader<'_> {
                 ..Texture::of(image)
             })),
             // As with material files: it was often left behind.
-            Err(FileError::Unreadable([cause, _])) => {
+            Err(FileError::Unreadable(CauseAndRemedy { cause, .. })) => {
                 let sentence = format!("the texture {cause}; {instead}");
                 warnings.add(self.source, line, sentence);
                 Ok(None)
             }
-            Err(FileError::Unusable([cause, remedy])) => {
+            Err(FileError::Unusable(CauseAndRemedy { cause, remedy })) => {
                 let error = self.source.error(format!("the texture {cause}"), remedy);
                 Err(error.at_line(line))
             }

@@ -81,14 +81,36 @@ fn reject_doubled(path: &Path, bytes: &[u8]) -> Result<(), SceneError> {
     Ok(())
 }
 
-/// The names of the components of normals.
-pub(super) const NORMAL: [&[&str]; 3] = [&["nx"], &["ny"], &["nz"]];
-/// The names of the channels of colors.
-pub(super) const COLOR: [&[&str]; 3] = [
-    &["red", "diffuse_red", "r"],
-    &["green", "diffuse_green", "g"],
-    &["blue", "diffuse_blue", "b"],
-];
+/// A property of a vertex that is read.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub(super) enum Component {
+    /// A coordinate, by its axis.
+    Position(usize),
+    /// A component of the normal, by its axis.
+    Normal(usize),
+    /// Red, green or blue.
+    Color(usize),
+    Alpha,
+}
+
+impl Component {
+    /// Returns the component that a name of a property means.
+    pub(super) fn named(name: &str) -> Option<Self> {
+        Some(match name {
+            "x" => Self::Position(0),
+            "y" => Self::Position(1),
+            "z" => Self::Position(2),
+            "nx" => Self::Normal(0),
+            "ny" => Self::Normal(1),
+            "nz" => Self::Normal(2),
+            "red" | "diffuse_red" | "r" => Self::Color(0),
+            "green" | "diffuse_green" | "g" => Self::Color(1),
+            "blue" | "diffuse_blue" | "b" => Self::Color(2),
+            "alpha" | "diffuse_alpha" | "a" => Self::Alpha,
+            _ => return None,
+        })
+    }
+}
 
 /// How many of three properties the vertices of a file have.
 #[derive(Clone, Copy, PartialEq, Eq)]
@@ -98,13 +120,18 @@ pub(super) enum Announced {
     All,
 }
 
-/// Returns how many of three properties the header announces for vertices.
-pub(super) fn announced(header: &Header, names: [&[&str]; 3]) -> Announced {
+/// Returns how many components of normals, or of colors, the header announces for vertices.
+pub(super) fn announced(header: &Header, component: fn(usize) -> Component) -> Announced {
     let vertex = header.elements.get("vertex");
-    let has = |names: &[&str]| {
-        vertex.is_some_and(|it| names.iter().any(|name| it.properties.contains_key(*name)))
+    let has = |number| {
+        let wanted = Some(component(number));
+        vertex.is_some_and(|it| {
+            it.properties
+                .keys()
+                .any(|it| Component::named(it) == wanted)
+        })
     };
-    match names.map(has) {
+    match [0, 1, 2].map(has) {
         [true, true, true] => Announced::All,
         [false, false, false] => Announced::None,
         _ => Announced::Some,
@@ -223,13 +250,9 @@ pub(super) fn check(path: &Path, element: &ElementDef, bytes: usize) -> Result<(
     }
     for property in element.properties.values() {
         let expected = match (&*element.name, &*property.name, &property.data_type) {
-            (
-                "vertex",
-                "x" | "y" | "z" | "nx" | "ny" | "nz" | "red" | "green" | "blue" | "diffuse_red"
-                | "diffuse_green" | "diffuse_blue" | "r" | "g" | "b" | "alpha" | "diffuse_alpha"
-                | "a",
-                PropertyType::List(..),
-            ) => "a number",
+            ("vertex", name, PropertyType::List(..)) if Component::named(name).is_some() => {
+                "a number"
+            }
             ("face" | "tristrips", "vertex_index" | "vertex_indices", found) => match found {
                 PropertyType::List(_, entry) if range(entry).is_some() => continue,
                 _ => "a list of whole numbers",
@@ -294,7 +317,7 @@ fn ignored(path: &Path, bytes: &[u8], warnings: &mut Warnings) {
                 warnings.add_times(place, 1, sentence);
             }
             ["property", .., name] if element == "face" && count > 0 => {
-                let is_color = COLOR.iter().any(|names| names.contains(&name));
+                let is_color = matches!(Component::named(name), Some(Component::Color(_)));
                 if is_color && !std::mem::replace(&mut is_color_reported, true) {
                     let sentence = "the color of a face is ignored; the surface has one color";
                     warnings.add_times(place, count, sentence);

@@ -13,13 +13,14 @@ use super::polygon;
 use super::size::Size;
 use super::text::{Warnings, check_encoding};
 use super::{
-    Attributes, Imported, Material, Normals, Object, Scene, SceneError, Shape, SourceSpan,
+    Attributes, CauseAndRemedy, Imported, Material, Normals, Object, Scene, SceneError, Shape,
+    SourceSpan,
 };
 use crate::srgb::linear_of_srgb;
 use crate::table::{grouped, shortened};
 use glam::DVec3;
 use gridel_core::Up;
-use header::Announced;
+use header::{Announced, Component};
 use payload::{Payload, Skipped};
 use ply_rs_bw::parser::Reader;
 use ply_rs_bw::ply::{Header, Property, PropertyAccess, PropertyAccessResult};
@@ -125,7 +126,7 @@ fn warn_of_normals(path: &Path, header: &Header, vertices: &[Vertex], warnings: 
     if vertices.is_empty() {
         return;
     }
-    match header::announced(header, header::NORMAL) {
+    match header::announced(header, Component::Normal) {
         Announced::None => {}
         Announced::Some => {
             let sentence = "normals of vertices without nx, ny or nz are ignored";
@@ -171,7 +172,7 @@ fn attributes(
     vertices: &[Vertex],
     warnings: &mut Warnings,
 ) -> Attributes {
-    match header::announced(header, header::COLOR) {
+    match header::announced(header, Component::Color) {
         Announced::All => {}
         Announced::Some if !vertices.is_empty() => {
             let sentence = "colors of vertices without red, green or blue are ignored";
@@ -251,9 +252,10 @@ fn mesh(
             short += 1;
             continue;
         }
-        let (cut, crosses) = polygon::cut("face", &points).map_err(|[cause, remedy]| {
-            wrong(format!("face {number} (from 0): {cause}"), &remedy)
-        })?;
+        let (cut, crosses) =
+            polygon::cut("face", &points).map_err(|CauseAndRemedy { cause, remedy }| {
+                wrong(format!("face {number} (from 0): {cause}"), &remedy)
+            })?;
         crossing += usize::from(crosses.is_some());
         let named = |triangle: [u32; 3]| triangle.map(|corner| corners[corner as usize] as u32);
         triangles.extend(cut.into_iter().map(named));
@@ -370,18 +372,12 @@ impl PropertyAccess for Vertex {
     }
 
     fn set_property(&mut self, name: &str, property: Property) -> PropertyAccessResult {
-        let (component, is_color) = match name {
-            "x" => (&mut self.position[0], false),
-            "y" => (&mut self.position[1], false),
-            "z" => (&mut self.position[2], false),
-            "nx" => (&mut self.normal[0], false),
-            "ny" => (&mut self.normal[1], false),
-            "nz" => (&mut self.normal[2], false),
-            "red" | "diffuse_red" | "r" => (&mut self.color[0], true),
-            "green" | "diffuse_green" | "g" => (&mut self.color[1], true),
-            "blue" | "diffuse_blue" | "b" => (&mut self.color[2], true),
-            "alpha" | "diffuse_alpha" | "a" => (&mut self.alpha, true),
-            _ => return PropertyAccessResult::Ignored,
+        let (component, is_color) = match Component::named(name) {
+            Some(Component::Position(axis)) => (&mut self.position[axis], false),
+            Some(Component::Normal(axis)) => (&mut self.normal[axis], false),
+            Some(Component::Color(channel)) => (&mut self.color[channel], true),
+            Some(Component::Alpha) => (&mut self.alpha, true),
+            None => return PropertyAccessResult::Ignored,
         };
         // What white is: no program writes more than a byte's numbers in longer signed types.
         let most = match property {

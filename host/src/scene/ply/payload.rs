@@ -3,7 +3,7 @@
 use super::super::size::{MOST_PRIMITIVES, Size};
 use super::super::text::Warnings;
 use super::super::{SceneError, SourceSpan};
-use crate::scene::error::COPY_AGAIN;
+use crate::scene::error::{COPY_AGAIN, CauseAndRemedy};
 use crate::table::{grouped, printable, shortened};
 use ply_rs_bw::parser::{Parser, Reader};
 use ply_rs_bw::ply::{
@@ -169,7 +169,7 @@ impl<'p> Payload<'p> {
             };
             let read = words.element::<E>(element);
             let read = read.and_then(|it| Ok((it, words.count_rest()?)));
-            let (read, more) = read.map_err(|[cause, remedy]| {
+            let (read, more) = read.map_err(|CauseAndRemedy { cause, remedy }| {
                 SceneError::new(self.path, cause, remedy).at_line(self.line)
             })?;
             self.weigh(element, [triangles(&read)].into_iter(), number)?;
@@ -196,9 +196,6 @@ impl<'p> Payload<'p> {
         is_line.then_some(line)
     }
 }
-
-/// The cause of an error and its remedy.
-type Fault = [String; 2];
 
 /// The words of the line of an element.
 struct Words<'w> {
@@ -237,7 +234,7 @@ impl fmt::Display for Named<'_> {
 }
 
 impl<'w> Words<'w> {
-    fn element<E: PropertyAccess>(&mut self, element: &ElementDef) -> Result<E, Fault> {
+    fn element<E: PropertyAccess>(&mut self, element: &ElementDef) -> Result<E, CauseAndRemedy> {
         let mut read = E::new();
         for property in element.properties.values() {
             let name = &*property.name;
@@ -264,25 +261,25 @@ impl<'w> Words<'w> {
     }
 
     /// Counts the numbers behind the last property.
-    fn count_rest(&mut self) -> Result<usize, Fault> {
+    fn count_rest(&mut self) -> Result<usize, CauseAndRemedy> {
         let mut count = 0;
         for word in self.rest.by_ref() {
             if word.parse::<f64>().is_err() {
                 let cause = format!("`{}` stands behind the last property", printable(word));
                 let remedy = "write nothing but the numbers of the properties";
-                return Err([cause, remedy.to_owned()]);
+                return Err(CauseAndRemedy::new(cause, remedy));
             }
             count += 1;
         }
         Ok(count)
     }
 
-    fn next(&mut self, word: Word, property: &str) -> Result<&'w str, Fault> {
+    fn next(&mut self, word: Word, property: &str) -> Result<&'w str, CauseAndRemedy> {
         self.rest.next().ok_or_else(|| {
-            [
+            CauseAndRemedy::new(
                 format!("the line ends before {}", Named(word, property, self)),
                 String::from("write all properties of an element on its line"),
-            ]
+            )
         })
     }
 
@@ -293,17 +290,22 @@ impl<'w> Words<'w> {
         format!("{what} is `{}`{why}", printable(found))
     }
 
-    fn number(&mut self, kind: &ScalarType, word: Word, property: &str) -> Result<f64, Fault> {
+    fn number(
+        &mut self,
+        kind: &ScalarType,
+        word: Word,
+        property: &str,
+    ) -> Result<f64, CauseAndRemedy> {
         let text = self.next(word, property)?;
         if let Some(range) = range(kind) {
             let value = text.parse::<i64>().ok().filter(|it| range.contains(it));
             return value.map(|it| it as f64).ok_or_else(|| {
                 let (low, high) = range.into_inner();
                 let why = format!("; the header announces a whole number from {low} to {high}");
-                [
+                CauseAndRemedy::new(
                     self.wrong((word, property), text, why),
                     String::from("write such a number, or announce a type that holds it"),
-                ]
+                )
             });
         }
         let value = match kind {
@@ -316,28 +318,28 @@ impl<'w> Words<'w> {
             Some(_) => ", which is not a finite number of the announced type",
             None => ", which is not a number",
         };
-        Err([
+        Err(CauseAndRemedy::new(
             self.wrong((word, property), text, why),
             String::from("write a decimal number, such as 1.5 or -2e3"),
-        ])
+        ))
     }
 
     /// Reads a list: its length, and that many numbers of a type.
-    fn list(&mut self, kind: &ScalarType, property: &str) -> Result<Property, Fault> {
+    fn list(&mut self, kind: &ScalarType, property: &str) -> Result<Property, CauseAndRemedy> {
         let text = self.next(Word::Length, property)?;
         let length = text.parse::<usize>().map_err(|_| {
             let why = ", which is not a whole number at or above 0";
-            [
+            CauseAndRemedy::new(
                 self.wrong((Word::Length, property), text, why),
                 String::from("write how many numbers follow, and then these"),
-            ]
+            )
         })?;
         let entry = |entry| {
             if entry >= MOST_ENTRIES {
                 let most = grouped(MOST_ENTRIES);
                 let cause = format!("; at most {most} numbers are read");
                 let cause = self.wrong((Word::Length, property), text, cause);
-                return Err([cause, TOO_LARGE.to_owned()]);
+                return Err(CauseAndRemedy::new(cause, TOO_LARGE));
             }
             self.number(kind, Word::Entry(entry), property)
         };

@@ -7,6 +7,7 @@
 
 mod cells;
 
+use crate::scene::CauseAndRemedy;
 use cells::Cells;
 use glam::DVec3;
 use robust::{Coord, orient2d};
@@ -30,13 +31,13 @@ pub(super) type Cut = (Vec<[u32; 3]>, Option<String>);
 ///
 /// # Errors
 /// If it is concave and has more than [`MAX_CONCAVE`] vertices: cause and remedy.
-pub(super) fn cut(what: &str, vertices: &[DVec3]) -> Result<Cut, [String; 2]> {
+pub(super) fn cut(what: &str, vertices: &[DVec3]) -> Result<Cut, CauseAndRemedy> {
     let count = vertices.len();
     let Some(cut) = triangulate(vertices) else {
-        return Err([
+        return Err(CauseAndRemedy::new(
             format!("a concave {what} of {count} vertices is too large"),
             format!("split it into {what}s of at most {MAX_CONCAVE} vertices"),
-        ]);
+        ));
     };
     let crosses = || format!("a {what} crosses itself; its triangles cover more than it encloses");
     Ok((cut.triangles, (!cut.exact).then(crosses)))

@@ -2,7 +2,7 @@
 
 use super::item::{Content, Group, Item, PartItem};
 use super::material::Materials;
-use super::source::{Name, Source, Span, key, nearest};
+use super::source::{Name, Source, Span, key, undefined};
 use crate::scene::size::{Keys, MOST_PRIMITIVES, Size, primitives};
 use crate::scene::{Scene, SceneError};
 use crate::table::shortened;
@@ -222,17 +222,11 @@ pub(super) fn find<'g>(
     name: &Name,
 ) -> Result<&'g Group, SceneError> {
     groups.get(&name.text).ok_or_else(|| {
-        let remedy = match nearest(&name.text, groups.keys().map(String::as_str)) {
-            Some(near) => format!(
-                "did you mean {near:?}? Or define `[group.{}]`",
-                key(&name.text),
-                near = shortened(near)
-            ),
-            None => format!(
-                "define it: `[[group.{}.object]]` above each of its objects",
-                key(&name.text)
-            ),
-        };
+        let known = groups.keys().map(String::as_str);
+        let key = key(&name.text);
+        let remedy = undefined(&name.text, known, &format!("`[group.{key}]`"), || {
+            format!("define it: `[[group.{key}.object]]` above each of its objects")
+        });
         source.error(
             &name.span,
             format!("there is no group {:?}", shortened(&name.text)),

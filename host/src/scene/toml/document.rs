@@ -14,6 +14,7 @@ use super::source::Source;
 use super::track::{self, Targets};
 use super::value::{Fields, Value};
 use super::{environment, light, view};
+use crate::scene::access::Access;
 use crate::scene::importer::Input;
 use crate::scene::light_form::scale_of;
 use crate::scene::texture::Images;
@@ -43,7 +44,7 @@ const KEYS: &[&str] = &[
 const BLACK: Color = [0.0; 3];
 
 pub(super) fn read(input: Input<'_>, imports: &mut Imports) -> Result<Scene, SceneError> {
-    let choices = input.choices;
+    let options = input.options;
     let source = Source::new(input.path, input.bytes)?;
     let document = source.parse()?;
     let root = Fields::new(
@@ -53,17 +54,7 @@ pub(super) fn read(input: Input<'_>, imports: &mut Imports) -> Result<Scene, Sce
         "scene",
         &[KEYS],
     )?;
-    let camera = root.or("camera", None, |table| view::camera(table).map(Some))?;
-    let (camera, lens) = camera.map_or((None, None), |(camera, lens)| (Some(camera), lens));
-    let render = root.or("render", None, |table| view::render(table).map(Some))?;
-    let lights = root.or("light", Vec::new(), light::lights)?;
-    let (lights, (light_names, (light_forms, light_places))): (Vec<_>, (Vec<_>, (Vec<_>, _))) =
-        lights.into_iter().unzip();
-    let background = root.or("background", None, |value| value.radiance().map(Some))?;
-    let ambient = root.or("ambient", None, |value| value.radiance().map(Some))?;
-    let environment = root.or("environment", None, |table| {
-        environment::read(table, input.access).map(Some)
-    })?;
+    let (mut scene, given) = surroundings(&root, input.access)?;
     let tracks = root.or("track", Vec::new(), |tables| {
         track::read(tables, &mut imports.keys)
     })?;
@@ -76,8 +67,8 @@ pub(super) fn read(input: Input<'_>, imports: &mut Imports) -> Result<Scene, Sce
     let mut reader = Reader {
         source: &source,
         imports,
-        molecule: choices.molecule,
-        assembly: choices.assembly,
+        molecule: options.molecule,
+        assembly: options.assembly,
         materials: &mut materials,
         morphs: &mut morphs,
         inside: 0,
@@ -103,38 +94,11 @@ pub(super) fn read(input: Input<'_>, imports: &mut Imports) -> Result<Scene, Sce
     let placed = placer.place(&items, &parts, &instances, &joints.items)?;
     imports.warnings.extend(placed.warnings);
 
-    let mut scene = Scene {
-        camera,
-        lens,
-        background,
-        environment,
-        ambient: ambient.unwrap_or(BLACK),
-        lights,
-        light_names,
-        light_forms,
-        objects: placed.objects,
-        parts: placed.parts,
-        instances: placed.instances,
-        joints: placed.joints,
-        room,
-        render: render.unwrap_or_default(),
-        places: Places {
-            lights: light_places,
-            aperture: root.place_of("camera", "aperture"),
-            environment: root
-                .get("environment")
-                .map(Value::place)
-                .unwrap_or_default(),
-            bounces: root.place_of("render", "bounces"),
-            tone_mapping: root.place_of("render", "tone_mapping"),
-        },
-        ..Scene::default()
-    };
-    let given = Given {
-        render,
-        lights: !scene.lights.is_empty(),
-        ambient: ambient.is_some(),
-    };
+    scene.objects = placed.objects;
+    scene.parts = placed.parts;
+    scene.instances = placed.instances;
+    scene.joints = placed.joints;
+    scene.room = room;
     let mut imported_tracks = Vec::new();
     for item in &items {
         imported_tracks.extend(given.complete(&mut scene, &source, item)?);
@@ -156,6 +120,49 @@ pub(super) fn read(input: Input<'_>, imports: &mut Imports) -> Result<Scene, Sce
     imports.warnings.extend(moving_nothing(&scene));
     imports.warnings.extend(morph::unused(&scene));
     Ok(scene)
+}
+
+/// Reads a scene without its objects and materials: what it is seen and lit by, and how it is rendered.
+fn surroundings(root: &Fields<'_>, access: &Access) -> Result<(Scene, Given), SceneError> {
+    let camera = root.or("camera", None, |table| view::camera(table).map(Some))?;
+    let (camera, lens) = camera.map_or((None, None), |(camera, lens)| (Some(camera), lens));
+    let render = root.or("render", None, |table| view::render(table).map(Some))?;
+    let lights = root.or("light", Vec::new(), light::lights)?;
+    let (lights, (light_names, (light_forms, light_places))): (Vec<_>, (Vec<_>, (Vec<_>, _))) =
+        lights.into_iter().unzip();
+    let background = root.or("background", None, |value| value.radiance().map(Some))?;
+    let ambient = root.or("ambient", None, |value| value.radiance().map(Some))?;
+    let environment = root.or("environment", None, |table| {
+        environment::read(table, access).map(Some)
+    })?;
+    let given = Given {
+        render,
+        lights: !lights.is_empty(),
+        ambient: ambient.is_some(),
+    };
+    let scene = Scene {
+        camera,
+        lens,
+        background,
+        environment,
+        ambient: ambient.unwrap_or(BLACK),
+        lights,
+        light_names,
+        light_forms,
+        render: render.unwrap_or_default(),
+        places: Places {
+            lights: light_places,
+            aperture: root.place_of("camera", "aperture"),
+            environment: root
+                .get("environment")
+                .map(Value::place)
+                .unwrap_or_default(),
+            bounces: root.place_of("render", "bounces"),
+            tone_mapping: root.place_of("render", "tone_mapping"),
+        },
+        ..Scene::default()
+    };
+    Ok((scene, given))
 }
 
 /// Settings that the document itself states, which no import replaces.

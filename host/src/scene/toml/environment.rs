@@ -2,7 +2,7 @@
 
 use super::value::{Fields, Value};
 use crate::scene::access::Access;
-use crate::scene::{BRIGHTEST, Environment, Panorama, SceneError, Sky, Sun};
+use crate::scene::{BRIGHTEST, CauseAndRemedy, Environment, Panorama, SceneError, Sky, Sun};
 
 /// The numbers of rows that a map can have.
 const SIZES: [u32; 5] = [16, 32, 64, 128, 256];
@@ -49,9 +49,11 @@ pub(super) fn read(table: Value<'_>, access: &Access) -> Result<Environment, Sce
 fn picture(image: Value<'_>, access: &Access) -> Result<Sky, SceneError> {
     let name = image.filled()?;
     let panorama = Panorama::file(access, &image.source.path, name);
-    panorama.map(Sky::Picture).map_err(|[cause, remedy]| {
-        image.error(format!("the picture of the environment {cause}"), remedy)
-    })
+    panorama
+        .map(Sky::Picture)
+        .map_err(|CauseAndRemedy { cause, remedy }| {
+            image.error(format!("the picture of the environment {cause}"), remedy)
+        })
 }
 
 fn gradient(fields: &Fields<'_>) -> Result<Sky, SceneError> {

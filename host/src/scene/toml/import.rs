@@ -1,12 +1,11 @@
 //! Reading other scene files into this one: each once, and none into itself.
 
 use super::source::{Name, Source};
-use super::value::Fields;
 use crate::scene::access::Access;
-use crate::scene::importer::{Choices, Importers, Input};
+use crate::scene::importer::{FileOptions, Importers, Input};
 use crate::scene::size::Keys;
-use crate::scene::{Choice, Imported, MoleculeOptions, Scene, SceneError};
-use crate::table::{grouped, shortened};
+use crate::scene::{CauseAndRemedy, FileKinds, GltfOptions, MoleculeOptions, Scene, SceneError};
+use crate::table::grouped;
 use std::collections::HashMap;
 use std::path::PathBuf;
 use std::rc::Rc;
@@ -38,10 +37,10 @@ pub(super) struct Imports {
     pub(super) warnings: Vec<String>,
     /// The keys of the tracks of all files, and of each of their imports, which may copy them.
     pub(super) keys: Keys,
-    /// The choice of cameras and animations.
-    choice: Choice,
+    /// The cameras and animations of glTF files.
+    gltf: GltfOptions,
     /// The kinds of the files.
-    pub(super) kinds: Kinds,
+    pub(super) kinds: FileKinds,
 }
 
 /// Options with which an import reads molecules.
@@ -52,61 +51,11 @@ pub(super) struct Molecules {
     pub(super) assembly: Option<String>,
 }
 
-/// The kinds of a file and of those that it imports, as far as options depend on them.
-#[derive(Clone, Copy, Debug, Default)]
-pub(super) struct Kinds {
-    pub(super) molecules: bool,
-    /// Files to choose cameras and animations from.
-    pub(super) choices: bool,
-    /// Files that can hold assemblies.
-    pub(super) assemblies: bool,
-}
-
-impl Kinds {
-    fn of(imported: &Imported) -> Self {
-        Self {
-            molecules: imported.molecules,
-            choices: imported.choices,
-            assemblies: imported.assemblies,
-        }
-    }
-
-    fn with(self, other: Self) -> Self {
-        Self {
-            molecules: self.molecules || other.molecules,
-            choices: self.choices || other.choices,
-            assemblies: self.assemblies || other.assemblies,
-        }
-    }
-
-    /// Rejects the keys of an import of this file that are for files of other kinds.
-    pub(super) fn check(self, fields: &Fields<'_>, file: &Name) -> Result<(), SceneError> {
-        let molecules = "molecules (PDB, mmCIF and XYZ files)";
-        for (key, is_used, kind) in [
-            ("style", self.molecules, molecules),
-            ("model", self.molecules, molecules),
-            ("altloc", self.molecules, molecules),
-            ("assembly", self.assemblies, "PDB and mmCIF files"),
-        ] {
-            if let Some(value) = fields.get(key).filter(|_| !is_used) {
-                return Err(value.error(
-                    format!(
-                        "`{key}` is for {kind}, and {} has none",
-                        shortened(&file.text)
-                    ),
-                    "leave the key out",
-                ));
-            }
-        }
-        Ok(())
-    }
-}
-
 /// A file that was read.
 #[derive(Clone)]
 pub(super) struct Done {
     pub(super) scene: Rc<Scene>,
-    pub(super) kinds: Kinds,
+    pub(super) kinds: FileKinds,
 }
 
 impl Imports {
@@ -121,8 +70,8 @@ impl Imports {
             done: HashMap::new(),
             warnings: Vec::new(),
             keys: Keys::default(),
-            choice: input.choices.choice.clone(),
-            kinds: Kinds::default(),
+            gltf: input.options.gltf.clone(),
+            kinds: FileKinds::default(),
         }
     }
 
@@ -181,7 +130,7 @@ impl Imports {
         molecules: Molecules,
     ) -> Result<Done, SceneError> {
         let allowed = self.access.resolve(&source.path, &file.text);
-        let path = allowed.map_err(|[cause, remedy]| {
+        let path = allowed.map_err(|CauseAndRemedy { cause, remedy }| {
             source.error(&file.span, format!("the import {cause}"), remedy)
         })?;
         let canonical = self.access.canonical(&path).map_err(|error| {
@@ -211,23 +160,22 @@ impl Imports {
             return Ok(done.clone());
         }
         let access = self.access.clone();
-        let choice = self.choice.clone();
-        let choices = Choices {
+        let gltf = self.gltf.clone();
+        let options = FileOptions {
             molecule: &molecules.options,
             assembly: molecules.assembly.as_deref(),
-            choice: &choice,
+            gltf: &gltf,
         };
         // The kinds of the files below are counted separately, and then added to those before.
         let before = std::mem::take(&mut self.kinds);
-        let opened = self.importers.open(&path, choices, &access);
+        let opened = self.importers.open(&path, options, &access);
         let scene = opened.and_then(|(importer, input)| {
             if importer.name == self.own.0 {
                 return self.nested(input, canonical.clone());
             }
             let imported = importer.import(input)?;
-            let kinds = Kinds::of(&imported);
             self.warnings.extend(imported.warnings);
-            self.kinds = kinds;
+            self.kinds = imported.kinds;
             Ok(imported.scene)
         });
         let scene = scene.map(Rc::new).map_err(|mut error| {

@@ -1,7 +1,7 @@
 //! The `[[joint]]` tables, and the room that a scene has for what moves.
 
 use super::item::{InstanceItem, JointItem};
-use super::source::{Source, nearest};
+use super::source::{Source, undefined};
 use super::value::Value;
 use crate::scene::SceneError;
 use crate::table::shortened;
@@ -78,18 +78,11 @@ impl Joints {
     pub(super) fn number(&self, name: &str) -> Result<usize, String> {
         let found = self.numbers.get(name).copied();
         found.ok_or_else(|| {
-            match nearest(name, self.items.iter().map(|it| it.name.text.as_str())) {
-                Some(near) => {
-                    format!(
-                        "did you mean {near:?}? Or define a `[[joint]]` of this name",
-                        near = shortened(near)
-                    )
-                }
-                None => format!(
-                    "define it: `[[joint]]` with `name = {name:?}`",
-                    name = shortened(name)
-                ),
-            }
+            let known = self.items.iter().map(|it| it.name.text.as_str());
+            undefined(name, known, "a `[[joint]]` of this name", || {
+                let name = shortened(name);
+                format!("define it: `[[joint]]` with `name = {name:?}`")
+            })
         })
     }
 }

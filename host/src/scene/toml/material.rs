@@ -1,12 +1,12 @@
 //! The `[material.NAME]` tables, and looking materials up by name.
 
 use super::shape::pair;
-use super::source::{Name, Source, key, nearest};
+use super::source::{Name, Source, key, undefined};
 use super::value::{Fields, Value};
 use crate::scene::texture::{Images, texture_transform};
 use crate::scene::{
-    Alpha, Color, Diffuse, Image, Interpolation, Key, Material, NormalMap, Scene, SceneError,
-    Texture, TrackTarget, Wrap,
+    Alpha, CauseAndRemedy, Color, Diffuse, Image, Interpolation, Key, Material, NormalMap, Scene,
+    SceneError, Texture, TrackTarget, Wrap,
 };
 use crate::table::shortened;
 use glam::{DAffine2, DVec2, DVec3};
@@ -113,16 +113,10 @@ impl Materials {
     }
 
     pub(super) fn find(&self, source: &Source, name: &Name) -> Result<usize, SceneError> {
-        let known = || self.indices.keys().map(String::as_str);
         self.indices.get(&name.text).copied().ok_or_else(|| {
-            let remedy = match nearest(&name.text, known()) {
-                Some(near) => format!(
-                    "did you mean {near:?}? Or define `[material.{}]`",
-                    key(&name.text),
-                    near = shortened(near)
-                ),
-                None => format!("define `[material.{}]`", key(&name.text)),
-            };
+            let known = self.indices.keys().map(String::as_str);
+            let table = format!("`[material.{}]`", key(&name.text));
+            let remedy = undefined(&name.text, known, &table, || format!("define {table}"));
             source.error(
                 &name.span,
                 format!("there is no material {:?}", shortened(&name.text)),
@@ -335,7 +329,7 @@ fn texture(
 fn image(file: Value<'_>, images: &mut Images<'_>) -> Result<Arc<Image>, SceneError> {
     let name = file.filled()?;
     images.file(&file.source.path, name).map_err(|error| {
-        let [cause, remedy] = error.into_error();
+        let CauseAndRemedy { cause, remedy } = error.into_error();
         file.error(format!("the texture {cause}"), remedy)
     })
 }

@@ -65,9 +65,7 @@ fn read(input: Input<'_>) -> Result<Imported, SceneError> {
     let mut imports = Imports::new((IMPORTER.name, document::read), &input);
     let scene = imports.root(input)?;
     Ok(Imported {
-        molecules: imports.kinds.molecules,
-        choices: imports.kinds.choices,
-        assemblies: imports.kinds.assemblies,
+        kinds: imports.kinds,
         ..Imported::of(scene, imports.warnings)
     })
 }

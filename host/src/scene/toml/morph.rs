@@ -1,6 +1,6 @@
 //! The `[morph.NAME]` tables, and the displacements that meshes have by them.
 
-use super::source::{key, nearest};
+use super::source::{key, undefined};
 use super::value::Value;
 use crate::scene::{
     Attributes, Displacements, LARGEST_WEIGHT, MorphTarget, Scene, SceneError, Shape, Track,
@@ -99,15 +99,12 @@ impl Morphs {
     /// Returns the number of a morph target, or what to do where none has the name.
     pub(super) fn number(&self, name: &str) -> Result<usize, String> {
         let found = self.numbers.get(name).copied();
-        found.ok_or_else(
-            || match nearest(name, self.numbers.keys().map(String::as_str)) {
-                Some(near) => format!(
-                    "did you mean {near:?}? Or define `[morph.NAME]` of this name",
-                    near = shortened(near)
-                ),
-                None => format!("define it: `[morph.{}]`", key(name)),
-            },
-        )
+        found.ok_or_else(|| {
+            let known = self.numbers.keys().map(String::as_str);
+            undefined(name, known, "`[morph.NAME]` of this name", || {
+                format!("define it: `[morph.{}]`", key(name))
+            })
+        })
     }
 
     /// Reads the displacements of a mesh, and moves its vertices to where they are at rest.

@@ -12,6 +12,7 @@ use crate::scene::importer::stem;
 use crate::scene::{
     Attributes, MoleculeOptions, MoleculeStyle, Scene, SceneError, Shape, Track, TrackTarget,
 };
+use crate::table::shortened;
 use std::collections::{BTreeMap, HashMap};
 use std::path::Path;
 use std::rc::Rc;
@@ -21,6 +22,9 @@ const KEYS: &[&str] = &["kind", "name", "material"];
 
 /// The kinds of objects besides those that [`Shape`] has.
 const KINDS: [&str; 5] = ["triangle", "mesh", "group", "instance", "import"];
+
+/// The keys of imports that are for files of some kinds alone.
+const FOR_SOME_FILES: [&str; 4] = ["style", "model", "altloc", "assembly"];
 
 /// Reads objects, and the files that they import.
 pub(super) struct Reader<'r> {
@@ -114,51 +118,7 @@ impl Reader<'_> {
         let mut content = match kind {
             "group" => Content::Group(self.members(&fields, "group")?),
             "instance" => Content::Instance(fields.require("group")?.name()?),
-            "import" => {
-                let mut scene = self.import(&fields)?;
-                let mut motions = HashMap::new();
-                let seen = |track: &Track| {
-                    !track.target.is_of_joint() && track.target != TrackTarget::MorphWeight
-                };
-                if self.inside > 0 {
-                    let place = self.source.place(&fields.span);
-                    if scene.tracks.iter().any(seen) {
-                        self.imports.warnings.push(format!(
-                            "{place}: the tracks of camera, lights and materials of an import inside of a group or \
-                             part move nothing"
-                        ));
-                    }
-                    if let Some(lost) = besides_objects(&scene) {
-                        self.imports.warnings.push(format!(
-                            "{place}: an import inside of a group or part brings its objects alone, and not its {lost}"
-                        ));
-                    }
-                    if let Some(lit) = scene.with_lamps() {
-                        scene = Rc::new(lit);
-                    }
-                } else {
-                    let place = self.source.place(&fields.span);
-                    let lost = lost_tracks(&scene, material.is_some());
-                    let warnings = lost.map(|lost| format!("{place}: {lost}"));
-                    self.imports.warnings.extend(warnings);
-                    motions = material::motions(&scene);
-                }
-                // Objects that all get another material do not need their own.
-                let adopt = |(number, own)| {
-                    let motions = motions.remove(&number).unwrap_or_default();
-                    self.materials.adopt(own, motions, &name)
-                };
-                let materials = match material {
-                    Some(_) => Vec::new(),
-                    None => scene.materials.iter().enumerate().map(adopt).collect(),
-                };
-                let morphs = self.morphs.adopt(&scene);
-                Content::Import {
-                    scene,
-                    materials,
-                    morphs,
-                }
-            }
+            "import" => self.imported(&fields, material.is_some(), &name)?,
             _ => Content::Shape(shape::read(kind, &fields)?),
         };
         let mut attributes = Attributes::default();
@@ -180,6 +140,57 @@ impl Reader<'_> {
         })
     }
 
+    /// Reads the content of an import. `has_other` if its objects get another material than their own.
+    fn imported(
+        &mut self,
+        fields: &Fields<'_>,
+        has_other: bool,
+        name: &str,
+    ) -> Result<Content, SceneError> {
+        let mut scene = self.import(fields)?;
+        let mut motions = HashMap::new();
+        let place = self.source.place(&fields.span);
+        if self.inside > 0 {
+            let is_lost = |track: &Track| {
+                !track.target.is_of_joint() && track.target != TrackTarget::MorphWeight
+            };
+            if scene.tracks.iter().any(is_lost) {
+                self.imports.warnings.push(format!(
+                    "{place}: the tracks of camera, lights and materials of an import inside of a group or part move \
+                     nothing"
+                ));
+            }
+            if let Some(lost) = besides_objects(&scene) {
+                self.imports.warnings.push(format!(
+                    "{place}: an import inside of a group or part brings its objects alone, and not its {lost}"
+                ));
+            }
+            if let Some(lit) = scene.with_light_objects() {
+                scene = Rc::new(lit);
+            }
+        } else {
+            let lost = lost_tracks(&scene, has_other);
+            let warnings = lost.map(|lost| format!("{place}: {lost}"));
+            self.imports.warnings.extend(warnings);
+            motions = material::motions(&scene);
+        }
+        // Objects that all get another material do not need their own.
+        let adopt = |(number, own)| {
+            let motions = motions.remove(&number).unwrap_or_default();
+            self.materials.adopt(own, motions, name)
+        };
+        let materials = match has_other {
+            true => Vec::new(),
+            false => scene.materials.iter().enumerate().map(adopt).collect(),
+        };
+        let morphs = self.morphs.adopt(&scene);
+        Ok(Content::Import {
+            scene,
+            materials,
+            morphs,
+        })
+    }
+
     fn import(&mut self, fields: &Fields<'_>) -> Result<Rc<Scene>, SceneError> {
         let file = fields.require("file")?.name()?;
         let options = MoleculeOptions {
@@ -195,7 +206,14 @@ impl Reader<'_> {
             assembly: assembly.map(str::to_owned),
         };
         let Done { scene, kinds } = self.imports.import(self.source, &file, molecules)?;
-        kinds.check(fields, &file)?;
+        for key in FOR_SOME_FILES {
+            let Some(value) = fields.get(key) else {
+                continue;
+            };
+            if let Some(why) = kinds.inapplicable(key, &shortened(&file.text)) {
+                return Err(value.error(format!("`{key}` {why}"), "leave the key out"));
+            }
+        }
         Ok(scene)
     }
 }
@@ -219,10 +237,10 @@ fn lost_tracks(scene: &Scene, has_other: bool) -> impl Iterator<Item = &'static 
 /// Names the parts of a scene besides objects and lights that are visible as such.
 fn besides_objects(scene: &Scene) -> Option<String> {
     let forms = scene.light_forms.iter().flatten();
-    let lamps = forms.filter(|it| it.is_visible).count();
+    let visible = forms.filter(|it| it.is_visible).count();
     let all = [
         (scene.camera.is_some(), "camera"),
-        (scene.lights.len() > lamps, "lights"),
+        (scene.lights.len() > visible, "lights"),
         (scene.background.is_some(), "background"),
         (scene.ambient != [0.0; 3], "ambient light"),
         (scene.environment.is_some(), "environment"),

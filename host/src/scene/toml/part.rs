@@ -3,7 +3,7 @@
 use super::item::{InstanceItem, PartItem};
 use super::joint::Joints;
 use super::object::Reader;
-use super::source::{Source, nearest};
+use super::source::{Source, undefined};
 use super::transform;
 use super::value::Value;
 use crate::scene::SceneError;
@@ -52,16 +52,11 @@ pub(super) fn instances(
         let part = fields.require("part")?;
         let text = part.filled()?;
         let number = numbers.get(text).copied().ok_or_else(|| {
-            let remedy = match nearest(text, parts.iter().map(|it| it.name.text.as_str())) {
-                Some(near) => format!(
-                    "did you mean {near:?}? Or define a `[[part]]` of this name",
-                    near = shortened(near)
-                ),
-                None => format!(
-                    "define it: `[[part]]` with `name = {text:?}`",
-                    text = shortened(text)
-                ),
-            };
+            let known = parts.iter().map(|it| it.name.text.as_str());
+            let remedy = undefined(text, known, "a `[[part]]` of this name", || {
+                let name = shortened(text);
+                format!("define it: `[[part]]` with `name = {name:?}`")
+            });
             part.error(
                 format!("there is no part {text:?}", text = shortened(text)),
                 remedy,

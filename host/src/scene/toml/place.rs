@@ -23,7 +23,7 @@ pub(super) struct Placer<'p> {
     source: &'p Source,
     groups: &'p BTreeMap<String, Group>,
     materials: &'p mut Materials,
-    placed: Placed,
+    placed: PlacedContent,
     /// True if the objects are those of a part, which holds no instances.
     in_part: bool,
     /// The first part of each import that has some.
@@ -35,7 +35,7 @@ pub(super) struct Placer<'p> {
 
 /// The placed content of a file's tables.
 #[derive(Default)]
-pub(super) struct Placed {
+pub(super) struct PlacedContent {
     pub(super) objects: Vec<Object>,
     pub(super) parts: Vec<Part>,
     pub(super) instances: Vec<Instance>,
@@ -69,9 +69,9 @@ impl<'p> Placer<'p> {
         materials: &'p mut Materials,
         objects: usize,
     ) -> Self {
-        let placed = Placed {
+        let placed = PlacedContent {
             objects: Vec::with_capacity(objects),
-            ..Placed::default()
+            ..PlacedContent::default()
         };
         Self {
             source,
@@ -92,7 +92,7 @@ impl<'p> Placer<'p> {
         parts: &[PartItem],
         instances: &[InstanceItem],
         joints: &[JointItem],
-    ) -> Result<Placed, SceneError> {
+    ) -> Result<PlacedContent, SceneError> {
         let joint = |joint: &JointItem| Joint {
             name: joint.name.text.clone(),
             parent: joint.parent,

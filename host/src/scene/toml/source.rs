@@ -114,6 +114,23 @@ pub(crate) fn nearest<'k>(wanted: &str, known: impl Iterator<Item = &'k str>) ->
     known.max_by(|a, b| likeness(a).total_cmp(&likeness(b)))
 }
 
+/// Returns the remedy for a name that nothing in the file has. It proposes the most similar of the `known` names and
+/// the `definition`; where nothing is known, it is `first`, which says how to define the first one.
+pub(super) fn undefined<'k>(
+    wanted: &str,
+    known: impl Iterator<Item = &'k str>,
+    definition: &str,
+    first: impl FnOnce() -> String,
+) -> String {
+    match nearest(wanted, known) {
+        Some(near) => {
+            let near = shortened(near);
+            format!("did you mean {near:?}? Or define {definition}")
+        }
+        None => first(),
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::key;

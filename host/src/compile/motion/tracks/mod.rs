@@ -7,7 +7,7 @@ mod tests;
 use crate::compile::CompileError;
 use crate::compile::section::{Section, section};
 use crate::compile::view::camera::angle;
-use crate::scene::{Camera, Key, Scene, TICKS_PER_SECOND, Track};
+use crate::scene::{Camera, CauseAndRemedy, Key, Scene, TICKS_PER_SECOND, Track};
 use crate::shape::{exp2, unit};
 use crate::table::significant;
 use glam::{DQuat, DVec3};
@@ -53,7 +53,7 @@ pub fn sections(
     for pair in numbered.windows(2) {
         if (pair[0].0, pair[0].1) == (pair[1].0, pair[1].1) {
             let cause = String::from("the property has two tracks");
-            let fault = (cause, "put the keys of both into one track");
+            let fault = CauseAndRemedy::new(cause, "put the keys of both into one track");
             return Err(self::fault(scene, pair[1].2, fault));
         }
     }
@@ -111,7 +111,11 @@ fn check_camera(scene: &Scene, tracks: &[Track]) -> Result<(), CompileError> {
         None => Ok(()),
         Some(track) => {
             let cause = String::from("the camera has a rotation that moves, too");
-            Err(fault(scene, track, (cause, "remove one of the two")))
+            Err(fault(
+                scene,
+                track,
+                CauseAndRemedy::new(cause, "remove one of the two"),
+            ))
         }
     }
 }
@@ -125,7 +129,11 @@ fn check_alpha(scene: &Scene, track: &Track) -> Result<(), CompileError> {
         false => Ok(()),
         true => {
             let cause = String::from("the material has an `alpha`, and glass has none");
-            Err(fault(scene, track, (cause, "remove `alpha` or the track")))
+            Err(fault(
+                scene,
+                track,
+                CauseAndRemedy::new(cause, "remove `alpha` or the track"),
+            ))
         }
     }
 }
@@ -136,7 +144,7 @@ pub fn check_spline(scene: &Scene, track: &Track) -> Result<(), CompileError> {
         None => Ok(()),
         Some(cause) => {
             let remedy = "use smaller tangents, more keys, or linear interpolation";
-            Err(fault(scene, track, (cause, remedy)))
+            Err(fault(scene, track, CauseAndRemedy::new(cause, remedy)))
         }
     }
 }
@@ -192,11 +200,9 @@ pub fn places(tracks: &[Track], camera: &Camera) -> Vec<DVec3> {
         .collect()
 }
 
-/// The cause of an error of a track, and the remedy.
-type Fault = (String, &'static str);
-
 /// An error of a track.
-fn fault(scene: &Scene, track: &Track, (cause, remedy): Fault) -> CompileError {
+fn fault(scene: &Scene, track: &Track, fault: CauseAndRemedy) -> CompileError {
+    let CauseAndRemedy { cause, remedy } = fault;
     CompileError::Track {
         place: track.place.clone(),
         target: scene.target_of(track),
@@ -206,20 +212,20 @@ fn fault(scene: &Scene, track: &Track, (cause, remedy): Fault) -> CompileError {
             0 if track.place.is_known() => {
                 format!("{remedy}, or leave the animation out with `--animation none`")
             }
-            _ => remedy.to_owned(),
+            _ => remedy,
         },
     }
 }
 
 /// The times of a track's keys in ticks.
-fn times(track: &Track) -> Result<Vec<i32>, Fault> {
+fn times(track: &Track) -> Result<Vec<i32>, CauseAndRemedy> {
     let mut times = Vec::with_capacity(track.keys.len());
     for key in &track.keys {
         let ticks = (key.seconds * f64::from(TICKS_PER_SECOND)).round();
         if ticks.abs() > f64::from(i32::MAX) {
             let most = i32::MAX as u32 / TICKS_PER_SECOND;
             let cause = format!("the time {} is beyond {most} seconds", key.seconds);
-            return Err((cause, "use earlier times"));
+            return Err(CauseAndRemedy::new(cause, "use earlier times"));
         }
         times.push(ticks as i32);
     }
@@ -228,13 +234,16 @@ fn times(track: &Track) -> Result<Vec<i32>, Fault> {
         let cause = format!(
             "the times {one} and {other} are less than a tick apart, 1/{TICKS_PER_SECOND} of a second"
         );
-        return Err((cause, "move them apart, or use only one of them"));
+        return Err(CauseAndRemedy::new(
+            cause,
+            "move them apart, or use only one of them",
+        ));
     }
     Ok(times)
 }
 
 /// The keys of a track: each one's time and words.
-fn keys(track: &Track, header: &Header) -> Result<Vec<(i32, Vec<i32>)>, Fault> {
+fn keys(track: &Track, header: &Header) -> Result<Vec<(i32, Vec<i32>)>, CauseAndRemedy> {
     let kind = track.target.kind();
     let times = times(track)?;
     let seconds =
@@ -273,7 +282,10 @@ fn keys(track: &Track, header: &Header) -> Result<Vec<(i32, Vec<i32>)>, Fault> {
                 if rounded.is_nan() || rounded.abs() > f64::from(most) {
                     let limit = f64::from(i32::MAX) / factor.abs();
                     let (cause, remedy) = which.too_large(kind, limit);
-                    return Err((format!("at {} s {cause}", key.seconds), remedy));
+                    return Err(CauseAndRemedy::new(
+                        format!("at {} s {cause}", key.seconds),
+                        remedy,
+                    ));
                 }
                 words.push(rounded as i32);
             }

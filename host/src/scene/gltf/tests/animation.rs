@@ -251,36 +251,36 @@ fn cameras_and_animations_are_chosen_by_name() {
         .unwrap()
         .push(json!({"name": "top", "camera": 0, "translation": [0, 9, 0]}));
     document["scenes"] = json!([{"nodes": [0, 1, 2]}]);
-    let choice = |camera: Option<&str>, animation: Option<&str>| Choice {
+    let options = |camera: Option<&str>, animation: Option<&str>| GltfOptions {
         camera: camera.map(str::to_owned),
         animation: animation.map(str::to_owned),
     };
-    let first = chosen(&document, Choice::default()).unwrap();
+    let first = chosen(&document, GltfOptions::default()).unwrap();
     assert_eq!((first.scene.tracks.len(), first.scene.joints.len()), (1, 1));
     let warned = |words: &str| first.warnings.iter().any(|it| it.contains(words));
     assert!(warned("several animations"));
     for name in ["dolly", "1"] {
-        let dolly = chosen(&document, choice(None, Some(name))).unwrap();
+        let dolly = chosen(&document, options(None, Some(name))).unwrap();
         assert_eq!(dolly.scene.tracks.len(), 3);
     }
-    let top = chosen(&document, choice(Some("top"), Some("dolly"))).unwrap();
+    let top = chosen(&document, options(Some("top"), Some("dolly"))).unwrap();
     assert_eq!(top.scene.camera.unwrap().eye, DVec3::new(0.0, 9.0, 0.0));
     // The track of the light alone.
     assert_eq!(top.scene.tracks.len(), 1);
-    let error = chosen(&document, choice(Some("side"), None)).unwrap_err();
+    let error = chosen(&document, options(Some("side"), None)).unwrap_err();
     assert!(
         error.cause.contains("side") && error.remedy.contains("top"),
         "{error}"
     );
-    let error = chosen(&document, choice(None, Some("2"))).unwrap_err();
+    let error = chosen(&document, options(None, Some("2"))).unwrap_err();
     assert!(error.remedy.contains("still, dolly, or `none`"), "{error}");
     // Unless an animation is called so.
-    let none = chosen(&document, choice(None, Some("none"))).unwrap();
+    let none = chosen(&document, options(None, Some("none"))).unwrap();
     assert_eq!((none.scene.tracks.len(), none.scene.joints.len()), (0, 0));
     let mut warnings = none.warnings.iter();
     assert!(!warnings.any(|it| it.contains("animation")));
     document["animations"][1]["name"] = json!("none");
-    let dolly = chosen(&document, choice(None, Some("none"))).unwrap();
+    let dolly = chosen(&document, options(None, Some("none"))).unwrap();
     assert_eq!(dolly.scene.tracks.len(), 3);
 }
 
@@ -297,13 +297,13 @@ fn skins_that_are_asked_for_are_rejected() {
     document["scenes"] = json!([{"nodes": [0, 1, 2]}]);
     document["nodes"][0]["skin"] = json!(0);
     document["skins"] = json!([{"joints": [2]}]);
-    let bend = Choice {
+    let bend = GltfOptions {
         animation: Some(String::from("bend")),
-        ..Choice::default()
+        ..GltfOptions::default()
     };
     let error = chosen(&document, bend).unwrap_err();
     assert!(error.cause.contains("\"tile\" by a skin"), "{error}");
-    let warnings = chosen(&document, Choice::default()).unwrap().warnings;
+    let warnings = chosen(&document, GltfOptions::default()).unwrap().warnings;
     assert!(
         warnings.iter().any(|it| it.contains("bends")),
         "{warnings:?}"

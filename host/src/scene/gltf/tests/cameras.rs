@@ -22,11 +22,11 @@ fn crossed(yfov: f64) -> Value {
 #[test]
 fn a_camera_is_known_by_its_node_first() {
     for (name, place, width) in [("a", 5.0, 480), ("b", 7.0, 240)] {
-        let choice = Choice {
+        let options = GltfOptions {
             camera: Some(name.to_owned()),
-            ..Choice::default()
+            ..GltfOptions::default()
         };
-        let found = chosen(&crossed(1.0), choice).unwrap();
+        let found = chosen(&crossed(1.0), options).unwrap();
         assert_eq!(found.scene.camera.unwrap().eye.z, place, "{name}");
         assert_eq!(found.scene.render.width, width, "{name}");
     }
@@ -73,24 +73,24 @@ fn aspect_ratios_that_are_not_above_0_are_ignored_with_a_warning() {
 #[test]
 fn a_camera_that_sees_nothing_is_named() {
     for yfov in [0.0, -1.0, 3.2] {
-        let choice = Choice {
+        let options = GltfOptions {
             camera: Some("a".to_owned()),
-            ..Choice::default()
+            ..GltfOptions::default()
         };
         // By the name of the other node's camera.
-        let found = chosen(&crossed(yfov), choice).unwrap();
+        let found = chosen(&crossed(yfov), options).unwrap();
         assert_eq!(found.scene.camera.unwrap().eye.z, 7.0);
         let warned = |it: &String| it.contains("yfov");
         assert!(found.warnings.iter().any(warned), "{:?}", found.warnings);
         let mut document = crossed(yfov);
         document["scenes"][0]["nodes"] = json!([0, 1]);
-        let choice = Choice {
+        let options = GltfOptions {
             camera: Some("a".to_owned()),
-            ..Choice::default()
+            ..GltfOptions::default()
         };
-        let error = chosen(&document, choice).unwrap_err();
+        let error = chosen(&document, options).unwrap_err();
         assert!(error.cause.contains("yfov"), "{error}");
-        let found = chosen(&document, Choice::default()).unwrap();
+        let found = chosen(&document, GltfOptions::default()).unwrap();
         assert!(found.scene.camera.is_none() && found.warnings.iter().any(warned));
     }
 }

@@ -15,7 +15,7 @@ mod scales;
 use super::*;
 use crate::scene::tests::samples::{self, load, load_allowing_outside, mesh};
 use crate::scene::{
-    Alpha, Camera, Choice, Diffuse, ImportOptions, Light, LightForm, Material, Wrap,
+    Alpha, Camera, Diffuse, GltfOptions, ImportOptions, Light, LightForm, Material, Wrap,
 };
 use base64::Engine as _;
 use base64::engine::general_purpose::STANDARD;
@@ -115,9 +115,9 @@ fn warnings(document: &Value) -> Vec<String> {
     warnings.iter().map(sentence).collect()
 }
 
-fn chosen(document: &Value, choice: Choice) -> Result<Imported, SceneError> {
+fn chosen(document: &Value, options: GltfOptions) -> Result<Imported, SceneError> {
     let options = ImportOptions {
-        choice,
+        gltf: options,
         ..ImportOptions::default()
     };
     crate::scene::read(

@@ -161,11 +161,11 @@ fn animated_weights_become_tracks_of_morph_targets() {
     let mut document = animated(&[0.0, 0.25, 1.0, -0.5], "LINEAR");
     document["nodes"][0]["weights"] = json!([0.5, 0.0]);
     document["nodes"][0]["scale"] = json!([1, 1, 3]);
-    let choice = Choice {
+    let options = GltfOptions {
         animation: Some(String::from("wave")),
-        ..Choice::default()
+        ..GltfOptions::default()
     };
-    let imported = chosen(&document, choice).unwrap();
+    let imported = chosen(&document, options).unwrap();
     assert_eq!(imported.warnings, [] as [&str; 0]);
     let scene = imported.scene;
     let weights = scene.morph_targets.iter().map(|it| it.weight);

@@ -51,7 +51,7 @@ fn identity_alone_stays_objects() {
     assert!(imported.scene.parts.is_empty() && imported.scene.instances.is_empty());
     let whole = pdb(&text).unwrap();
     assert_eq!(whole.scene.objects.len(), 3);
-    assert!(whole.assemblies);
+    assert!(whole.kinds.assemblies);
 }
 
 #[test]

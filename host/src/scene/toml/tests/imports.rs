@@ -344,7 +344,7 @@ fn keys_for_molecules_are_rejected_for_formats_without_them() {
             let text = format!("[[object]]\nkind = \"import\"\nfile = \"{name}\"\n{key}\n");
             load_in(folder.path(), &text)
         };
-        let holds_molecules = import("").unwrap().molecules;
+        let holds_molecules = import("").unwrap().kinds.molecules;
         // The names that errors list.
         let listed = ["PDB", "mmCIF", "XYZ"].contains(&importer.name);
         assert_eq!(holds_molecules, listed, "{name}");
@@ -361,7 +361,7 @@ fn keys_for_molecules_are_rejected_for_formats_without_them() {
             let error = error.unwrap();
             let found = error.to_string();
             let expected = format!(
-                "scene.toml:4: `{key}` is for molecules (PDB, mmCIF and XYZ files), and {name} has none"
+                "scene.toml:4: `{key}` is for molecules (PDB, mmCIF and XYZ files), and {name} is none of these"
             );
             assert!(found.ends_with(&expected), "{found}");
             assert_eq!(error.remedy, "leave the key out");
@@ -370,7 +370,7 @@ fn keys_for_molecules_are_rejected_for_formats_without_them() {
         let error = import("assembly = \"1\"").unwrap_err();
         let expected = match holds_molecules {
             true => String::from("there is no assembly \"1\": the file states none"),
-            false => format!("`assembly` is for PDB and mmCIF files, and {name} has none"),
+            false => format!("`assembly` is for PDB and mmCIF files, and {name} is none of these"),
         };
         assert!(error.cause.contains(&expected), "{error}");
     }
@@ -393,7 +393,10 @@ fn keys_for_molecules_reach_the_imports_of_an_import() {
         }
         let text = import("both.toml") + &import("mesh.toml") + key;
         let error = load_in(folder.path(), &text).unwrap_err();
-        assert!(error.cause.ends_with("mesh.toml has none"), "{error}");
+        assert!(
+            error.cause.ends_with("mesh.toml is none of these"),
+            "{error}"
+        );
         assert_eq!(error.line, Some(7));
     }
     let wanted = import("both.toml") + "assembly = \"7\"";

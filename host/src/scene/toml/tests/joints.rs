@@ -220,7 +220,7 @@ fn flattened_instances_stand_where_they_are_at_a_time() {
     for (at, x, words) in [(None, 0.0, 1), (Some(0.5), 4.0, 0)] {
         let options = ImportOptions {
             instances: Instances::Flatten,
-            at,
+            time: at,
             ..ImportOptions::default()
         };
         let flat = crate::scene::read("a.toml".as_ref(), text.clone().into(), &options).unwrap();

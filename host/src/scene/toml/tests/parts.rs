@@ -220,7 +220,7 @@ ATOM      1  CA  CYS A   3      11.000   2.000   3.000  1.00  0.00           C
 ";
     std::fs::write(folder.path().join("capsid.pdb"), capsid).unwrap();
     let imported = load_in(folder.path(), example.split_once("```").unwrap().0).unwrap();
-    assert!(imported.assemblies);
+    assert!(imported.kinds.assemblies);
     let flat = imported.scene.flattened().unwrap();
     assert_eq!(flat.objects[0].name, "capsid/1/A/CYS 3/CA");
     assert_eq!(
