@@ -84,7 +84,7 @@ impl Light {
     /// Returns a light of a blob.
     pub fn of_blob(scene: &Scene<'_>, light: &record::Light) -> Self {
         let color = light.color.map(|channel| f64::from(channel) / exp2(20));
-        if light.directional == 1 {
+        if light.kind == record::Light::DIRECTIONAL {
             let direction = -DVec3::from_array(light.vector.map(|x| x as f64));
             Self::Directional { direction, color }
         } else {
@@ -110,8 +110,8 @@ impl Light {
             .get(number)
             .filter(|it| it.form().is_some() || it.is_environment());
         Ok(match form {
-            Some(light) if record.directional == 0 => record::Light {
-                directional: light.directional,
+            Some(light) if record.kind == 0 => record::Light {
+                kind: light.kind,
                 ..record
             },
             _ => record,

@@ -277,7 +277,7 @@ fn values_out_of_range_are_rejected_with_their_place() {
         (view(&|it| it.width = 0), "width"),
         (view(&|it| it.samples = 4097), "samples"),
         (light(&|it| it.color[0] = -1), "1"),
-        (light(&|it| it.directional = 2), "1"),
+        (light(&|it| it.kind = 2), "1"),
         (light(&|it| it.vector = [0; 3]), "1"),
         (material(&|it| it.diffuse[0] = (1 << 30) + 1), "diffuse"),
         (material(&|it| it.shininess = 0), "shininess"),

@@ -56,15 +56,15 @@ impl Environment {
 }
 
 impl Light {
-    /// The value of [`directional`](Self::directional) that marks the map of the environment as a light. Its color and
+    /// The value of [`kind`](Self::kind) that marks the map of the environment as a light. Its color and
     /// vector are not used.
     pub const ENVIRONMENT: u32 = 4;
-    /// The value of [`directional`](Self::directional) that marks the sun of the environment. Its vector is not used;
+    /// The value of [`kind`](Self::kind) that marks the sun of the environment. Its vector is not used;
     /// its color is the sun's radiance times the square of the sun's radius.
     pub const SUN: u32 = 5;
 
     /// Returns true if the light is the map or the sun of the environment.
     pub const fn is_environment(&self) -> bool {
-        matches!(self.directional, Self::ENVIRONMENT | Self::SUN)
+        matches!(self.kind, Self::ENVIRONMENT | Self::SUN)
     }
 }

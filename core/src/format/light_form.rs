@@ -63,7 +63,7 @@ impl LightForm {
 }
 
 impl Light {
-    /// The value of [`directional`](Self::directional) for a directional light.
+    /// The value of [`kind`](Self::kind) for a directional light.
     pub const DIRECTIONAL: u32 = 1;
 
     /// The value for a point light with a form.
@@ -71,15 +71,15 @@ impl Light {
     /// The value for an area light.
     const AREA: u32 = 3;
 
-    /// Returns the value of [`directional`](Self::directional) for a light whose form has a number below 2^30.
+    /// Returns the value of [`kind`](Self::kind) for a light whose form has a number below 2^30.
     pub const fn with_form(number: u32, is_area: bool) -> u32 {
         number << 2 | if is_area { Self::AREA } else { Self::FORM }
     }
 
     /// Returns the number of its form; `None` for a plain point light and for a directional one.
     pub const fn form(&self) -> Option<u32> {
-        if self.directional & Self::FORM != 0 {
-            Some(self.directional >> 2)
+        if self.kind & Self::FORM != 0 {
+            Some(self.kind >> 2)
         } else {
             None
         }
@@ -87,16 +87,16 @@ impl Light {
 
     /// Returns true if the light is at a position, with a form or without one.
     pub const fn has_position(&self) -> bool {
-        self.directional == 0 || self.form().is_some()
+        self.kind == 0 || self.form().is_some()
     }
 
     /// Returns true if the light shines from a point.
     pub const fn is_point(&self) -> bool {
-        self.directional == 0 || self.directional & Self::AREA == Self::FORM
+        self.kind == 0 || self.kind & Self::AREA == Self::FORM
     }
 
     /// Returns true if the light is an area and not a point.
     pub const fn is_area(&self) -> bool {
-        self.directional & Self::AREA == Self::AREA
+        self.kind & Self::AREA == Self::AREA
     }
 }

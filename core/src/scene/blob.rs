@@ -94,7 +94,7 @@ impl<'a> Scene<'a> {
     /// # static BLOB: &[u8] =
     /// #     gridel_core::include_blob!(concat!(env!("CARGO_MANIFEST_DIR"), "/../fixtures/blobs/dual-split.gridel"));
     /// let scene = gridel_core::Scene::from_bytes(BLOB)?;
-    /// assert_eq!(scene.lights()[0].directional, 0);
+    /// assert_eq!(scene.lights()[0].kind, 0);
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
     pub fn lights(&self) -> &'a [Light] {

@@ -65,9 +65,9 @@ pub(super) fn check_light(index: usize, light: &Light, scene: &Scene<'_>) -> Res
             at.within(Field::LightForm, form.into(), 0, forms as i64 - 1)?;
         }
         None if ENVIRONMENT && scene.environment.get().is_some_and(|it| it.has(light)) => (),
-        _ => at.within(Field::Kind, light.directional.into(), 0, 1)?,
+        _ => at.within(Field::Kind, light.kind.into(), 0, 1)?,
     }
-    let is_directional = light.directional == Light::DIRECTIONAL;
+    let is_directional = light.kind == Light::DIRECTIONAL;
     let most = if is_directional { ONE } else { FARTHEST };
     let vector = light.vector;
     at.all_within(Field::PositionOrDirection, &vector, -most, most)?;

@@ -95,7 +95,7 @@ impl<'a> EnvironmentMap<'a> {
     /// Returns true if a light is the map or the sun.
     #[inline(always)]
     pub(crate) fn has(&self, light: &Light) -> bool {
-        match light.directional {
+        match light.kind {
             Light::ENVIRONMENT => self.record.is_some(),
             Light::SUN => self.record.is_some_and(|it| it.sun_radius > 0),
             _ => false,

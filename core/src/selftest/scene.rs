@@ -178,10 +178,10 @@ fn lights() -> [Light; 2] {
     let near = [-120, 180, 160].map(|units: i64| units << 13);
     // Two thirds, two thirds, one third: of length 1.
     let far = [715_827_883, 715_827_883, 357_913_941];
-    [(near, 0), (far, 1)].map(|(vector, directional)| Light {
+    [(near, 0), (far, 1)].map(|(vector, kind)| Light {
         vector,
         color: [700_000, 650_000, 600_000],
-        directional,
+        kind,
     })
 }
 

@@ -64,7 +64,7 @@ impl Effect for Environment {
         let Some((map, record)) = scene.environment_map() else {
             return;
         };
-        let way = if light.directional == Light::SUN {
+        let way = if light.kind == Light::SUN {
             // Lights beyond the first 4,096 share points with these.
             in_sun::<N>(record, tracer.point(number as u16 & 0xfff))
         } else {
@@ -88,7 +88,7 @@ impl Effect for Environment {
     ) {
         if X::Observer::ENABLED && lighting.light.is_environment() {
             let record = tracer.scene().environment();
-            let map = record.filter(|_| lighting.light.directional == Light::ENVIRONMENT);
+            let map = record.filter(|_| lighting.light.kind == Light::ENVIRONMENT);
             let texel = map.map(|it| texel_at(it.size_bits, place_of(lighting.to_light).0));
             tracer.count().event(Event::FromEnvironment {
                 direction: lighting.to_light.map(N::ratio_to_f64),
@@ -105,7 +105,7 @@ impl Effect for Environment {
         lighting: &Lighting<'_, N>,
         arriving: &mut Color<N>,
     ) {
-        if lighting.light.directional != Light::ENVIRONMENT {
+        if lighting.light.kind != Light::ENVIRONMENT {
             return;
         }
         if let Some((map, record)) = tracer.scene().environment_map() {

@@ -58,7 +58,7 @@ impl Effect for Glossy {
             return;
         };
         let light = lighting.light;
-        let is_met = match light.directional {
+        let is_met = match light.kind {
             // Facets that are seen at grazing angles mirror a small part of the map much brighter than the rest.
             Light::ENVIRONMENT => true,
             Light::SUN => alpha < WIDE && !is_sun_limited(scene),

@@ -16,7 +16,7 @@ impl Light {
         &self,
         origin: &Origin<'_, N>,
     ) -> ([N::Wide; 3], Option<N::Wide>) {
-        if self.directional == Self::DIRECTIONAL {
+        if self.kind == Self::DIRECTIONAL {
             return (self.vector.map(N::far), None);
         }
         let place = origin.place();

@@ -144,7 +144,7 @@ fn check_track(
     let light = lights.get(track.index as usize);
     let fits = match target {
         TrackTarget::LightPosition => light.is_some_and(Light::has_position),
-        TrackTarget::LightDirection => light.is_some_and(|it| it.directional == Light::DIRECTIONAL),
+        TrackTarget::LightDirection => light.is_some_and(|it| it.kind == Light::DIRECTIONAL),
         _ => true,
     };
     at.ensure(fits, Reason::WrongLight)?;

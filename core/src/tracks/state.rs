@@ -87,7 +87,7 @@ impl Tracks<'_> {
                         light.vector = scene.on_lattice(Position(place.value()));
                     }
                 }
-                TrackTarget::LightDirection if light.directional == Light::DIRECTIONAL => {
+                TrackTarget::LightDirection if light.kind == Light::DIRECTIONAL => {
                     if let Some(direction) = value() {
                         light.vector = towards(direction).map(i64::from);
                     }

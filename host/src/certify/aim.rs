@@ -63,8 +63,8 @@ impl Tracer<'_, '_> {
         let place = (path.depth, NONE);
         // Lights beyond the first 4,096 share points with these.
         let dimension = number as u16 & 0xfff;
-        match (light.directional, scene.environment()) {
-            (1, _) => return far(exact(light.vector), color),
+        match (light.kind, scene.environment()) {
+            (Light::DIRECTIONAL, _) => return far(exact(light.vector), color),
             (Light::ENVIRONMENT, Some(_)) => {
                 let drawn = sky::from_map(scene, path.point(sky::DIMENSION));
                 let (way, radiance) = self.known(drawn, Reason::Sampling, place, point)?;

@@ -150,7 +150,7 @@ fn is_sun_limited(scene: &Scene<'_>) -> bool {
 
 /// Returns whether a light is reflected by the formula of a surface's facets.
 pub fn reflects(scene: &Scene<'_>, alpha: i32, light: &Light) -> bool {
-    let is_met = match light.directional {
+    let is_met = match light.kind {
         Light::ENVIRONMENT => true,
         Light::SUN => !is_wide(alpha) && !is_sun_limited(scene),
         _ => !is_wide(alpha) && scene.is_shown(light),

@@ -72,7 +72,7 @@ impl Targets {
             chosen(kind).filter_map(move |slot| scene.primitive_bounds(kind, slot))
         });
         let triangles = chosen(Kind::Triangle).filter_map(|slot| scene.triangle(slot));
-        let point_lights = scene.lights().iter().filter(|it| it.directional == 0);
+        let point_lights = scene.lights().iter().filter(|it| it.kind == 0);
         let units = |corners: [[i32; 3]; 3]| corners.map(|it| it.map(|x| f64::from(x) / 256.0));
         let mut targets = Self {
             bounds: *scene.bounds(),

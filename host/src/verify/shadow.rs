@@ -86,15 +86,15 @@ fn anywhere<'s>(
 
 /// Returns whether a light is infinitely far.
 fn is_far(light: &Light) -> bool {
-    matches!(light.directional, 1 | Light::SUN)
+    matches!(light.kind, Light::DIRECTIONAL | Light::SUN)
 }
 
 /// The way from a point to a light, or to the middle of the sun; `None` for the map of an environment, which is
 /// everywhere.
 fn to_light(scene: &Scene<'_>, light: &Light, from: DVec3) -> Option<DVec3> {
     let vector = DVec3::from_array(light.vector.map(|x| x as f64 / 8192.0));
-    let way = match light.directional {
-        1 => vector,
+    let way = match light.kind {
+        Light::DIRECTIONAL => vector,
         Light::SUN => DVec3::from_array(scene.environment()?.sun_direction.map(f64::from)),
         Light::ENVIRONMENT => return None,
         _ => vector - from,
@@ -211,7 +211,7 @@ mod tests {
         with_scene(|scene| {
             let of = |kind: u32| {
                 let mut lights = scene.lights().iter();
-                lights.find(|it| it.directional == kind).unwrap()
+                lights.find(|it| it.kind == kind).unwrap()
             };
             let from = DVec3::new(3.0, 4.0, 5.0);
             assert_eq!(to_light(scene, of(Light::ENVIRONMENT), from), None);

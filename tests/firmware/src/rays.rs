@@ -85,7 +85,7 @@ fn to(light: &Light, hit: Hit<N>, scene: &Scene<'static>) -> Option<Ray<N>> {
     };
     let start = start.map(N::widen);
     let far = light.vector.map(N::far);
-    let (way, end) = if light.directional == 1 {
+    let (way, end) = if light.kind == Light::DIRECTIONAL {
         (far, N::far(1 << 60))
     } else {
         let way = [far[0] - start[0], far[1] - start[1], far[2] - start[2]];

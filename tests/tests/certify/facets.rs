@@ -109,7 +109,7 @@ impl Exact<'_> {
         to_light: &Vector,
     ) -> Option<Vector> {
         let alpha = self.scene.roughness(surface.met.object)?;
-        let is_met = match light.directional {
+        let is_met = match light.kind {
             Light::ENVIRONMENT => true,
             Light::SUN => alpha < WIDE && !self.is_sun_limited(),
             _ => alpha < WIDE && self.scene.is_shown(light),

@@ -244,7 +244,7 @@ impl Exact<'_> {
     pub fn aim(&self, number: usize, light: &Light, from: &Vector, trail: &Trail) -> Option<Aim> {
         let brought = color(light.color, 20);
         let point = || trail.point(number as u16 & 0xfff);
-        match light.directional {
+        match light.kind {
             1 => Some(Aim::far(light.vector.map(|x| fraction(x, 30)), brought)),
             Light::ENVIRONMENT => self.map_light(|dimension| trail.point(dimension)),
             Light::SUN => {

@@ -92,7 +92,7 @@ records! {
         /// 0 for a point light, 1 for a directional one. Else a light at a position with a
         /// [form](crate::format::light_form::LightForm): its number times 4, and 2 for a point or 3 for an area. 4 and 5 are
         /// the map and the sun of the [environment](crate::format::environment::Environment).
-        pub directional: u32,
+        pub kind: u32,
     }
 
     /// A surface. Colors are ratios with 30 fraction bits, 0 to 1.

@@ -130,7 +130,7 @@ impl EnvironmentData {
         let map = Light {
             vector: [0; 3],
             color: [1 << 20; 3],
-            directional: Light::ENVIRONMENT,
+            kind: Light::ENVIRONMENT,
         };
         let is_lit = light.iter().any(|&it| it > 0.0);
         let bytes = size_of::<Record>() + 6 * texels.len() + 4 * side;
@@ -185,7 +185,7 @@ fn sun_of(
     let light = Light {
         vector: [0; 3],
         color: radiance(color),
-        directional: Light::SUN,
+        kind: Light::SUN,
     };
     Ok((record, (color != [0.0; 3]).then_some(light)))
 }

@@ -104,12 +104,9 @@ impl LightData {
         let light = Light::Point { position, color };
         let record = light_record(&light, lattice, space.size(), number)?;
         let is_area = form.shape != 0 && form.edges != [[0; 3]; 2];
-        let directional = record::Light::with_form(self.forms.len() as u32, is_area);
+        let kind = record::Light::with_form(self.forms.len() as u32, is_area);
         self.forms.push(form);
-        Ok(record::Light {
-            directional,
-            ..record
-        })
+        Ok(record::Light { kind, ..record })
     }
 
     pub fn sections(&self) -> [Section; 3] {
@@ -190,7 +187,7 @@ pub fn light_record(
         Light::Point { position, color } => record::Light {
             vector: on_lattice(lattice, size, format!("light {number}"), position)?,
             color: radiance(color),
-            directional: 0,
+            kind: 0,
         },
         Light::Directional { direction, color } => {
             let towards = -unit(direction);
@@ -201,7 +198,7 @@ pub fn light_record(
             record::Light {
                 vector,
                 color: radiance(color),
-                directional: 1,
+                kind: record::Light::DIRECTIONAL,
             }
         }
     })

@@ -37,7 +37,7 @@ pub(super) fn shading_data() -> Errors {
         errors.field(view, field, |it| it.change(SectionKind::View, 0, forge));
     }
     let lights: [Forgery<Light>; 3] = [
-        (Field::Kind, &|it| it.directional = 2),
+        (Field::Kind, &|it| it.kind = 2),
         (Field::Color, &|it| it.color[2] = -1),
         (Field::PositionOrDirection, &|it| it.vector[0] = far),
     ];
@@ -97,7 +97,7 @@ pub(super) fn light_forms() -> Errors {
         });
     }
     errors.field("light 0", Field::LightForm, |it| {
-        it.change(SectionKind::Lights, 0, |it: &mut Light| it.directional = 7)
+        it.change(SectionKind::Lights, 0, |it: &mut Light| it.kind = 7)
     });
     let emissions: [Forgery<Emission>; 2] = [
         (Field::Emission, &|it| it.radiance[1] = -1),
@@ -201,7 +201,7 @@ pub(super) fn environments() -> Errors {
         })
     });
     errors.field("light 0", Field::Kind, |it| {
-        it.change(SectionKind::Lights, 0, |it: &mut Light| it.directional = 8)
+        it.change(SectionKind::Lights, 0, |it: &mut Light| it.kind = 8)
     });
     for (kind, expected) in [
         (SectionKind::EnvironmentTexels, 256),

@@ -97,7 +97,7 @@ fn windows<'t>(
         Some(numbers.collect())
     };
     let eye = std::iter::once((view.eye, Some(view)));
-    let point_lights = lights.iter().filter(|light| light.directional == 0);
+    let point_lights = lights.iter().filter(|light| light.kind == 0);
     for (place, seen_by) in eye.chain(point_lights.map(|light| (light.vector, None))) {
         let Some(at) = within_reach(place) else {
             continue;
@@ -118,7 +118,10 @@ fn windows<'t>(
         }
         apexes.points.push(point);
     }
-    for light in lights.iter().filter(|light| light.directional == 1) {
+    for light in lights
+        .iter()
+        .filter(|light| light.kind == Light::DIRECTIONAL)
+    {
         let Some(direction) = direction_of(light, &targets.bounds) else {
             continue;
         };
