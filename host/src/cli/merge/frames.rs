@@ -1,6 +1,6 @@
 //! Numbered pictures become an animation.
 
-use super::misfit;
+use super::misfit::misfit;
 use crate::cli::failure::Failure;
 use crate::cli::output::{print, print_json, reject_inputs, write_file};
 use crate::cli::progress::Progress;

@@ -1,6 +1,7 @@
 //! `gridel merge`: parts of a picture become one, and pictures an animation.
 
 mod frames;
+mod misfit;
 
 use super::failure::Failure;
 use super::output::{check_writable, print, print_json, reject_same, unsupported, write_file};
@@ -10,8 +11,8 @@ use gridel_host::animation::AnimationFormat;
 use gridel_host::merge::{Merge, MergeError, Part};
 use gridel_host::picture::PictureFormat;
 use gridel_host::table::counted;
+use misfit::misfit;
 use serde::Serialize;
-use std::fmt::Display;
 use std::fs::File;
 use std::io::BufReader;
 use std::path::{Path, PathBuf};
@@ -144,10 +145,4 @@ fn failure(arguments: &Arguments, error: &MergeError) -> Failure {
             format!("render them with `--rows {}..{}`", rows.start, rows.end),
         ),
     }
-}
-
-/// Returns the failure that two inputs do not belong together.
-fn misfit(inputs: &[PathBuf], both: [usize; 2], error: &dyn Display, remedy: &str) -> Failure {
-    let [one, other] = both.map(|number| inputs[number].display());
-    Failure::failed(format!("{one} and {other} do not fit: {error}"), remedy)
 }
