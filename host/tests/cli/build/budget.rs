@@ -102,6 +102,27 @@ fn a_table_beyond_its_budget_is_rejected_as_a_blob_is() {
     );
 }
 
+#[test]
+fn a_table_whose_build_takes_too_much_memory_is_rejected_before_it_is_counted() {
+    let folder = Folder::with_quick();
+    folder.fails(
+        3,
+        &[
+            "build",
+            "quick.toml",
+            "-o",
+            "new.gridel",
+            "--accel",
+            "cylinder-cube",
+            "--gridels",
+            "64",
+            "--budget",
+            "256M",
+        ],
+        &["64 gridels per side", "of memory", "--gridels"],
+    );
+}
+
 /// Code and stack of the boards were measured, so they can change: what is asked for here lies far
 /// from any border.
 #[test]
