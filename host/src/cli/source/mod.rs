@@ -404,14 +404,6 @@ fn import_from(
     imported.warnings.iter().for_each(warn);
     let lost = scene::leave_out(&mut imported.scene, &importing.without);
     warn_of_file(path, lost, &mut imported.warnings);
-    if imported.scene.background.is_some() && imported.scene.environment.is_some() {
-        let place = &imported.scene.places.environment;
-        let warning = format!(
-            "{place}: the environment is shown in place of the scene's background; remove one of the two"
-        );
-        warn(&warning);
-        imported.warnings.push(warning);
-    }
     if let Some(cutoff) = options.cutoff {
         imported.scene.render.cutoff = cutoff;
     }

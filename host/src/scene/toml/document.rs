@@ -133,6 +133,7 @@ pub(super) fn read(input: Input<'_>, imports: &mut Imports) -> Result<Scene, Sce
     let given = Given {
         render,
         lights: !scene.lights.is_empty(),
+        background: background.is_some(),
         ambient: ambient.is_some(),
     };
     let mut imported_tracks = Vec::new();
@@ -162,6 +163,7 @@ pub(super) fn read(input: Input<'_>, imports: &mut Imports) -> Result<Scene, Sce
 struct Given {
     render: Option<RenderSettings>,
     lights: bool,
+    background: bool,
     ambient: bool,
 }
 
@@ -203,12 +205,7 @@ impl Given {
         if !self.lights {
             add_lights(scene, source, item, import)?;
         }
-        scene.background = scene.background.or(import.background);
-        if scene.environment.is_none() {
-            scene.environment.clone_from(&import.environment);
-            let place = &import.places.environment;
-            scene.places.environment.clone_from(place);
-        }
+        self.complete_surroundings(scene, import);
         if let Some(room) = import.room {
             let room = joint::moved_room(room, &item.transform);
             scene.room = Some(scene.room.map_or(room, |own| joint::around(own, room)));
@@ -217,6 +214,22 @@ impl Given {
             scene.ambient = import.ambient;
         }
         Ok(tracks)
+    }
+
+    /// Completes the environment, or else the background. An environment hides the background, so what an import has
+    /// of one never meets what another file has of the other.
+    fn complete_surroundings(&self, scene: &mut Scene, import: &Scene) {
+        if scene.environment.is_some() {
+            return;
+        }
+        if import.environment.is_some() && !self.background {
+            scene.background = import.background;
+            scene.environment.clone_from(&import.environment);
+            let place = &import.places.environment;
+            scene.places.environment.clone_from(place);
+        } else {
+            scene.background = scene.background.or(import.background);
+        }
     }
 }
 
