@@ -162,7 +162,6 @@ fn check_arguments(arguments: &Arguments) -> Result<(), Failure> {
             "a file of this command",
         )?;
         check_extension(path, &["json"], "names")?;
-        check_writable(path)?;
         if is_standard(path) {
             return Err(Failure::usage(
                 "names cannot go to standard output, where the report goes",
@@ -170,6 +169,7 @@ fn check_arguments(arguments: &Arguments) -> Result<(), Failure> {
             ));
         }
     }
+        check_writable(path)?;
     if is_standard(&arguments.input) && is_standard(&arguments.rays) {
         return Err(Failure::usage(
             "scene and rays are both to come from standard input",
