@@ -105,6 +105,17 @@ pub fn results_folder(requested: Option<&Path>, command: &str, stem: &str) -> Pa
     requested.map_or_else(|| format!("{command}-{stem}").into(), Path::to_owned)
 }
 
+/// Returns the error of results that another run left, and that this one does not replace.
+pub fn of_another_run(path: &Path) -> Failure {
+    Failure::usage(
+        format!(
+            "{} is from a run with another scene, other options or another build of gridel: it would be overwritten",
+            path.display()
+        ),
+        "give another folder with `-o`, or remove that one",
+    )
+}
+
 /// Rejects to write over a file of another sort, such as the buffer of a glTF scene, or a program's own.
 pub fn reject_foreign(
     path: &Path,
