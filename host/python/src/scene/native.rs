@@ -7,7 +7,7 @@ use crate::query::How;
 use crate::rays::{Array, Middle, Rays, Slack};
 use glam::DVec3;
 use gridel_core::{BlobError, Scene};
-use gridel_host::blob::Blob;
+use gridel_host::blob::{Blob, remedy_of};
 use gridel_host::compile::Compiled;
 use gridel_host::trace::Frame;
 use pyo3::prelude::*;
@@ -56,7 +56,10 @@ impl NativeScene {
         let blob = CheckedBlob::new(blob, |blob| blob.scene());
         let (middle, size) = match blob.borrow_dependent() {
             Ok(scene) => (Middle::of(scene), size(scene)),
-            Err(error) => return Err(invalid(format!("invalid scene blob: {error}"))),
+            Err(error) => {
+                let remedy = remedy_of(error);
+                return Err(invalid(format!("invalid scene blob: {error}; {remedy}")));
+            }
         };
         let mut next = 0;
         let firsts = model
