@@ -75,10 +75,10 @@ pub struct Arguments {
     #[arg(long, value_name = "N", default_value_t = 1, value_parser = arguments::threads())]
     threads: usize,
 
-    /// Count the hits by name: print the objects with the most, or with --json all. With a file, write the
-    /// names of objects, materials, lights and instances there, and the primitives of each object, in place of the
-    /// table
-    #[arg(long, value_name = "NAMES.json", num_args = 0..=1)]
+    /// Count the hits by name: print the objects with the most, or with --json all. With a file, as in
+    /// --names=names.json, write the names of objects, materials, lights and instances there, and the primitives of
+    /// each object, in place of the table
+    #[arg(long, value_name = "NAMES.json", num_args = 0..=1, require_equals = true)]
     names: Option<Option<PathBuf>>,
 
     /// Print counts and times as JSON; an extra run, before the timed ones, counts the tests
@@ -148,7 +148,7 @@ fn check_arguments(arguments: &Arguments) -> Result<(), Failure> {
     {
         return Err(Failure::usage(
             "--names counts hits by object, and --any finds no objects",
-            "leave one of them out, or name a file: `--names names.json`",
+            "leave one of them out, or name a file: `--names=names.json`",
         ));
     }
     if let Some(Some(path)) = &arguments.names {
@@ -165,7 +165,7 @@ fn check_arguments(arguments: &Arguments) -> Result<(), Failure> {
         if is_standard(path) {
             return Err(Failure::usage(
                 "names cannot go to standard output, where the report goes",
-                "name a file, such as `--names names.json`",
+                "name a file, such as `--names=names.json`",
             ));
         }
     }
