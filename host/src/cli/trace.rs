@@ -123,6 +123,7 @@ struct Rejected {
     /// Counted from 0, as NumPy counts.
     row: usize,
     reason: String,
+    remedy: &'static str,
 }
 
 /// Tests of all rays.
@@ -168,8 +169,8 @@ fn check_arguments(arguments: &Arguments) -> Result<(), Failure> {
                 "name a file, such as `--names=names.json`",
             ));
         }
-    }
         check_writable(path)?;
+    }
     if is_standard(&arguments.input) && is_standard(&arguments.rays) {
         return Err(Failure::usage(
             "scene and rays are both to come from standard input",
@@ -250,6 +251,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         first_rejected: rejections.first.map(|(row, why)| Rejected {
             row,
             reason: why.to_string(),
+            remedy: why.remedy(),
         }),
         format: query.format.name(),
         accel: query.structure.name(),
@@ -333,9 +335,14 @@ impl Traced {
             self.format,
             self.accel
         );
-        if let Some(Rejected { row, reason }) = &self.first_rejected {
+        if let Some(Rejected {
+            row,
+            reason,
+            remedy,
+        }) = &self.first_rejected
+        {
             text.push_str(&format!(
-                "{} rejected; the first is row {row}: {reason}\n",
+                "{} rejected; the first is row {row}: {reason}; {remedy}\n",
                 grouped(self.rejected)
             ));
         }
