@@ -6,7 +6,7 @@ use gridel_host::explained;
 use pyo3::exceptions::{PyOSError, PyValueError};
 use pyo3::prelude::*;
 use std::fs;
-use std::io::ErrorKind;
+use std::io::{self, ErrorKind};
 use std::path::Path;
 
 /// Numbers of errors that Linux, macOS and Windows share.
@@ -69,9 +69,14 @@ pub fn check_file(path: &Path) -> PyResult<()> {
             (ENOENT, "the path is empty; give the path of a scene file")
         }
         Err(error) if error.kind() == ErrorKind::NotFound => (ENOENT, "no such file"),
-        Err(error) => return Err(file_error(error.raw_os_error(), error.to_string(), path)),
+        Err(error) => return Err(unreadable(&error, path)),
     };
     Err(file_error(Some(number), text.to_owned(), path))
+}
+
+/// The error of a file that cannot be read.
+pub fn unreadable(error: &io::Error, path: &Path) -> PyErr {
+    file_error(error.raw_os_error(), error.to_string(), path)
 }
 
 /// Python chooses the class by the number: FileNotFoundError, IsADirectoryError, PermissionError and others.

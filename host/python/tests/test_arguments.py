@@ -176,6 +176,27 @@ def test_load_takes_bytes_and_names_directories(tmp_path):
     assert gridel.Scene.load(str(path).encode()).primitives == 12
 
 
+def test_errors_of_blobs_name_the_file_and_the_remedy(tmp_path):
+    path = tmp_path / "cube.gridel"
+    whole = gridel.Scene.from_arrays(CUBE, FACES).to_blob()
+    path.write_bytes(whole[:-16])
+    with pytest.raises(ValueError, match="copy the file again") as caught:
+        gridel.Scene.load(path)
+    assert str(caught.value).startswith(f"{path}: invalid scene blob: ")
+    with pytest.raises(ValueError, match="invalid scene blob: .*; copy the file again"):
+        gridel.Scene.from_blob(whole[:-16])
+
+
+@pytest.mark.skipif(not hasattr(os, "geteuid") or os.geteuid() == 0, reason="every file can be read")
+def test_errors_of_blobs_that_cannot_be_read_name_the_file(tmp_path):
+    path = tmp_path / "cube.gridel"
+    path.write_bytes(gridel.Scene.from_arrays(CUBE, FACES).to_blob())
+    path.chmod(0)
+    with pytest.raises(PermissionError) as caught:
+        gridel.Scene.load(path)
+    assert caught.value.errno == errno.EACCES and caught.value.filename == str(path)
+
+
 def test_from_blob_takes_bytes_alone():
     for wrong in ("scene.gridel", 10**9):
         with pytest.raises(TypeError, match="bytes-like"):

@@ -55,6 +55,22 @@ def test_far_rays_meet_planes_or_are_invalid(tmp_path, format):
     assert scene.count(rays, format=format).tolist() == [3, 1, 0]
 
 
+@pytest.mark.parametrize("format", ["fixed", "f32", "f64"])
+def test_count_leaves_out_what_all_leaves_out(tmp_path, format):
+    plane = "[[object]]\nkind = 'plane'\npoint = [0, 0, 0]\nnormal = [0, 0, 1]\n"
+    ball = "[[object]]\nkind = 'sphere'\ncenter = [0, 0, 2]\nradius = 1\n"
+    (tmp_path / "scene.toml").write_text(plane + ball)
+    scene = gridel.Scene.load(tmp_path / "scene.toml", accel="bvh")
+    # The direction is so short that t of the plane is no number of double precision.
+    rays = np.array([[0, 0, 9.0, 0, 0, -4e-308], [0, 0, 9.0, 0, 0, -1.0]])
+    limited = np.insert(rays, 3, 0.0, axis=1)
+    limited = np.insert(limited, 7, np.finfo(float).max, axis=1)
+    for rows in (rays, limited):
+        every = np.bincount(scene.all(rows, format=format).ray, minlength=2)
+        assert every[0] < 3 and every[1] == 3
+        assert scene.count(rows, format=format).tolist() == every.tolist()
+
+
 def test_near_rays_keep_their_bits_beside_far_ones(cube):
     rays = np.random.default_rng(6).normal(size=(4000, 6))
     rays[:, :3] -= 64 * rays[:, 3:]

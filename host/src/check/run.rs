@@ -4,13 +4,14 @@ use super::board::{self, BoardRun};
 use super::image::Image;
 use super::manifest::{Check, Manifest};
 use super::report::{Evidence, Figure, Finding, Key, Outcome, Record, Report};
-use crate::blob::{Blob, is_blob};
+use crate::blob::{Blob, is_blob, remedy_of};
 use crate::compile::{self, Options};
 use crate::explained;
 use crate::measure::Deforming;
 use crate::scene::{self, ImportOptions, Posed};
 use crate::state::{State, ticks};
-use gridel_core::{Scene, Settings, Structure, Tracks};
+use gridel_core::{BlobError, Scene, Settings, Structure, Tracks};
+use std::fmt::Display;
 
 /// Measures everything. Calls `progress` after each of the [steps](Manifest::steps).
 ///
@@ -70,11 +71,10 @@ impl Run<'_> {
     fn all(&mut self, progress: &dyn Fn()) -> Result<(), String> {
         let check = self.check;
         let blob = self.blob()?;
-        let invalid = |error| format!("{}: {error}", check.scene.path.display());
-        let scene = blob.scene().map_err(invalid)?;
+        let scene = blob.scene().map_err(|error| self.invalid(&error))?;
         let state = self.state(&blob, &scene)?;
         let shown = match &state {
-            Some(state) => state.apply(&scene).map_err(|error| error.to_string())?,
+            Some(state) => state.apply(&scene).map_err(|error| self.invalid(&error))?,
             None => scene,
         };
         let structure = structure(check, &scene)?;
@@ -111,18 +111,31 @@ impl Run<'_> {
         let Some(seconds) = self.check.time else {
             return Ok(None);
         };
-        let path = self.check.scene.path.display();
-        let tracks =
-            Tracks::from_bytes(blob.bytes()).map_err(|error| format!("{path}: {error}"))?;
+        let tracks = Tracks::from_bytes(blob.bytes()).map_err(|error| self.invalid(&error))?;
         if tracks.is_empty() && matches!(self.posed, Some(Posed::AtTime | Posed::Always)) {
             return Ok(None);
         }
         if tracks.is_empty() {
-            return Err(format!("{path}: nothing moves, so there is no `time`"));
+            let cause = "has nothing that moves, and the check states a `time`";
+            return Err(self.fault(cause, "leave `time` out, or give the scene tracks"));
         }
-        let time = ticks(&tracks, seconds).map_err(|error| format!("{path}: {error}"))?;
+        let at_no_time = |error: &dyn Display| {
+            let cause = format!("cannot be shown at the `time`: {error}");
+            self.fault(cause, "write another `time`")
+        };
+        let time = ticks(&tracks, seconds).map_err(|error| at_no_time(&error))?;
         let state = State::at(blob, scene, &tracks, time);
-        state.map(Some).map_err(|error| format!("{path}: {error}"))
+        state.map(Some).map_err(|error| at_no_time(&error))
+    }
+
+    /// Returns an error about the scene, at the place where the manifest names it.
+    fn fault(&self, cause: impl Display, remedy: &str) -> String {
+        explained(&self.manifest.error(&self.check.scene, cause, remedy))
+    }
+
+    /// Returns the error of a blob that is invalid.
+    fn invalid(&self, error: &BlobError) -> String {
+        self.fault(format!("is an invalid blob: {error}"), remedy_of(error))
     }
 
     /// Reads the blob, or compiles the scene for it.
@@ -130,9 +143,10 @@ impl Run<'_> {
         let check = self.check;
         let path = &check.scene.path;
         let unreadable = |error| {
-            let cause = format!("cannot be read: {error}");
-            let remedy = "write the path of a scene file or of a blob, relative to the manifest";
-            explained(&self.manifest.error(&check.scene, cause, remedy))
+            self.fault(
+                format!("cannot be read: {error}"),
+                "write the path of a scene file or of a blob, relative to the manifest",
+            )
         };
         if is_blob(path).map_err(unreadable)? {
             let keys = [
@@ -142,9 +156,9 @@ impl Run<'_> {
                 ("allow_outside", check.allow_outside),
             ];
             if let Some((key, _)) = keys.into_iter().find(|&(_, given)| given) {
-                return Err(format!(
-                    "`{key}` is for scene files, and {} is a blob",
-                    path.display()
+                return Err(self.fault(
+                    format!("is a blob, and `{key}` is for scene files"),
+                    "leave the key out, or name the scene file that the blob was built from",
                 ));
             }
             return Blob::read(path).map_err(unreadable);
@@ -158,10 +172,8 @@ impl Run<'_> {
         };
         let imported = scene::load_with(path, &options).map_err(|error| explained(&error))?;
         if check.assembly.is_some() && !imported.kinds.assemblies {
-            return Err(format!(
-                "`assembly` is for PDB and mmCIF files, and {} has none; leave it out",
-                path.display()
-            ));
+            let cause = "has no assemblies: `assembly` is for PDB and mmCIF files";
+            return Err(self.fault(cause, "leave the key out"));
         }
         self.posed = imported.posed;
         self.report.warnings.extend(imported.warnings);

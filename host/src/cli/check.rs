@@ -3,7 +3,8 @@
 use super::failure::Failure;
 use super::input::is_standard;
 use super::output::{
-    check_writable, print, print_aside, print_json, reject_inputs, warn, write_file,
+    check_text_writable, print, print_aside, print_json, reject_inputs, warn, write_file,
+    write_text_file,
 };
 use super::progress::Progress;
 use clap::Args;
@@ -109,7 +110,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         None => Ok(()),
     };
     let reported = match &arguments.junit {
-        Some(path) => write_file(path, |out| report.write_junit(out)),
+        Some(path) => write_text_file(path, |out| report.write_junit(out)),
         None => Ok(()),
     };
     let recorded = staged
@@ -146,7 +147,7 @@ fn prove_outputs(arguments: &Arguments, manifest: &Manifest) -> Result<(), Failu
         std::fs::create_dir_all(folder).map_err(|error| Failure::writing(folder, &error))?;
     }
     if let Some(path) = junit {
-        check_writable(path)?;
+        check_text_writable(path)?;
     }
     Ok(())
 }

@@ -125,7 +125,9 @@ impl Failure {
     pub fn compiling(path: &Path, error: CompileError) -> Self {
         let over_budget = matches!(
             error,
-            CompileError::TooLarge { .. } | CompileError::OverBudget { .. }
+            CompileError::TooLarge { .. }
+                | CompileError::OverBudget { .. }
+                | CompileError::OverMemory { .. }
         );
         let report = Report::new(error).wrap_err(about(path, "compiled"));
         if over_budget {

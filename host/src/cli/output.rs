@@ -11,8 +11,19 @@ use std::fs;
 use std::io::{self, IsTerminal, Write};
 use std::path::{Path, PathBuf};
 
-/// Writes a file whole or not at all, or standard output.
+/// Writes a binary file whole or not at all, or standard output.
 pub fn write_file(
+    path: &Path,
+    write: impl FnOnce(&mut dyn Write) -> io::Result<()>,
+) -> Result<(), Failure> {
+    if is_standard(path) {
+        reject_terminal()?;
+    }
+    write_text_file(path, write)
+}
+
+/// Writes a text file whole or not at all, or standard output, which may be a terminal.
+pub fn write_text_file(
     path: &Path,
     write: impl FnOnce(&mut dyn Write) -> io::Result<()>,
 ) -> Result<(), Failure> {
@@ -35,27 +46,37 @@ fn reject_terminal() -> Result<(), Failure> {
 
 /// Writes all at once, so that an error leaves nothing written.
 fn write_standard(write: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> Result<(), Failure> {
-    reject_terminal()?;
     let mut bytes = Vec::new();
     write(&mut bytes).map_err(|error| Failure::writing(Path::new("<stdout>"), &error))?;
     to_standard_output(&bytes)
 }
 
-/// Checks that a file can be written, before the work for its content.
+/// Checks that a binary file can be written, before the work for its content.
 pub fn check_writable(path: &Path) -> Result<(), Failure> {
     if is_standard(path) {
         return reject_terminal();
     }
+    check_text_writable(path)
+}
+
+/// Checks that a text file can be written, before the work for its content.
+pub fn check_text_writable(path: &Path) -> Result<(), Failure> {
+    if is_standard(path) {
+        return Ok(());
+    }
     output::check_writable(path).map_err(|error| Failure::writing(path, &error))
 }
 
-/// The content of a file of [`write_files`].
+/// The content of a binary file of [`write_files`].
 pub type Content<'c> = &'c dyn Fn(&mut dyn Write) -> io::Result<()>;
 
-/// Writes files that belong together, all of them or none.
+/// Writes binary files, or texts that do not go to standard output, all of them or none.
 pub fn write_files(files: &[(&Path, Content<'_>)]) -> Result<(), Failure> {
     let mut together = Files::default();
     let is_stream = |(path, _): &&(&Path, Content<'_>)| is_standard(path);
+    if files.iter().any(|file| is_stream(&file)) {
+        reject_terminal()?;
+    }
     for &(path, write) in files.iter().filter(|file| !is_stream(file)) {
         together
             .add(path, write)
@@ -82,6 +103,17 @@ pub fn check_folder(folder: &Path) -> Result<(), Failure> {
 /// Returns the folder of results: the requested one, or one named after the command and the scene.
 pub fn results_folder(requested: Option<&Path>, command: &str, stem: &str) -> PathBuf {
     requested.map_or_else(|| format!("{command}-{stem}").into(), Path::to_owned)
+}
+
+/// Returns the error of results that another run left, and that this one does not replace.
+pub fn of_another_run(path: &Path) -> Failure {
+    Failure::usage(
+        format!(
+            "{} is from a run with another scene, other options or another build of gridel: it would be overwritten",
+            path.display()
+        ),
+        "give another folder with `-o`, or remove that one",
+    )
 }
 
 /// Rejects to write over a file of another sort, such as the buffer of a glTF scene, or a program's own.

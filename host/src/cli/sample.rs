@@ -1,7 +1,8 @@
 //! `gridel sample`: scenes that come with the program.
 
 use super::failure::Failure;
-use super::output::{print, print_json, write_file};
+use super::input::is_standard;
+use super::output::{print, print_json, write_text_file};
 use clap::Args;
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 use gridel_host::sample;
@@ -149,18 +150,17 @@ impl Sample {
     fn write(&self, arguments: &Arguments) -> Result<(), Failure> {
         let own_name = PathBuf::from(format!("{}.{}", self.name, self.extension));
         let path = arguments.output.as_deref().unwrap_or(&own_name);
-        if path.is_file() && !arguments.force {
+        let is_file = |path: &Path| !is_standard(path) && path.is_file();
+        if is_file(path) && !arguments.force {
             return Err(Failure::failed(
                 format!("{} exists already", path.display()),
                 "give another name with `-o FILE`, or replace it with `--force`",
             ));
         }
         self.check_extension(path)?;
-        let text = (self.text)().map_err(|error| {
-            Failure::failed(error.to_string(), "this is a fault of gridel: report it")
-        })?;
-        write_file(path, |out| out.write_all(text.as_bytes()))?;
-        if path.is_file() {
+        let text = (self.text)().map_err(Failure::fault)?;
+        write_text_file(path, |out| out.write_all(text.as_bytes()))?;
+        if is_file(path) {
             print(format_args!("{}: {}\n", path.display(), self.summary))?;
         }
         Ok(())

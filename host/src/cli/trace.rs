@@ -75,10 +75,10 @@ pub struct Arguments {
     #[arg(long, value_name = "N", default_value_t = 1, value_parser = arguments::threads())]
     threads: usize,
 
-    /// Count the hits by name: print the objects with the most, or with --json all. With a file, write the
-    /// names of objects, materials, lights and instances there, and the primitives of each object, in place of the
-    /// table
-    #[arg(long, value_name = "NAMES.json", num_args = 0..=1)]
+    /// Count the hits by name: print the objects with the most, or with --json all. With a file, as in
+    /// --names=names.json, write the names of objects, materials, lights and instances there, and the primitives of
+    /// each object, in place of the table
+    #[arg(long, value_name = "NAMES.json", num_args = 0..=1, require_equals = true)]
     names: Option<Option<PathBuf>>,
 
     /// Print counts and times as JSON; an extra run, before the timed ones, counts the tests
@@ -123,6 +123,7 @@ struct Rejected {
     /// Counted from 0, as NumPy counts.
     row: usize,
     reason: String,
+    remedy: &'static str,
 }
 
 /// Tests of all rays.
@@ -148,7 +149,7 @@ fn check_arguments(arguments: &Arguments) -> Result<(), Failure> {
     {
         return Err(Failure::usage(
             "--names counts hits by object, and --any finds no objects",
-            "leave one of them out, or name a file: `--names names.json`",
+            "leave one of them out, or name a file: `--names=names.json`",
         ));
     }
     if let Some(Some(path)) = &arguments.names {
@@ -162,13 +163,13 @@ fn check_arguments(arguments: &Arguments) -> Result<(), Failure> {
             "a file of this command",
         )?;
         check_extension(path, &["json"], "names")?;
-        check_writable(path)?;
         if is_standard(path) {
             return Err(Failure::usage(
                 "names cannot go to standard output, where the report goes",
-                "name a file, such as `--names names.json`",
+                "name a file, such as `--names=names.json`",
             ));
         }
+        check_writable(path)?;
     }
     if is_standard(&arguments.input) && is_standard(&arguments.rays) {
         return Err(Failure::usage(
@@ -250,6 +251,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         first_rejected: rejections.first.map(|(row, why)| Rejected {
             row,
             reason: why.to_string(),
+            remedy: why.remedy(),
         }),
         format: query.format.name(),
         accel: query.structure.name(),
@@ -333,9 +335,14 @@ impl Traced {
             self.format,
             self.accel
         );
-        if let Some(Rejected { row, reason }) = &self.first_rejected {
+        if let Some(Rejected {
+            row,
+            reason,
+            remedy,
+        }) = &self.first_rejected
+        {
             text.push_str(&format!(
-                "{} rejected; the first is row {row}: {reason}\n",
+                "{} rejected; the first is row {row}: {reason}; {remedy}\n",
                 grouped(self.rejected)
             ));
         }

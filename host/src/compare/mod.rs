@@ -97,7 +97,9 @@ fn compare_in<N: Number>(
     for contender in options.contenders() {
         progress(&format!("building {}", contender.0.name()));
         match pool.install(|| build(contender)) {
-            Err(CompareError::Compile(error @ CompileError::OverBudget { .. })) => {
+            Err(CompareError::Compile(
+                error @ (CompileError::OverBudget { .. } | CompileError::OverMemory { .. }),
+            )) => {
                 rejected.push(Rejected {
                     structure: contender.0.name(),
                     why: error.to_string(),

@@ -174,6 +174,19 @@ pub enum CompileError {
         remedy: &'static str,
     },
     #[error(
+        "building the table of {structure}{size} takes up to {needed} bytes of memory, more than {most}"
+    )]
+    #[diagnostic(help(
+        "ask for fewer gridels with `--gridels`, or raise `--budget` to {needed} if the machine has as much memory"
+    ))]
+    OverMemory {
+        structure: &'static str,
+        /// Such as ` with 64 gridels per side`.
+        size: String,
+        needed: u64,
+        most: u64,
+    },
+    #[error(
         "the instance {instance} names a part or a joint that the scene does not have, or is not placed by finite \
          numbers"
     )]

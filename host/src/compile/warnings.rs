@@ -19,6 +19,7 @@ pub(super) fn scene_warnings(scene: &Scene) -> Vec<String> {
             "the scene has no object: pictures show the background",
         ));
     }
+    warnings.extend(hidden_background(scene));
     warnings.extend(unused_maps(scene));
     warnings.extend(lost_priorities(scene));
     let Some(camera) = scene.camera else {
@@ -37,6 +38,15 @@ pub(super) fn scene_warnings(scene: &Scene) -> Vec<String> {
         )
     }));
     warnings
+}
+
+/// Returns a warning if an environment hides the background.
+fn hidden_background(scene: &Scene) -> Option<String> {
+    let hides = scene.background.is_some() && scene.environment.is_some();
+    hides.then(|| {
+        let environment = RequiringPart::new(RequiringPart::ENVIRONMENT, &scene.places.environment);
+        format!("{environment} is shown in place of the scene's background; remove one of the two")
+    })
 }
 
 /// Returns a warning for each material in use whose maps no object shows.
@@ -202,6 +212,22 @@ mod tests {
         let report = compile(&scene, &Options::default()).unwrap().report;
         let lines = report.warnings(24);
         assert!(lines[0].contains("of its light is lost"), "{lines:?}");
+    }
+
+    #[test]
+    fn an_environment_hides_a_background_of_its_own_file_with_a_warning() {
+        let file = "background = 0.5\n[environment]\nzenith = 1\nhorizon = 1\nground = 0\n\
+                    [[object]]\nkind = 'sphere'\ncenter = [0, 0, 0]\nradius = 1\n";
+        let imported = scene::read("s.toml".as_ref(), file.into(), &Default::default()).unwrap();
+        let report = compile(&imported.scene, &Options::default())
+            .unwrap()
+            .report;
+        assert_eq!(
+            report.warnings(24),
+            [
+                "the environment (s.toml:2) is shown in place of the scene's background; remove one of the two"
+            ]
+        );
     }
 
     #[test]

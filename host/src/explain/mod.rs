@@ -41,9 +41,7 @@ pub enum ExplainError {
     #[error(transparent)]
     Render(#[from] RenderError),
     #[error(transparent)]
-    #[diagnostic(help(
-        "give a direction that is not 0 0 0, an origin near the scene, and tmin before tmax"
-    ))]
+    #[diagnostic(transparent)]
     Ray(#[from] Rejection),
 }
 

@@ -8,17 +8,18 @@
 //! because the maps of instances round as well.
 
 mod bound;
+mod largest;
+mod placed;
 
 use crate::shape::{ExactMap, Solid};
 use bound::{Extent, bound, placed_bound, spacing};
 use gridel_core::{Format, Kind, Scene};
+use largest::Largest;
+use placed::Placed;
 use serde::Serialize;
 
 /// Distance, in error bounds, from which two surfaces are distinguished.
 pub const FACTOR: f64 = 8.0;
-
-/// Surfaces with the largest bounds that objects are compared with.
-const MOST_SURFACES: usize = 4096;
 
 /// Placed primitives that are examined: those of the farthest instances, whose bounds are the largest. The last of
 /// these instances may exceed the number.
@@ -46,11 +47,12 @@ pub struct Coarse {
     pub bound: f64,
 }
 
-/// The objects of a scene or of a part, and their surfaces, in units of its own.
+/// The objects of a scene or of a part, in units of its own.
 #[derive(Default)]
 struct Content {
     objects: Vec<Object>,
-    surfaces: Vec<(Solid, Extent)>,
+    /// The number of its surfaces.
+    surfaces: usize,
 }
 
 /// An object.
@@ -62,14 +64,14 @@ struct Object {
     feature: f64,
 }
 
-/// A surface, as it lies in the scene.
-#[derive(Clone, Copy)]
-struct Placed<'c> {
-    /// Its largest error bound.
-    most: f64,
-    extent: Extent,
-    solid: &'c Solid,
-    map: Option<&'c ExactMap>,
+/// The surfaces of a scene or of a part, in units of its own, and the number of each in scene-file order.
+fn surfaces<'c>(content: &'c Scene<'_>) -> impl Iterator<Item = (u32, Solid)> + 'c {
+    Kind::ALL.into_iter().flat_map(move |kind| {
+        (0..content.count(kind)).filter_map(move |slot| {
+            let solid = Solid::of(content.geometry(kind, slot)?);
+            Some((content.primitive(kind, slot as u32), solid))
+        })
+    })
 }
 
 impl Content {
@@ -77,29 +79,21 @@ impl Content {
     /// of the whole scene.
     fn of(content: &Scene<'_>, whole: &Scene<'_>, first_primitive: u32) -> Self {
         let first_object = whole.object(first_primitive);
-        let mut surfaces = Vec::new();
+        let mut count = 0;
         let mut found: Vec<(Extent, Option<f64>)> = Vec::new();
-        for kind in Kind::ALL {
-            for slot in 0..content.count(kind) {
-                let Some(geometry) = content.geometry(kind, slot) else {
-                    continue;
-                };
-                let solid = Solid::of(geometry);
-                let extent = Extent::of(&solid);
-                let primitive = content.primitive(kind, slot as u32);
-                let object = whole.object(first_primitive.saturating_add(primitive));
-                let object = object.saturating_sub(first_object) as usize;
-                if found.len() <= object {
-                    found.resize(object + 1, (Extent::EMPTY, None));
-                }
-                let (around, smallest) = &mut found[object];
-                *around = around.with(extent);
-                *smallest = match (*smallest, solid.feature().filter(|it| *it > 0.0)) {
-                    (Some(a), Some(b)) => Some(a.min(b)),
-                    (a, b) => a.or(b),
-                };
-                surfaces.push((solid, extent));
+        for (primitive, solid) in surfaces(content) {
+            let object = whole.object(first_primitive.saturating_add(primitive));
+            let object = object.saturating_sub(first_object) as usize;
+            if found.len() <= object {
+                found.resize(object + 1, (Extent::EMPTY, None));
             }
+            let (around, smallest) = &mut found[object];
+            *around = around.with(Extent::of(&solid));
+            *smallest = match (*smallest, solid.feature().filter(|it| *it > 0.0)) {
+                (Some(a), Some(b)) => Some(a.min(b)),
+                (a, b) => a.or(b),
+            };
+            count += 1;
         }
         let objects = (first_object..).zip(found);
         let objects = objects.filter(|(_, (extent, _))| extent.lowest.x <= extent.highest.x);
@@ -116,18 +110,18 @@ impl Content {
         };
         Self {
             objects: objects.map(object).collect(),
-            surfaces,
+            surfaces: count,
         }
     }
+}
 
-    /// The largest error bounds of a surface in each format, without those of an instance.
-    fn bounds((solid, extent): &(Solid, Extent)) -> [f64; Format::ALL.len()] {
-        Format::ALL.map(|format| {
-            let ends = [extent.lowest, extent.highest];
-            let bounds = ends.map(|place| bound(format, solid, place));
-            bounds[0].max(bounds[1])
-        })
-    }
+/// The largest error bounds of a surface in each format, without those of an instance.
+fn bounds(solid: &Solid, extent: &Extent) -> [f64; Format::ALL.len()] {
+    Format::ALL.map(|format| {
+        let ends = [extent.lowest, extent.highest];
+        let bounds = ends.map(|place| bound(format, solid, place));
+        bounds[0].max(bounds[1])
+    })
 }
 
 impl Object {
@@ -181,22 +175,6 @@ impl Object {
     }
 }
 
-impl Placed<'_> {
-    /// The error bound next to the middle of a box.
-    fn bound(&self, format: Format, beside: &Extent) -> f64 {
-        let middle = 0.5 * (beside.lowest + beside.highest);
-        let place = middle.clamp(self.extent.lowest, self.extent.highest);
-        let Some(map) = self.map else {
-            return bound(format, self.solid, place);
-        };
-        let in_part = map.point(place.to_array());
-        let own = bound(format, self.solid, in_part.into());
-        let magnitude = in_part.into_iter().fold(0.0, |most, x| x.abs().max(most));
-        let place_in = [map.reach(place.to_array()), place.abs().max_element()];
-        placed_bound(format, map, own.max(spacing(format, magnitude)), place_in)
-    }
-}
-
 /// An instance, its map, and where it lies.
 struct InstanceExtent {
     number: u32,
@@ -227,7 +205,7 @@ fn farthest(scene: &Scene<'_>, parts: &[Content], most: usize) -> Vec<InstanceEx
     let mut placed = 0;
     let looked_at = instances.iter().take_while(|it| {
         let is_in = placed < most;
-        placed += parts[it.part].surfaces.len();
+        placed += parts[it.part].surfaces;
         is_in
     });
     let count = looked_at.count();
@@ -238,8 +216,9 @@ fn farthest(scene: &Scene<'_>, parts: &[Content], most: usize) -> Vec<InstanceEx
 /// Returns the objects that `fixed` or `f32` does not distinguish, in scene-file order: the scene's own ones, then
 /// those of each instance.
 ///
-/// Takes time for every primitive, and more only where features are some 2^-16 of the scene. Instances are examined
-/// from the farthest on, until they hold 2^18 primitives. Objects and surfaces of nearer ones are skipped.
+/// Takes time for every primitive, and more only where features are some 2^-16 of the scene. Takes memory for every
+/// object, and for no more than 2^13 surfaces. Instances are examined from the farthest on, until they hold 2^18
+/// primitives. Objects and surfaces of nearer ones are skipped.
 ///
 /// ```
 /// # use gridel_host::compile::{Options, compile};
@@ -259,7 +238,7 @@ pub fn unresolved(scene: &Scene<'_>) -> Vec<Unresolved> {
     });
     let parts: Vec<_> = parts.collect();
     let instances = farthest(scene, &parts, MOST_PLACED);
-    let surfaces = largest(&own, &parts, &instances);
+    let surfaces = largest(scene, &instances);
     let unit = f64::powi(2.0, scene.header().unit_exponent.into());
     let own = own.objects.iter();
     let mut found: Vec<_> = own
@@ -283,45 +262,48 @@ pub fn unresolved(scene: &Scene<'_>) -> Vec<Unresolved> {
 }
 
 /// The surfaces with the largest bounds, these first.
-fn largest<'c>(
-    own: &'c Content,
-    parts: &'c [Content],
-    instances: &'c [InstanceExtent],
-) -> Vec<Placed<'c>> {
-    let own = own.surfaces.iter().map(|surface| Placed {
-        most: Content::bounds(surface).into_iter().fold(0.0, f64::max),
-        extent: surface.1,
-        solid: &surface.0,
-        map: None,
-    });
-    let mut surfaces: Vec<_> = own.filter(|it| it.most > 0.0).collect();
-    let by_bound = |a: &Placed<'_>, b: &Placed<'_>| b.most.total_cmp(&a.most);
-    let bounds_of = |part: &Content| part.surfaces.iter().map(Content::bounds).collect();
-    let bounds: Vec<Vec<_>> = parts.iter().map(bounds_of).collect();
-    for InstanceExtent { part, map, .. } in instances {
-        let in_part = parts[*part].surfaces.iter().zip(&bounds[*part]);
-        surfaces.extend(in_part.map(|((solid, own), bounds)| {
-            let extent = own.placed(map);
-            let place = [extent.reach(map), extent.magnitude()];
-            let bounds = Format::ALL.into_iter().zip(bounds).map(|(format, &bound)| {
-                let in_part = bound.max(spacing(format, own.magnitude()));
-                placed_bound(format, map, in_part, place)
-            });
-            Placed {
-                most: bounds.fold(0.0, f64::max),
+fn largest<'c>(scene: &Scene<'_>, instances: &'c [InstanceExtent]) -> Vec<Placed<'c>> {
+    let mut largest = Largest::default();
+    for (number, (_, solid)) in surfaces(scene).enumerate() {
+        let extent = Extent::of(&solid);
+        let most = bounds(&solid, &extent).into_iter().fold(0.0, f64::max);
+        if most > 0.0 {
+            let placed = Placed {
+                most,
                 extent,
                 solid,
-                map: Some(map),
-            }
-        }));
-        if surfaces.len() > 16 * MOST_SURFACES {
-            surfaces.select_nth_unstable_by(MOST_SURFACES, by_bound);
-            surfaces.truncate(MOST_SURFACES);
+                map: None,
+            };
+            largest.add((0, number), placed);
         }
     }
-    surfaces.sort_by(by_bound);
-    surfaces.truncate(MOST_SURFACES);
-    surfaces
+    for (part, content) in scene.parts().iter().enumerate() {
+        let placed_by = (1..).zip(instances).filter(|(_, it)| it.part == part);
+        let placed_by: Vec<_> = placed_by.collect();
+        if placed_by.is_empty() {
+            continue;
+        }
+        for (number, (_, solid)) in surfaces(content).enumerate() {
+            let own = Extent::of(&solid);
+            let bounds = bounds(&solid, &own);
+            for &(rank, InstanceExtent { map, .. }) in &placed_by {
+                let extent = own.placed(map);
+                let place = [extent.reach(map), extent.magnitude()];
+                let bounds = Format::ALL.into_iter().zip(bounds).map(|(format, bound)| {
+                    let in_part = bound.max(spacing(format, own.magnitude()));
+                    placed_bound(format, map, in_part, place)
+                });
+                let placed = Placed {
+                    most: bounds.fold(0.0, f64::max),
+                    extent,
+                    solid: solid.clone(),
+                    map: Some(map),
+                };
+                largest.add((rank, number), placed);
+            }
+        }
+    }
+    largest.sorted()
 }
 
 #[cfg(test)]

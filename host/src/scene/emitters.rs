@@ -226,9 +226,9 @@ impl Scene {
         Ok(())
     }
 
-    /// Names of objects that glow and do not light others, though they should: those of parts, and those with shapes
-    /// that no light has, with too many faces, or with alpha.
-    pub fn emitters_without_light(&self) -> impl Iterator<Item = &str> {
+    /// Objects that glow and do not light others, though they should: those of parts, and those with shapes that no
+    /// light has, with too many faces, or with alpha.
+    pub fn emitters_without_light(&self) -> impl Iterator<Item = &Object> {
         let lights = |object: &&Object| self.materials[object.material].lights_others();
         let own = self.objects.iter();
         let own = own.filter(|object| {
@@ -236,8 +236,7 @@ impl Scene {
             !has_lights || faces(&object.shape).is_empty()
         });
         let in_parts = self.parts.iter().flat_map(|part| &part.objects);
-        let all = own.chain(in_parts).filter(lights);
-        all.map(|object| object.name.as_str())
+        own.chain(in_parts).filter(lights)
     }
 }
 
@@ -395,6 +394,7 @@ mod tests {
         std::fs::write(&path, text).unwrap();
         let imported = crate::scene::load_with(&path, &Default::default()).unwrap();
         assert_eq!(imported.scene.lights, []);
+        assert!(imported.warnings[0].contains("lamp.toml:5: object "));
         assert!(imported.warnings[0].contains("does not light other objects"));
     }
 

@@ -205,17 +205,18 @@ fn with_copies(mut imported: Imported, time: Option<f64>) -> Result<Imported, Sc
 
 /// The warning of objects that glow and do not light others, if there are any.
 fn dark_emitters(scene: &Scene) -> Option<String> {
-    let mut names = scene.emitters_without_light();
-    let first = names.next()?;
-    let more = match names.count() {
+    let mut objects = scene.emitters_without_light();
+    let first = objects.next()?;
+    let more = match objects.count() {
         0 => String::new(),
         more => format!(" and {more} more"),
     };
     Some(format!(
-        "object {}{more} glows, and does not light other objects: spheres, discs, boxes and meshes of up to \
+        "{}: object {}{more} glows, and does not light other objects: spheres, discs, boxes and meshes of up to \
          {MOST_FACES} triangles do that, outside of parts and without `alpha`; copy instances of parts with \
          `--instances flatten`, add a `[[light]]`, or set the material's `lights = false`",
-        printable(first)
+        first.place,
+        printable(&first.name)
     ))
 }
 

@@ -126,7 +126,8 @@ impl Camera {
 
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Light {
-    /// Shines from `position` in all directions, without falloff.
+    /// Shines from `position`: in all directions and without falloff, unless its [`LightForm`](super::LightForm) states
+    /// otherwise.
     Point { position: DVec3, color: Color },
     /// Shines from infinitely far away; `direction` is that in which the light travels.
     Directional { direction: DVec3, color: Color },

@@ -270,7 +270,7 @@ fn read_vertices(
         ),
         (
             keyword.textured,
-            "the texture coordinates of a vertex are ignored; textures are not drawn",
+            "the texture coordinates of a vertex are ignored, as no image can be named; export glTF or OBJ to show one",
         ),
     ] {
         if has && count > 0 {

@@ -2,6 +2,8 @@
 
 use super::SceneHit;
 use gridel_core::RayError;
+use miette::Diagnostic;
+use std::fmt::Display;
 
 /// The reason why a ray is not answered.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
@@ -33,6 +35,12 @@ impl Rejection {
             Self::TooShort => "give a longer direction",
             Self::TooLong => "give a shorter direction",
         }
+    }
+}
+
+impl Diagnostic for Rejection {
+    fn help(&self) -> Option<Box<dyn Display + '_>> {
+        Some(Box::new(self.remedy()))
     }
 }
 
@@ -77,7 +85,8 @@ mod tests {
             (Rejection::TooShort, "a longer direction"),
             (Rejection::TooLong, "a shorter direction"),
         ] {
-            assert!(why.remedy().contains(remedy), "{why}: {}", why.remedy());
+            let explained = crate::explained(&why);
+            assert!(explained.contains(remedy), "{explained}");
         }
     }
 }

@@ -116,22 +116,21 @@ pub fn live(refiner: &Refiner<'_>, state: State<'_>, is_fixed: bool) -> io::Resu
     let wake = sender.clone();
     // Before a key is read, which changes the terminal's settings for that time.
     let _screen = Screen::open()?;
-    thread::scope(|scope| {
-        scope.spawn(move || read_keys(&sender));
-        // At the end the receiver is gone.
-        let wake = || drop(wake.send(Event::Drawn));
-        refiner.run(&wake, || {
-            Live {
-                refiner,
-                shape: [state.settings().width, state.settings().height],
-                state,
-                is_fixed,
-                terminal: (0, 0),
-                message: None,
-                shows_keys: false,
-            }
-            .run(&receiver)
-        })
+    // Nothing waits for this thread: it reads until a key is pressed, also after an error.
+    thread::Builder::new().spawn(move || read_keys(&sender))?;
+    // At the end the receiver is gone.
+    let wake = || drop(wake.send(Event::Drawn));
+    refiner.run(&wake, move || {
+        Live {
+            refiner,
+            shape: [state.settings().width, state.settings().height],
+            state,
+            is_fixed,
+            terminal: (0, 0),
+            message: None,
+            shows_keys: false,
+        }
+        .run(&receiver)
     })
 }
 
@@ -168,8 +167,10 @@ fn read_keys(sender: &Sender<Event>) {
     }
 }
 
-/// The terminal's second screen, without a cursor; the first one returns in the end.
-struct Screen;
+/// The terminal's second screen, without a cursor; the first one and the settings return in the end.
+struct Screen {
+    restore: Option<Box<dyn FnOnce()>>,
+}
 
 /// Shows the first screen and the cursor.
 const CLOSED: &str = "\x1b[0m\x1b[?25h\x1b[?1049l";
@@ -185,14 +186,21 @@ impl Screen {
                 let _ = out.write_all(CLOSED.as_bytes()).and_then(|()| out.flush());
             });
         })));
+        let screen = Self {
+            restore: Some(Box::new(settings())),
+        };
         write("\x1b[?1049h\x1b[?25l\x1b[2J")?;
-        Ok(Self)
+        Ok(screen)
     }
 }
 
 impl Drop for Screen {
     fn drop(&mut self) {
         gives_back(None);
+        // After an error a key may still be waited for.
+        if let Some(restore) = self.restore.take() {
+            restore();
+        }
         // The program ends, so a failure is not reported.
         let _ = write(CLOSED);
     }

@@ -108,9 +108,9 @@ fn a_bound_that_is_too_tight_still_shows_the_table() {
     for board in ["cortex-m3", "mps2-an385"] {
         let bound = ["--max-error", "0.9", "--board", board];
         let report = folder.json(&[&SMALL[..], &bound].concat());
-        let name = report["cheapest"]["name"].as_str().unwrap();
+        let name = report["chosen"]["name"].as_str().unwrap();
         assert!(name.starts_with("fixed-"), "{name}");
-        let build = report["cheapest"]["build"].as_str().unwrap();
+        let build = report["chosen"]["build"].as_str().unwrap();
         assert!(build.contains("--accel dual-split"), "{build}");
     }
 }

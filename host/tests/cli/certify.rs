@@ -84,16 +84,19 @@ fn an_interrupted_run_continues_where_it_stopped() {
     assert_eq!(again["reasons"][0]["open_pixels"][0]["pixel"][0], 0);
 }
 
+/// Words of the error of a state of another picture.
+const OTHER: [&str; 3] = ["certify.state", "another scene", "another folder with `-o`"];
+
 #[test]
-fn states_of_other_pictures_and_broken_ones_are_replaced_with_a_warning() {
+fn states_of_other_pictures_are_rejected_and_broken_ones_replaced_with_a_warning() {
     let folder = folder();
     let whole = folder.json(&SMALL);
     let state = folder.read("out/certify.state");
-    let with_warning = |bytes: &[u8], arguments: &[&str], cause: &str| {
+    let replaced = |bytes: &[u8]| {
         folder.write("out/certify.state", bytes);
-        let run = folder.run(&[arguments, &["--json"]].concat());
+        let run = folder.run(&[&SMALL[..], &["--json"]].concat());
         assert_eq!(run.code, Some(0), "{}", run.stderr);
-        assert!(run.said().contains(cause), "{cause}: {}", run.stderr);
+        assert!(run.said().contains("is damaged"), "{}", run.stderr);
         serde_json::from_str::<serde_json::Value>(&run.stdout).unwrap()
     };
     let mut broken = state.clone();
@@ -103,29 +106,26 @@ fn states_of_other_pictures_and_broken_ones_are_replaced_with_a_warning() {
         &state[..state.len() - 1],
         &state[..state.len() - PIXEL],
     ] {
-        assert_eq!(with_warning(bytes, &SMALL, "is damaged"), whole);
+        assert_eq!(replaced(bytes), whole);
     }
     let short = forged(&state, |_| ())[..state.len() - PIXEL - 4].to_vec();
-    assert_eq!(with_warning(&short, &SMALL, "is damaged"), whole);
+    assert_eq!(replaced(&short), whole);
     // Also where the key is damaged.
     let mut keyed = state.clone();
     keyed[9] ^= 1;
     for bytes in [&b""[..], b"my own", &keyed] {
-        assert_eq!(with_warning(bytes, &SMALL, "is damaged"), whole);
+        assert_eq!(replaced(bytes), whole);
     }
     // Of other samples, of another depth, of another scene.
     for more in [["--samples", "2"], ["--depth", "0"]] {
-        with_warning(
-            &state,
-            &[&SMALL[..], &more].concat(),
-            "is of another picture",
-        );
+        folder.fails(2, &[&SMALL[..], &more].concat(), &OTHER);
     }
     folder.write(
         "ball.toml",
         BALL.replace("radius = 1", "radius = 2").as_bytes(),
     );
-    with_warning(&state, &SMALL, "is of another picture");
+    folder.fails(2, &SMALL, &OTHER);
+    assert_eq!(folder.read("out/certify.state"), state);
 }
 
 #[test]
@@ -195,7 +195,6 @@ fn blobs_with_clusters_alone_are_certified() {
 
 #[test]
 fn eye_on_a_surface_proves_no_pixel_different() {
-    let folder = Folder::new();
     let objects = [
         "kind = 'box'\nmin = [-1, -1, -1]\nmax = [1, 0, 1]",
         "kind = 'plane'\npoint = [0, 0, 0]\nnormal = [0, 1, 0]",
@@ -206,6 +205,7 @@ fn eye_on_a_surface_proves_no_pixel_different() {
         "kind = 'sphere'\ncenter = [0, 0, 0]\nradius = 0.5",
     ];
     for object in objects {
+        let folder = Folder::new();
         let file = format!(
             "background = [0.2, 0.4, 0.8]\n[camera]\neye = [0, 0, 0.5]\ntarget = [0.1, 0.13, -5]\n\
              [[light]]\nkind = 'directional'\ndirection = [0.3, -1, -0.4]\n\
@@ -273,9 +273,9 @@ fn scenes_that_move_are_certified_at_a_time() {
     let at_rest = folder.json(&SMALL);
     let picture = folder.read("out/exact.png");
     let at_a_time = [&SMALL[..], &["--time", "1", "--json"]].concat();
-    let run = folder.run(&at_a_time);
-    assert!(run.said().contains("is of another picture"), "{run:?}");
-    let report: serde_json::Value = serde_json::from_str(&run.stdout).unwrap();
+    folder.fails(2, &at_a_time, &OTHER);
+    std::fs::remove_dir_all(folder.path("out")).unwrap();
+    let report = folder.json(&at_a_time[..at_a_time.len() - 1]);
     assert!(folder.read("out/exact.png") != picture);
     let command = report["explain"].as_str().unwrap();
     assert!(command.contains(" --time=1 "), "{command}");

@@ -230,7 +230,7 @@ fn accuracy_measures_the_picture_that_render_draws() {
             let others = point["errors"]["other_objects"].as_u64().unwrap();
             assert!(others <= 4, "{point}");
         }
-        let build = report["cheapest"]["build"].as_str().unwrap();
+        let build = report["chosen"]["build"].as_str().unwrap();
         assert_eq!(build.contains("--instances flatten"), choice == "flatten");
         let page = String::from_utf8(folder.read(&format!("{to}/page.html"))).unwrap();
         let words = match choice {

@@ -182,14 +182,7 @@ fn explain_names_objects_materials_and_lights_of_a_blob() {
 }
 
 /// The options to trace the rays of a file, with names.
-const TRACED: [&str; 6] = [
-    "--rays",
-    "rays.npy",
-    "-o",
-    "hits.npy",
-    "--names",
-    "names.json",
-];
+const TRACED: [&str; 5] = ["--rays", "rays.npy", "-o", "hits.npy", "--names=names.json"];
 
 #[test]
 fn trace_writes_names_and_counts_hits_by_name() {
@@ -236,7 +229,11 @@ fn trace_prints_hits_by_name_where_names_has_no_file() {
     assert_eq!(traced["hits_by_name"], json!({"ball": 3, OBJECTS[2]: 1}));
     assert_eq!(folder.names(), ["a.toml", "hits.npy", "rays.npy"]);
     let any = [&trace[..], &["--any"]].concat();
-    folder.fails(2, &any, &["--any finds no objects", "--names names.json"]);
+    folder.fails(2, &any, &["--any finds no objects", "--names=names.json"]);
+    // The scene is not the file of names, wherever it stands.
+    let last = [&["trace"], &trace[2..], &["a.toml"]].concat();
+    let text = folder.done(&last);
+    assert!(words(&text).ends_with(&words(table)), "{text}");
 }
 
 #[test]
@@ -250,8 +247,9 @@ fn trace_never_writes_names_over_its_other_files() {
         ("names.png", "unsupported names format"),
         ("-", "cannot go to standard output"),
     ] {
+        let option = format!("--names={name}");
         let trace = [
-            "trace", "a.toml", "--rays", "rays.npy", "-o", "hits.npy", "--names", name,
+            "trace", "a.toml", "--rays", "rays.npy", "-o", "hits.npy", &option,
         ];
         let run = folder.run(&trace);
         assert_eq!(run.code, Some(2), "{name}: {run:?}");

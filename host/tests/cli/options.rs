@@ -291,7 +291,7 @@ fn backgrounds_that_an_environment_hides_are_not_ignored_silently() {
         [[object]]\nkind = 'sphere'\ncenter = [0, 0, 0]\nradius = 1\n";
     folder.write("a.toml", scene.as_bytes());
     let report = folder.json(&["build", "a.toml", "-o", "a.gridel"]);
-    let warning = "a.toml:2: the environment is shown in place of the scene's background";
+    let warning = "the environment (a.toml:2) is shown in place of the scene's background";
     let warnings = report["warnings"].to_string();
     assert!(warnings.contains(warning), "{warnings}");
     let words = ["--background has no effect", "environment"];

@@ -74,6 +74,15 @@ fn files_are_replaced_only_by_force() {
 }
 
 #[test]
+fn standard_output_is_not_a_file_that_exists() {
+    let folder = Folder::new();
+    folder.write("-", b"mine");
+    let text = folder.done(&["sample", "quick", "-o", "-"]);
+    assert_eq!(text.as_bytes(), fixture("quick"));
+    assert_eq!(folder.read("-"), b"mine");
+}
+
+#[test]
 fn wrong_names_are_rejected_with_the_samples() {
     let folder = Folder::new();
     folder.fails(2, &["sample", "teapot"], &["quick", "glass-chess"]);

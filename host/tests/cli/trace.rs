@@ -198,6 +198,8 @@ fn rejected_rays_are_counted_apart_and_the_first_is_printed_with_its_reason() {
         assert_eq!((&report["hits"], &report["misses"]), (&3.into(), &0.into()));
         assert_eq!(report["first_rejected"]["row"], 1);
         let reason = report["first_rejected"]["reason"].as_str().unwrap();
+        let remedy = report["first_rejected"]["remedy"].as_str().unwrap();
+        assert!(remedy.starts_with("give "), "{remedy}");
         assert!(reason.contains("the direction is too short"), "{reason}");
         let found = hits(&folder.read("hits.npy"));
         assert!(
@@ -213,7 +215,7 @@ fn rejected_rays_are_counted_apart_and_the_first_is_printed_with_its_reason() {
     }
     let text = folder.done(&TRACE);
     assert!(
-        text.contains("15 rejected; the first is row 1: the ray's t"),
+        text.contains("15 rejected; the first is row 1: the ray's t") && text.contains("; give "),
         "{text}"
     );
     // Without t, any answer is one.

@@ -110,11 +110,11 @@ fn count_chunk<N: Number, A: Accel>(
             continue;
         };
         lists.each::<A>(scene, &ray, |hit| {
-            let is_within = !rays.have_limits() || {
-                let hit = bare(scene, (&ray, &scale), hit);
-                hit.primitive == NONE || rays.holds(number, place(&searched, &hit))
-            };
-            *answer += u32::from(is_within);
+            let hit = bare(scene, (&ray, &scale), hit);
+            // Without one where the t of a plane leaves double precision.
+            let counts = hit.primitive != NONE
+                && (!rays.have_limits() || rays.holds(number, place(&searched, &hit)));
+            *answer += u32::from(counts);
             ControlFlow::Continue(())
         });
     }

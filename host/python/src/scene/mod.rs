@@ -5,7 +5,7 @@ mod place;
 
 pub use native::NativeScene;
 
-use crate::arguments::{check_file, in_file, in_python, invalid, rejected, structures};
+use crate::arguments::{check_file, in_file, in_python, invalid, rejected, structures, unreadable};
 use crate::hit_arrays::{
     Arrays, Cast, HitArrays, MeshHitArrays, append, bytes, collected, column, rows, too_large,
     zeros,
@@ -17,7 +17,7 @@ use crate::query::{self, Any, FirstPrimitive, Hit, Inside, NONE, Rows};
 use crate::rays::{Array, Points, TwoArrays};
 use crate::threads::{in_pool, workers};
 use gridel_core::Settings;
-use gridel_host::blob::Blob;
+use gridel_host::blob::{Blob, is_blob};
 use gridel_host::compile::{Options, compile};
 use gridel_host::picture::srgb;
 use gridel_host::render::{Job, render};
@@ -26,6 +26,7 @@ use gridel_host::trace::SceneRay;
 use numpy::{IntoPyArray, PyArray2, PyArrayMethods, PyUntypedArray};
 use pyo3::prelude::*;
 use pyo3::types::PyBytes;
+use std::io;
 use std::path::PathBuf;
 
 /// Rays of a camera after which signals are noticed, where rows are short: a fraction of a second.
@@ -40,9 +41,12 @@ impl NativeScene {
     fn load(py: Python<'_>, path: PathBuf, given: LoadOptions) -> PyResult<Self> {
         check_file(&path)?;
         // A blob takes no options, whatever they are.
-        if gridel_host::blob::is_blob(&path)? {
+        let unreadable = |error: io::Error| unreadable(&error, &path);
+        if is_blob(&path).map_err(unreadable)? {
             given.reject_for_blob(&path)?;
-            return py.detach(|| Self::of_blob(Blob::read(&path)?, None, f64::NAN));
+            let blob = py.detach(|| Blob::read(&path)).map_err(unreadable)?;
+            let scene = py.detach(|| Self::of_blob(blob, None, f64::NAN));
+            return scene.map_err(|error| in_file(py, &path, error));
         }
         let (options, importing) = (given.for_compiler()?, given.for_import()?);
         let without = given.without()?;

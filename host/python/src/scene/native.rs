@@ -7,7 +7,7 @@ use crate::query::How;
 use crate::rays::{Array, Middle, Rays, Slack};
 use glam::DVec3;
 use gridel_core::Scene;
-use gridel_host::blob::{Blob, CheckedBlob};
+use gridel_host::blob::{Blob, CheckedBlob, remedy_of};
 use gridel_host::compile::Compiled;
 use gridel_host::trace::Frame;
 use pyo3::prelude::*;
@@ -42,8 +42,10 @@ pub struct NativeScene {
 
 impl NativeScene {
     pub(super) fn of_blob(blob: Blob, model: Option<Model>, displacement: f64) -> PyResult<Self> {
-        let blob = CheckedBlob::new(blob);
-        let blob = blob.map_err(|error| invalid(format!("invalid scene blob: {error}")))?;
+        let blob = CheckedBlob::new(blob).map_err(|error| {
+            let remedy = remedy_of(&error);
+            invalid(format!("invalid scene blob: {error}; {remedy}"))
+        })?;
         let scene = blob.scene();
         let (middle, size) = (Middle::of(scene), size(scene));
         let mut next = 0;

@@ -3,7 +3,7 @@
 use crate::measure::board::{BOARDS, Board};
 use crate::scene::toml::source::nearest;
 use crate::scene::toml::value::Value;
-use crate::scene::{Instances, SceneError};
+use crate::scene::{Instances, RenderSettings, SceneError};
 use gridel_core::{Format, Structure};
 use std::collections::BTreeMap;
 
@@ -56,9 +56,10 @@ pub(super) fn size(value: Value<'_>) -> Result<[u16; 2], SceneError> {
     };
     let side = |value: Value<'_>| Ok(value.integer_in(1..=u16::MAX.into())? as u16);
     let (width, height) = (side(width)?, side(height)?);
-    if u32::from(width) > 64 * u32::from(height) {
+    let most = RenderSettings::MAX_ASPECT;
+    if u32::from(width) > most * u32::from(height) {
         return Err(value.error(
-            "the picture is more than 64 times as wide as high",
+            format!("the picture is more than {most} times as wide as high"),
             "write a smaller width or a larger height",
         ));
     }

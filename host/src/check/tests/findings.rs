@@ -154,7 +154,7 @@ fn unreadable_files_fail_and_other_checks_go_on() {
     assert_eq!((report.passed(), report.failed()), (1, 4));
     for (finding, cause) in report.findings.iter().zip([
         "missing.toml cannot be read",
-        "broken.gridel: ",
+        "broken.gridel is an invalid blob: ",
         "bad.toml:1: `object` holds an integer",
         "`lattice_bits` is for scene files",
     ]) {

@@ -122,9 +122,37 @@ fn what_has_no_instances_to_choose_is_rejected() {
     for key in ["instances = \"flatten\"", "assembly = \"1\""] {
         let text = format!("[[check]]\nscene = \"beam.gridel\"\nhash = {{}}\n{key}\n");
         let (_, report) = folder.run(&text);
-        assert!(
-            why(&report.findings[0]).contains("is for scene files"),
-            "{key}"
-        );
+        let why = why(&report.findings[0]);
+        let place = format!("{}:2:", folder.path("check.toml").display());
+        assert!(why.starts_with(&place), "{key}: {why}");
+        for words in ["is for scene files", "; leave the key out"] {
+            assert!(why.contains(words), "{key}: {why}");
+        }
+    }
+}
+
+#[test]
+fn blobs_that_cannot_be_checked_name_the_manifest_and_a_remedy() {
+    let folder = Folder::new();
+    let scene = crate::scene::load(&folder.path("ball.toml"), &Default::default()).unwrap();
+    let compiled = crate::compile::compile(&scene.scene, &Default::default()).unwrap();
+    let bytes = compiled.blob.bytes();
+    fs::write(folder.path("ball.gridel"), bytes).unwrap();
+    fs::write(folder.path("cut.gridel"), &bytes[..bytes.len() - 16]).unwrap();
+    for (keys, words) in [
+        (
+            "scene = \"cut.gridel\"",
+            ["is an invalid blob", "; copy the file again"],
+        ),
+        (
+            "scene = \"ball.gridel\"\ntime = 1",
+            ["nothing that moves", "; leave `time` out"],
+        ),
+    ] {
+        let (_, report) = folder.run(&format!("[[check]]\n{keys}\nhash = {{}}\n"));
+        let why = why(&report.findings[0]);
+        let place = format!("{}:2:", folder.path("check.toml").display());
+        assert!(why.starts_with(&place), "{keys}: {why}");
+        assert!(words.iter().all(|it| why.contains(it)), "{keys}: {why}");
     }
 }

@@ -1,4 +1,4 @@
-//! The cheapest setting within an error bound.
+//! The setting within the requested limits.
 
 use super::arguments::Arguments;
 use crate::cli::arguments::quoted;

@@ -1,7 +1,7 @@
 //! The folder of results, which an interrupted run continues.
 
 use crate::cli::failure::Failure;
-use crate::cli::output::write_file;
+use crate::cli::output::{of_another_run, write_file};
 use gridel_host::accuracy::{PagePicture, Results};
 use gridel_host::check::Image;
 use gridel_host::picture::{srgb_of, write_png};
@@ -18,15 +18,6 @@ pub const PICTURES: &str = "pictures";
 /// Returns the results of an earlier run with the same key. Results of other runs, and other files, are not replaced.
 pub fn kept(folder: &Path, key: &str) -> Result<Option<Results>, Failure> {
     let file = folder.join(RESULTS);
-    let foreign = |path: &Path| {
-        Err(Failure::usage(
-            format!(
-                "{} is from a run with another scene, other options or another build of gridel: it would be overwritten",
-                path.display()
-            ),
-            "give another folder with `-o`, or remove that one",
-        ))
-    };
     if !file.exists() {
         let others = [PAGE, CSV, PLOT].map(|name| folder.join(name));
         let pictures = std::fs::read_dir(folder.join(PICTURES))
@@ -36,7 +27,7 @@ pub fn kept(folder: &Path, key: &str) -> Result<Option<Results>, Failure> {
             .into_iter()
             .chain(pictures.flatten().map(|entry| entry.path()));
         return match others.find(|path| path.exists()) {
-            Some(path) => foreign(&path),
+            Some(path) => Err(of_another_run(&path)),
             None => Ok(None),
         };
     }
@@ -51,7 +42,7 @@ pub fn kept(folder: &Path, key: &str) -> Result<Option<Results>, Failure> {
             });
             Ok(Some(results))
         }
-        Ok(_) => foreign(&file),
+        Ok(_) => Err(of_another_run(&file)),
         Err(error) => Err(Failure::usage(
             format!(
                 "{} holds no results of `gridel accuracy`, or not all of them ({error}): it would be overwritten",

@@ -57,7 +57,7 @@ struct Printed<'t> {
     effects: &'t [EffectCost],
     sentences: Vec<String>,
     #[serde(skip_serializing_if = "Option::is_none")]
-    cheapest: Option<&'t Choice>,
+    chosen: Option<&'t Choice>,
 }
 
 /// Returns a number of this build of the program, whose times are not those of another; 0 if its file cannot be read.
@@ -130,7 +130,7 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
             answers: answers(&results),
             effects: &results.effects,
             sentences: sentences(&results),
-            cheapest: choice.as_ref(),
+            chosen: choice.as_ref(),
         };
         print_json_warned(&printed, &warnings)?;
     } else {

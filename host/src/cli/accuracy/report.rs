@@ -1,6 +1,7 @@
 //! The results as text and as a table of comma-separated values.
 
 use super::choice::Choice;
+use super::folder::PAGE;
 use gridel_host::accuracy::{
     BOARD, COLUMNS, Point, Results, answers, frontier, instance_notes, sentences,
 };
@@ -40,7 +41,7 @@ pub fn text(folder: &Path, size: [u16; 2], results: &Results, choice: Option<&Ch
     let _ = writeln!(
         text,
         "\n{}: answers, chart and pictures",
-        folder.join("page.html").display()
+        folder.join(PAGE).display()
     );
     if let Some(choice) = choice {
         let _ = writeln!(

@@ -77,8 +77,8 @@ pub struct GeometryOptions {
     #[arg(long, value_name = "N", value_parser = super::values::lattice_bits())]
     pub lattice_bits: Option<u8>,
 
-    /// Scene units by which vertices can move along each axis, for meshes that a program deforms;
-    /// needs `--accel bvh` alone [default: 0]
+    /// Scene units by which vertices can move along each axis, for meshes that a program deforms. Builds `bvh` beside
+    /// the list; with `--accel`, no other structure can be named [default: 0]
     #[arg(long, value_name = "UNITS", value_parser = super::values::room)]
     pub room: Option<f64>,
 

@@ -5,6 +5,7 @@ use glam::DVec3;
 use gridel_core::{Format, Structure};
 use gridel_host::compile::{Builder, LATTICE_BITS};
 use gridel_host::render::Aov;
+use gridel_host::scene::RenderSettings;
 use std::fmt::Display;
 use std::ops::Range;
 use std::str::FromStr;
@@ -143,8 +144,9 @@ pub fn size(text: &str) -> Result<[u16; 2], String> {
             "neither width nor height can be more than 65535",
         ));
     };
-    if u32::from(width) > 64 * u32::from(height) {
-        return Err(String::from("the width can be at most 64 times the height"));
+    let most = RenderSettings::MAX_ASPECT;
+    if u32::from(width) > most * u32::from(height) {
+        return Err(format!("the width can be at most {most} times the height"));
     }
     Ok([width, height])
 }

@@ -77,7 +77,9 @@ impl ViewOptions {
             return Ok(());
         }
         if scene.camera.is_none() {
-            scene.background = scene.background.or(Some(compile::BACKGROUND));
+            if scene.environment.is_none() {
+                scene.background = scene.background.or(Some(compile::BACKGROUND));
+            }
             // The direction up decides from where the whole scene is seen.
             for up in [Up::Y, Up::Z] {
                 // Along the axis, however long.

@@ -98,6 +98,7 @@ pub struct Arguments {
 /// Builds a blob and reports on it.
 pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     check_outputs(arguments)?;
+    let format = format(arguments)?;
     let scene_options = arguments.target.with_target(&arguments.scene_options)?;
     let mut source = Source::compile(&arguments.scene, &scene_options, compiling(arguments)?)?;
     source.warn_of_dim_reflections(None);
@@ -106,7 +107,6 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
         source.reject_lost([emit::BLOB, emit::MODULE].map(|name| folder.join(name)))?;
     }
     let scene = source.scene()?;
-    let format = format(arguments)?;
     let memory = arguments
         .target
         .memory_report(&scene, source.blob.bytes(), format)?;

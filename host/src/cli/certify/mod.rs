@@ -39,7 +39,8 @@ use std::path::{Path, PathBuf};
 /// A scene that moves is shown as its file states it, or at one time with `--time`.
 ///
 /// Writes certify.html (the page), certify.json, map.png and exact.png to the folder, and
-/// certify.state, from which an interrupted run of the same picture continues.
+/// certify.state, from which an interrupted run of the same picture continues. A folder with the state of
+/// another picture is rejected.
 #[derive(Args)]
 #[command(after_help = super::failure::EXIT_CODES)]
 pub struct Arguments {
@@ -127,13 +128,13 @@ pub fn run(arguments: &Arguments) -> Result<(), Failure> {
     let state = State::new(&folder, scene.header().checksum, source.time(), &settings);
     source.reject_lost(results.iter().chain([&state.path]))?;
     state.reject_foreign(&results)?;
+    let mut pixels = state.read(count)?;
     fs::create_dir_all(&folder).map_err(|error| Failure::writing(&folder, &error))?;
 
     // Formats first: they reject settings that no picture has, in a moment.
     let formats = distinct_or(&arguments.format, &Format::ALL);
     let pictures = pictures(&scene, structure, settings, &formats).map_err(Failure::rendering)?;
 
-    let mut pixels = state.read(count)?;
     let progress = Progress::steps("certifying", settings.height.into());
     let mut saving = Saving::start();
     // Pixels are kept one by one; a picture of any cost loses a few seconds.

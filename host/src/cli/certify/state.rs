@@ -1,7 +1,7 @@
 //! The state from which an interrupted run continues.
 
 use crate::cli::failure::Failure;
-use crate::cli::output::warn;
+use crate::cli::output::{of_another_run, warn};
 use flate2::Crc;
 use gridel_core::Settings;
 use gridel_host::certify::Enclosed;
@@ -49,7 +49,10 @@ impl State {
         ))
     }
 
-    /// The pixels of a run before this one; none are done if there was none, or of another picture.
+    /// The pixels of a run before this one; none are done if there was none, or its state is damaged.
+    ///
+    /// # Errors
+    /// If the state cannot be read, or is of another picture, which may have taken hours.
     pub fn read(&self, count: usize) -> Result<Vec<Enclosed>, Failure> {
         let mut pixels = vec![Enclosed::default(); count];
         let bytes = match fs::read(&self.path) {
@@ -57,33 +60,21 @@ impl State {
             Err(error) if error.kind() == io::ErrorKind::NotFound => return Ok(pixels),
             Err(error) => return Err(Failure::reading(&self.path, &error)),
         };
-        let cause = match self.kept(&bytes) {
-            Ok(kept) => {
-                let into: &mut [u8] = bytemuck::cast_slice_mut(&mut pixels);
-                if kept.len() == into.len() {
-                    into.copy_from_slice(kept);
-                    return Ok(pixels);
-                }
-                "is damaged"
+        // The checksum holds for the key, too: without it, a damaged key looks like that of another picture.
+        if let Some(content) = undamaged(&bytes) {
+            let kept = content.strip_prefix(self.key.as_bytes());
+            let kept = kept.ok_or_else(|| of_another_run(&self.path))?;
+            let into: &mut [u8] = bytemuck::cast_slice_mut(&mut pixels);
+            if kept.len() == into.len() {
+                into.copy_from_slice(kept);
+                return Ok(pixels);
             }
-            Err(cause) => cause,
-        };
+        }
         warn(format!(
-            "{} {cause}; all pixels are evaluated again, and the file is replaced",
+            "{} is damaged; all pixels are evaluated again, and the file is replaced",
             self.path.display()
         ));
         Ok(pixels)
-    }
-
-    /// The bytes of the pixels.
-    fn kept<'b>(&self, bytes: &'b [u8]) -> Result<&'b [u8], &'static str> {
-        let (all, sum) = bytes.split_last_chunk().ok_or("is damaged")?;
-        // The checksum holds for the key, too: without it, a damaged key looks like that of another picture.
-        if u32::from_le_bytes(*sum) != sum_of(&[all]) {
-            return Err("is damaged");
-        }
-        let pixels = all.strip_prefix(self.key.as_bytes());
-        pixels.ok_or("is of another picture")
     }
 
     pub fn write(&self, pixels: &[Enclosed]) -> Result<(), Failure> {
@@ -96,6 +87,12 @@ impl State {
         })
         .map_err(|error| Failure::writing(&self.path, &error))
     }
+}
+
+/// The key and the pixels of a state; `None` if it is damaged.
+fn undamaged(bytes: &[u8]) -> Option<&[u8]> {
+    let (content, sum) = bytes.split_last_chunk()?;
+    (u32::from_le_bytes(*sum) == sum_of(&[content])).then_some(content)
 }
 
 /// The checksum of the parts of a state.

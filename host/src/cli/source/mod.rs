@@ -17,7 +17,7 @@ use super::output::warn;
 use super::progress::Progress;
 use gridel_core::{BlobError, Effects, Format, Scene, Structure, Tracks};
 use gridel_host::blob::{Blob, remedy_of};
-use gridel_host::compile::{self, Compiled, Names};
+use gridel_host::compile::{self, CompileError, Compiled, Names, Options};
 use gridel_host::measure::Deforming;
 use gridel_host::morphed::morph_targets;
 use gridel_host::resolution::{FACTOR, Unresolved, unresolved};
@@ -193,17 +193,8 @@ impl Source {
             compiling.structures = Deforming::STRUCTURES.to_vec();
         }
         compiling.texture_bytes = options.geometry.texture_bytes.or(compiling.texture_bytes);
-        let progress = Progress::unknown("compiling");
-        let on_progress = |structure: Structure, done: u64, of: u64| {
-            let share = 100 * done / of.max(1);
-            let cells = grouped(of);
-            let name = structure.name();
-            progress.show(&format!("compiling {name}: {share} % of {cells} cells"));
-        };
-        let compiled = compile::compile_with_progress(&imported.scene, &compiling, &on_progress);
-        drop(progress);
-        let Compiled { blob, report } =
-            compiled.map_err(|error| Failure::compiling(input.path(), error))?;
+        let Compiled { blob, report } = compile_shown(&imported.scene, &compiling)
+            .map_err(|error| Failure::compiling(input.path(), error))?;
         let names = Names::of_scene(&imported.scene);
         let mut warnings = imported.warnings;
         let sentences = report.warnings(compiling.lattice_bits);
@@ -287,6 +278,18 @@ pub fn warn_of_file(path: &Path, sentences: Vec<String>, warnings: &mut Vec<Stri
         warn(&warning);
         warnings.push(warning);
     }
+}
+
+/// Compiles a scene, and shows the progress.
+fn compile_shown(scene: &scene::Scene, options: &Options) -> Result<Compiled, CompileError> {
+    let progress = Progress::unknown("compiling");
+    let on_progress = |structure: Structure, done: u64, of: u64| {
+        let share = 100 * done / of.max(1);
+        let cells = grouped(of);
+        let name = structure.name();
+        progress.show(&format!("compiling {name}: {share} % of {cells} cells"));
+    };
+    compile::compile_with_progress(scene, options, &on_progress)
 }
 
 /// Objects that a warning names; the rest are counted.
@@ -409,14 +412,6 @@ fn import_from(
     imported.warnings.iter().for_each(warn);
     let lost = scene::leave_out(&mut imported.scene, &importing.without);
     warn_of_file(path, lost, &mut imported.warnings);
-    if imported.scene.background.is_some() && imported.scene.environment.is_some() {
-        let place = &imported.scene.places.environment;
-        let warning = format!(
-            "{place}: the environment is shown in place of the scene's background; remove one of the two"
-        );
-        warn(&warning);
-        imported.warnings.push(warning);
-    }
     if let Some(cutoff) = options.cutoff {
         imported.scene.render.cutoff = cutoff;
     }

@@ -1,9 +1,9 @@
 //! The bytes of a scene's blob, and what makes them fewer.
 
-use super::Source;
+use super::{Source, compile_shown};
 use crate::cli::failure::Failure;
 use gridel_core::Scene;
-use gridel_host::compile::{CompileError, MOST_COPIED, Options, compile};
+use gridel_host::compile::{CompileError, MOST_COPIED, Options};
 use gridel_host::measure::InstanceCount;
 use gridel_host::measure::board::{Fit, MemoryReport};
 use gridel_host::scene::{self, ImportOptions, Instances};
@@ -49,7 +49,7 @@ impl Source {
             max_bytes: None,
             ..compiling.clone()
         };
-        let other = compile(&self.read_again(&importing)?, &unlimited).ok()?;
+        let other = compile_shown(&self.read_again(&importing)?, &unlimited).ok()?;
         Some(other.report.bytes)
     }
 
@@ -60,7 +60,7 @@ impl Source {
             max_bytes: Some(0),
             ..compiling.clone()
         };
-        match compile(&self.read_again(importing)?, &nothing) {
+        match compile_shown(&self.read_again(importing)?, &nothing) {
             Err(CompileError::TooLarge { advice, .. }) => Some(advice),
             _ => None,
         }

@@ -1,8 +1,8 @@
 //! Builds the cylinder cubes: for every pair of gridels of different faces, the candidates between
 //! them (the paper, section 3.1).
 
-use super::budget::{Budget, OnProgress, OverBudget};
-use super::lists::{Counted, List, Lists, Plan};
+use super::budget::{Budget, Needed, OnProgress, OverBudget};
+use super::lists::{BYTES_PER_CELL, Counted, List, Lists, Plan};
 use super::shaft::Shaft;
 use super::target::Targets;
 use glam::DVec3;
@@ -92,17 +92,22 @@ pub fn build<F: Form>(
     budget: Budget<'_>,
 ) -> Result<Cube, OverBudget> {
     let plan = |count: u32| OfSize::new(form, Gridels::new(&targets.bounds, count));
+    let memory = |count: u32| Gridels::pairs(count).saturating_mul(BYTES_PER_CELL);
     if let Some(count) = budget.gridels {
         let sized = plan(count);
         // Does not count what cannot fit.
         let least = Gridels::pairs(count);
         if least > budget.bytes {
-            return Err(budget.exceeded(F::STRUCTURE, Some(count), least, true));
+            return Err(budget.exceeded(F::STRUCTURE, Some(count), Needed::AtLeast(least)));
+        }
+        if memory(count) > budget.memory() {
+            let needed = Needed::Memory(memory(count));
+            return Err(budget.exceeded(F::STRUCTURE, Some(count), needed));
         }
         let counted = sized.count(budget.on_progress);
         let needed = counted.figures().bytes;
         if needed > budget.bytes {
-            return Err(budget.exceeded(F::STRUCTURE, Some(count), needed, false));
+            return Err(budget.exceeded(F::STRUCTURE, Some(count), Needed::Table(needed)));
         }
         return Ok(sized.build(counted));
     }
@@ -113,7 +118,8 @@ pub fn build<F: Form>(
             let finer = f64::from(count) / f64::from(sized.gridels.count);
             counted.figures().bytes as f64 * finer * finer
         });
-        if Gridels::pairs(count) > budget.bytes || expected > budget.bytes as f64 {
+        let fits = Gridels::pairs(count) <= budget.bytes && memory(count) <= budget.memory();
+        if !fits || expected > budget.bytes as f64 {
             break;
         }
         let sized = plan(count);
@@ -121,7 +127,7 @@ pub fn build<F: Form>(
         let needed = counted.figures().bytes;
         if needed > budget.bytes {
             if best.is_none() {
-                return Err(budget.exceeded(F::STRUCTURE, Some(count), needed, false));
+                return Err(budget.exceeded(F::STRUCTURE, Some(count), Needed::Table(needed)));
             }
             break;
         }
@@ -129,7 +135,7 @@ pub fn build<F: Form>(
     }
     match best {
         Some((sized, counted)) => Ok(sized.build(counted)),
-        None => Err(budget.exceeded(F::STRUCTURE, Some(1), Gridels::pairs(1), true)),
+        None => Err(budget.exceeded(F::STRUCTURE, Some(1), Needed::AtLeast(Gridels::pairs(1)))),
     }
 }
 

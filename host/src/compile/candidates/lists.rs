@@ -2,8 +2,8 @@
 //!
 //! Every list is computed twice. The first pass keeps a fingerprint of each list, which shows how many differ and how
 //! many bytes they take. Only if these fit the budget is the table allocated, at its exact size. Then the lists that
-//! differ are computed again, straight into their places. Besides the table itself a build takes at most 72 bytes per
-//! cell, and nothing that grows with the lists' length.
+//! differ are computed again, straight into their places. Besides the table itself a build takes up to
+//! [`BYTES_PER_CELL`], and nothing that grows with the lists' length.
 
 use super::budget::OnProgress;
 use crate::compile::section::Section;
@@ -125,6 +125,9 @@ struct Print {
     cell: u32,
     length: u32,
 }
+
+/// Most bytes of memory per cell that a build takes besides the table.
+pub const BYTES_PER_CELL: u64 = 72;
 
 /// Cells that a thread takes at once.
 const CHUNK: usize = 256;

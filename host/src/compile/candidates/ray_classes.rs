@@ -1,6 +1,6 @@
 //! Builds the tree over rays: refined where the scene's own rays fall, within a budget.
 
-use super::budget::{Budget, OnProgress, OverBudget};
+use super::budget::{Budget, Needed, OnProgress, OverBudget};
 use super::lists::{List, Lists, Plan};
 use super::shaft::Shaft;
 use super::target::Targets;
@@ -119,7 +119,7 @@ pub fn build(
     let mut waiting: BinaryHeap<Class> = roots.collect::<Vec<_>>().into();
     let mut bytes: u64 = waiting.iter().map(|class| class.bytes(entry)).sum();
     if bytes > budget.bytes {
-        return Err(budget.exceeded(Structure::RayClasses, None, bytes, true));
+        return Err(budget.exceeded(Structure::RayClasses, None, Needed::AtLeast(bytes)));
     }
     let mut done = Vec::new();
     let mut tests = 0;

@@ -185,6 +185,10 @@ fn faults_name_line_and_cause() {
         fault(&VIEW.replace("64 48", "64 4000000000")),
         "t.nff:7: the resolution 4000000000 is no number of pixels"
     );
+    assert_eq!(
+        fault(&VIEW.replace("64 48", "65535 1")),
+        "t.nff:7: the picture is more than 64 times as wide as high"
+    );
 }
 
 #[test]

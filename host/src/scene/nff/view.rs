@@ -2,7 +2,7 @@
 
 use super::Importer;
 use super::reader::{Line, Lines};
-use crate::scene::{Camera, SceneError};
+use crate::scene::{Camera, RenderSettings, SceneError};
 use glam::DVec3;
 
 /// The largest width or height; PNG viewers and 16-bit coordinates end here.
@@ -103,7 +103,16 @@ impl<'a> Importer<'a> {
                 ));
             }
         }
-        [self.scene.render.width, self.scene.render.height] = size.map(|side| side as u32);
+        let [width, height] = size.map(|side| side as u32);
+        if width > RenderSettings::MAX_ASPECT * height {
+            let most = RenderSettings::MAX_ASPECT;
+            return Err(self.source.error_at(
+                line.text,
+                format!("the picture is more than {most} times as wide as high"),
+                "write a smaller width or a larger height",
+            ));
+        }
+        [self.scene.render.width, self.scene.render.height] = [width, height];
         Ok(())
     }
 }

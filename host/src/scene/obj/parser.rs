@@ -453,7 +453,7 @@ impl<'a> Parser<'a> {
             "usemap" if !["", "off"].contains(&rest) => warnings.add(
                 self.source,
                 number,
-                "textures are not drawn; the plain colors are used",
+                "the texture of `usemap` is not drawn; name its image in the MTL file, by `map_Kd`",
             ),
             "" | "s" | "usemap" => {}
             "call" | "csh" => {

@@ -60,7 +60,7 @@ fn attributes_of_vertices_are_ignored_with_a_warning_each() {
     };
     let color = "thing.off:3: the color of a vertex is ignored; the surface has one color (and 3 times more)";
     let normal = "thing.off:3: the normal of a vertex is ignored; for smooth normals use `--normals smooth=40` (and 3 times more)";
-    let texture = "thing.off:3: the texture coordinates of a vertex are ignored; textures are not drawn (and 3 times more)";
+    let texture = "thing.off:3: the texture coordinates of a vertex are ignored, as no image can be named; export glTF or OBJ to show one (and 3 times more)";
     holds_the_square(&with("COFF", "1 0 0 1"), &[color]);
     holds_the_square(&with("COFF", "255 0 0"), &[color]);
     holds_the_square(&with("NOFF", "0 0 1"), &[normal]);

@@ -313,7 +313,8 @@ fn ignored(path: &Path, bytes: &[u8], warnings: &mut Warnings) {
                 is_color_reported = false;
             }
             ["comment", "TextureFile", ..] => {
-                let sentence = "textures are not drawn; the plain colors are used";
+                let sentence =
+                    "the texture is not drawn; export the mesh as glTF or OBJ to show it";
                 warnings.add_times(place, 1, sentence);
             }
             ["property", .., name] if element == "face" && count > 0 => {

@@ -138,6 +138,7 @@ fn surroundings(root: &Fields<'_>, access: &Access) -> Result<(Scene, Given), Sc
     let given = Given {
         render,
         lights: !lights.is_empty(),
+        background: background.is_some(),
         ambient: ambient.is_some(),
     };
     let scene = Scene {
@@ -169,6 +170,7 @@ fn surroundings(root: &Fields<'_>, access: &Access) -> Result<(Scene, Given), Sc
 struct Given {
     render: Option<RenderSettings>,
     lights: bool,
+    background: bool,
     ambient: bool,
 }
 
@@ -210,12 +212,7 @@ impl Given {
         if !self.lights {
             add_lights(scene, source, item, import)?;
         }
-        scene.background = scene.background.or(import.background);
-        if scene.environment.is_none() {
-            scene.environment.clone_from(&import.environment);
-            let place = &import.places.environment;
-            scene.places.environment.clone_from(place);
-        }
+        self.complete_surroundings(scene, import);
         if let Some(room) = import.room {
             let room = joint::moved_room(room, &item.transform);
             scene.room = Some(scene.room.map_or(room, |own| joint::around(own, room)));
@@ -224,6 +221,22 @@ impl Given {
             scene.ambient = import.ambient;
         }
         Ok(tracks)
+    }
+
+    /// Completes the environment, or else the background. An environment hides the background, so what an import has
+    /// of one never meets what another file has of the other.
+    fn complete_surroundings(&self, scene: &mut Scene, import: &Scene) {
+        if scene.environment.is_some() {
+            return;
+        }
+        if import.environment.is_some() && !self.background {
+            scene.background = import.background;
+            scene.environment.clone_from(&import.environment);
+            let place = &import.places.environment;
+            scene.places.environment.clone_from(place);
+        } else {
+            scene.background = scene.background.or(import.background);
+        }
     }
 }
 

@@ -102,6 +102,47 @@ fn a_table_beyond_its_budget_is_rejected_as_a_blob_is() {
     );
 }
 
+#[test]
+fn a_table_whose_build_takes_too_much_memory_is_rejected_before_it_is_counted() {
+    let folder = Folder::with_quick();
+    folder.fails(
+        3,
+        &[
+            "build",
+            "quick.toml",
+            "-o",
+            "new.gridel",
+            "--accel",
+            "cylinder-cube",
+            "--gridels",
+            "64",
+            "--budget",
+            "256M",
+        ],
+        &["64 gridels per side", "of memory", "--gridels"],
+    );
+}
+
+/// The scene does not fit, either, which takes long to find out.
+#[test]
+fn a_format_that_no_board_was_measured_with_is_rejected_before_the_scene_is_compiled() {
+    let folder = Folder::with_quick();
+    let build = ["build", "quick.toml", "-o", "new.gridel"];
+    let options = [
+        "--target",
+        "stm32vldiscovery",
+        "--format",
+        "f64",
+        "--emit-rust",
+        "module",
+    ];
+    folder.fails(
+        2,
+        &[&build[..], &options, &["--max-bytes", "10"]].concat(),
+        &["f64 in software, which was not measured"],
+    );
+}
+
 /// Code and stack of the boards were measured, so they can change: what is asked for here lies far
 /// from any border.
 #[test]

@@ -390,6 +390,13 @@ fn ignored_smoothing_causes_one_warning() {
 }
 
 #[test]
+fn usemap_is_warned_of_with_a_remedy() {
+    let text = "usemap wood.png\nv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
+    let expected = "t.obj:1: the texture of `usemap` is not drawn; name its image in the MTL file, by `map_Kd`";
+    assert_eq!(read(text).unwrap().warnings, [expected]);
+}
+
+#[test]
 fn material_files_outside_of_the_folder_are_rejected() {
     let outer = tempfile::tempdir().unwrap();
     let folder = outer.path().join("scene");

@@ -302,7 +302,7 @@ fn colors_of_faces_and_textures_are_warned_of() {
     assert_eq!(
         ends,
         [
-            "3: textures are not drawn; the plain colors are used",
+            "3: the texture is not drawn; export the mesh as glTF or OBJ to show it",
             "14: the color of a face is ignored; the surface has one color",
             " colors of vertices without red, green or blue are ignored",
         ]

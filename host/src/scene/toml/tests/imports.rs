@@ -119,6 +119,26 @@ fn settings_of_the_importing_scene_come_first() {
 }
 
 #[test]
+fn an_environment_and_a_background_of_two_files_do_not_meet() {
+    let sky = "[environment]\nzenith = 1\nhorizon = 1\nground = 0\n";
+    let folder = folder(&[("ball.toml", &ball()), ("sky.toml", sky)]);
+    let importing = |own: &str, files: &[&str]| {
+        let import = |file: &&str| format!("[[object]]\nkind = \"import\"\nfile = \"{file}\"\n");
+        let imports: String = files.iter().map(import).collect();
+        let scene = load_in(folder.path(), &format!("{own}{imports}"))
+            .unwrap()
+            .scene;
+        (scene.background, scene.environment.is_some())
+    };
+    assert_eq!(importing(sky, &["ball.toml"]), (None, true));
+    let own = importing("background = 0\n", &["sky.toml"]);
+    assert_eq!(own, (Some([0.0; 3]), false));
+    for files in [["ball.toml", "sky.toml"], ["sky.toml", "ball.toml"]] {
+        assert_eq!(importing("", &files), (None, true), "{files:?}");
+    }
+}
+
+#[test]
 fn an_import_inside_a_group_lends_no_view() {
     let folder = folder(&[("parts/ball.toml", &ball())]);
     let text = "[[object]]\nkind = \"group\"\nobject = [{ kind = \"import\", file = \"parts/ball.toml\" }]\n";
