@@ -206,7 +206,7 @@ struct Order<'g, 'a> {
     /// it.
     full_packs: usize,
     next_sparse: usize,
-    /// Of the kinds that are not in clusters.
+    /// The next slots of the kinds that are not in clusters.
     next_slots: [usize; Kind::ALL.len()],
 }
 
