@@ -103,6 +103,15 @@ pub(super) fn deep_hierarchy() -> Errors {
     errors
 }
 
+/// Returns a hierarchy of one leaf, without pairs, whose width is that of the directions.
+pub(super) fn slabs() -> Errors {
+    let mut errors = alone(&scenes::of(balls(1)), Structure::Slabs, 24);
+    errors.reason("section slab-root", Reason::DirectionCount, |it| {
+        it.bytes(SectionKind::SlabRoot).truncate(8)
+    });
+    errors
+}
+
 pub(super) fn wide_hierarchies() -> Errors {
     let shapes = balls(12).chain([scenes::sheet(7)]);
     let mut errors = alone(&scenes::of(shapes), Structure::Wide, 16);

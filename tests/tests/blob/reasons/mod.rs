@@ -19,7 +19,7 @@ use gridel_host::scene::Shape;
 use gridel_host::shape::Sphere;
 use gridel_tests::fuzz::{Base, speaks};
 use header::{headers, names, prevalidated, section_tables};
-use hierarchies::{deep_hierarchy, hierarchies, wide_hierarchies};
+use hierarchies::{deep_hierarchy, hierarchies, slabs, wide_hierarchies};
 use instances::{instances, joints};
 use morph::morph;
 use records::{
@@ -172,6 +172,7 @@ fn every_field_and_reason_is_named_by_the_error_of_a_forged_blob() {
         primitives(),
         hierarchies(),
         deep_hierarchy(),
+        slabs(),
         wide_hierarchies(),
         cells(),
         candidates(),
