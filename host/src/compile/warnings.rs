@@ -3,8 +3,8 @@
 use super::LATTICE_BITS;
 use super::report::Report;
 use super::requirements::RequiringPart;
-use super::shading::with_coordinates;
-use crate::scene::{Material, Scene, Shape};
+use super::shading::{exposure_factor, light_label, radiance, with_coordinates};
+use crate::scene::{BRIGHTEST, Light, Material, Scene, Shape, SourceSpan};
 use crate::shape::unit;
 use crate::table::{counted, grouped, printable};
 
@@ -20,6 +20,7 @@ pub(super) fn scene_warnings(scene: &Scene) -> Vec<String> {
         ));
     }
     warnings.extend(hidden_background(scene));
+    warnings.extend(faint_light(scene));
     warnings.extend(unused_maps(scene));
     warnings.extend(lost_priorities(scene));
     let Some(camera) = scene.camera else {
@@ -47,6 +48,52 @@ fn hidden_background(scene: &Scene) -> Option<String> {
         let environment = RequiringPart::new(RequiringPart::ENVIRONMENT, &scene.places.environment);
         format!("{environment} is shown in place of the scene's background; remove one of the two")
     })
+}
+
+/// Most of a light that rounding may add or take without a warning.
+const MOST_ROUNDING: f64 = 0.1;
+
+/// Returns a warning of light that a blob's steps round to nothing, or by more than [`MOST_ROUNDING`]. Lights with a
+/// form have exponents of their own.
+fn faint_light(scene: &Scene) -> Option<String> {
+    let has_form = |number| matches!(scene.light_forms.get(number), Some(Some(_)));
+    let lights = scene.lights.iter().enumerate();
+    let lights = lights.filter(|&(number, _)| !has_form(number));
+    let lights = lights.map(|(number, light)| {
+        let (Light::Point { color, .. } | Light::Directional { color, .. }) = *light;
+        let place = scene.places.light(number);
+        (
+            RequiringPart::new(light_label(scene, number), &place),
+            color,
+        )
+    });
+    let materials = scene.materials.iter().map(|material| {
+        let label = format!("the emission of material {}", printable(&material.name));
+        (
+            RequiringPart::new(label, &material.place),
+            material.emission,
+        )
+    });
+    let elsewhere = |name: &str, color| (RequiringPart::new(name, &SourceSpan::default()), color);
+    let others = [
+        elsewhere("the ambient light", scene.ambient),
+        elsewhere("the background", scene.background.unwrap_or_default()),
+    ];
+    let factor = exposure_factor(scene);
+    let mut faint = lights.chain(materials).chain(others).filter(|(_, color)| {
+        let brightest = factor * color.iter().copied().fold(0.0, f64::max);
+        let rounded = f64::from(radiance([brightest; 3])[0]) / f64::from(1 << 20);
+        (rounded - brightest).abs() > MOST_ROUNDING * brightest.min(BRIGHTEST)
+    });
+    let (first, _) = faint.next()?;
+    let more = match faint.count() {
+        0 => String::new(),
+        more => format!(" and {} more", grouped(more)),
+    };
+    Some(format!(
+        "{first}{more} is lost or changed by more than a tenth, because a blob stores light in steps of 2^-20 of white; \
+         make it brighter, or raise the exposure"
+    ))
 }
 
 /// Returns a warning for each material in use whose maps no object shows.
@@ -212,6 +259,37 @@ mod tests {
         let report = compile(&scene, &Options::default()).unwrap().report;
         let lines = report.warnings(24);
         assert!(lines[0].contains("of its light is lost"), "{lines:?}");
+    }
+
+    #[test]
+    fn light_below_the_steps_of_a_blob_is_a_warning() {
+        let lines = |light: &str, exposure: f64| {
+            let file = format!(
+                "{light}\n[render]\nexposure = {exposure}\n\
+                 [[object]]\nkind = 'sphere'\ncenter = [0, 0, 0]\nradius = 1\n"
+            );
+            let imported = scene::read("s.toml".as_ref(), file.into(), &Default::default());
+            scene_warnings(&imported.unwrap().scene)
+        };
+        let light = |color: &str, more: &str| {
+            format!("[[light]]\nkind = 'point'\nposition = [0, 9, 0]\ncolor = {color}\n{more}")
+        };
+        let lost = |part: &str| {
+            [format!(
+                "{part} is lost or changed by more than a tenth, because a blob stores light in steps of 2^-20 of \
+                 white; make it brighter, or raise the exposure"
+            )]
+        };
+        assert_eq!(lines(&light("4e-7", ""), 0.0), lost("light 0 (s.toml:1)"));
+        assert_eq!(lines(&light("1", ""), -25.0), lost("light 0 (s.toml:1)"));
+        // By its brightest channel, which is 6.3 steps.
+        assert_eq!(lines(&light("[6e-6, 1e-9, 0]", ""), 0.0).len(), 0);
+        assert_eq!(lines(&light("1", ""), -17.0).len(), 0);
+        // It has an exponent of its own.
+        assert_eq!(lines(&light("1e-8", "falloff = 'square'"), 0.0).len(), 0);
+        let two = light("1e-9", "") + "\n" + &light("1e-8", "");
+        assert_eq!(lines(&two, 0.0), lost("light 0 (s.toml:1) and 1 more"));
+        assert_eq!(lines("ambient = 1e-8", 0.0), lost("the ambient light"));
     }
 
     #[test]

@@ -9,10 +9,15 @@ pub struct Exposure {
     pub factor: f64,
 }
 
+/// Returns the factor of all light of a scene.
+pub fn exposure_factor(scene: &Scene) -> f64 {
+    libm::exp2(scene.render.exposure)
+}
+
 impl Exposure {
     pub fn of(scene: &Scene) -> Self {
         Self {
-            factor: libm::exp2(scene.render.exposure),
+            factor: exposure_factor(scene),
         }
     }
 

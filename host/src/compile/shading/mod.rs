@@ -13,6 +13,7 @@ mod setting;
 mod textures;
 
 pub use environment::EnvironmentFigures;
+pub use exposure::exposure_factor;
 pub use lights::{light_label, light_record};
 pub use materials::with_coordinates;
 pub use radiance::radiance;
