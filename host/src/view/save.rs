@@ -95,10 +95,13 @@ pub fn save(state: &State<'_>, folder: &Path) -> io::Result<PathBuf> {
 }
 
 /// Saves the camera of a view, and returns a message about its file.
-pub(super) fn save_with_message(state: &State<'_>) -> String {
+///
+/// # Errors
+/// A message, if the file cannot be written.
+pub(super) fn save_with_message(state: &State<'_>) -> Result<String, String> {
     match save(state, Path::new("")) {
-        Ok(path) => format!("the camera is in {}", path.display()),
-        Err(error) => format!("the camera cannot be saved: {error}"),
+        Ok(path) => Ok(format!("the camera is in {}", path.display())),
+        Err(error) => Err(format!("the camera cannot be saved: {error}")),
     }
 }
 
