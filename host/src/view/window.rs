@@ -9,9 +9,12 @@ use super::writer::{self, Texts, UNREAD};
 use crate::compile::Names;
 use gridel_core::Scene;
 use softbuffer::{Context, SoftBufferError, Surface};
+use std::any::Any;
+use std::env;
 use std::fmt::Display;
 use std::io::{self, Write};
 use std::num::NonZeroU32;
+use std::panic::{self, AssertUnwindSafe};
 use std::rc::Rc;
 use std::sync::mpsc::{self, SyncSender, TrySendError};
 use std::thread;
@@ -54,8 +57,48 @@ pub enum WindowError {
     Events(#[from] EventLoopError),
     #[error("{}", without_place(.0))]
     Window(#[from] winit::error::OsError),
-    #[error("{0}")]
+    #[error("{}", platform_text(.0))]
     Pixels(#[from] SoftBufferError),
+    #[error("DISPLAY is not set; windows need X11, or XWayland under Wayland")]
+    NoDisplay,
+    /// A display without an extension, or an invalid variable of the environment, for which winit panics.
+    #[error("{0}")]
+    Display(String),
+}
+
+/// The text of an error, without the marks of an optional text around it.
+fn platform_text(error: &SoftBufferError) -> String {
+    match error {
+        SoftBufferError::PlatformError(Some(text), None) => text.clone(),
+        SoftBufferError::PlatformError(Some(text), Some(cause)) => format!("{text}: {cause}"),
+        _ => error.to_string(),
+    }
+}
+
+/// Performs a step of opening a window. Returns a panic of winit as an error, and prints nothing.
+fn caught<T>(open: impl FnOnce() -> Result<T, WindowError>) -> Result<T, WindowError> {
+    let hook = panic::take_hook();
+    panic::set_hook(Box::new(|_| {}));
+    let opened = panic::catch_unwind(AssertUnwindSafe(open));
+    panic::set_hook(hook);
+    opened.unwrap_or_else(|payload| Err(WindowError::Display(panic_text(&*payload))))
+}
+
+fn panic_text(payload: &(dyn Any + Send)) -> String {
+    let text = payload.downcast_ref::<String>().map(String::as_str);
+    let text = text.or_else(|| payload.downcast_ref::<&str>().copied());
+    text.unwrap_or("the display lacks what a window needs")
+        .to_owned()
+}
+
+/// Rejects a system without X11, where winit would ask for one of its Cargo features.
+fn check_display() -> Result<(), WindowError> {
+    let needs_x11 = cfg!(all(unix, not(target_vendor = "apple")));
+    let has_x11 = env::var_os("DISPLAY").is_some_and(|name| !name.is_empty());
+    match needs_x11 && !has_x11 {
+        true => Err(WindowError::NoDisplay),
+        false => Ok(()),
+    }
 }
 
 /// The cause of an error, without the line of winit's source that its text begins with.
@@ -73,7 +116,8 @@ fn without_place(error: &impl Display) -> String {
 /// # Errors
 /// If there is no display, or no window can be opened.
 pub fn run(refiner: &Refiner<'_>, state: State<'_>, viewed: Viewed<'_>) -> Result<(), WindowError> {
-    let events = EventLoop::<Wake>::with_user_event().build()?;
+    check_display()?;
+    let events = caught(|| Ok(EventLoop::<Wake>::with_user_event().build()?))?;
     let proxy = events.create_proxy();
     // At the end the receiver is gone.
     let wake = || drop(proxy.send_event(Wake::Drawn));
@@ -155,7 +199,7 @@ struct App<'a> {
 
 impl ApplicationHandler<Wake> for App<'_> {
     fn resumed(&mut self, events: &ActiveEventLoop) {
-        match self.open(events) {
+        match caught(|| self.open(events)) {
             Ok(canvas) => {
                 self.shown = Some(canvas);
                 self.refiner.show(self.state.shot());
