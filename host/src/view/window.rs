@@ -1,7 +1,7 @@
 //! A window, with the Cargo feature `view`.
 
 use super::clicks::{self, Click, explain_all};
-use super::keys::{Key, action, key_help};
+use super::keys::{Action, Key, action, key_help};
 use super::refine::Refiner;
 use super::save::save_with_message;
 use super::state::{Effect, State};
@@ -26,7 +26,7 @@ use winit::event::{
     ElementState, KeyEvent, MouseButton, MouseScrollDelta, StartCause, WindowEvent,
 };
 use winit::event_loop::{ActiveEventLoop, ControlFlow, EventLoop, OwnedDisplayHandle};
-use winit::keyboard::{Key as LogicalKey, NamedKey};
+use winit::keyboard::{Key as LogicalKey, ModifiersState, NamedKey};
 use winit::window::{Window, WindowId};
 
 /// The least time between two frames.
@@ -140,6 +140,7 @@ pub fn run(refiner: &Refiner<'_>, state: State<'_>, viewed: Viewed<'_>) -> Resul
                 shown: None,
                 last: Instant::now(),
                 mouse: Mouse::default(),
+                modifiers: ModifiersState::empty(),
                 message: None,
                 click: 0,
                 error: None,
@@ -189,6 +190,7 @@ struct App<'a> {
     /// The time at which the window was last drawn.
     last: Instant,
     mouse: Mouse,
+    modifiers: ModifiersState,
     /// Shown in the title in place of the settings, until something changes.
     message: Option<String>,
     /// The number of the click whose explanation is awaited. Each change of the view takes a new one.
@@ -251,7 +253,16 @@ impl ApplicationHandler<Wake> for App<'_> {
                 let side = |side: u32| u16::try_from(side).unwrap_or(u16::MAX).max(1);
                 self.state.resize([side(size.width), side(size.height)])
             }
-            WindowEvent::KeyboardInput { event, .. } => match key(&event).and_then(action) {
+            WindowEvent::ModifiersChanged(modifiers) => {
+                self.modifiers = modifiers.state();
+                Effect::Nothing
+            }
+            // A synthetic one was held down when the window got the focus.
+            WindowEvent::KeyboardInput {
+                event,
+                is_synthetic: false,
+                ..
+            } => match self.action(&event) {
                 Some(action) => self.state.apply(action),
                 None => Effect::Nothing,
             },
@@ -305,6 +316,12 @@ impl App<'_> {
             window,
             title: String::new(),
         })
+    }
+
+    /// Returns the action of a key, alone or with Shift: other combinations are the desktop's.
+    fn action(&self, event: &KeyEvent) -> Option<Action> {
+        let others = self.modifiers.difference(ModifiersState::SHIFT);
+        key(event).filter(|_| others.is_empty()).and_then(action)
     }
 
     fn request_redraw(&self) {
