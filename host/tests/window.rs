@@ -5,18 +5,21 @@
 #[path = "cli/program.rs"]
 mod program;
 
+#[path = "window/display.rs"]
+mod display;
+
+use display::{Display, Pixels};
 use libtest_mimic::{Arguments, Failed, Trial};
 use program::Folder;
 use std::env;
-use std::fs;
 use std::io::{BufRead, BufReader};
 use std::process::{Child, Command, Stdio};
 use std::sync::mpsc::{Receiver, channel};
 use std::thread;
 use std::time::{Duration, Instant};
 
-/// The size of the display; windows lie in its upper left corner.
-const SCREEN: [usize; 2] = [400, 320];
+/// Events that give a window the focus.
+const FOCUS: &str = "windowfocus --sync";
 
 /// How long anything may take.
 const LIMIT: Duration = Duration::from_secs(60);
@@ -28,7 +31,7 @@ fn main() {
     });
     let required = env::var_os("GRIDEL_REQUIRE_WINDOW").is_some_and(|value| value == "1");
     let needs = "needs Xvfb and xdotool";
-    let tests: [(&str, fn()); 4] = [
+    let tests: [(&str, fn()); 9] = [
         ("window_shows_the_picture_of_render", shows_the_picture),
         ("mouse_orbits_pans_and_zooms", mouse_moves_the_camera),
         (
@@ -36,6 +39,11 @@ fn main() {
             keys_change_settings,
         ),
         ("click_explains_a_pixel", click_explains),
+        ("clicks_are_explained_in_order", clicks_in_order),
+        ("keys_held_at_focus_are_ignored", held_key),
+        ("unread_output_keeps_no_window_open", unread_output),
+        ("window_closed_by_another_program_ends", closed_by_another),
+        ("display_that_lacks_something_is_an_error", unfit_display),
     ];
     let trials = tests.map(|(name, test)| {
         let trial = Trial::test(name, move || match is_missing {
@@ -58,89 +66,6 @@ fn main() {
     libtest_mimic::run(&Arguments::from_args(), trials).exit();
 }
 
-type Pixels = Vec<[u8; 3]>;
-
-/// A display in memory, whose pixels are in a file.
-struct Display {
-    server: Child,
-    name: String,
-    memory: tempfile::TempDir,
-}
-
-impl Display {
-    fn open() -> Self {
-        let memory = tempfile::tempdir().unwrap();
-        let screen = format!("{}x{}x24", SCREEN[0], SCREEN[1]);
-        // The server chooses a number, and writes it to standard output when it is ready.
-        let mut server = Command::new("Xvfb")
-            .args([
-                "-displayfd",
-                "1",
-                "-nolisten",
-                "tcp",
-                "-screen",
-                "0",
-                &screen,
-                "-fbdir",
-            ])
-            .arg(memory.path())
-            .stdout(Stdio::piped())
-            .stderr(Stdio::null())
-            .spawn()
-            .unwrap();
-        let mut number = String::new();
-        let out = server.stdout.as_mut().unwrap();
-        BufReader::new(out).read_line(&mut number).unwrap();
-        Self {
-            server,
-            name: format!(":{}", number.trim()),
-            memory,
-        }
-    }
-
-    /// The upper left part of the screen, from a file of X's window dumps.
-    fn pixels(&self, size: [usize; 2]) -> Pixels {
-        let file = fs::read(self.memory.path().join("Xvfb_screen0")).unwrap();
-        let number = |at: usize| {
-            let bytes = file[4 * at..][..4].try_into().unwrap();
-            u32::from_be_bytes(bytes) as usize
-        };
-        // The header's size, the pixels' byte order (0 for the lowest first), bits per pixel, bytes per row, and
-        // the entries of the table of colors, of 12 bytes each.
-        let [header, order, bits, stride, colors] = [0, 7, 11, 12, 19].map(number);
-        assert_eq!((order, bits), (0, 32));
-        let rows = file[header + 12 * colors..].chunks(stride).take(size[1]);
-        rows.flat_map(|row| row.chunks(4).take(size[0]))
-            .map(|pixel| [pixel[2], pixel[1], pixel[0]])
-            .collect()
-    }
-
-    /// Sends events.
-    fn events(&self, events: &str) {
-        let done = Command::new("xdotool")
-            .args(events.split(' '))
-            .env("DISPLAY", &self.name)
-            .status();
-        assert!(done.unwrap().success(), "{events}");
-    }
-
-    /// The title of the window that has the focus.
-    fn title(&self) -> String {
-        let output = Command::new("xdotool")
-            .args(["getwindowfocus", "getwindowname"])
-            .env("DISPLAY", &self.name)
-            .output();
-        String::from_utf8(output.unwrap().stdout).unwrap()
-    }
-}
-
-impl Drop for Display {
-    fn drop(&mut self) {
-        drop(self.server.kill());
-        drop(self.server.wait());
-    }
-}
-
 /// The program with a window.
 struct Viewer {
     display: Display,
@@ -153,24 +78,31 @@ struct Viewer {
 impl Viewer {
     /// Views `quick.gridel` in a window of this size, and waits for its picture.
     fn open(size: [usize; 2]) -> Self {
+        Self::open_with(size, &[], FOCUS, Stdio::piped())
+    }
+
+    /// Views it with more options, and sends events to the window, which give it the focus. Lines of a piped output
+    /// are read.
+    fn open_with(size: [usize; 2], options: &[&str], events: &str, out: Stdio) -> Self {
         let folder = Folder::with_quick();
         let display = Display::open();
         let text = format!("{}x{}", size[0], size[1]);
         let mut program = folder
-            .command(&["view", "quick.gridel", "--size", &text])
+            .command(&[&["view", "quick.gridel", "--size", &text], options].concat())
             .env("DISPLAY", &display.name)
             .env_remove("WAYLAND_DISPLAY")
             .env_remove("WAYLAND_SOCKET")
-            .stdout(Stdio::piped())
+            .stdout(out)
             .spawn()
             .unwrap();
-        let out = BufReader::new(program.stdout.take().unwrap());
         let (sender, lines) = channel();
-        thread::spawn(move || {
-            for line in out.lines().map_while(Result::ok) {
-                drop(sender.send(line));
-            }
-        });
+        if let Some(out) = program.stdout.take() {
+            thread::spawn(move || {
+                for line in BufReader::new(out).lines().map_while(Result::ok) {
+                    drop(sender.send(line));
+                }
+            });
+        }
         let viewer = Self {
             display,
             folder,
@@ -178,11 +110,10 @@ impl Viewer {
             lines,
             size,
         };
-        viewer.expect(&[]);
+        viewer.expect(options);
         // No window manager gives it the focus.
-        viewer
-            .display
-            .events("search --sync --name quick.gridel windowfocus --sync");
+        let search = "search --sync --name quick.gridel";
+        viewer.display.events(&format!("{search} {events}"));
         viewer
     }
 
@@ -252,8 +183,13 @@ impl Viewer {
     }
 
     /// Quits by its key.
-    fn quit(mut self) {
+    fn quit(self) {
         self.display.events("key q");
+        self.expect_end();
+    }
+
+    /// Waits until the program ends without an error.
+    fn expect_end(mut self) {
         let begun = Instant::now();
         while begun.elapsed() < LIMIT {
             if let Some(status) = self.program.try_wait().unwrap() {
@@ -275,14 +211,41 @@ impl Drop for Viewer {
 
 fn missing_display() {
     let folder = Folder::with_quick();
-    let mut command = folder.command(&["view", "quick.gridel"]);
-    for name in ["DISPLAY", "WAYLAND_DISPLAY", "WAYLAND_SOCKET"] {
-        command.env_remove(name);
+    for wayland in [None, Some("wayland-0")] {
+        let mut command = folder.command(&["view", "quick.gridel"]);
+        for name in ["DISPLAY", "WAYLAND_DISPLAY", "WAYLAND_SOCKET"] {
+            command.env_remove(name);
+        }
+        if let Some(name) = wayland {
+            command.env("WAYLAND_DISPLAY", name);
+        }
+        expect_no_window(command, "DISPLAY is not set");
     }
+}
+
+fn unfit_display() {
+    let folder = Folder::with_quick();
+    let of = |display: &Display| {
+        let mut command = folder.command(&["view", "quick.gridel"]);
+        command.env("DISPLAY", &display.name);
+        command
+    };
+    let bare = Display::with(&["-extension", "RANDR"]);
+    expect_no_window(of(&bare), "failed to request XRandR version");
+    let display = Display::open();
+    let mut command = of(&display);
+    command.env("WINIT_X11_SCALE_FACTOR", "bogus");
+    expect_no_window(command, "`WINIT_X11_SCALE_FACTOR` invalid");
+}
+
+/// Expects an error without a panic.
+fn expect_no_window(mut command: Command, cause: &str) {
     let output = command.output().unwrap();
-    assert_eq!(output.status.code(), Some(1));
     let said = String::from_utf8(output.stderr).unwrap();
-    assert!(said.contains("no window can be opened: neither"), "{said}");
+    assert_eq!(output.status.code(), Some(1), "{said}");
+    assert!(!said.contains("panicked"), "{said}");
+    let cause = format!("no window can be opened: {cause}");
+    assert!(said.contains(&cause), "{said}");
     assert!(said.contains("--terminal"), "{said}");
 }
 
@@ -368,7 +331,7 @@ fn keys_change_settings() {
     assert!(viewer.expect_saved(1) != first);
     viewer.display.events("key r");
     viewer.expect(&[]);
-    viewer.display.events("key f");
+    viewer.display.events("key ctrl+f key alt+f key f");
     viewer.expect_title("quick.gridel: f64, flagged, 1 sample");
     viewer.expect(&["--format", "f64"]);
     viewer.display.events("key a");
@@ -419,10 +382,64 @@ fn click_explains() {
         for expected in viewer.folder.done(&of).lines() {
             assert_eq!(viewer.line(), expected);
         }
-        // Ends with an empty line.
+        // Ends with the line of the title.
+        assert_eq!(viewer.line(), "");
+        let line = viewer.line();
+        assert!(line.starts_with(&format!("pixel {x},{y}: #")), "{line}");
         assert_eq!(viewer.line(), "");
         let title = viewer.expect_title(&format!("quick.gridel: pixel {x},{y}: #"));
         assert_eq!(title.contains("object"), pixel != [0, 0], "{title}");
     }
     viewer.quit();
+}
+
+fn clicks_in_order() {
+    let viewer = Viewer::open_with([240, 180], &["--samples", "8"], FOCUS, Stdio::piped());
+    let places: Vec<String> = (0..10).map(|k| format!("{},90", 100 + 4 * k)).collect();
+    let events = places.iter().map(|place| place.replace(',', " "));
+    let events: Vec<_> = events
+        .map(|place| format!("mousemove {place} click 1"))
+        .collect();
+    viewer.display.events(&events.join(" "));
+    for place in places {
+        let begin = format!("Pixel {place} of 240 x 180 is ");
+        while !viewer.line().starts_with(&begin) {}
+        let note = format!("`gridel explain --pixel {place} --samples 8` explains all.");
+        assert!(viewer.line().ends_with(&note));
+        let is_end = |line: &str| line.starts_with(&format!("pixel {place}: #"));
+        let lines = std::iter::from_fn(|| Some(viewer.line()).filter(|line| !is_end(line)));
+        let samples = lines.filter(|line| line.starts_with("Sample "));
+        assert_eq!(samples.count(), 4);
+    }
+    viewer.quit();
+}
+
+fn held_key() {
+    let events = "keydown q windowfocus --sync keyup q";
+    let viewer = Viewer::open_with([240, 180], &[], events, Stdio::piped());
+    viewer.display.events("key f");
+    viewer.expect_title("quick.gridel: f64");
+    viewer.quit();
+}
+
+/// Explains more than a pipe holds, which nobody reads.
+fn unread_output() {
+    let (_reader, writer) = std::io::pipe().unwrap();
+    let options = ["--samples", "4"];
+    let viewer = Viewer::open_with([240, 180], &options, FOCUS, writer.into());
+    let clicks: Vec<String> = (0..12)
+        .map(|k| format!("mousemove {} 90 click 1", 80 + 6 * k))
+        .collect();
+    viewer.display.events(&clicks.join(" "));
+    viewer.expect_title("pixel 146,90: #");
+    viewer.quit();
+}
+
+fn closed_by_another() {
+    let viewer = Viewer::open([240, 180]);
+    viewer.display.events("key m key m key m key m key m");
+    viewer
+        .display
+        .events("search --name quick.gridel windowclose");
+    viewer.expect_end();
 }

@@ -17,7 +17,8 @@ use std::path::PathBuf;
 ///
 /// The picture appears from coarse to fine, and begins anew when something changes; it becomes the picture of
 /// `gridel render`. Dragging with the left mouse button orbits, with another button it pans, and the wheel
-/// zooms. A click explains a pixel.
+/// zooms. A click explains a pixel on standard output, by its first four samples. Windows on Linux are X11's, which
+/// Wayland shows with XWayland.
 ///
 /// The key `s` saves the camera in a new file: as options on its first line, and as a table for the scene file, with
 /// its lens. Comments name tracks that would move it, and a background that the scene file does not state. A scene
@@ -146,7 +147,7 @@ fn in_window(
     window::run(&Refiner::new(scene), state, viewed).map_err(|error| {
         Failure::failed(
             format!("no window can be opened: {error}"),
-            "run it where there is a display, or draw in the terminal with `--terminal`",
+            "run it where there is a display, with DISPLAY set on Linux; or draw in the terminal with `--terminal`",
         )
     })
 }

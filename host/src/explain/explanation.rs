@@ -18,6 +18,7 @@ pub struct Explanation {
     pub format: &'static str,
     /// Structure.
     pub accel: &'static str,
+    /// All samples of the pixel. Those after the first that were asked for have no rays.
     pub samples: Vec<Sample>,
     /// The pixel's linear color; 65535 is white. As JSON a ratio, like other colors.
     #[serde(serialize_with = "as_ratios")]
@@ -30,6 +31,12 @@ impl Explanation {
     /// Returns the pixel's linear color, 1 being display white.
     pub fn color(&self) -> [f64; 3] {
         ratios(&self.linear)
+    }
+
+    /// Returns the number of samples whose rays are listed.
+    pub fn listed_samples(&self) -> usize {
+        let is_listed = |sample: &&Sample| !sample.rays.is_empty();
+        self.samples.iter().filter(is_listed).count()
     }
 
     /// Returns the mean of the samples, which is the pixel's color before it is tone mapped or encoded for display.

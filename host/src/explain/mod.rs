@@ -79,11 +79,28 @@ pub fn explain(
     settings: Settings,
     subject: Subject,
 ) -> Result<Explanation, ExplainError> {
+    explain_first(scene, format, structure, settings, subject, usize::MAX)
+}
+
+/// Explains a pixel as [`explain`] does, but lists the rays of its first `samples` alone, so that text and memory stay
+/// small. All samples count for its color.
+///
+/// # Errors
+/// As [`explain`].
+pub fn explain_first(
+    scene: &Scene<'_>,
+    format: Format,
+    structure: Structure,
+    settings: Settings,
+    subject: Subject,
+    samples: usize,
+) -> Result<Explanation, ExplainError> {
     let scene = &chosen(scene, structure)?;
-    let (linear, recorder) = match format {
-        Format::Fixed => watch::<Fixed>(scene, settings, subject),
-        Format::F32 => watch::<f32>(scene, settings, subject),
-        Format::F64 => watch::<f64>(scene, settings, subject),
+    let mut recorder = Recorder::of_first(samples);
+    let linear = match format {
+        Format::Fixed => watch::<Fixed>(scene, settings, subject, &mut recorder),
+        Format::F32 => watch::<f32>(scene, settings, subject, &mut recorder),
+        Format::F64 => watch::<f64>(scene, settings, subject, &mut recorder),
     }?;
     let mut explanation = Explanation::of(scene, format, &subject, &recorder);
     if let Subject::Pixel(pixel) = subject {
@@ -97,20 +114,22 @@ pub fn explain(
     Ok(explanation)
 }
 
-type Recording = Result<([u16; 3], Recorder), ExplainError>;
-
-fn watch<N: Number>(scene: &Scene<'_>, settings: Settings, subject: Subject) -> Recording {
+/// Returns the linear color, and records what leads to it.
+fn watch<N: Number>(
+    scene: &Scene<'_>,
+    settings: Settings,
+    subject: Subject,
+    recorder: &mut Recorder,
+) -> Result<[u16; 3], ExplainError> {
     let renderer = Renderer::<N, DynAccel, ALL>::with_settings(scene, settings)?;
     let mut space = Box::new(Workspace::<N, MAX_STACK_DEPTH, { Effects::MAX_WORK_DEPTH }>::new());
     let mut space = space.as_view();
-    let mut recorder = Recorder::default();
-    let linear = match subject {
-        Subject::Pixel([x, y]) => renderer.linear(x, y, &mut space, &mut recorder),
+    Ok(match subject {
+        Subject::Pixel([x, y]) => renderer.linear(x, y, &mut space, recorder),
         Subject::Ray(ray) => {
             let (ray, direction_scale) = Frame::of(scene).ray::<N>(scene, &ray)?;
             recorder.begin = direction_scale.begin();
-            renderer.linear_along(&ray, &mut space, &mut recorder)
+            renderer.linear_along(&ray, &mut space, recorder)
         }
-    };
-    Ok((linear, recorder))
+    })
 }

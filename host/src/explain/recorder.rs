@@ -5,6 +5,8 @@ use gridel_core::{Event, Observer};
 /// Records events, but not every primitive of a long list that a ray passes by.
 #[derive(Default)]
 pub(super) struct Recorder {
+    /// Samples whose events are still recorded; only the end of later ones is.
+    samples_left: usize,
     pub(super) events: Vec<Event>,
     /// For each query, what was counted alone.
     pub(super) unlisted: Vec<Unlisted>,
@@ -27,10 +29,28 @@ pub(super) struct Unlisted {
 /// force as many as there are primitives.
 const MOST_STEPS: usize = 20_000;
 
+impl Recorder {
+    /// Records no more than the color of the samples after the first `samples`.
+    pub(super) fn of_first(samples: usize) -> Self {
+        Self {
+            samples_left: samples,
+            ..Self::default()
+        }
+    }
+}
+
 impl Observer for Recorder {
     const ENABLED: bool = true;
 
     fn event(&mut self, event: Event) {
+        if let Event::SampleFinished { .. } = event {
+            self.samples_left = self.samples_left.saturating_sub(1);
+            self.events.push(event);
+            return;
+        }
+        if self.samples_left == 0 {
+            return;
+        }
         match event {
             Event::Query { .. } => {
                 self.steps = 0;

@@ -109,7 +109,7 @@ pub const KEYS: [Line; 15] = [
         &[Key::Character('q'), Key::Escape],
         "q",
         Action::Quit,
-        "quit",
+        "quit; Escape quits, too, in a window",
     ),
 ];
 

@@ -15,8 +15,12 @@
 //! | `terminal.rs` | half blocks in a terminal |
 //! | `terminal_keys.rs` | keys as terminals send them |
 //! | `window.rs` | a window, with the Cargo feature `view` |
+//! | `clicks.rs` | explanations of the pixels that are clicked in it |
+//! | `writer.rs` | texts on standard output beside it |
 
 mod blocks;
+#[cfg(feature = "view")]
+mod clicks;
 mod frame;
 mod keys;
 mod motion;
@@ -30,6 +34,8 @@ pub mod terminal;
 mod terminal_keys;
 #[cfg(feature = "view")]
 pub mod window;
+#[cfg(feature = "view")]
+mod writer;
 
 pub use blocks::{Drawn, draw};
 pub use frame::Frame;

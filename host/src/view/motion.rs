@@ -1,6 +1,6 @@
 //! Orbits, pans and zooms of a camera, in scene units.
 
-use crate::scene::Camera;
+use crate::scene::{Camera, Lens};
 use glam::{DQuat, DVec3};
 
 /// Smallest angle between a camera's direction and the up direction, in radians.
@@ -43,6 +43,15 @@ impl Camera {
             eye: self.target + factor * (self.eye - self.target),
             ..*self
         }
+    }
+
+    /// Returns this camera with its target in focus: a scene file that states no focus has it there.
+    pub fn focused(&self, lens: Option<Lens>) -> Self {
+        let target = match lens.and_then(|lens| lens.focus) {
+            Some(focus) => self.eye + (self.target - self.eye).normalize() * focus,
+            None => self.target,
+        };
+        Self { target, ..*self }
     }
 
     /// The picture's height at the target, to the right and upwards.

@@ -15,21 +15,18 @@ const MOST_FILES: u32 = 9999;
 
 /// Returns the camera of a view as a table of a scene file, with the equivalent options of `gridel render`.
 pub fn saved(state: &State<'_>) -> String {
-    text(state.camera(), state.lens(), state.notes())
+    let lens = state.lens();
+    text(&state.camera().focused(lens), lens, state.notes())
 }
 
 fn text(camera: &Camera, lens: Option<Lens>, notes: &Notes) -> String {
     let &Camera {
         eye,
-        mut target,
+        target,
         up,
         fov_degrees,
     } = camera;
     let focus = lens.and_then(|lens| lens.focus);
-    if let Some(focus) = focus {
-        // A file without a focus has its target in focus.
-        target = eye + (target - eye).normalize() * focus;
-    }
     // As short as it can be read back to the bit.
     let joined = |vector: DVec3, between| vector.to_array().map(|x| format!("{x:?}")).join(between);
     let [eye_option, target_option, up_option] = [eye, target, up].map(|it| joined(it, ","));
@@ -98,10 +95,13 @@ pub fn save(state: &State<'_>, folder: &Path) -> io::Result<PathBuf> {
 }
 
 /// Saves the camera of a view, and returns a message about its file.
-pub(super) fn save_with_message(state: &State<'_>) -> String {
+///
+/// # Errors
+/// A message, if the file cannot be written.
+pub(super) fn save_with_message(state: &State<'_>) -> Result<String, String> {
     match save(state, Path::new("")) {
-        Ok(path) => format!("the camera is in {}", path.display()),
-        Err(error) => format!("the camera cannot be saved: {error}"),
+        Ok(path) => Ok(format!("the camera is in {}", path.display())),
+        Err(error) => Err(format!("the camera cannot be saved: {error}")),
     }
 }
 
@@ -167,6 +167,7 @@ mod tests {
             let mut state = State::new(&compiled, Format::F32, Structure::List, settings);
             state.orbit([0.3, 0.1]);
             state.zoom(1.0);
+            let shown = state.shot().view;
             let saved = read(saved(&state) + BALL);
             let (camera, lens) = (saved.camera.unwrap(), saved.lens.unwrap());
             let off = [
@@ -176,6 +177,7 @@ mod tests {
                 camera.eye.distance(state.camera().eye),
             ];
             assert!(off.iter().all(|it| it.abs() < 1e-6), "{off:?}");
+            assert_eq!(camera.in_blob(&compiled).unwrap(), shown);
             let pasted = compile(&saved, &Options::default()).unwrap().blob;
             assert_eq!(pasted.scene().unwrap().lens(), compiled.lens());
         }

@@ -221,7 +221,8 @@ impl<'s> State<'s> {
         if camera.is_along_up() {
             return Effect::Nothing;
         }
-        let placed = camera.in_blob(self.scene);
+        // The bits of a saved camera, which has its target in focus.
+        let placed = camera.focused(self.lens()).in_blob(self.scene);
         let Some(view) = placed
             .ok()
             .filter(|view| self.scene.with_view(view).is_ok())

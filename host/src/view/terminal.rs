@@ -298,7 +298,10 @@ impl Live<'_, '_> {
         match effect {
             Effect::Nothing | Effect::Quit => {}
             Effect::Redraw => self.refiner.show(self.state.shot()),
-            Effect::Save => self.message = Some(save_with_message(&self.state)),
+            Effect::Save => {
+                let saved = save_with_message(&self.state);
+                self.message = Some(saved.unwrap_or_else(|message| message));
+            }
             Effect::Help if closes_help => {}
             Effect::Help => {
                 self.shows_keys = true;

@@ -1,20 +1,22 @@
 //! A window, with the Cargo feature `view`.
 
-use super::keys::{Key, action, key_help};
+use super::clicks::{self, Click, explain_all};
+use super::keys::{Action, Key, action, key_help};
 use super::refine::Refiner;
 use super::save::save_with_message;
-use super::shot::Shot;
 use super::state::{Effect, State};
-use super::summary::summary;
+use super::writer::{self, Texts, UNREAD};
 use crate::compile::Names;
-use crate::explain::{Shown, Subject, explain};
 use gridel_core::Scene;
-use softbuffer::{Context, Surface};
+use softbuffer::{Context, SoftBufferError, Surface};
+use std::any::Any;
+use std::env;
 use std::fmt::Display;
 use std::io::{self, Write};
 use std::num::NonZeroU32;
+use std::panic::{self, AssertUnwindSafe};
 use std::rc::Rc;
-use std::sync::mpsc::{self, Receiver, Sender};
+use std::sync::mpsc::{self, SyncSender, TrySendError};
 use std::thread;
 use std::time::{Duration, Instant};
 use winit::application::ApplicationHandler;
@@ -23,14 +25,15 @@ use winit::error::EventLoopError;
 use winit::event::{
     ElementState, KeyEvent, MouseButton, MouseScrollDelta, StartCause, WindowEvent,
 };
-use winit::event_loop::{
-    ActiveEventLoop, ControlFlow, EventLoop, EventLoopProxy, OwnedDisplayHandle,
-};
-use winit::keyboard::{Key as LogicalKey, NamedKey};
+use winit::event_loop::{ActiveEventLoop, ControlFlow, EventLoop, OwnedDisplayHandle};
+use winit::keyboard::{Key as LogicalKey, ModifiersState, NamedKey};
 use winit::window::{Window, WindowId};
 
 /// The least time between two frames.
 const FRAME_TIME: Duration = Duration::from_millis(16);
+
+/// Time in which a window that cannot be drawn may turn out to be closed.
+const CLOSING_TIME: Duration = Duration::from_millis(100);
 
 /// A mouse that moves no further than this, in pixels, while a button is down has clicked.
 const CLICK_DISTANCE: f64 = 3.0;
@@ -54,8 +57,48 @@ pub enum WindowError {
     Events(#[from] EventLoopError),
     #[error("{}", without_place(.0))]
     Window(#[from] winit::error::OsError),
+    #[error("{}", platform_text(.0))]
+    Pixels(#[from] SoftBufferError),
+    #[error("DISPLAY is not set; windows need X11, or XWayland under Wayland")]
+    NoDisplay,
+    /// A display without an extension, or an invalid variable of the environment, for which winit panics.
     #[error("{0}")]
-    Pixels(#[from] softbuffer::SoftBufferError),
+    Display(String),
+}
+
+/// The text of an error, without the marks of an optional text around it.
+fn platform_text(error: &SoftBufferError) -> String {
+    match error {
+        SoftBufferError::PlatformError(Some(text), None) => text.clone(),
+        SoftBufferError::PlatformError(Some(text), Some(cause)) => format!("{text}: {cause}"),
+        _ => error.to_string(),
+    }
+}
+
+/// Performs a step of opening a window. Returns a panic of winit as an error, and prints nothing.
+fn caught<T>(open: impl FnOnce() -> Result<T, WindowError>) -> Result<T, WindowError> {
+    let hook = panic::take_hook();
+    panic::set_hook(Box::new(|_| {}));
+    let opened = panic::catch_unwind(AssertUnwindSafe(open));
+    panic::set_hook(hook);
+    opened.unwrap_or_else(|payload| Err(WindowError::Display(panic_text(&*payload))))
+}
+
+fn panic_text(payload: &(dyn Any + Send)) -> String {
+    let text = payload.downcast_ref::<String>().map(String::as_str);
+    let text = text.or_else(|| payload.downcast_ref::<&str>().copied());
+    text.unwrap_or("the display lacks what a window needs")
+        .to_owned()
+}
+
+/// Rejects a system without X11, where winit would ask for one of its Cargo features.
+fn check_display() -> Result<(), WindowError> {
+    let needs_x11 = cfg!(all(unix, not(target_vendor = "apple")));
+    let has_x11 = env::var_os("DISPLAY").is_some_and(|name| !name.is_empty());
+    match needs_x11 && !has_x11 {
+        true => Err(WindowError::NoDisplay),
+        false => Ok(()),
+    }
 }
 
 /// The cause of an error, without the line of winit's source that its text begins with.
@@ -73,24 +116,31 @@ fn without_place(error: &impl Display) -> String {
 /// # Errors
 /// If there is no display, or no window can be opened.
 pub fn run(refiner: &Refiner<'_>, state: State<'_>, viewed: Viewed<'_>) -> Result<(), WindowError> {
-    let events = EventLoop::<Wake>::with_user_event().build()?;
+    check_display()?;
+    let events = caught(|| Ok(EventLoop::<Wake>::with_user_event().build()?))?;
     let proxy = events.create_proxy();
     // At the end the receiver is gone.
     let wake = || drop(proxy.send_event(Wake::Drawn));
-    let (clicks, clicked) = mpsc::channel();
-    thread::scope(|scope| {
-        let explained = proxy.clone();
+    let (clicks, clicked) = mpsc::sync_channel(clicks::MOST_WAITING);
+    let (texts, writer) = writer::start();
+    let ended = thread::scope(|scope| {
+        let (explained, explanations) = (proxy.clone(), texts.clone());
         // Ends with the window, which holds the other end of the channel.
-        scope.spawn(move || explain_latest(&clicked, viewed, &explained));
+        scope.spawn(move || {
+            let show = |click, line| explained.send_event(Wake::Explained(click, line)).is_ok();
+            explain_all(&clicked, viewed.scene, viewed.names, &explanations, show);
+        });
         refiner.run(&wake, || {
             let mut app = App {
                 refiner,
                 state,
                 viewed,
                 clicks,
+                texts,
                 shown: None,
                 last: Instant::now(),
                 mouse: Mouse::default(),
+                modifiers: ModifiersState::empty(),
                 message: None,
                 click: 0,
                 error: None,
@@ -98,7 +148,9 @@ pub fn run(refiner: &Refiner<'_>, state: State<'_>, viewed: Viewed<'_>) -> Resul
             events.run_app(&mut app)?;
             app.error.map_or(Ok(()), Err)
         })
-    })
+    });
+    writer.finish();
+    ended
 }
 
 /// The messages of threads to the window.
@@ -109,47 +161,11 @@ enum Wake {
     Explained(u64, String),
 }
 
-/// A pixel that was clicked, in the view of that moment.
-struct Click {
-    number: u64,
-    shot: Shot,
-    pixel: [u16; 2],
-}
-
-/// Explains the pixels that are clicked, one after the other: of those that wait, the last.
-fn explain_latest(clicked: &Receiver<Click>, viewed: Viewed<'_>, proxy: &EventLoopProxy<Wake>) {
-    let Viewed { scene, names, .. } = viewed;
-    while let Ok(first) = clicked.recv() {
-        let Click {
-            number,
-            shot,
-            pixel,
-        } = clicked.try_iter().last().unwrap_or(first);
-        let Ok(scene) = scene.with_view(&shot.view) else {
-            continue;
-        };
-        let subject = Subject::Pixel(pixel);
-        let explained = explain(&scene, shot.format, shot.structure, shot.settings, subject);
-        let short = match explained {
-            Ok(explanation) => {
-                let shown = Shown {
-                    explanation: &explanation,
-                    names,
-                    all_walks: false,
-                };
-                print(format!("{shown}\n"));
-                summary(&explanation, names)
-            }
-            Err(error) => error.to_string(),
-        };
-        // The window may be closed by now.
-        drop(proxy.send_event(Wake::Explained(number, short)));
-    }
-}
-
 /// A window and its pixels.
 struct Canvas {
     window: Rc<Window>,
+    /// The size of the last event: to ask a window that another program closes is a panic of winit.
+    size: PhysicalSize<u32>,
     surface: Surface<OwnedDisplayHandle, Rc<Window>>,
     title: String,
 }
@@ -168,21 +184,24 @@ struct App<'a> {
     refiner: &'a Refiner<'a>,
     state: State<'a>,
     viewed: Viewed<'a>,
-    clicks: Sender<Click>,
+    clicks: SyncSender<Click>,
+    texts: Texts,
     shown: Option<Canvas>,
     /// The time at which the window was last drawn.
     last: Instant,
     mouse: Mouse,
+    modifiers: ModifiersState,
     /// Shown in the title in place of the settings, until something changes.
     message: Option<String>,
     /// The number of the click whose explanation is awaited. Each change of the view takes a new one.
     click: u64,
+    /// The reason to end.
     error: Option<WindowError>,
 }
 
 impl ApplicationHandler<Wake> for App<'_> {
     fn resumed(&mut self, events: &ActiveEventLoop) {
-        match self.open(events) {
+        match caught(|| self.open(events)) {
             Ok(canvas) => {
                 self.shown = Some(canvas);
                 self.refiner.show(self.state.shot());
@@ -196,6 +215,9 @@ impl ApplicationHandler<Wake> for App<'_> {
 
     fn new_events(&mut self, events: &ActiveEventLoop, cause: StartCause) {
         if matches!(cause, StartCause::ResumeTimeReached { .. }) {
+            if self.error.is_some() {
+                events.exit();
+            }
             events.set_control_flow(ControlFlow::Wait);
             self.request_redraw();
         }
@@ -218,12 +240,29 @@ impl ApplicationHandler<Wake> for App<'_> {
     fn window_event(&mut self, events: &ActiveEventLoop, _: WindowId, event: WindowEvent) {
         let effect = match event {
             WindowEvent::CloseRequested => Effect::Quit,
+            // Another program closed it, which may have made drawing fail.
+            WindowEvent::Destroyed => {
+                self.error = None;
+                Effect::Quit
+            }
             WindowEvent::Resized(size) => {
+                if let Some(canvas) = &mut self.shown {
+                    canvas.size = size;
+                }
                 self.request_redraw();
                 let side = |side: u32| u16::try_from(side).unwrap_or(u16::MAX).max(1);
                 self.state.resize([side(size.width), side(size.height)])
             }
-            WindowEvent::KeyboardInput { event, .. } => match key(&event).and_then(action) {
+            WindowEvent::ModifiersChanged(modifiers) => {
+                self.modifiers = modifiers.state();
+                Effect::Nothing
+            }
+            // A synthetic one was held down when the window got the focus.
+            WindowEvent::KeyboardInput {
+                event,
+                is_synthetic: false,
+                ..
+            } => match self.action(&event) {
                 Some(action) => self.state.apply(action),
                 None => Effect::Nothing,
             },
@@ -236,10 +275,10 @@ impl ApplicationHandler<Wake> for App<'_> {
                 MouseScrollDelta::LineDelta(_, lines) => lines.into(),
                 MouseScrollDelta::PixelDelta(by) => by.y / PIXELS_PER_STEP,
             }),
-            WindowEvent::RedrawRequested => {
+            WindowEvent::RedrawRequested if self.error.is_none() => {
                 if let Err(error) = self.draw() {
                     self.error = Some(error.into());
-                    events.exit();
+                    events.set_control_flow(ControlFlow::WaitUntil(Instant::now() + CLOSING_TIME));
                 }
                 Effect::Nothing
             }
@@ -253,7 +292,11 @@ impl ApplicationHandler<Wake> for App<'_> {
                 self.request_redraw();
             }
             Effect::Save => self.save(),
-            Effect::Help => print(key_help()),
+            Effect::Help => {
+                if !self.texts.write(key_help()) {
+                    self.say(String::from(UNREAD));
+                }
+            }
             Effect::Quit => events.exit(),
         }
     }
@@ -268,10 +311,17 @@ impl App<'_> {
         let window = Rc::new(events.create_window(attributes)?);
         let context = Context::new(events.owned_display_handle())?;
         Ok(Canvas {
+            size: window.inner_size(),
             surface: Surface::new(&context, window.clone())?,
             window,
             title: String::new(),
         })
+    }
+
+    /// Returns the action of a key, alone or with Shift: other combinations are the desktop's.
+    fn action(&self, event: &KeyEvent) -> Option<Action> {
+        let others = self.modifiers.difference(ModifiersState::SHIFT);
+        key(event).filter(|_| others.is_empty()).and_then(action)
     }
 
     fn request_redraw(&self) {
@@ -333,19 +383,37 @@ impl App<'_> {
         if pixel[0] >= shot.settings.width || pixel[1] >= shot.settings.height {
             return;
         }
-        self.click += 1;
-        let number = self.click;
-        // The thread is there as long as the window.
-        let _ = self.clicks.send(Click {
+        let [x, y] = pixel;
+        let number = self.click + 1;
+        let sent = self.clicks.try_send(Click {
             number,
             shot,
             pixel,
         });
+        self.say(match sent {
+            Err(TrySendError::Full(_)) => {
+                let waiting = clicks::MOST_WAITING;
+                format!("pixel {x},{y} is not explained: {waiting} others wait; click again later")
+            }
+            // The thread is there as long as the window.
+            Ok(()) | Err(TrySendError::Disconnected(_)) => {
+                format!("pixel {x},{y} is being explained")
+            }
+        });
     }
 
     fn save(&mut self) {
-        let message = save_with_message(&self.state);
-        print(format!("{message}\n"));
+        let saved = save_with_message(&self.state);
+        match &saved {
+            // The title says it, too.
+            Ok(message) => drop(self.texts.write(format!("{message}\n"))),
+            Err(message) => drop(writeln!(io::stderr(), "{message}")),
+        }
+        self.say(saved.unwrap_or_else(|message| message));
+    }
+
+    /// Shows a message in the title. An explanation that is under way is not shown, unless it is of the next click.
+    fn say(&mut self, message: String) {
         self.clear();
         self.message = Some(message);
         self.request_redraw();
@@ -357,7 +425,7 @@ impl App<'_> {
         let Some(canvas) = &mut self.shown else {
             return Ok(());
         };
-        let size = canvas.window.inner_size();
+        let size = canvas.size;
         let sides = [size.width, size.height].map(NonZeroU32::new);
         let [Some(width), Some(height)] = sides else {
             return Ok(());
@@ -392,10 +460,4 @@ fn key(event: &KeyEvent) -> Option<Key> {
         LogicalKey::Named(NamedKey::Escape) => Some(Key::Escape),
         _ => None,
     }
-}
-
-/// Prints in the terminal, which may be closed without harm to the window.
-fn print(text: impl Display) {
-    let _ = write!(io::stdout().lock(), "{text}");
-    let _ = io::stdout().flush();
 }

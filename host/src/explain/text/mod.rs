@@ -51,10 +51,21 @@ impl Display for Shown<'_> {
                 "It shows the mean of the samples, {mean}, limited to display white or tone mapped."
             )?;
         }
+        let (listed, all) = (self.explanation.listed_samples(), samples.len());
+        if listed < all {
+            let given = match pixel {
+                Some([x, y]) => format!(" --pixel {x},{y} --samples {all}"),
+                None => String::new(),
+            };
+            writeln!(
+                f,
+                "Only the first {listed} of {all} samples are explained. `gridel explain{given}` explains all."
+            )?;
+        }
         for sentence in self.sentences() {
             writeln!(f, "{sentence}")?;
         }
-        for (number, sample) in samples.iter().enumerate() {
+        for (number, sample) in samples.iter().take(listed).enumerate() {
             write!(f, "\nSample {} of {}", number + 1, samples.len())?;
             if let Some([x, y]) = sample.place {
                 write!(f, " at {x:.3}, {y:.3}")?;
@@ -186,12 +197,13 @@ impl Shown<'_> {
         if all_ambient && rays().any(|ray| ray.hit.is_some()) && !rays().any(others) {
             sentences.push(String::from("The scene has only ambient light."));
         }
+        let count = self.explanation.listed_samples() as f64;
         let too_deep: Vec<f64> = rays()
             .filter(|ray| ray.too_deep)
             .map(|ray| peak(ray.cut))
             .collect();
         if !too_deep.is_empty() {
-            let lost: f64 = too_deep.iter().sum::<f64>() / self.explanation.samples.len() as f64;
+            let lost: f64 = too_deep.iter().sum::<f64>() / count;
             sentences.push(format!(
                 "{} stopped at the ray depth; black replaces up to {} of white. Raise it with \
                  `--depth`.",
@@ -205,7 +217,7 @@ impl Shown<'_> {
             .filter(|&weight| weight > 0.0)
             .collect();
         if !dropped.is_empty() {
-            let lost: f64 = dropped.iter().sum::<f64>() / self.explanation.samples.len() as f64;
+            let lost: f64 = dropped.iter().sum::<f64>() / count;
             sentences.push(format!(
                 "{} not traced, because the weight is below the scene's cutoff: {} of white in all.",
                 counted_were(dropped.len(), "ray"),

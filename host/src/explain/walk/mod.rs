@@ -344,8 +344,11 @@ fn instance_name(number: u32) -> String {
 }
 
 fn name(scene: &Scene<'_>, place: NodeId) -> String {
-    match scene.instances().get(place.number as usize) {
-        Some(instance) if place.what == NodeId::INSTANCE => instance_name(instance.number),
-        _ => format!("{} {}", place.what, place.number),
+    let NodeId { what, number } = place;
+    match scene.instances().get(number as usize) {
+        Some(instance) if what == NodeId::INSTANCE => instance_name(instance.number),
+        // A leaf of `wide`, whose number is its place in the blob, unlike that of a primitive.
+        _ if Kind::ALL.iter().any(|kind| kind.name() == what) => format!("{what} leaf {number}"),
+        _ => format!("{what} {number}"),
     }
 }
