@@ -4,7 +4,7 @@ use super::LATTICE_BITS;
 use super::report::Report;
 use super::requirements::RequiringPart;
 use super::shading::{exposure_factor, light_label, radiance, with_coordinates};
-use crate::scene::{BRIGHTEST, Light, Material, Scene, Shape, SourceSpan};
+use crate::scene::{BRIGHTEST, Color, Light, Material, Scene, Shape, SourceSpan};
 use crate::shape::unit;
 use crate::table::{counted, grouped, printable};
 
@@ -56,37 +56,36 @@ const MOST_ROUNDING: f64 = 0.1;
 /// Returns a warning of light that a blob's steps round to nothing, or by more than [`MOST_ROUNDING`]. Lights with a
 /// form have exponents of their own.
 fn faint_light(scene: &Scene) -> Option<String> {
-    let has_form = |number| matches!(scene.light_forms.get(number), Some(Some(_)));
-    let lights = scene.lights.iter().enumerate();
-    let lights = lights.filter(|&(number, _)| !has_form(number));
-    let lights = lights.map(|(number, light)| {
-        let (Light::Point { color, .. } | Light::Directional { color, .. }) = *light;
-        let place = scene.places.light(number);
-        (
-            RequiringPart::new(light_label(scene, number), &place),
-            color,
-        )
-    });
-    let materials = scene.materials.iter().map(|material| {
-        let label = format!("the emission of material {}", printable(&material.name));
-        (
-            RequiringPart::new(label, &material.place),
-            material.emission,
-        )
-    });
-    let elsewhere = |name: &str, color| (RequiringPart::new(name, &SourceSpan::default()), color);
-    let others = [
-        elsewhere("the ambient light", scene.ambient),
-        elsewhere("the background", scene.background.unwrap_or_default()),
-    ];
     let factor = exposure_factor(scene);
-    let mut faint = lights.chain(materials).chain(others).filter(|(_, color)| {
-        let brightest = factor * color.iter().copied().fold(0.0, f64::max);
+    let is_faint = |color: Color| {
+        let brightest = factor * color.into_iter().fold(0.0, f64::max);
         let rounded = f64::from(radiance([brightest; 3])[0]) / f64::from(1 << 20);
         (rounded - brightest).abs() > MOST_ROUNDING * brightest.min(BRIGHTEST)
-    });
-    let (first, _) = faint.next()?;
-    let more = match faint.count() {
+    };
+    let mut faint = Vec::new();
+    for (number, light) in scene.lights.iter().enumerate() {
+        let (Light::Point { color, .. } | Light::Directional { color, .. }) = *light;
+        let has_form = matches!(scene.light_forms.get(number), Some(Some(_)));
+        if !has_form && is_faint(color) {
+            faint.push((light_label(scene, number), scene.places.light(number)));
+        }
+    }
+    for material in scene.materials.iter().filter(|it| is_faint(it.emission)) {
+        let label = format!("the emission of material {}", printable(&material.name));
+        faint.push((label, material.place.clone()));
+    }
+    let background = scene.background.unwrap_or_default();
+    for (name, color) in [
+        ("the ambient light", scene.ambient),
+        ("the background", background),
+    ] {
+        if is_faint(color) {
+            faint.push((String::from(name), SourceSpan::default()));
+        }
+    }
+    let ((label, place), rest) = faint.split_first()?;
+    let first = RequiringPart::new(label.as_str(), place);
+    let more = match rest.len() {
         0 => String::new(),
         more => format!(" and {} more", grouped(more)),
     };
