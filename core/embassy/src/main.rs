@@ -77,7 +77,8 @@ async fn render(mut rows: Sender<'static, NoopRawMutex, Row>) {
         samples: 1,
         ..Settings::of(&scene)
     };
-    let Some(distance) = coordinate_steps(scene.coordinate_exponent(), 8, 1) else {
+    let distance = coordinate_steps(scene.coordinate_exponent(), 8, 1);
+    let Some(distance) = distance.map(i32::unsigned_abs) else {
         return;
     };
     let [raised, seen] = [16, 8].map(|whole| Angle::of_turn(1, whole));
