@@ -43,12 +43,16 @@ def test_slanted_rays_from_far_away_cross_twice(cube, format, distance):
     assert np.allclose(hits.t, distance, rtol=1e-5)
 
 
-@pytest.mark.parametrize("format", ["fixed", "f32", "f64"])
-def test_far_rays_meet_planes_or_are_invalid(tmp_path, format):
+def plane_and_ball(folder):
     plane = "[[object]]\nkind = 'plane'\npoint = [0, 0, 0]\nnormal = [0, 0, 1]\n"
     ball = "[[object]]\nkind = 'sphere'\ncenter = [0, 0, 2]\nradius = 1\n"
-    (tmp_path / "scene.toml").write_text(plane + ball)
-    scene = gridel.Scene.load(tmp_path / "scene.toml", accel="bvh")
+    (folder / "scene.toml").write_text(plane + ball)
+    return gridel.Scene.load(folder / "scene.toml", accel="bvh")
+
+
+@pytest.mark.parametrize("format", ["fixed", "f32", "f64"])
+def test_far_rays_meet_planes_or_are_invalid(tmp_path, format):
+    scene = plane_and_ball(tmp_path)
     # At the ball, beside it at the plane, and so far beside it that no number of the core holds the place.
     rays = [[0, 0, 1e9, 0, 0, -1], [5, 0, 1e9, 0, 0, -1], [1e9, 0, 1e9, 0, 0, -1.0]]
     assert np.allclose(scene.cast(rays, format=format).t, [1e9 - 3, 1e9, np.nan], rtol=1e-12, equal_nan=True)
@@ -57,10 +61,7 @@ def test_far_rays_meet_planes_or_are_invalid(tmp_path, format):
 
 @pytest.mark.parametrize("format", ["fixed", "f32", "f64"])
 def test_count_leaves_out_what_all_leaves_out(tmp_path, format):
-    plane = "[[object]]\nkind = 'plane'\npoint = [0, 0, 0]\nnormal = [0, 0, 1]\n"
-    ball = "[[object]]\nkind = 'sphere'\ncenter = [0, 0, 2]\nradius = 1\n"
-    (tmp_path / "scene.toml").write_text(plane + ball)
-    scene = gridel.Scene.load(tmp_path / "scene.toml", accel="bvh")
+    scene = plane_and_ball(tmp_path)
     # The direction is so short that t of the plane is no number of double precision.
     rays = np.array([[0, 0, 9.0, 0, 0, -4e-308], [0, 0, 9.0, 0, 0, -1.0]])
     limited = np.insert(rays, 3, 0.0, axis=1)

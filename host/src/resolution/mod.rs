@@ -277,16 +277,18 @@ fn largest<'c>(scene: &Scene<'_>, instances: &'c [InstanceExtent]) -> Vec<Placed
             largest.add((0, number), placed);
         }
     }
-    for (part, content) in scene.parts().iter().enumerate() {
-        let placed_by = (1..).zip(instances).filter(|(_, it)| it.part == part);
-        let placed_by: Vec<_> = placed_by.collect();
-        if placed_by.is_empty() {
+    let mut placements = vec![Vec::new(); scene.parts().len()];
+    for (rank, instance) in (1..).zip(instances) {
+        placements[instance.part].push((rank, &instance.map));
+    }
+    for (content, placements) in scene.parts().iter().zip(placements) {
+        if placements.is_empty() {
             continue;
         }
         for (number, (_, solid)) in surfaces(content).enumerate() {
             let own = Extent::of(&solid);
             let bounds = bounds(&solid, &own);
-            for &(rank, InstanceExtent { map, .. }) in &placed_by {
+            for &(rank, map) in &placements {
                 let extent = own.placed(map);
                 let place = [extent.reach(map), extent.magnitude()];
                 let bounds = Format::ALL.into_iter().zip(bounds).map(|(format, bound)| {

@@ -60,6 +60,7 @@ mod tests {
         let place = format!("pixel {},{}: #{}", middle[0], middle[1], color.concat());
         assert!(text.starts_with(&place), "{text}");
     }
+
     #[test]
     fn first_samples_have_the_color_of_all() {
         let blob = quick();

@@ -84,7 +84,7 @@ fn the_advice_for_a_budget_is_exact() {
 }
 
 #[test]
-fn a_table_beyond_its_budget_is_rejected_as_a_blob_is() {
+fn a_table_beyond_its_budget_or_the_memory_to_build_it_is_rejected_as_a_blob_is() {
     let folder = Folder::with_quick();
     let build = [
         "build",
@@ -94,33 +94,18 @@ fn a_table_beyond_its_budget_is_rejected_as_a_blob_is() {
         "--accel",
         "cylinder-cube",
     ];
-    let tight = ["--gridels", "1", "--budget", "10"];
-    folder.fails(
-        3,
-        &[&build[..], &tight].concat(),
-        &["1 gridel per side", "--budget"],
-    );
-}
-
-#[test]
-fn a_table_whose_build_takes_too_much_memory_is_rejected_before_it_is_counted() {
-    let folder = Folder::with_quick();
-    folder.fails(
-        3,
-        &[
-            "build",
-            "quick.toml",
-            "-o",
-            "new.gridel",
-            "--accel",
-            "cylinder-cube",
-            "--gridels",
-            "64",
-            "--budget",
-            "256M",
-        ],
-        &["64 gridels per side", "of memory", "--gridels"],
-    );
+    for (limits, said) in [
+        (
+            ["--gridels", "1", "--budget", "10"],
+            ["1 gridel per side", "--budget", "its budget of 10"],
+        ),
+        (
+            ["--gridels", "64", "--budget", "256M"],
+            ["64 gridels per side", "of memory", "--gridels"],
+        ),
+    ] {
+        folder.fails(3, &[&build[..], &limits].concat(), &said);
+    }
 }
 
 /// The scene does not fit, either, which takes long to find out.
