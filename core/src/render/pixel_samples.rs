@@ -29,9 +29,25 @@ impl<N: Number> Samples<N> {
         }
     }
 
-    /// The number of the current sample.
-    pub(super) fn index(&self) -> u16 {
-        self.index
+    /// Returns a pixel, linear. `renderer_of` is the renderer of a sample, counted from 0.
+    #[inline(always)]
+    pub(super) fn trace<'r, 's: 'r, 'a: 's, A: Accel + 'r, C: Observer, const EFFECTS: u32>(
+        pixel: [u16; 2],
+        renderer_of: impl Fn(u16) -> &'r Renderer<'s, 'a, N, A, EFFECTS>,
+        space: &mut WorkspaceView<'_, N>,
+        count: &mut C,
+    ) -> Linear
+    where
+        N: 'r,
+    {
+        space.work.clear();
+        let mut samples = Self::new();
+        loop {
+            let renderer = renderer_of(samples.index);
+            if let Some(linear) = samples.step(renderer, pixel, space, count) {
+                return linear;
+            }
+        }
     }
 
     /// Traces one ray. Returns the pixel, linear, if that was its last ray. The work list holds rays of the pixel's

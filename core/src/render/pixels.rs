@@ -37,13 +37,7 @@ impl<N: Number, A: Accel, const EFFECTS: u32> Renderer<'_, '_, N, A, EFFECTS> {
         space: &mut WorkspaceView<'_, N>,
         count: &mut C,
     ) -> [u16; 3] {
-        space.work.clear();
-        let mut samples = Samples::new();
-        loop {
-            if let Some(linear) = samples.step(self, [x, y], space, count) {
-                return linear;
-            }
-        }
+        Samples::trace([x, y], |_| self, space, count)
     }
 
     /// Returns the color along a ray of the caller's own, linear; 65535 is white. No lens acts on it, and effects draw

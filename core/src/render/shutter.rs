@@ -78,14 +78,7 @@ impl<'r, 's, 'a, N: Number, A: Accel, const EFFECTS: u32> Shutter<'r, 's, 'a, N,
         space: &mut WorkspaceView<'_, N>,
         count: &mut C,
     ) -> [u16; 3] {
-        space.work.clear();
-        let mut samples = Samples::new();
-        loop {
-            let renderer = self.moment(samples.index());
-            if let Some(linear) = samples.step(renderer, [x, y], space, count) {
-                return linear;
-            }
-        }
+        Samples::trace([x, y], |sample| self.moment(sample), space, count)
     }
 
     /// Returns one pixel in a display's form: see [`Renderer::pixel`].
